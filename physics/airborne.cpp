@@ -14,7 +14,7 @@
 namespace turnpoint::physics {
 namespace {
 
-// Number of Gauss-Legendre nodes: per half wavelength along the strip, and per half-width across it.
+// Number of Gauss-Legendre nodes per half wavelength in air along the strip, and per half-width across it.
 constexpr int nodes_along = 4, nodes_across = 12;
 constexpr double reference_Pa = 20e-6;
 
@@ -26,8 +26,8 @@ double transverse_shape(bool clamped_plate, double eta) {
   return (std::cos(b * eta) - at_edge * std::cosh(b * eta)) / (1 - at_edge);
 }
 
-// Places above the strip, from one end to the other. All of them are `distance_m` from the nearest point of
-// the centre line.
+// Places above the strip, all at the distance `distance_m` from the centre line: a quarter circle around each
+// end of the line, and a straight line between them.
 std::vector<Place> places_around(double length_m, double distance_m, double step_m) {
   const double arc = 0.5 * std::numbers::pi * distance_m, whole = length_m + 2 * arc;
   const int steps = static_cast<int>(std::ceil(whole / step_m));
@@ -108,8 +108,8 @@ LoudestSound loudest_sound(const Surface& surface, const Tone& tone, Model model
                                 std::to_string(1e3 * wave_m) + " mm) and " +
                                 std::to_string(1e3 * half_width * half_width / wave_m) + " mm");
   auto sources = sound_sources(surface, tone, model, air);
-  // All places are in the plane y = 0, which is equally far from both halves of the strip. One half, counted
-  // twice, is therefore enough.
+  // All places are in the plane y = 0, so each has the same distance from both halves of the strip. It is
+  // enough to add up one half and count it twice.
   std::erase_if(sources, [](const SoundSource& source) { return source.y_m < 0; });
   for (SoundSource& source : sources) source.volume_m3 *= 2;
   const auto places = places_around(surface.length_m, distance_m, std::min(5e-3, 0.5 * wave_m));

@@ -24,8 +24,8 @@ struct Place {
   double x_m = 0, y_m = 0, z_m = 0;
 };
 
-// A part of the surface whose points all move up and down together. It must be small compared with the
-// wavelength in air.
+// A part of the surface that moves up and down as a whole. It must be small compared with the wavelength in
+// air.
 struct SoundSource {
   double x_m = 0, y_m = 0;
   std::complex<double> volume_m3;  // peak displacement times area
@@ -38,9 +38,9 @@ std::vector<std::complex<double>> radiated_pressure_Pa(std::span<const SoundSour
                                                        double frequency_Hz, std::span<const Place> places,
                                                        const Air& air = {});
 
-// Divides the surface, vibrating at one tone, into about six sources per wavelength in air. Across the strip,
-// the displacement is assumed to have the shape of the first transverse mode at its cut-off. Throws like
-// evaluate_tones().
+// Divides the surface, which vibrates at one tone, into sources: at least eight per wavelength in air along
+// the strip, and 24 across it. Across the strip, the displacement is assumed to have the shape of the first
+// transverse mode at its cut-off. Throws like evaluate_tones().
 std::vector<SoundSource> sound_sources(const Surface& surface, const Tone& tone, Model model,
                                        const Air& air = {});
 
@@ -49,11 +49,11 @@ struct LoudestSound {
   Place place;
 };
 
-// Finds the loudest place in the plane y = 0 at `distance_m` from the nearest point of the centre line.
-// Outside that plane and farther away the sound is softer if the half-width is below sqrt(wavelength x
-// distance), the width of the first Fresnel zone. The places that are tried are half a wavelength in air
-// apart, at most 5 mm, so the result is less than 0.3 dB too low. Throws std::invalid_argument if the
-// distance is below a wavelength or too short for that width.
+// Finds the loudest place in the plane y = 0 at `distance_m` from the centre line. Farther away, the sound is
+// softer. Outside that plane it is softer too if the half-width is below sqrt(wavelength x distance), the
+// width of the first Fresnel zone. The search tries places half a wavelength in air apart (at most 5 mm), so
+// the result is less than 0.3 dB too low. Throws std::invalid_argument if the distance is below a wavelength,
+// or if the half-width is not below the width of the Fresnel zone.
 LoudestSound loudest_sound(const Surface& surface, const Tone& tone, Model model, double distance_m,
                            const Air& air = {});
 

@@ -46,7 +46,8 @@ Airy decaying(double t) {
 Airy oscillating(double t) {
   const double z = -t;
   const double zeta = 2.0 / 3 * z * std::sqrt(z);
-  // sums of the even and the odd terms with the coefficients u, then with v (DLMF 9.7); their signs alternate
+  // sums of the even and the odd terms of the asymptotic series in DLMF 9.7: first with the coefficients u,
+  // then with v; the signs of the terms alternate
   double sums[4] = {0, 0, 0, 0};
   double power = 1;
   for (std::size_t k = 0; k < terms; ++k) {

@@ -6,9 +6,9 @@
 
 namespace turnpoint::physics {
 
-// The profile Ai(k0 (x - x0)), without loss. At the turning point x0, p = k^2 - (pi / 2W)^2 is zero and k0^3
-// = -dp/dx. On a linear taper of slope d this is the paper's k0^3 = (4 d omega^3/pi)(rho/T)^(3/2). Throws
-// std::domain_error if there is no turning point on the taper or its continuation.
+// The profile Ai(k0 (x - x0)), without loss. x0 is the turning point, where p = k^2 - (pi / 2W)^2 is zero;
+// k0^3 = -dp/dx there. On a linear taper of slope d this is the paper's k0^3 = (4 d omega^3/pi)(rho/T)^(3/2).
+// Throws std::domain_error if there is no turning point on the taper or its continuation.
 std::unique_ptr<CentreLine> make_airy_line(const Surface& surface, double frequency_Hz);
 
 // The values x0 and k0 of this profile.

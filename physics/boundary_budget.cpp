@@ -54,7 +54,7 @@ bool has(const Surface& s, Parameter parameter) {
   }
 }
 
-// The value of one of the four parameters that the cut-off depends on.
+// Returns the value of one of the four parameters on which the cut-off depends.
 double value(const Surface& s, Parameter parameter) {
   switch (parameter) {
     case Parameter::density:
@@ -69,7 +69,7 @@ double value(const Surface& s, Parameter parameter) {
 }
 
 double cut_off_derivative_m(Surface s, Parameter parameter, double f) {
-  // The choice whether bending counts must not change with the value.
+  // Fix the choice whether bending is modelled, so that it does not change with the parameter's value.
   if (s.tension_Pa > 0) s.bending = bending_modelled(s) ? Bending::on : Bending::off;
   const double step = 1e-3 * value(s, parameter);
   return (cut_off_half_width_m(changed(s, parameter, step), f) -
@@ -167,8 +167,9 @@ Surface changed(Surface s, Parameter parameter, double by) {
   return s;
 }
 
-// The edge lies where W(x) = ratio Wc(f), and ratio - 1 grows with the taper's local slope to the power 2/3,
-// because an edge's distance from the turning point does with its power -1/3.
+// The edge lies where W(x) = ratio Wc(f), with the cut-off half-width Wc. The excess ratio - 1 is
+// proportional to the taper's local slope to the power 2/3, because the edge's distance from the turning
+// point is proportional to the slope to the power -1/3.
 double boundary_derivative(const Surface& s, Parameter parameter, double f, double x) {
   const Taper taper(s);
   const double w = taper.half_width_m(x), slope = taper.slope(x), cut_off_m = cut_off_half_width_m(s, f);
@@ -176,7 +177,7 @@ double boundary_derivative(const Surface& s, Parameter parameter, double f, doub
   const double aside = std::min({1e-3 * s.length_m, x, s.length_m - x});
   const double bend = aside > 0 ? (taper.slope(x + aside) - taper.slope(x - aside)) / (2 * aside) : 0;
   const double fall = by_ln_slope * bend / slope - slope;
-  // How far W(x) - ratio Wc(f) grows with a parameter.
+  // Derivative of W(x) - ratio Wc(f) with respect to a parameter.
   const auto grows = [&](Parameter p) {
     switch (p) {
       case Parameter::half_width:
@@ -196,7 +197,7 @@ double boundary_derivative(const Surface& s, Parameter parameter, double f, doub
     }
   };
   if (parameter != Parameter::temperature) return grows(parameter) / fall;
-  // Everything along x stretches, too.
+  // Warmth stretches the surface along x as well.
   double rate = s.expansion_per_K * (w + fall * x);
   rate -= 3 * s.expansion_per_K * s.density_kg_m3 * grows(Parameter::density);
   if (bending_modelled(s)) {
@@ -214,7 +215,7 @@ BoundaryBudget boundary_budget(const Surface& surface, double f, double x) {
     const double sd = standard_deviation(surface, parameter);
     if (sd > 0) parts.push_back({parameter, sd, sd * boundary_derivative(surface, parameter, f, x), 0});
   }
-  // What a part moves together with all that is correlated with it.
+  // How far the boundary moves with one parameter and with all parameters that are correlated with it.
   const auto together_m = [&](const Contribution& part) {
     double sum = part.moved_m;
     for (const Correlation& c : surface.correlations) {

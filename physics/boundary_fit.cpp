@@ -12,8 +12,8 @@
 namespace turnpoint::physics {
 namespace {
 
-// Everything is in units of standard deviations: of the prior for parameters, of the measurement for
-// boundaries.
+// The fit counts in standard deviations: parameters in those of the prior, boundaries in those of the
+// measurement.
 struct Problem {
   const Surface& surface;
   const MapOptions& options;
@@ -104,12 +104,13 @@ Solution solve(const Problem& problem) {
   return s;
 }
 
-// Takes the worst boundary away as long as it does not fit to the others, and names it, together with those
-// that are just as far from where the others put them.
+// Finds outliers. Repeatedly removes the boundary that deviates most from what the remaining boundaries
+// predict, until no deviation exceeds the limit. Marks this boundary, and all others that deviate almost as
+// much, as outliers.
 std::vector<bool> find_outliers(const Solution& s) {
   constexpr double limit = 3, as_bad = 0.9;
   const Eigen::Index m = s.jacobian.rows(), n = s.jacobian.cols();
-  // Linear about the solution: what the boundaries would be without the change of the parameters.
+  // To first order: the deviations of the boundaries if the parameters were not changed.
   const Eigen::VectorXd free = s.misses + s.jacobian * s.u;
   std::vector<bool> named(static_cast<std::size_t>(m)), taken(static_cast<std::size_t>(m));
   for (Eigen::Index round = 0; round < m; ++round) {

@@ -16,9 +16,9 @@
 
 namespace turnpoint::physics {
 
-// The half-width at a feature divided by the cut-off half-width of the feature's frequency. This ratio is
-// constant on a linear taper that runs to its apex, because every feature scales with the distance from the
-// apex; on other tapers it is a table that varies slowly.
+// A map works with the ratio of half-widths: at the feature (edge), divided by the cut-off half-width of the
+// feature's frequency. On a linear taper that runs to its apex this ratio is constant, because every feature
+// scales with the distance from the apex. On other tapers a table holds it; it varies slowly.
 struct BoundaryMap::State {
   Surface surface;
   MapOptions options;
@@ -47,7 +47,8 @@ std::optional<double> BoundaryMap::State::frequency(double x) const noexcept {
   if (!(x >= 0 && x <= surface.length_m)) return std::nullopt;
   const double w = taper.half_width_m(x);
   if (!(w > 0)) return std::nullopt;
-  // Solves cut_off(w / ratio(f)) = f by the secant method, from the turning point's frequency.
+  // Solves cut_off(w / ratio(f)) = f by the secant method, starting at the frequency whose turning point is
+  // at x.
   const auto next = [&](double f) {
     return dispersion.cut_off_frequency_Hz(
         w / table.ratio(std::clamp(f, table.low_Hz, table.high_Hz)).value_or(1));
@@ -108,8 +109,8 @@ std::optional<double> first_mode_frequency_Hz(const Surface& surface, const MapO
   const Taper taper(surface);
   const Dispersion dispersion(surface);
   const double w = taper.half_width_m(x);
-  // As in a map, the ratio of the edge's half-width to the cut-off's varies slowly, so that fixed-point steps
-  // converge well, and secant steps better.
+  // The half-width at the edge divided by the cut-off half-width varies slowly with frequency. Fixed-point
+  // steps on this ratio therefore converge well, and secant steps converge faster.
   double miss_m = 0;
   const auto next = [&](double f) -> std::optional<double> {
     const auto at = edge_at(surface, options, f, Model::edge);
@@ -133,8 +134,9 @@ std::optional<double> first_mode_frequency_Hz(const Surface& surface, const MapO
   return std::nullopt;
 }
 
-// Takes Newton steps with the slope of the first mode, whose solutions are cheap. Each step leaves about a
-// hundredth of the error, so the last step need not be checked by another solution.
+// Takes Newton steps for the two-dimensional field. Their slope comes from the first mode, which is cheap to
+// solve. Each step reduces the error about a hundredfold, so the result of the last step needs no check by
+// another solution.
 std::optional<double> field_frequency_Hz(const Surface& surface, const MapOptions& options, double x,
                                          double f) {
   constexpr double last_step_m = 2e-5;

@@ -25,7 +25,7 @@ struct MapOptions {
   std::optional<Model> model;  // empty: the cheapest model whose bound is within `tolerance_m`
   // empty: the most exact position available (`edge` if it has a closed form)
   std::optional<double> tolerance_m;
-  std::optional<FrictionContext> friction;  // required for a friction edge
+  std::optional<FrictionContext> friction;  // required if `edge` is defined by friction
   // The frequencies for which a table is made; if empty, all frequencies that the surface can present.
   struct Band {
     double low_Hz, high_Hz;
@@ -33,9 +33,10 @@ struct MapOptions {
   std::optional<Band> band = {};
 };
 
-// One answer. If there is no such boundary, its values are empty and `reason` says why; otherwise `reason`
-// says why this model was used. `error_bound_m` bounds the effect of the drive edge's higher modes and of the
-// model's equation; `uncertainty_m` is one standard deviation, from boundary_budget().
+// The map's answer to one query. If there is no such boundary, `boundary_m` and `frequency_Hz` are empty and
+// `reason` says why; otherwise `reason` says why this model was used. `error_bound_m` bounds two errors: that
+// of the model's equation, and that caused by higher modes from the drive edge. `uncertainty_m` is one
+// standard deviation, from boundary_budget().
 struct MapAnswer {
   std::optional<double> boundary_m;
   std::optional<double> frequency_Hz;
@@ -44,15 +45,17 @@ struct MapAnswer {
   double error_bound_m = 0;
   double uncertainty_m = 0;
   double m_per_Hz = 0;
-  // How far the next better plate theory would move it, not part of `error_bound_m`; see plate_theory.hpp.
+  // How far the next better plate theory would move the boundary; not included in `error_bound_m`. See
+  // plate_theory.hpp.
   std::optional<double> shear_shift_m;
   std::string reason;
   std::vector<Warning> warnings;
 };
 
-// The map of one surface and one edge, according to its first transverse mode with loss. Building it takes
-// microseconds if it has a closed form, else milliseconds, because a table is made and validated. The two
-// look-ups take well under a microsecond, allocate nothing and may be called from any thread.
+// The map between boundary and frequency for one surface and one edge, from the first transverse mode with
+// loss. Making a map takes microseconds if the edge has a closed form. Otherwise it takes milliseconds,
+// because a table is made and validated. boundary_m() and frequency_Hz() take well under a microsecond,
+// allocate nothing and may be called from any thread.
 class BoundaryMap {
  public:
   BoundaryMap(const Surface& surface, const MapOptions& options);
@@ -60,12 +63,11 @@ class BoundaryMap {
   BoundaryMap(BoundaryMap&&) noexcept;
   BoundaryMap& operator=(BoundaryMap&&) noexcept;
 
-  // The position for a frequency, and the frequency for a position; empty outside what the surface can
-  // present.
+  // The position for a frequency, and the frequency for a position; empty if the surface cannot present it.
   std::optional<double> boundary_m(double frequency_Hz) const noexcept;
   std::optional<double> frequency_Hz(double boundary_m) const noexcept;
 
-  // The same, with bounds, reason and warnings.
+  // The same look-ups, with error bounds, reason and warnings.
   MapAnswer at_frequency(double frequency_Hz) const;
   MapAnswer at_boundary(double boundary_m) const;
 
@@ -76,10 +78,11 @@ class BoundaryMap {
   std::unique_ptr<const State> state_;
 };
 
-// Finds the frequency that puts the edge at a position, without a table: to a nanometre by the first
-// transverse mode or, if options.model is `modes`, to 0.1 um by the two-dimensional field. This needs only a
-// few solutions, so it is cheaper than making a map that is used once; still fewer if `near_Hz`, the
-// frequency according to the first mode, is given. Empty if the search finds none; a map may still find one.
+// Finds the frequency that puts the edge at a position, without making a table. The result is accurate to a
+// nanometre for the first transverse mode or, if options.model is `modes`, to 0.1 um for the two-dimensional
+// field. The search needs only a few solutions, so it is cheaper than a map that is used once. It is cheaper
+// still if `near_Hz`, the frequency according to the first mode, is given. Returns empty if the search fails;
+// a map may find a frequency nevertheless.
 std::optional<double> solve_frequency_Hz(const Surface& surface, const MapOptions& options, double boundary_m,
                                          std::optional<double> near_Hz = {});
 

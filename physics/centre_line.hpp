@@ -12,7 +12,8 @@
 
 namespace turnpoint::physics {
 
-// The displacement v(x) along the centre line, up to a constant factor. Const functions are thread-safe.
+// The displacement v(x) along the centre line, up to a constant factor. Functions marked const are
+// thread-safe.
 class CentreLine {
  public:
   virtual ~CentreLine() = default;
@@ -26,16 +27,17 @@ class CentreLine {
   virtual std::optional<double> last_peak_m() const = 0;
   // Outermost point at which |v| is `level` times its last maximum; empty if there is none.
   virtual std::optional<double> level_m(double level) const = 0;
-  // Factor by which a division by v(0) amplifies errors: the envelope of the standing wave at the drive edge
-  // divided by |v(0)|.
+  // Factor by which the division by v(0) amplifies errors: the envelope of the standing wave at the drive
+  // edge, divided by |v(0)|.
   virtual double drive_conditioning(double wavenumber_per_m) const;
 };
 
 // Whether losses are included (k becomes k (1 - i/2Q)) or left out.
 enum class Losses { kept, left_out };
 
-// Throws std::invalid_argument for Model::edge, which has no profile, and std::domain_error if the model does
-// not apply: `airy` and `uniform` need a turning point on the (continued) taper.
+// Makes the centre line for a model. Throws std::invalid_argument for Model::edge, which has no profile, and
+// std::domain_error if the model does not apply: `airy` and `uniform` need a turning point on the (continued)
+// taper.
 std::unique_ptr<CentreLine> make_centre_line(const Surface& surface, double frequency_Hz, Model model,
                                              Losses losses = Losses::kept);
 
@@ -43,9 +45,9 @@ std::unique_ptr<CentreLine> make_centre_line(const Surface& surface, double freq
 // length_m].
 std::optional<double> turning_point_m(const Surface& surface, double frequency_Hz);
 
-// Cuts the surface off where the first mode has decayed by e^-45 beyond its turning point. Edges and
-// resonances depend on nothing farther out, and starting at the tip of a long exponential taper would take
-// millions of steps.
+// Returns the surface without its outer part, where the first mode has decayed by more than e^-45 beyond its
+// turning point. Edges and resonances do not depend on that part, and on a long exponential taper solving it
+// would take millions of steps.
 Surface moving_part(const Surface& surface, double frequency_Hz);
 
 // The equation that the models `seed` and `mode` solve step by step.

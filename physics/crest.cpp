@@ -48,8 +48,8 @@ void schroeder(std::span<Tone> tones) {
   }
 }
 
-// The peak of the envelope |rest(t) + tone(t) e^(i phi)| as a function of one tone's phase phi, sampled over
-// the period.
+// The peak, over one beat period, of the envelope |rest(t) + tone(t) e^(i phi)|, as a function of the phase
+// phi of one tone. `rest` is the sum of the other tones.
 class Envelope {
  public:
   explicit Envelope(std::span<const Tone> tones) {
@@ -127,7 +127,7 @@ double crest_factor(std::span<const Tone> tones) {
   for (std::size_t i = 1; i + 1 < count; ++i) {
     const double y = std::abs(wave[i]);
     if (y < 0.98 * peak) continue;
-    // The maximum of a parabola through the sample and its two neighbours.
+    // The maximum of a parabola through this sample and its two neighbours.
     const double sign = wave[i] < 0 ? -1 : 1;
     const double a = sign * wave[i - 1], c = sign * wave[i + 1];
     const double bend = a - 2 * y + c;
@@ -146,8 +146,8 @@ std::vector<Product> audible_products(std::span<const Tone> tones, double below_
     for (std::size_t j = 0; j < tones.size(); ++j) {
       if (i < j) add(tones[i].frequency_Hz - tones[j].frequency_Hz, 2);
       for (std::size_t k = 0; k < tones.size(); ++k) {
-        // The products f_i + f_j - f_k, which include 2 f_i - f_k for i = j. With k = i or k = j the result
-        // would be one of the tones, not a product.
+        // Add f_i + f_j - f_k; i = j gives 2 f_i - f_k. Skip k = i and k = j, because the result would be one
+        // of the tones.
         if (i <= j && k != i && k != j)
           add(tones[i].frequency_Hz + tones[j].frequency_Hz - tones[k].frequency_Hz, 3);
       }

@@ -9,8 +9,8 @@
 namespace turnpoint::physics {
 
 // Sets the phases of the tones for a low crest factor; amplitudes and order stay as they are. It starts with
-// Schroeder's phases -pi n (n - 1)/N in order of frequency (Schroeder 1970), then lowers the peak of the
-// sampled waveform step by step. The result is deterministic.
+// Schroeder's (1970) phases, -pi n (n - 1)/N for N equal tones numbered by frequency, then lowers the peak of
+// the sampled waveform step by step. The result is deterministic.
 void assign_phases(std::span<Tone> tones);
 
 // Crest factor: the peak of the summed waveform divided by its root mean square. The waveform is sampled over
@@ -21,7 +21,7 @@ double crest_factor(std::span<const Tone> tones);
 // from two of them).
 struct Product {
   double frequency_Hz;
-  int order;  // 2: from two tones; 3: third order
+  int order;  // 2: product of two tones; 3: third-order product
 };
 
 // All products of order 2 and 3 between 0 and below_Hz, ascending. Products within 1 Hz of each other are

@@ -18,9 +18,9 @@ constexpr double epsilon = std::numeric_limits<double>::epsilon();
 // tanh b = 0.
 constexpr double plate_root = 2.3650203724313520;
 
-// Returns k W of a clamped strip at its cut-off, for tau = W^2 N/D. It is the root b of b sin b + g tanh(g)
-// cos b = 0 in (pi/2, pi), with g^2 = b^2 + tau. This is the cut-off equation multiplied by cos b, which
-// removes the pole. The left side is positive below the root.
+// Returns k W of a clamped strip at its cut-off, for tau = W^2 N/D. It is the root b in (pi/2, pi) of b sin b
+// + g tanh(g) cos b = 0, with g^2 = b^2 + tau. This is the cut-off equation (see dispersion.hpp) multiplied
+// by cos b, which removes the pole. For b below the root, the left side is positive.
 double clamped_root(double tau) noexcept {
   const auto tangent = [tau](double b) {
     const double g = std::sqrt(b * b + tau);
@@ -92,7 +92,7 @@ double Dispersion::cut_off_half_width_m(double f) const noexcept {
   const double k = wavenumber_per_m(f);
   if (!clamped_bending()) return pi / (2 * k);
   if (tension_N_per_m == 0) return plate_root / k;
-  // Because k is known here, a fast fixed-point iteration solves tan(k W) = -(k2/k) tanh(k2 W) for k W.
+  // k is known here, so a fast fixed-point iteration can solve tan(k W) = -(k2/k) tanh(k2 W) for k W.
   const double ratio = std::sqrt(1 + tension_N_per_m / (stiffness_N_m * k * k));
   double b = 2.4;
   for (int i = 0; i < 60; ++i) {

@@ -8,12 +8,13 @@
 namespace turnpoint::physics {
 
 // The dispersion relation of one surface, prepared for many calls. Its functions neither allocate nor throw,
-// and expect arguments above zero. The free functions below compute the same and check their arguments.
+// and expect arguments above zero. The free functions below return the same values, and check their
+// arguments.
 struct Dispersion {
   explicit Dispersion(const Surface& surface);
 
-  // Wavenumber k of a free plane wave without loss; with loss, k becomes k (1 - i/2Q). It solves D k^4 + N
-  // k^2 = rho h omega^2, or is omega/c if bending is not modelled. Plate theories mindlin and elastic use
+  // Wavenumber k of a free plane wave without loss. (With loss, replace k by k (1 - i/2Q).) It solves D k^4 +
+  // N k^2 = rho h omega^2; if bending is not modelled, it is omega/c. Plate theories mindlin and elastic use
   // Mindlin's equation. For elastic the shear factor is 5/(6 - nu), which agrees with the Rayleigh-Lamb
   // equation within 0.1 % up to k h = 1.
   double wavenumber_per_m(double frequency_Hz) const noexcept;

@@ -23,8 +23,8 @@ struct Edge {
   bool operator==(const Edge&) const = default;
 };
 
-// Reads "turning", "peak", "p70" (two digits, 01 ... 99) or "friction=0.7". Throws std::invalid_argument,
-// which names what is allowed. `format` writes the same text.
+// Reads "turning", "peak", "p70" (two digits, 01 ... 99) or "friction=0.7". For other texts it throws
+// std::invalid_argument, with a list of what is allowed. `format` writes these texts.
 Edge parse_edge(std::string_view text);
 std::string format(const Edge& edge);
 

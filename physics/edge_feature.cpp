@@ -17,8 +17,8 @@ constexpr std::array kNodes{-0.9061798459386640, -0.5384693101056831, 0.0, 0.538
 constexpr std::array kWeights{0.2369268850561891, 0.4786286704993665, 0.5688888888888889, 0.4786286704993665,
                               0.2369268850561891};
 
-// Solves only the moving part of the surface. It contains the mode's last maximum and the levels beyond, and
-// it is small on a long or finely tabulated taper.
+// Solves only the part of the surface that moves (see moving_part()). It contains the mode's last maximum and
+// the levels beyond. On a long taper or one with many points, this saves most of the work.
 std::optional<double> marched_edge_m(const Surface& surface, const Edge& edge, double f) {
   const TaylorMarch march(Taper(surface), best_equation(surface, f, Losses::kept),
                           moving_part(surface, f).length_m);
@@ -63,11 +63,11 @@ std::optional<double> friction_edge_m(double length_m, const CentreLine& line, c
     }
     return sum;
   };
-  // Friction falls from 1 on the way from the tip to the last maximum. Searching from the tip, the first
-  // crossing is therefore the outermost one.
+  // Coming from the tip, friction falls from 1 until the last maximum. Searching from the tip therefore finds
+  // the outermost crossing first.
   const double step = std::min(context.fingertip_m / 8, length_m / 100) + 1e-9 * length_m;
-  // Start one fingertip's width beyond the point where the amplitude is 1e-4 of the maximum. There the
-  // friction is close to 1 in every friction map.
+  // Start one fingertip's width beyond the point where the amplitude is 1e-4 of the maximum. In every
+  // friction map, the friction there is close to 1.
   const double quiet = line.level_m(1e-4).value_or(length_m) + context.fingertip_m;
   double outer = std::min(length_m, quiet), f_outer = mean(outer) - level;
   if (f_outer <= 0) return std::nullopt;

@@ -1,5 +1,5 @@
 #pragma once
-// Finds the position of one edge at one frequency on a solved profile.
+// Finds the position of one edge at one frequency.
 #include <optional>
 
 #include "physics/boundary_map.hpp"
@@ -16,8 +16,8 @@ enum class Wave {
 };
 
 // The edge's position for a frequency, with loss. Empty if the edge does not exist on the surface. Throws
-// std::domain_error if the model does not apply to this surface and frequency. Only Wave::as_modelled uses
-// `model`.
+// std::domain_error if the model does not apply to this surface and frequency. `model` is used only with
+// Wave::as_modelled.
 std::optional<double> solve_edge_m(const Surface& surface, const MapOptions& options, double frequency_Hz,
                                    Model model, Wave wave);
 

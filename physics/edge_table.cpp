@@ -15,7 +15,7 @@ namespace {
 
 using Piece = EdgeTable::Piece;
 constexpr int degree = EdgeTable::degree;
-// How often a range of frequencies may be halved. The number is lower where a position takes long to compute:
+// How often a range of frequencies may be halved. The number is lower where computing a position takes long:
 // for friction edges, and on a taper with many points, where the solution needs a step for every point.
 int deepest(const Surface& surface, const MapOptions& options) {
   const auto* table = std::get_if<TabulatedTaper>(&surface.taper);
@@ -23,9 +23,9 @@ int deepest(const Surface& surface, const MapOptions& options) {
   return options.edge.kind == Edge::Kind::friction ? 5 : 9;
 }
 
-// The table is refined to this error. Finite elements and fingertip integrals are not more accurate
-// themselves, so a finer table would only reproduce their rounding errors. On a tabulated taper the curvature
-// jumps at every point, and no number of pieces could follow it exactly.
+// The table is refined until its error is below this tolerance. Finite elements and fingertip integrals are
+// not more accurate, so a finer table would only reproduce their numerical errors. On a tabulated taper the
+// curvature jumps at every point, so that no number of pieces could follow the edge exactly.
 double tolerance_m(const Surface& surface, const MapOptions& options) {
   if (options.edge.kind == Edge::Kind::friction) return 2e-6;
   const Dispersion dispersion(surface);
@@ -83,11 +83,11 @@ class Builder {
     return f;
   }
 
-  // Finds the frequency at which the edge stops existing. The edge exists at the frequency `with` and does
-  // not exist at `without`.
+  // Finds the frequency at which the edge stops existing, between `with` (the edge exists) and `without` (it
+  // does not).
   double limit(double with, double without) const {
-    // Plates and tabulated tapers take long, so a rough limit has to do. It is safe: the table covers only
-    // frequencies up to the limit that was found.
+    // On plates and tabulated tapers a solution takes long, so a rough limit must do. It is safe, because the
+    // returned frequency is one at which the edge exists.
     const bool thick = dispersion_.theory != PlateTheory::kirchhoff;
     const bool dear = dispersion_.clamped_bending() || std::holds_alternative<TabulatedTaper>(surface_.taper);
     const double enough = thick ? 1e-6 : dear ? 1e-9 : 1e-14;
@@ -144,7 +144,8 @@ class Builder {
       const auto w = taper_.position_continued_m(clenshaw(piece, ln_f) * dispersion_.cut_off_half_width_m(f));
       if (!x || !w) return std::numeric_limits<double>::infinity();
       worst = std::max(worst, std::abs(*x - *w));
-      if (worst > 100 * tolerance_m(surface_, options_)) return worst;  // this piece will be halved anyway
+      // this piece will be halved in any case
+      if (worst > 100 * tolerance_m(surface_, options_)) return worst;
     }
     return worst;
   }
@@ -156,14 +157,14 @@ class Builder {
   Dispersion dispersion_;
 };
 
-// True on a linear taper that runs to its apex. There each edge has a fixed k s (wavenumber times distance
-// from the apex) at all frequencies, whatever the loss.
+// True if each edge has a fixed k s (wavenumber times distance from the apex) at all frequencies, whatever
+// the loss. This is so on a linear taper that runs to its apex.
 bool scale_free(const Surface& surface, const MapOptions& options) {
   if (options.edge.kind == Edge::Kind::turning) return true;
   if (options.edge.kind == Edge::Kind::friction) return false;
   const auto apex = Taper(surface).apex_m();
   const Dispersion dispersion(surface);
-  // a thick plate has a length of its own, its thickness, so its features do not scale
+  // the thickness of a thick plate is a fixed length, so its features do not scale with the wavelength
   const bool thin = dispersion.theory == PlateTheory::kirchhoff;
   const bool scales = thin && (!dispersion.clamped_bending() || dispersion.tension_N_per_m == 0);
   return apex && *apex <= surface.length_m * (1 + 1e-9) && scales;

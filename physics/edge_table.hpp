@@ -9,8 +9,8 @@
 
 namespace turnpoint::physics {
 
-// ratio(f) = W(edge) / (cut-off half-width at f). It is one constant if `closed` is true; otherwise Chebyshev
-// polynomials in ln f, one per piece.
+// A table of ratio(f) = W(edge) / (cut-off half-width at f). If `closed` is true, the ratio is `constant`;
+// otherwise each piece is a Chebyshev series in ln f.
 struct EdgeTable {
   static constexpr int degree = 12;
   struct Piece {

@@ -78,8 +78,8 @@ std::vector<std::complex<double>> elastic_wavenumbers2(double t, double poisson,
   by.topLeftCorner(na, na) = s.along;
   by.bottomLeftCorner(nb, na) = s.coupling.transpose();
   by.bottomRightCorner(nb, nb) = s.cross;
-  // The eigenvalue problem is `fixed` v = -L `by` v. Compute the eigenvalues -1/L of the matrix fixed^-1 by;
-  // the largest of them belong to the smallest L.
+  // The eigenvalue problem is `fixed` v = -L `by` v. Compute the eigenvalues of fixed^-1 `by`, which are
+  // -1/L. The largest of them belong to the L of smallest magnitude.
   const Eigen::EigenSolver<Eigen::MatrixXd> solver(Eigen::MatrixXd(fixed.partialPivLu().solve(by)), false);
   std::vector<std::complex<double>> all;
   for (const std::complex<double> one : solver.eigenvalues()) {

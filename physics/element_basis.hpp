@@ -1,6 +1,6 @@
 #pragma once
-// Polynomials along one finite element, with t in [-1, 1]. From element to element, they are continuous for a
-// membrane; for a plate their slope is continuous as well.
+// Polynomials along one finite element, with t in [-1, 1]. For a membrane they are continuous from element to
+// element; for a plate their slopes are continuous too.
 #include <array>
 #include <cstddef>
 
@@ -19,8 +19,8 @@ struct ElementBasis {
   int per_vertex;
   int count() const { return degree + 1; }
   int bubbles() const { return count() - 2 * per_vertex; }
-  // Values and derivatives with respect to t. The function that belongs to the slope at a vertex has unit
-  // slope with respect to t there.
+  // Values and derivatives with respect to t. A function that belongs to the slope at a vertex has dvalue/dt
+  // = 1 there.
   BasisValues at(double t) const;
 };
 

@@ -16,7 +16,7 @@ struct Solved {
   std::unique_ptr<CentreLine> line;
   ToneInfo info;
   Scaled at_drive;
-  Scaled at_peak;  // value at the last maximum, or at the drive edge if there is none
+  Scaled at_peak;  // v at the last maximum, or at the drive edge if there is no maximum
 };
 
 std::string why_no_peak(const Surface& surface, double frequency_Hz) {
@@ -72,7 +72,7 @@ double strongest(std::span<const Tone> tones) {
   return most;
 }
 
-// The complex number by which v is divided: its phase factor, and the logarithm of its magnitude.
+// The complex number by which v is divided, given by its phase factor and the logarithm of its magnitude.
 struct Reference {
   std::complex<double> phase;
   double ln;
@@ -90,8 +90,8 @@ Reference reference(const Solved& s, const Tone& tone, Normalise normalise, doub
   return {phase, unit.ln_magnitude() - (weight > 0 ? std::log(weight) : -700.0)};
 }
 
-// std::abs() takes ten times as long because it guards against overflow. It is used only where overflow is
-// possible.
+// Use std::abs() only where overflow is possible: because it guards against overflow, it takes ten times as
+// long.
 double magnitude(std::complex<double> v) {
   const double square = std::norm(v);
   return square > 1e-280 && square < 1e280 ? std::sqrt(square) : std::abs(v);

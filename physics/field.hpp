@@ -23,12 +23,11 @@ enum class Normalise { drive, peak, none };
 std::string_view name(Normalise normalise);
 Normalise parse_normalise(std::string_view text);
 
-// Stands for ln|v| where v is exactly zero, at the clamped end. It is the lowest finite double rather than
+// The value used for ln|v| where v is exactly zero (at the clamped end). It is the lowest finite double, not
 // -infinity.
 inline constexpr double ln_zero = std::numeric_limits<double>::lowest();
 
-// What one tone does on a surface, according to one model. A position is empty if it does not exist on the
-// surface.
+// What a model predicts for one tone on a surface. A position is empty if it does not exist on the surface.
 struct ToneInfo {
   double frequency_Hz = 0;
   // position where the first transverse mode's local cut-off equals the frequency
@@ -38,9 +37,9 @@ struct ToneInfo {
   double gain = 0;
   // factor by which the division by v(0) amplifies rounding errors; 1 for `peak`
   double conditioning = 1;
-  // frequency at which v(0) of the mode without loss is zero; only tone_info() finds it
+  // frequency nearest to the tone's at which v(0) of the mode without loss is zero; set only by tone_info()
   std::optional<double> nearest_resonance_Hz;
-  std::string no_peak_reason;  // why last_peak_m is empty; otherwise ""
+  std::string no_peak_reason;  // why `last_peak_m` is empty; "" if it is set
 };
 
 struct ToneField {
@@ -65,8 +64,8 @@ struct Field {
 Field evaluate(const Surface& surface, std::span<const Tone> tones, std::span<const double> x_m, Model model,
                Normalise normalise);
 
-// How far a field can be trusted. To compute these notes, the surface is solved several more times than for
-// the field itself.
+// Says how far a field can be trusted. Computing these notes takes several more solutions than the field
+// itself.
 struct FieldNotes {
   // error of any tone's |v|, relative to that tone's largest |v| on the surface
   double error_bound = 0;
@@ -84,12 +83,11 @@ std::vector<ToneField> evaluate_tones(const Surface& surface, std::span<const To
 std::vector<double> amplitude_profile(const Surface& surface, std::span<const Tone> tones,
                                       std::span<const double> x_m, Model model);
 
-// Computes where and how strongly one frequency acts, without a profile.
+// Computes position and strength for one frequency (see ToneInfo), but no profile.
 ToneInfo tone_info(const Surface& surface, double frequency_Hz, Model model = Model::mode);
 
-// The amplitude of the drive edge that gives the peak displacement `displacement_m` at the last maximum.
-// Driving with it makes the levels of all boundaries equal. Throws std::domain_error if there is no last
-// maximum.
+// The amplitude at the drive edge that gives the peak displacement `displacement_m` at the last maximum. With
+// this amplitude, all boundaries have the same level. Throws std::domain_error if there is no last maximum.
 double drive_amplitude_m(const Surface& surface, double frequency_Hz, double displacement_m,
                          Model model = Model::mode);
 

@@ -33,11 +33,11 @@ struct Figure {
   std::vector<FigurePanel> panels;
 };
 
-// Figure 3: 19.6 kHz on the brass membrane. Figure 5: the same at 20 and 40 kHz. Figure 8: a rubber membrane
-// at 30 and 40 Hz, whose unpublished tension is fitted to the turning point in the figure. Figure 10: brass
-// at 8 and 45 kHz, alone and together. Each curve is a shape without loss, scaled to one at the last maximum.
-// Each panel shows the flux-corrected mode, the paper's equation 11 solved exactly, and the paper's Airy
-// profile (eqs. 20-22). Two tones together are drawn as the root of summed squares.
+// Figure 3: 19.6 kHz on the brass membrane. Figure 5: 20 and 40 kHz on the same membrane. Figure 8: a rubber
+// membrane at 30 and 40 Hz, whose unpublished tension is fitted to the turning point in the figure. Figure
+// 10: the brass membrane at 8 and 45 kHz, alone and together. Each curve is a shape without loss, scaled to
+// one at the last maximum. Each panel shows the flux-corrected mode, the paper's equation 11 solved exactly,
+// and the paper's Airy profile (eqs. 20-22). Two tones together are drawn as the root of summed squares.
 std::vector<Figure> figures();
 
 // A figure's curves as comma-separated values: x_mm, then one column per curve with the heading "panel:

@@ -10,7 +10,7 @@
 namespace turnpoint::physics {
 namespace {
 
-// At or below this share of the load on the skin contacts, friction is taken to be at its floor.
+// If the skin contacts carry no more than this fraction of the load, friction counts as being at its floor.
 constexpr double smallest_share = 0.02;
 // Number of steps in the table of start values. It is fine enough that two Newton steps from a start value
 // reach rounding accuracy.
@@ -34,18 +34,18 @@ std::optional<double> without_floor(double friction, double floor) {
   return std::min(1.0, std::pow(share4, 0.25));
 }
 
-// The displacement at which the skin contacts carry `share` of the load, in closed form. The share gives the
-// gap. The air film carries the rest of the load, which gives its pressure, and the pressure gives the
-// excursion.
+// The displacement at which the skin contacts carry the fraction `share` of the load, in closed form. `share`
+// determines the gap. The rest of the load determines the pressure of the air film, and this pressure
+// determines the excursion.
 double displacement_for_share(const LoadSharing& m, double share) {
   if (share >= 1) return 0;
   const double gap = m.rest_gap_m - m.decay_length_m * std::log(share);
   return gap * excursion(m.pressure_Pa * (1 - share) / m.ambient_Pa);
 }
 
-// The share of the load that the skin contacts carry at a displacement. The air film must carry the rest, 1 -
-// share. The film's overpressure minus this rest rises with ln(share), so Newton steps within a bracket find
-// its zero.
+// The fraction (share) of the load that the skin contacts carry at a displacement. The air film must carry 1
+// - share. The film's overpressure minus the one that it needs for this rises with ln(share), so Newton steps
+// within a bracket find its zero.
 double share_at(const LoadSharing& m, double displacement_m, double ln_guess) {
   const double lowest = std::log(smallest_share);
   const auto tangent = [&](double x) {
@@ -76,8 +76,8 @@ void require(bool holds, const char* quantity, double value, const char* allowed
 
 double squeeze_film_overpressure(double e) {
   require(e >= 0 && e < 1, "squeeze film excursion", e, "0 to below 1");
-  // The overpressure is sqrt(1 + r) - 1 with r = 2.5 e^2/(1 - e^2). The form used here does not cancel at
-  // small e.
+  // The overpressure is sqrt(1 + r) - 1 with r = 2.5 e^2/(1 - e^2). The code uses r / (sqrt(1 + r) + 1),
+  // which does not cancel at small e.
   const double r = 2.5 * e * e / (1 - e * e);
   return r / (1 + std::sqrt(1 + r));
 }

@@ -9,21 +9,23 @@
 
 namespace turnpoint::physics {
 
-// Mean overpressure in a squeeze film between parallel plates, at infinite squeeze number and in units of the
-// ambient pressure p0. For an excursion e = amplitude / gap in [0, 1) it is sqrt((1 + 3 e^2/2)/(1 - e^2)) - 1
-// (Langlois 1962; Salbu 1964).
+// Mean overpressure in a squeeze film between parallel plates, in units of the ambient pressure p0, in the
+// limit of infinite squeeze number. For an excursion e = amplitude / gap in [0, 1) it is sqrt((1 + 3
+// e^2/2)/(1 - e^2)) - 1 (Langlois 1962; Salbu 1964).
 double squeeze_film_overpressure(double excursion);
 
-// A model in which skin contacts and an air film share the load of the fingertip (after Wiertlewski, Friesen
-// & Colgate, PNAS 2016). With amplitude a and gap u, the pressure is p = P* exp(-u/u_s) + p0
-// overpressure(a/u). Relative friction is P* exp(-u/u_s)/p, but never below `floor`. The curve is only an
-// illustration: live sessions need a measured table.
+// A model in which skin contacts and an air film together carry the load of the fingertip (after Wiertlewski,
+// Friesen & Colgate, PNAS 2016). With amplitude a and gap u, the finger's pressure is p = P* exp(-u/u_s) + p0
+// overpressure(a/u), where P* exp(-u/u_s) is the part that the contacts carry. Relative friction is P*
+// exp(-u/u_s)/p, but never below `floor`. The curve is only an illustration: live sessions need a measured
+// table.
 struct LoadSharing {
-  double pressure_Pa = 5000;     // pressure of the finger on the surface
-  double floor = 0.1;            // friction that remains at any amplitude; for real skin 0.1 to 0.2
-  double decay_length_m = 2e-6;  // the length u_s over which the contacts' share decays with the gap
-  double rest_gap_m = 4e-6;      // gap without vibration, under `pressure_Pa`
-  double ambient_Pa = 101325;    // p0
+  double pressure_Pa = 5000;  // pressure of the finger on the surface
+  double floor = 0.1;         // friction that remains at any amplitude; for real skin 0.1 to 0.2
+  // the length u_s: the contacts' part of the load falls by a factor e for each u_s of gap
+  double decay_length_m = 2e-6;
+  double rest_gap_m = 4e-6;    // gap without vibration, under `pressure_Pa`
+  double ambient_Pa = 101325;  // p0
 };
 
 // One measured point. A table begins at (0, 1), and its relative_friction falls strictly with displacement.
@@ -34,10 +36,10 @@ struct FrictionPoint {
 };
 
 // A monotone map from peak displacement to friction, relative to friction on the surface at rest. The
-// load-sharing model is solved to rounding. Its floor f enters as mu^4 = f^4 + (1 - f^4) mu_sharing^4, so
-// that the map stays strictly monotone; friction above three times the floor hardly changes. The points of a
-// measured table are joined by monotone cubics, and the last value holds beyond the last point. A value type;
-// const functions are thread-safe.
+// load-sharing model is solved to rounding accuracy. Its floor f enters as mu^4 = f^4 + (1 - f^4)
+// mu_sharing^4, so that the map stays strictly monotone; friction above three times the floor hardly changes.
+// The points of a measured table are joined by monotone cubics; beyond the last point, friction stays at the
+// last value. Functions marked const are thread-safe.
 class FrictionMap {
  public:
   FrictionMap() : FrictionMap(LoadSharing{}) {}
@@ -63,8 +65,8 @@ class FrictionMap {
     MonotoneCubic friction;
     MonotoneCubic sd;
   };
-  // The load-sharing model and start values for solving it: the logarithm of the contacts' share, at equal
-  // steps of displacement.
+  // The load-sharing model and start values for solving it: the logarithm of the fraction of the load that
+  // the contacts carry, at equal steps of displacement.
   struct Sharing {
     LoadSharing model;
     double highest_m;

@@ -8,7 +8,8 @@
 namespace turnpoint::physics {
 namespace {
 
-// Returns |v|^2 d ln|v| / dx, with v divided by its local scale. It is positive where |v| rises with x.
+// Returns |v|^2 d ln|v| / dx, where v is divided by a local scale factor. It is positive where |v| rises with
+// x.
 double rise(const CentreLine& line, double x) {
   const Scaled v = line.value(x), slope = line.slope(x);
   return (std::conj(v.mantissa) * slope.mantissa).real();

@@ -1,5 +1,5 @@
 #pragma once
-// Estimates how far two effects can move a boundary: errors of the model's equation, and higher modes from
+// Estimates how far two effects can move a boundary: the error of the model's equation, and higher modes from
 // the drive edge.
 #include <string>
 

@@ -10,8 +10,8 @@
 namespace turnpoint::physics {
 namespace {
 
-// The functions sqrt(s) tan(sqrt(s) w), cos(sqrt(s) w) and sqrt(s) sin(sqrt(s) w). Their values are real for
-// negative s, too.
+// The functions sqrt(s) tan(sqrt(s) w), cos(sqrt(s) w) and sqrt(s) sin(sqrt(s) w). They are real for negative
+// s as well.
 double root_tangent(double s, double w) noexcept {
   if (s > 0) return std::sqrt(s) * std::tan(std::sqrt(s) * w);
   return -std::sqrt(-s) * std::tanh(std::sqrt(-s) * w);
@@ -22,7 +22,7 @@ double root_cosine(double s, double w) noexcept {
 double root_sine(double s, double w) noexcept {
   return s > 0 ? std::sqrt(s) * std::sin(std::sqrt(s) * w) : -std::sqrt(-s) * std::sinh(std::sqrt(-s) * w);
 }
-// Returns tan(sqrt(s) w) / sqrt(s), which is real for negative s, too.
+// Returns tan(sqrt(s) w) / sqrt(s), which is real for negative s as well.
 double tangent_over_root(double s, double w) noexcept {
   return std::abs(s) * w * w < 1e-12 ? w : root_tangent(s, w) / s;
 }
@@ -48,7 +48,7 @@ MindlinPlate::Waves MindlinPlate::waves(double f) const noexcept {
   const double larger = half + std::sqrt(half * half - product);
   Waves waves{};
   waves.bending = larger / (d * s);
-  // computed from the product of the two roots, because their difference would cancel
+  // computed from the product of the two roots, because computing it as a difference would lose digits
   waves.evanescent = m * (j - s) / larger;
   waves.shear = (j - s) / twist_N_m;
   waves.share_bending = 1 - m / (s * waves.bending);
@@ -65,8 +65,8 @@ double MindlinPlate::frequency_Hz(double k) const noexcept {
   return std::sqrt(s * d * k2 * k2 / (half + std::sqrt(half * half - product))) / (2 * std::numbers::pi);
 }
 
-// Returns a number that is positive below the cut-off and negative above it. This holds for pi/2 < k W < pi,
-// with k of the bending wave.
+// For pi/2 < k W < pi (k of the bending wave): returns a number that is positive below the cut-off and
+// negative above it.
 double MindlinPlate::below_cut_off(const Waves& w, double half_width) const noexcept {
   const double k = std::sqrt(w.bending), over = w.share_evanescent / (w.share_bending * k);
   return std::sin(k * half_width) - over * root_tangent(w.evanescent, half_width) * std::cos(k * half_width);

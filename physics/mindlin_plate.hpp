@@ -1,16 +1,16 @@
 #pragma once
-// A clamped strip with shear deformation and rotary inertia (Mindlin's theory).
+// A clamped strip with shear deformation and rotary inertia (Mindlin's plate theory).
 #include "physics/surface.hpp"
 
 namespace turnpoint::physics {
 
-// Mindlin's shear factor for a Poisson's ratio: 5/(6 - nu) + 0.12 (nu / (1 - nu))^2. With the first term, the
+// Mindlin's shear factor for a Poisson's ratio nu: 5/(6 - nu) + 0.12 (nu / (1 - nu))^2. With the first term,
 // long waves of a free plate agree with the Rayleigh-Lamb equation to the next order in k h (N. Stephen, J.
 // Sound Vib. 202 (1997) 539; J. Hutchinson, J. Appl. Mech. 51 (1984) 581). The second term describes the
 // clamp. A bent plate contracts across its thickness by nu / (1 - nu) of the bending strain; the clamp
 // prevents this and so stiffens the strip within half a thickness of the clamp. The constant 0.12 is fitted
-// to plane-strain finite elements. The cut-off half-width is then within 0.2 % of the finite elements' (h/W
-// to 0.4, nu 0 to 0.4; 0.4 % to nu = 0.49).
+// to plane-strain finite elements. The cut-off half-width then agrees with the finite elements within 0.2 %
+// for h/W to 0.4 and nu to 0.4, and within 0.4 % for nu to 0.49.
 double shear_factor(double poisson);
 
 // Mindlin's equations for a plate (R. Mindlin, J. Appl. Mech. 18 (1951) 31). beta is the rotation, so that z
@@ -23,10 +23,10 @@ struct MindlinPlate {
   MindlinPlate() = default;
   explicit MindlinPlate(const Surface& surface);
 
-  // Squared wavenumbers (1/m^2) of the waves that a free plate carries. Two belong to bending: D S k^4 - (D
-  // rho h + S J) omega^2 k^2 + (J omega^2 - S) rho h omega^2 = 0. One belongs to shear in the plane. The
-  // evanescent bending wave and the shear wave have negative squares for wavelengths above about three
-  // thicknesses. `share` is -beta / grad w of each bending wave.
+  // Squared wavenumbers (1/m^2) of the waves of a free plate. Two belong to bending and solve D S k^4 - (D
+  // rho h + S J) omega^2 k^2 + (J omega^2 - S) rho h omega^2 = 0. One belongs to shear in the plane. For
+  // wavelengths above about three thicknesses, the squares of the evanescent bending wave and of the shear
+  // wave are negative. `share` is -beta / grad w of each bending wave.
   struct Waves {
     double bending, evanescent, shear;
     double share_bending, share_evanescent;
@@ -39,8 +39,8 @@ struct MindlinPlate {
   // k1 belongs to the travelling bending wave, g2 to the evanescent one, and a1, a2 are their `share`s.
   double cut_off_half_width_m(double frequency_Hz) const noexcept;
   double cut_off_frequency_Hz(double half_width_m) const noexcept;
-  // The dispersion function of an infinite strip. It is zero if the strip carries a wave exp(-i kx x) that is
-  // symmetric about the centre line and has kx^2 = `along_per_m2`. `along_per_m2` may be below zero.
+  // The dispersion function of an infinite strip. It is zero if the strip carries a wave exp(-i kx x),
+  // symmetric about the centre line, with kx^2 = `along_per_m2`, which may be negative.
   double characteristic(double frequency_Hz, double half_width_m, double along_per_m2) const noexcept;
 
   double stiffness_N_m = 0;      // bending stiffness D

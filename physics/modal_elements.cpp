@@ -70,13 +70,14 @@ std::vector<ModalAssembler::Point> ModalAssembler::points(const ModalElement& e)
 }
 
 // The field is v = X(x) Y(eta). With r = W'/W, lap v = Y X'' + eta Y' [(2 r^2 - W''/W) X - 2 r X'] + eta^2
-// Y'' r^2 X + Y'' X / W^2. This function squares that sum, with the integrals over eta of all products of Y,
-// eta Y', eta^2 Y'' and Y''.
+// Y'' r^2 X + Y'' X / W^2. This function returns the bending term (lap v)^2 and the tension term as a
+// quadratic form in X'', X' and X. It uses the integrals over eta of all products of Y, eta Y', eta^2 Y'' and
+// Y''.
 ModalAssembler::Form ModalAssembler::single_form(double w, double r, double curve) const {
   const double across = 1 / (w * w), stretch = 2 * r * r - curve;
   const auto& m = single_bend_;
   const double bending = equation_.bending, tension = equation_.tension;
-  const auto with_value = [&](Eigen::Index row) {  // the terms that are multiplied by X
+  const auto with_value = [&](Eigen::Index row) {  // the terms of lap v that are multiplied by X
     return stretch * m(row, 1) + r * r * m(row, 2) + across * m(row, 3);
   };
   Form f;

@@ -10,8 +10,8 @@
 
 namespace turnpoint::physics {
 
-// Factors in the weak form bending lap v lap w + tension grad v grad w - inertia v w, with w the test
-// function.
+// The three factors in the weak form: bending lap v lap w + tension grad v grad w - inertia v w, with w the
+// test function.
 struct ModalEquation {
   double bending = 0;
   double tension = 1;
@@ -19,18 +19,19 @@ struct ModalEquation {
   bool plate() const { return bending > 0; }
 };
 
-// One finite element, an interval of x. `left` and `right` are the numbers of transverse functions at its
-// ends; 0 means that the end is held.
+// One finite element: an interval of x. `left` and `right` are the numbers of transverse functions at its
+// ends. At an end that is held, the number is 0.
 struct ModalElement {
   double x0 = 0, h = 0;
   int left = 0, right = 0;
   double ln_scale = 0;
-  Eigen::MatrixXcd transfer;  // maps the left vertex's unknowns to all others
-  Eigen::VectorXcd centre;    // coefficient of each basis function at the centre line
+  // matrix that gives all other unknowns of the element from those of its left vertex
+  Eigen::MatrixXcd transfer;
+  Eigen::VectorXcd centre;  // coefficient of each basis function on the centre line
 };
 
-// Divides the unknowns by their largest magnitude and returns its logarithm, so that fields of any size stay
-// in the range of a double. For a vector of zeros it changes nothing and returns 0.
+// Divides the unknowns by the largest magnitude among them and returns the logarithm of this magnitude.
+// Fields of any size thus stay in the range of a double. Leaves a vector of zeros unchanged and returns 0.
 double take_out_size(Eigen::VectorXcd& unknowns);
 
 class ModalAssembler {
@@ -40,8 +41,8 @@ class ModalAssembler {
   // The symmetric matrix of an element. Its unknowns are ordered by basis function along x, then by
   // transverse function.
   Eigen::MatrixXcd matrix(const ModalElement& element) const;
-  // The unknown for the slope at a vertex is dv/dx times slope_unit. This factor converts it to a slope with
-  // respect to t.
+  // The unknown for the slope at a vertex is dv/dx times slope_unit. This function returns the factor that
+  // converts it to a slope with respect to t.
   double slope_factor(const ModalElement& element) const { return 0.5 * element.h / slope_unit_m_; }
 
  private:

@@ -16,7 +16,7 @@ namespace {
 
 using std::numbers::pi;
 
-// Eliminates unknowns from the tip to the drive edge. For each element, it expresses all other unknowns by
+// Eliminates unknowns from the tip to the drive edge. In each element, all other unknowns are expressed by
 // those at the end nearer to the drive edge.
 void eliminate(const ModalAssembler& assembler, const ElementBasis& along,
                std::vector<ModalElement>& elements) {
@@ -31,8 +31,8 @@ void eliminate(const ModalAssembler& assembler, const ElementBasis& along,
   }
 }
 
-// Computes the unknowns, starting at the drive edge, and stores only the centre line's. The logarithm of
-// their size is kept separately.
+// Computes the unknowns of all elements, starting at the drive edge. Only the values on the centre line are
+// stored. The logarithm of the unknowns' size is kept separately.
 void substitute(const ModalSetup& s, const ModalAssembler& assembler, const Eigen::VectorXd& drive,
                 std::vector<ModalElement>& elements) {
   Eigen::VectorXcd u = drive.cast<std::complex<double>>();
@@ -130,7 +130,7 @@ Scaled ModalLine::at(double x, int derivative) const {
   return {derivative == 0 ? sum : sum * (2 / e->h), e->ln_scale};
 }
 
-// Beyond the match point, where the field has decayed to e^-45, the one-mode equation supplies the further
+// Beyond the match point, where the field has decayed to e^-45, the one-mode equation gives the further
 // decay.
 Scaled ModalLine::beyond(double x, int derivative) const {
   const Scaled here = at(match_m_, 0), unit = tail_.value(match_m_);

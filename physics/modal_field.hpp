@@ -1,6 +1,6 @@
 #pragma once
-// Solves the model `modes`, and `mode` for a clamped plate. The field is a sum of transverse functions times
-// finite elements along x.
+// Solves the model `modes` and, for a clamped plate, the model `mode`. The field is a sum of transverse
+// functions times finite elements along x.
 #include <functional>
 #include <memory>
 
@@ -8,14 +8,14 @@
 
 namespace turnpoint::physics {
 
-// The resolution of the field. The defaults agree with the exact two-dimensional field to 1e-5 or better.
+// The resolution of the field. With the default values, the field agrees with the exact two-dimensional field
+// to 1e-5 or better.
 struct ModalResolution {
   int degree = 7;           // degree of the polynomials along x
-  double radians = 2.5;     // phase (wavenumber times length) per element
+  double radians = 2.5;     // phase (wavenumber times length, in radians) that one element spans
   int spare_functions = 3;  // number of transverse functions beyond those that can propagate
   // Displacement of the drive edge as a function of eta = y/W in [0, 1]. If empty, the surface's `drive` is
-  // used. Tests set it to the drive-edge displacement of a field that is known exactly, and compare the
-  // solution with that field.
+  // used. Tests use it to prescribe the drive edge of a field that is known exactly.
   std::function<double(double)> drive;
   // which transverse functions are used
   enum class Across { polynomials, cut_off_shape } across = Across::polynomials;

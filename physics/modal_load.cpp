@@ -16,31 +16,34 @@ namespace {
 using Matrix = Eigen::MatrixXcd;
 using Vector = Eigen::VectorXcd;
 
-// The field's elements with all that a load needs. Matrices describe half of the strip.
+// The field's finite elements with all data that a load needs. The matrices describe one half of the strip.
 struct Strip {
   ModalSetup setup;
   std::vector<ModalElement> elements;
   std::vector<Matrix> matrices;
   Eigen::VectorXd drive;  // unknowns of the drive edge
-  int other_functions;    // number of functions before those of the deflection, which are bubbles_at
-  int power;              // of this power
+  // number of functions before those of the deflection; the latter are bubbles_at with `power`
+  int other_functions;
+  int power;  // exponent of (1 - eta^2) in the functions of the deflection
   Parity parity;
-  std::complex<double> compliance;  // turns 1 / matrix into metres per newton
+  std::complex<double> compliance;  // factor that turns 1 / matrix into metres per newton
 };
 
-// The unknowns of an element in their order: those of the left vertex, the bubbles and the right vertex.
+// The numbers of unknowns of an element at its left and at its right vertex. Its unknowns are ordered: left
+// vertex, bubbles, right vertex.
 struct Sizes {
   Eigen::Index left, right;
   Sizes(const ModalElement& e, int per_vertex) : left(per_vertex * e.left), right(per_vertex * e.right) {}
 };
 
-// Eliminates the elements' bubbles, and then the vertices from the tip to the drive edge.
+// Solves the linear equations of a strip: eliminates the bubbles of each element, then the vertices from the
+// tip to the drive edge.
 class Chain {
  public:
   Chain(const Strip& strip);
-  // load^T matrix^-1 load of loads on consecutive elements, with the drive edge held.
+  // Returns load^T matrix^-1 load for loads on consecutive elements, with the drive edge held.
   std::complex<double> quadratic(std::size_t first, const std::vector<Vector>& loads) const;
-  // The unknowns of each element for a motion of the drive edge.
+  // Returns the unknowns of each element for a motion of the drive edge.
   std::vector<Vector> driven(const Eigen::VectorXd& drive) const;
 
  private:
@@ -48,7 +51,7 @@ class Chain {
     Eigen::Index left, right;
     Eigen::PartialPivLU<Matrix> bubbles;
     Matrix follow;                                // bubbles = -follow (left, right)
-    Eigen::PartialPivLU<Matrix> right_stiffness;  // of the right vertex and everything beyond it
+    Eigen::PartialPivLU<Matrix> right_stiffness;  // stiffness of the right vertex and everything beyond it
     Matrix pull;                                  // right vertex = -pull left vertex
   };
   std::vector<Link> links_;
@@ -83,7 +86,7 @@ Chain::Chain(const Strip& strip) {
 
 std::complex<double> Chain::quadratic(std::size_t first, const std::vector<Vector>& loads) const {
   std::complex<double> sum = 0;
-  Vector vertex;  // the load on the left vertex of the element beyond, after elimination
+  Vector vertex;  // the load that elimination leaves on the left vertex of the next element farther out
   for (std::size_t i = first + loads.size(); i-- > 0;) {
     const Link& link = links_[i];
     Vector left = Vector::Zero(link.left), right = Vector::Zero(link.right);
@@ -119,7 +122,7 @@ std::vector<Vector> Chain::driven(const Eigen::VectorXd& drive) const {
   return all;
 }
 
-// Half of the strip by Mindlin's theory, whose unknowns are two rotations and the deflection.
+// Half of the strip by Mindlin's theory. The unknowns are two rotations and the deflection.
 Strip thick_strip(const Surface& surface, double f, Parity parity) {
   Surface plate = surface;
   plate.theory = PlateTheory::mindlin;
@@ -143,7 +146,8 @@ Strip thick_strip(const Surface& surface, double f, Parity parity) {
   return {std::move(setup), std::move(elements), std::move(matrices), drive, 2 * each, 1, parity, 0.5 * loss};
 }
 
-// Half of a thin strip; the matrices are divided by the bending stiffness, or by the tension of a membrane.
+// Half of a thin strip. The matrices are divided by the bending stiffness (plate) or by the tension
+// (membrane).
 Strip thin_strip(const Surface& surface, const ModalSetup& setup, Parity parity) {
   double match_m = 0;
   auto elements = make_modal_elements(setup, {}, match_m);
@@ -162,7 +166,7 @@ Strip thin_strip(const Surface& surface, const ModalSetup& setup, Parity parity)
   return {setup, std::move(elements), std::move(matrices), drive, 0, power, parity, 0.5};
 }
 
-// The strips whose responses add up to the surface's.
+// Returns strips whose responses add up to the response of the surface.
 std::vector<Strip> make_strips(const Surface& surface, double f, Parity parity) {
   const Dispersion dispersion(surface);
   if (dispersion.clamped_bending() && surface.theory != PlateTheory::kirchhoff)
@@ -176,8 +180,8 @@ std::vector<Strip> make_strips(const Surface& surface, double f, Parity parity) 
     all[0].compliance *= inertia / lossless / (dispersion.bending ? bending : tension);
     return all;
   }
-  // Simply supported sides: D (lap + k^2) (lap - k2^2) v = force, so the response is that of a membrane with
-  // k^2 less that of one with -k2^2.
+  // Simply supported sides: D (lap + k^2) (lap - k2^2) v = force. The response is that of a membrane with k^2
+  // minus that of a membrane with -k2^2.
   const std::complex<double> evanescent = inertia + tension / bending;
   const std::complex<double> loss = inertia * evanescent / (lossless * (lossless + tension / bending));
   setup.equation.inertia = -evanescent;
@@ -188,13 +192,13 @@ std::vector<Strip> make_strips(const Surface& surface, double f, Parity parity) 
   return all;
 }
 
-// The mean over the disc as a load on consecutive elements.
+// The mean over the disc, expressed as a load on consecutive elements.
 struct DiscLoad {
   std::size_t first = 0;
   std::vector<Vector> loads;
 };
 
-// Integrals of the deflection's functions across the disc at one x.
+// Integrals of the deflection's functions over the width of the disc at one x.
 Eigen::VectorXd across_disc(const Strip& strip, int functions, double half_width, double from, double to) {
   const Quadrature rule = gauss_legendre(14);
   Eigen::VectorXd sum = Eigen::VectorXd::Zero(functions);
@@ -226,7 +230,7 @@ Vector element_load(const Strip& strip, const ModalElement& e, double x_m, const
           across * (basis.value[static_cast<std::size_t>(a)] * (slope ? slope_factor : 1));
     }
   }
-  // The right vertex may have fewer functions.
+  // The right vertex may have fewer functions than the left.
   const Eigen::Index rest = (along.count() - along.per_vertex) * functions;
   Vector kept(rest + along.per_vertex * e.right);
   kept.head(rest) = load.head(rest);

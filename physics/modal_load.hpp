@@ -23,8 +23,8 @@ struct DiscResponse {
 };
 
 // Computes the averages for discs at these positions in [0, length_m]. The elements' unknowns are eliminated
-// once; one position then takes 0.1 ms. Loss is in the stiffness, which is divided by (1 - i/2Q)^4 (plate) or
-// (1 - i/2Q)^2 (membrane). For the plate theory elastic, Mindlin's theory is used.
+// only once, so that each position takes 0.1 ms. Loss is in the stiffness, which is divided by (1 - i/2Q)^4
+// (plate) or (1 - i/2Q)^2 (membrane). For the plate theory elastic, Mindlin's theory is used.
 std::vector<DiscResponse> disc_responses(const Surface& surface, double frequency_Hz, const Disc& disc,
                                          const std::vector<double>& x_m);
 

@@ -50,7 +50,7 @@ ModalSetup make_modal_setup(const Surface& surface, double f, Losses losses,
   const bool plate = dispersion.clamped_bending();
   ModalEquation equation;
   equation.inertia = lossy * lossy;
-  if (plate) {  // a plate's equation is divided by D
+  if (plate) {  // the equation of a plate is divided by D
     equation.bending = 1;
     equation.tension = dispersion.tension_N_per_m / dispersion.stiffness_N_m;
     equation.inertia *= lossy * lossy + equation.tension;

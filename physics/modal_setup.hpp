@@ -22,13 +22,14 @@ struct ModalSetup {
 ModalSetup make_modal_setup(const Surface& surface, double frequency_Hz, Losses losses,
                             const ModalResolution& resolution);
 
-// Returns the displacement of the drive edge as a function of eta: that of a piston, or of the first
-// transverse mode at its cut-off.
+// Returns the displacement of the drive edge as a function of eta. Its shape is that of a piston, or of the
+// first transverse mode at its cut-off.
 std::function<double(double)> drive_shape(const Surface& surface, const ModalEquation& equation);
 
 // Returns the unknowns of the first vertex, which has this number of `functions`, for a motion of the drive
-// edge; `shape` holds its coefficients. A clamped plate is held there without slope, dv/dx = 0 at constant y.
-// The unknowns are derivatives at constant eta = y/W(x). There they are not 0 but W'/W eta dv/deta.
+// edge with the coefficients `shape`. On a clamped plate, the drive edge has no slope: dv/dx = 0 at constant
+// y. The unknowns are derivatives at constant eta = y/W(x), so the slope unknowns are not 0 but W'/W eta
+// dv/deta.
 Eigen::VectorXd drive_unknowns(const ModalSetup& setup, const TransverseBasis& across,
                                const Eigen::VectorXd& shape, int functions);
 

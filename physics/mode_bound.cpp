@@ -14,31 +14,32 @@ namespace {
 
 using std::numbers::pi;
 
-// Constants of the bounds, measured on random surfaces as the header describes. W, W' and W'' are the
-// half-width and its derivatives. The shift of an edge is in cut-off half-widths.
-constexpr double coupling = 0.15;         // amplitude of higher modes, divided by |W'| times `ratio` below
+// Constants of the bounds. They were measured on random surfaces, see the header. W, W' and W'' are the
+// half-width and its derivatives. Shifts of an edge are in units of the cut-off half-width.
+constexpr double coupling = 0.15;         // amplitude of higher modes, over |W'| W(0) / (cut-off half-width)
 constexpr double piston_coupling = 0.55;  // amplitude of higher modes for a piston drive, at any slope
 // unknown phase of a higher mode's standing wave at the drive edge
 constexpr double phase_uncertainty = 0.12;
 constexpr double curvature_shift = 0.2;  // shift of an edge, divided by |W''| W
 constexpr double slope_shift = 0.1;      // shift of an edge, divided by |W'|^3
 // On a clamped plate, the transverse shape of `mode` is exact only at the cut-off, so its phase drifts
-// between drive edge and cut-off.
+// between the drive edge and the cut-off.
 constexpr double plate_drift = 1.5e-3;  // phase error in radians, divided by k times the turning point's x
 constexpr double plate_piston = 0.9;
-constexpr double plate_second_mode =
-    // cut-off half-width of the second symmetric mode divided by the first's
-    2.3246;
-constexpr double plate_shift = 1.2e-3;      // shift of an edge at any taper
-constexpr double thick_shift = 2.5e-3;      // the same for the plate theories mindlin and elastic
+// cut-off half-width of the second symmetric mode divided by that of the first
+constexpr double plate_second_mode = 2.3246;
+constexpr double plate_shift = 1.2e-3;  // shift of an edge at any taper
+// shift of an edge at any taper, for the plate theories mindlin and elastic
+constexpr double thick_shift = 2.5e-3;
 constexpr double plate_slope_shift = 0.15;  // shift of an edge divided by W'^2
-constexpr double end_shift = 0.15;          // the same, caused by a clamped end just beyond the turning point
+// shift of an edge divided by W'^2, caused by a clamped end just beyond the turning point
+constexpr double end_shift = 0.15;
 // shift of an edge, divided by the amplitude of higher modes near this edge
 constexpr double shallow = 6;
 constexpr double largest = 2;  // bounds are limited to this value, because a larger one would say nothing
 
-// The equation of the n-th symmetric transverse mode, n = 1, 2, ... On a wedge, the order of its Bessel
-// function is exact to the second power of the slope.
+// The equation of the n-th symmetric transverse mode, n = 1, 2, ... On a wedge the solution is a Bessel
+// function, whose order is exact to the second power of the slope.
 MarchEquation equation(const Surface& surface, double f, int n) {
   const double k = wavenumber_per_m(surface, f);
   const std::complex<double> lossy(1, -0.5 / surface.quality_factor);
@@ -69,7 +70,8 @@ double amplification(const Surface& surface, double f, int n) {
   return 1 / std::max({standing - phase_uncertainty, loss, 1e-3});
 }
 
-// The same ratio for a clamped plate. Its higher modes are not solved for, so only loss bounds the ratio.
+// The ratio of amplification() for a clamped plate. Its higher modes are not solved for, so only loss bounds
+// the ratio.
 double plate_amplification(const Surface& surface, const Taper& taper, double f) {
   const auto turning = taper.position_continued_m(plate_second_mode * cut_off_half_width_m(surface, f));
   const double reach = std::clamp(turning.value_or(0), 0.0, taper.length_m());
@@ -134,7 +136,7 @@ ModeBound mode_bound(const Surface& surface, double f, double conditioning,
   // lower it.
   bound.level_dB = -20 * std::log10(std::max(1e-6, 1 - (phase + modes) * conditioning));
   // The outermost maximum is about one Airy length before the turning point. If the turning point is close to
-  // the drive edge, the maximum is shallow and a small share of higher modes moves it far.
+  // the drive edge, the maximum is shallow, and even weak higher modes move it far.
   const double airy_length = cut * std::cbrt(2 / (pi * pi * std::max(steepest, 1e-6)));
   const double near = std::max(0.0, std::min(x0 - 1.1 * airy_length, last_peak_m.value_or(x0)));
   const double polluted = shallow * bound.higher_modes * higher_mode_decay(surface, f, near);

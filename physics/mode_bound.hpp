@@ -24,13 +24,13 @@ struct ModeBound {
 };
 
 // Computes the bounds. `conditioning` is CentreLine::drive_conditioning of the first mode. `last_peak_m` is
-// the last maximum of this mode, if known; loss moves it towards the drive edge, where higher modes are
-// stronger.
+// the last maximum of the first mode, if known. It matters because loss moves it towards the drive edge,
+// where higher modes are stronger.
 ModeBound mode_bound(const Surface& surface, double frequency_Hz, double conditioning,
                      std::optional<double> last_peak_m);
 
 // The displacement of the higher modes at a position, divided by their displacement at the drive edge. It
-// falls beyond their own turning points.
+// decays where the strip is too narrow for these modes.
 double higher_mode_decay(const Surface& surface, double frequency_Hz, double x_m);
 
 }  // namespace turnpoint::physics

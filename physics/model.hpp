@@ -5,13 +5,13 @@
 
 namespace turnpoint::physics {
 
-//   edge     gives positions only, in closed form x = W0/d - C/f or from a table
-//   airy     equations 21-22 of the 1998 paper, Ai(k0 (x - x0)); without loss
-//   seed     equation 11 of the 1998 paper, solved to rounding
-//   uniform  Langer & Olver's uniform Airy approximation of the flux-corrected equation; without loss
-//   mode     flux-corrected first transverse mode: loss, bending, any taper; solved to rounding
-//   modes    coupled transverse modes with a straight drive edge, that is, the two-dimensional field (only
-//            membranes and simply supported plates)
+// edge     gives positions only, x = W0/d - C/f in closed form, or from a table
+// airy     equations 21-22 of the 1998 paper, Ai(k0 (x - x0)); without loss
+// seed     equation 11 of the 1998 paper, solved to rounding accuracy
+// uniform  Langer & Olver's uniform Airy approximation of the flux-corrected equation; without loss
+// mode     flux-corrected first transverse mode with loss, bending and any taper, solved to rounding accuracy
+// modes    coupled transverse modes with a straight drive edge, that is, the two-dimensional field (only
+//          membranes and simply supported plates)
 enum class Model { edge, airy, seed, uniform, mode, modes };
 
 inline constexpr std::array all_models{Model::edge,    Model::airy, Model::seed,

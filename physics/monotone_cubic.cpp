@@ -19,7 +19,8 @@ double inner_slope(double h0, double h1, double d0, double d1) {
   return (w0 + w1) / (w0 / d0 + w1 / d1);
 }
 
-// The slope at an end is estimated from three points, and limited so that the end cubic stays monotone.
+// The slope at an end is estimated from three points, and limited so that the first or last cubic stays
+// monotone.
 double end_slope(double h0, double h1, double d0, double d1) {
   const double slope = ((2 * h0 + h1) * d0 - h0 * d1) / (h0 + h1);
   if (slope * d0 <= 0) return d0 == 0 ? 0 : d0 / 3;

@@ -9,7 +9,7 @@ namespace turnpoint::physics {
 namespace {
 
 double dot(std::span<const double> a, std::span<const double> b) {
-  // Four partial sums let the compiler use vector instructions and keep the order of the additions fixed.
+  // Four partial sums let the compiler use vector instructions. They also fix the order of the additions.
   double s[4] = {0, 0, 0, 0};
   std::size_t i = 0;
   for (; i + 4 <= a.size(); i += 4) {
@@ -46,8 +46,8 @@ class Solver {
  private:
   std::span<const double> column(std::size_t j) const { return columns_.subspan(j * rows_, rows_); }
 
-  // Returns the column outside the passive set (the columns with a weight above 0) that reduces the residual
-  // fastest, or size() if no column reduces it.
+  // Returns the column that reduces the residual fastest, of those outside the passive set (the columns with
+  // a weight above 0). Returns size() if no column reduces it.
   std::size_t steepest(double tolerance) {
     std::size_t best = x_.size();
     double most = tolerance;
@@ -62,8 +62,8 @@ class Solver {
     return best;
   }
 
-  // Solves for the weights of the passive set. As long as a weight is negative, it steps back to where all
-  // are 0 or more and removes the columns that reach 0.
+  // Solves for the weights of the passive set. While the solution has a negative weight, goes towards it only
+  // until the first weight reaches 0, and removes the columns of weight 0.
   void descend(std::size_t entered) {
     while (!passive_.empty()) {
       std::vector<double> z = solve_passive();
@@ -106,8 +106,8 @@ class Solver {
     std::vector<double> z(passive_.size());
     for (std::size_t i = 0; i < z.size(); ++i) z[i] = dot(column(passive_[i]), b_);
     back_substitute(z);
-    // The normal equations square the condition number and so lose accuracy. One step of iterative refinement
-    // restores it.
+    // The normal equations square the condition number, which costs accuracy. One step of iterative
+    // refinement restores it.
     std::vector<double> r(b_.begin(), b_.end());
     for (std::size_t i = 0; i < z.size(); ++i) {
       const auto a = column(passive_[i]);
@@ -120,13 +120,14 @@ class Solver {
     return z;
   }
 
-  // The dot product of two columns. It is computed when first needed and kept, because an iteration changes
-  // only one or two columns of the passive set.
+  // The dot product of two columns. Each product is computed when first needed and kept, because an iteration
+  // changes only one or two columns of the passive set.
   double gram(std::size_t i, std::size_t j) {
     if (i < j) std::swap(i, j);
     double& product = gram_[i * x_.size() + j];
     if (product < 0) product = dot(column(i), column(j));
-    if (product < 0) return dot(column(i), column(j));  // below 0 means "not computed" in the table
+    // a negative entry means "not computed", so a negative product is computed each time
+    if (product < 0) return dot(column(i), column(j));
     return product;
   }
 

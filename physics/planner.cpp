@@ -15,7 +15,7 @@
 namespace turnpoint::physics {
 namespace {
 
-// safety factor: between the probe points, models may differ more than at the points
+// safety factor, because models may differ more between the probe points than at them
 constexpr double probe_margin = 1.9;
 constexpr int probes = 160;
 constexpr double unknown = 2, unknown_dB = 120;
@@ -50,7 +50,7 @@ Probe probe(const Surface& surface, const PlanRequest& request, double f, Model 
   return p;
 }
 
-// How much two models differ at the probe points, in the quantities of a RungEstimate.
+// How much two models differ at the probe points, as the errors in a RungEstimate.
 struct Difference {
   double amplitude = 0, level_dB = 0, position_m = 0;
 };
@@ -68,7 +68,7 @@ Difference compare(const Surface& surface, const PlanRequest& request, const Pro
   }
   d.amplitude = probe_margin * worst / most;
   d.level_dB = 8.686 * std::abs((a.ln_peak - a.ln_drive) - (b.ln_peak - b.ln_drive));
-  // one profile has a last maximum and the other has none, so they are normalised differently and cannot be
+  // one profile has a last maximum and the other has none: they are normalised differently and cannot be
   // compared
   if (a.peak.has_value() != b.peak.has_value()) {
     d.amplitude += unknown;
@@ -114,7 +114,7 @@ void merge(RungEstimate& all, const RungEstimate& one) {
   if (all.reason.empty()) all.reason = one.reason;
 }
 
-// The solution with which every model is compared. It is computed once per tone.
+// The solution with which all models are compared. It is computed once per tone.
 struct Reference {
   double f;
   Probe mode;

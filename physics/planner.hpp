@@ -39,8 +39,8 @@ struct PlanRequest {
   Edge edge = Edge::turning();
   Normalise normalise = Normalise::peak;
   Tolerance tolerance;
-  // Set this if another model has already found the tones' frequencies. The boundary then has the error of
-  // that model, whichever model the planner chooses for the field.
+  // Set this if another model has already computed the tones' frequencies. The boundary then has the error of
+  // that other model, whichever model the planner chooses for the field.
   std::optional<Model> placed_by = {};
 };
 

@@ -11,10 +11,10 @@ namespace turnpoint::physics {
 
 // Distance (m, positive outward) by which the next better theory moves the turning point at this frequency:
 // from Kirchhoff to Mindlin, or from Mindlin to the elastic section; 0 for elastic. The taper is continued
-// beyond its ends. An edge that is defined by amplitude moves equally far within 3 %. On the 2 mm reference
-// plate at 22.4 to 45 kHz, the distance is 10.7 to 14.9 mm from Kirchhoff to Mindlin and -0.3 to -0.1 mm from
-// Mindlin to elastic. Empty for a membrane, for a plate with tension or simply supported sides, and if a
-// table of half-widths ends before the turning point.
+// beyond its ends. Edges that are defined by amplitude move by the same distance within 3 %. On the 2 mm
+// reference plate at 22.4 to 45 kHz, the distance is 10.7 to 14.9 mm from Kirchhoff to Mindlin and -0.3 to
+// -0.1 mm from Mindlin to elastic. Empty for a membrane, for a plate with tension or simply supported sides,
+// and if a table of half-widths ends before the turning point.
 std::optional<double> shear_shift_m(const Surface& surface, double frequency_Hz);
 
 struct TheoryChoice {

@@ -12,7 +12,8 @@ namespace turnpoint::physics {
 namespace {
 
 constexpr double reachable_residual = 0.25;
-constexpr double fit_tolerance = 1e-4;  // stop if another tone reduces the residual by less than this share
+// stop if another tone reduces the residual by less than this fraction
+constexpr double fit_tolerance = 1e-4;
 
 // Appends a tone's squared amplitudes at the target's points to `columns`, relative to the tone's last
 // maximum. `drive_gain` is |v(0)| divided by that maximum.

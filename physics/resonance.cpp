@@ -13,7 +13,7 @@ namespace {
 
 using std::numbers::pi;
 
-// The Pruefer phase of the lossless mode at the drive edge. It rises continuously with frequency, and it is a
+// The Pruefer phase of the lossless mode at the drive edge. It rises continuously with frequency, and is a
 // multiple of pi exactly at the resonances.
 class Phase {
  public:
@@ -41,7 +41,7 @@ double solve(const Phase& phase, double target, const Chord& chord) {
       [](const Chord& c) { return c.width() <= 1e-13 * c.right; });
 }
 
-// The frequency of resonance number n (1, 2, ...), searched from a frequency whose phase is known.
+// Finds the frequency of resonance number n (1, 2, ...), starting at a frequency whose phase is known.
 std::optional<double> resonance(const Phase& phase, int n, double from_Hz, double at_from) {
   const double target = n * pi;
   double a = from_Hz, fa = at_from - target;
@@ -79,8 +79,8 @@ double plate_step_Hz(const Surface& surface, double f) {
 }
 
 // Finds the resonance between two frequencies whose responses have opposite signs. Near a resonance the
-// response is roughly a cosine of amplitude 1 with many periods, so the relative error of the frequency is
-// smaller than the magnitude of the response.
+// response is roughly a cosine of frequency with amplitude 1 and many periods, so the relative error of the
+// frequency is smaller than the magnitude of the response.
 double plate_zero(const Surface& surface, const Chord& chord) {
   return false_position(
       chord, [&](double f) { return plate_response(surface, f).value_or(chord.f_left); }, {8, true}, 1e-9,

@@ -7,8 +7,8 @@
 
 namespace turnpoint::physics {
 
-// An interval in which a function changes its sign. The function is above 0 at the end `above`, which may be
-// left or right, and 0 or below at the other end.
+// An interval at whose ends a function has different signs. It is above 0 at the end `above`, which may be
+// left or right, and 0 or below at the end `not_above`.
 struct Bracket {
   double above;      // here the function is > 0
   double not_above;  // here the function is <= 0
@@ -21,7 +21,7 @@ struct Bracket {
 };
 
 // Each search below also ends after `most` steps, or when no floating-point number is left between the ends.
-// This limits the work if the root is at 0, or if rounding keeps the steps from becoming small.
+// This limits the work if the root is at 0, or if rounding prevents small steps.
 
 // Halves the bracket until done(bracket) is true. It needs only the sign of the function.
 template <typename IsAbove, typename Done>
@@ -40,8 +40,8 @@ Bracket bisect(Bracket bracket, IsAbove&& is_above) {
   return bisect(bracket, is_above, [](const Bracket&) { return false; });
 }
 
-// What a Newton step needs: the function's value at x, and the point where the tangent at x crosses 0. If the
-// tangent never crosses 0, `point` may be NaN or any number outside the bracket.
+// The result of a Newton step at x: the function's value, and the point where the tangent at x crosses 0. If
+// the tangent never crosses 0, `point` may be NaN or any number outside the bracket.
 struct Tangent {
   double f, meets_0;
 };
@@ -62,7 +62,7 @@ double newton(Bracket bracket, double x, Function&& tangent, Close&& close, int 
   return x;
 }
 
-// An interval with the function's values at its ends, which differ in sign.
+// An interval with the function's values at its ends. The two values differ in sign.
 struct Chord {
   double left, f_left, right, f_right;
 
@@ -71,15 +71,17 @@ struct Chord {
   double meets_0() const { return left + (right - left) * f_left / (f_left - f_right); }
 };
 
-// False position converges slowly if one end never moves. These settings select what the search does then.
+// False position converges slowly if one end never moves. These settings say what the search does against
+// this.
 struct Creeping {
-  int halve_every;            // n: every n-th step goes to the middle of the interval
-  bool halve_values = false;  // Illinois method: halves the value of an end that stays twice
+  int halve_every;  // n: every n-th step goes to the middle of the interval
+  // Illinois method: halves the function value of an end that did not move for two steps
+  bool halve_values = false;
 };
 
 // Searches by false position until |function| is at most `enough`, done(chord) is true, or no number is left
-// between the ends. Returns the point at which |function| is at most `enough`; if there is none, the middle
-// of the last chord.
+// between the ends. Returns the point at which |function| is at most `enough`, or the middle of the last
+// chord if there is none.
 template <typename Function, typename Done>
 double false_position(Chord chord, Function&& f, Creeping creeping, double enough, Done&& done,
                       int most = 100) {

@@ -116,7 +116,8 @@ SectionBasis mindlin_section(const MindlinPlate& plate, int each, Parity parity 
 SectionPencil mindlin_pencil(const SectionBasis& b, double half_width, Eigen::Index each) {
   using B = SectionBasis;
   const Eigen::Index rest = b.count() - each;
-  // In a uniform strip, the strain without its term f' X is Y/W + Z (see SectionBasis).
+  // In a uniform strip, the strain is f' X + f (Y/W + Z), see SectionBasis. This is the quadratic form of the
+  // part Y/W + Z.
   const SectionMatrix still = b.stiff[B::across][B::across] / (half_width * half_width) +
                               (b.stiff[B::across][B::local] + b.stiff[B::local][B::across]) / half_width +
                               b.stiff[B::local][B::local];
@@ -136,8 +137,8 @@ SectionPencil mindlin_pencil(const SectionBasis& b, double half_width, Eigen::In
 
 // The model `mode` uses the cut-off shapes of strips with these three half-widths. The first is that of the
 // drive edge, whose shape drives the strip. The second is that of the tone's turning point, where the shapes
-// are exact. The third is narrower. With three of them, the solution can follow deflection, rotation and
-// thickening, which change differently as the strip narrows.
+// are exact. The third is narrower. Deflection, rotation and thickening change differently as the strip
+// narrows; three half-widths let the solution follow them.
 std::array<double, 3> shape_widths(const Surface& surface, double f) {
   const double drive = half_width_m(surface, 0);
   const double turning = std::min(Dispersion(surface).cut_off_half_width_m(f), 0.85 * drive);
@@ -160,7 +161,7 @@ double travelling2(const Surface& surface, double f) {
   return 0;
 }
 
-// The motions `cross`, `along` and `stretched` for one half-width, as columns. They are scaled so that
+// The motions `cross`, `along` and `stretched` for one half-width, one per column. They are scaled so that
 // `cross` moves the centre line by 1.
 SectionMatrix columns(const SectionShapes& shapes, double centre) {
   const Eigen::Index na = shapes.along.size(), nb = shapes.cross.size();

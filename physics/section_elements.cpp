@@ -13,7 +13,7 @@ namespace {
 using Eigen::MatrixXd;
 constexpr Eigen::Index degree_across = 5, degree_through = 11;
 
-// The ends of the elements in y. The elements are finer in a layer along the clamp.
+// The ends of the elements in y. In a layer along the clamp the elements are finer.
 std::vector<double> element_ends(double layer) {
   std::vector<double> ends{0, 0.5 * (1 - layer), 1 - layer};
   for (const double part : {0.4, 0.15, 0.05, 0.015}) ends.push_back(1 - part * layer);
@@ -21,7 +21,8 @@ std::vector<double> element_ends(double layer) {
   return ends;
 }
 
-// Continuous, piecewise polynomial functions on [0, 1] that vanish at 1. The odd ones also vanish at 0.
+// Continuous, piecewise polynomial functions on [0, 1] that vanish at 1. The odd functions vanish at 0 as
+// well.
 LineFunctions across_functions(double layer) {
   const std::vector<double> ends = element_ends(layer);
   const ElementBasis basis{degree_across, 1};
@@ -100,7 +101,7 @@ MatrixXd tensor(const MatrixXd& across, const MatrixXd& through) {
 
 }  // namespace
 
-// The layer of finer elements along the clamp is as deep as the plate is thick.
+// The layer of finer elements along the clamp is as wide as the plate is thick.
 SectionElements::SectionElements(double thickness, double nu)
     : SectionElements(thickness, nu, std::min(0.5, 1.2 * thickness)) {}
 
@@ -147,8 +148,8 @@ SectionElements::SectionElements(double thickness, double nu, double layer)
 }
 
 Eigen::VectorXd SectionElements::thickening(const Eigen::VectorXd& along) const {
-  // Use only the displacement c. Leave out its first function of z: the mean of c over the thickness is the
-  // deflection, not thickening.
+  // Use only the displacement c, without its first function of z. That function is the mean of c over the
+  // thickness, which is deflection and not thickening.
   const Eigen::Index nb = across.odd.rows() * through.odd.rows(), nz = through.even.rows();
   const MatrixXd load =
       lame * tensor(across.even * across.weight.asDiagonal() * across.even.transpose(),

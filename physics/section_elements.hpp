@@ -22,15 +22,15 @@ struct SectionCutOff {
 SectionCutOff section_cut_off(const SectionPencil& pencil);
 
 // Motions of the section at the cut-off. `cross` is the motion B in the cross-section. `along` is the motion
-// A along x that B causes where its amplitude changes along x. `stretched` is the A that B causes where the
-// strip narrows. Without `stretched`, a thin section would be too stiff, because its normals could not stay
-// normal to the bent surface.
+// A along x that B causes where its amplitude changes along x. `stretched` is the motion A that B causes
+// where the strip narrows. Without `stretched`, a thin section would be too stiff, because its normals could
+// not stay normal to the bent surface.
 struct SectionShapes {
   Eigen::VectorXd cross, along, stretched;
 };
 SectionShapes section_shapes_of(const SectionPencil& pencil);
 
-// The same motions for the wave at `omega` whose k^2 is nearest to `along2`.
+// The three motions of SectionShapes for the wave at `omega` whose k^2 is nearest to `along2`.
 SectionShapes section_shapes_of(const SectionPencil& pencil, double omega, double along2);
 
 // Functions of one coordinate at quadrature points, with one row per function and one column per point.
@@ -40,11 +40,11 @@ struct LineFunctions {
   Eigen::VectorXd even_start;  // values of the even functions at 0
 };
 
-// The finite elements for one ratio h/W and Poisson's ratio; half-width, density and shear modulus are 1. The
-// displacements are (i k A, b, c), and B = (b, c). The functions are products of a function of y and a
+// The finite elements for one ratio h/W and one Poisson's ratio; half-width, density and shear modulus are 1.
+// The displacements are (i k A, b, c), and B = (b, c). The functions are products of a function of y and a
 // function of z, ordered by y, then by z. Elements in y are finer near the clamp, because the stress is
 // singular at the corner between clamp and free face. A and b are odd in z, and c is even; b is odd in y, and
-// A and c are even. All vanish at y = 1.
+// A and c are even. All functions vanish at y = 1.
 struct SectionElements {
   // `layer` is the width in y of the zone of finer elements. Two sections with the same layer have the same
   // functions of y.

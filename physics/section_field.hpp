@@ -8,10 +8,10 @@
 
 namespace turnpoint::physics {
 
-// Solves the surface's plate theory by Galerkin's method and computes the centre line of each element.
-// `resolution.across` selects the functions: the cut-off shapes (`mode`), or polynomials (`modes`), which
-// exist for Mindlin only; for elastic they throw std::domain_error. Loss multiplies omega^2 by (1 - i/2Q)^4,
-// which corresponds to k (1 - i/2Q) for a thin plate.
+// Solves the equation of the surface's plate theory by Galerkin's method and computes the centre line of each
+// element. `resolution.across` selects the functions: the cut-off shapes (model `mode`), or polynomials
+// (model `modes`). Polynomials exist for Mindlin only; for elastic they throw std::domain_error. Loss
+// multiplies omega^2 by (1 - i/2Q)^4, which corresponds to k (1 - i/2Q) for a thin plate.
 void solve_section_elements(const Surface& surface, double frequency_Hz, Losses losses,
                             const ModalResolution& resolution, const ModalSetup& setup,
                             std::vector<ModalElement>& elements);

@@ -146,11 +146,11 @@ bool bending_modelled(const Surface& s) {
   if (s.tension_Pa == 0) return true;
   const auto stiffness = bending_stiffness_N_m(s);
   if (!stiffness) return false;
-  // Half-width at 90 % of the length. No boundary is expected where the surface is narrower.
+  // Half-width at 90 % of the length. No boundary is expected beyond, where the surface is narrower.
   const double w = half_width_m(s, 0.9 * s.length_m);
   const double k = std::numbers::pi / (2 * w);
   const double ratio = *stiffness * k * k / line_tension_N_per_m(s);
-  // Bending shifts a cut-off. With simply supported sides, the relative change of frequency is ratio/2; with
+  // Bending shifts a cut-off. With simply supported sides, the frequency rises by the fraction ratio/2. With
   // clamped sides, the membrane's half-width shrinks by sqrt(D/N).
   return s.edges == Edges::clamped ? std::sqrt(ratio) > 0.0157 : ratio > 0.01;
 }

@@ -19,16 +19,16 @@ namespace turnpoint::physics {
 // membrane without bending stiffness there is no difference.
 enum class Edges { supported, clamped };
 
-// Whether bending stiffness is included. `automatic` includes it on every surface without tension. With
-// tension, it includes it only if bending moves a cut-off by more than about half a percent somewhere in the
-// first 90 % of the length (see bending_modelled).
+// Whether bending stiffness is modelled. `automatic` models it on every surface without tension. On a surface
+// with tension, it does so only if bending changes a cut-off frequency by more than about half a percent
+// somewhere in the first 90 % of the length (see bending_modelled).
 enum class Bending { automatic, on, off };
 
 // The theory that describes bending of a clamped plate. For a 2 mm aluminium plate at 22 to 45 kHz,
-// Kirchhoff's cut-off half-width is 3 to 6 % larger than that of the elastic cross-section. Mindlin's is
-// within 0.2 % of it (h/W to 0.4, Poisson's ratio 0 to 0.4).
+// Kirchhoff's cut-off half-width is 3 to 6 % larger than that of the elastic cross-section. Mindlin's agrees
+// with the elastic one within 0.2 % (h/W to 0.4, Poisson's ratio 0 to 0.4).
 enum class PlateTheory {
-  kirchhoff,  // thin plate: D lap^2 v = rho h omega^2 v, plus the term of tension
+  kirchhoff,  // thin plate: D lap^2 v = rho h omega^2 v, plus a term for tension
   // includes shear and rotary inertia; the shear factor depends on Poisson's ratio (mindlin_plate.hpp)
   mindlin,
   elastic  // three-dimensional elasticity of the cross-section (elastic_section.hpp)
@@ -65,9 +65,9 @@ struct TabulatedTaper {
 using TaperForm = std::variant<LinearTaper, ExponentialTaper, TabulatedTaper>;
 
 // Parameters that determine the position of a boundary and are not known exactly. The clamp line is where the
-// sides are really held, a fraction of the thickness behind the edge of the clamp. Its distance from that
-// edge is added to W(x) everywhere. An exponential taper has no clamp line, because its formula has no term
-// for it.
+// sides are really held: a fraction of the thickness behind the edge of the clamp. The parameter is its
+// distance from that edge, which is added to W(x) everywhere. An exponential taper has no clamp line, because
+// its formula has no term for one.
 enum class Parameter {
   density,
   tension,
@@ -88,10 +88,11 @@ struct ParameterSd {
   double thickness_m = 0;
   double modulus_Pa = 0;
   double half_width_m = 0;
-  double slope = 0;           // of a linear taper
-  double decay_length_m = 0;  // of an exponential taper
+  double slope = 0;           // slope of a linear taper
+  double decay_length_m = 0;  // decay length of an exponential taper
   double clamp_line_m = 0;
-  double temperature_K = 0;  // of the deviation from the temperature for which the other values hold
+  // how far the temperature may deviate from the one at which the other values hold
+  double temperature_K = 0;
 };
 
 // Correlation between the errors of two parameters that one fit has determined.
@@ -121,11 +122,11 @@ struct Surface {
   // mindlin and elastic: only for clamped plates without tension
   PlateTheory theory = PlateTheory::kirchhoff;
   std::optional<double> yield_strength_Pa;
-  // relative change of every length, and of Young's modulus, per kelvin; 0 leaves temperature out
+  // relative change per kelvin of every length (expansion) and of Young's modulus; 0 ignores temperature
   double expansion_per_K = 0;
   double modulus_per_K = 0;
   ParameterSd sd;
-  std::vector<Correlation> correlations;  // none between values that were measured separately
+  std::vector<Correlation> correlations;  // empty if all values were measured separately
 };
 
 struct Material {
@@ -140,8 +141,8 @@ struct Material {
 // Returns the material with this name; empty if it is unknown.
 std::optional<Material> find_material(std::string_view name);
 
-// Throws std::invalid_argument if a quantity is outside its physical range; the message names the first such
-// quantity and what is allowed.
+// Throws std::invalid_argument if a quantity is outside its physical range. The message names the first such
+// quantity and its allowed range.
 void validate(const Surface& surface);
 
 // Half-width (m) and its first derivative at x in [0, length_m]. For many points, make a Taper (taper.hpp).

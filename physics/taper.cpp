@@ -31,8 +31,8 @@ Taper::Taper(const Surface& surface)
 
 double Taper::half_width_m(double x) const {
   return std::visit(
-      // fma rounds only once. Near the apex the difference is tiny, and two roundings would lose all its
-      // relative accuracy.
+      // Near the apex the difference is tiny. fma rounds only once; two roundings would lose all relative
+      // accuracy.
       Overloaded{[x](const LinearTaper& t) { return std::fma(-t.slope, x, t.half_width_m); },
                  [x](const ExponentialTaper& t) { return t.half_width_m * std::exp(-x / t.decay_length_m); },
                  [this, x](const TabulatedTaper&) { return table_(x); }},

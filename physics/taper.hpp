@@ -8,7 +8,7 @@
 
 namespace turnpoint::physics {
 
-// The half-width W(x) of a surface on [0, length_m]. Immutable; const functions are thread-safe.
+// The half-width W(x) of a surface on [0, length_m]. Immutable; functions marked const are thread-safe.
 class Taper {
  public:
   explicit Taper(const Surface& surface);
@@ -17,8 +17,8 @@ class Taper {
   double slope(double x_m) const;  // the derivative dW/dx, which is negative
   // Position at which the half-width is W; empty if outside [0, length_m].
   std::optional<double> position_m(double half_width_m) const;
-  // The same, but a linear or exponential taper is continued beyond the ends of the surface. Empty if a
-  // tabulated taper does not contain this half-width.
+  // Like position_m(), but a linear or exponential taper is continued beyond the ends of the surface. Empty
+  // if a tabulated taper does not contain this half-width.
   std::optional<double> position_continued_m(double half_width_m) const;
   double length_m() const { return length_m_; }
   // Position where the sides of a linear taper meet; empty for other tapers.

@@ -19,7 +19,7 @@ constexpr std::size_t lanes = 16;
 
 }  // namespace
 
-// The last group of points is padded to full size, because a scalar loop for its few points would be slower.
+// The last group of points is padded to full size, because a scalar loop over its few points would be slower.
 TURNPOINT_CLONES
 void horner_real(const TaylorStep& step, const double* x, std::size_t n, double* re) {
   const double inverse = 1 / step.scale;
@@ -90,7 +90,8 @@ bool half_log_square(const double* re, const double* im, std::size_t n, double o
   // series, and e is read from the exponent bits.
   constexpr double ln2 = 0.693147180559945309417232121458;
   constexpr std::uint64_t sqrt_half = 0x3fe6a09e667f3bcdULL;
-  constexpr std::uint64_t small = 0x03d0000000000000ULL;  // the bits of about 1e-289
+  // the bits of about 1e-289, below which the result is not valid
+  constexpr std::uint64_t small = 0x03d0000000000000ULL;
   std::uint64_t any_small = 0;
   for (std::size_t i = 0; i < n; ++i) {
     const double square = re[i] * re[i] + im[i] * im[i];

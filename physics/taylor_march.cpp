@@ -78,9 +78,10 @@ void TaylorMarch::State::march(TaylorState state, Until until) {
 }
 
 // True if loss has damped the reflected wave so much that |v| rises all the way from x to the drive edge.
-// With k = k1 - i a, the reflected wave at a distance s from the turning point is e^-2as of the arriving
-// wave. The ripple of d ln|v|^2/dx is then at most 4 k1 e^-2as. It is compared with 2a, from loss, and with
-// W'/W, from the width. Except on a tabulated taper, W'/W nowhere grows towards the drive edge.
+// With k = k1 - i a, the reflected wave at a distance s from the turning point has e^-2as of the amplitude of
+// the arriving wave. d ln|v|^2/dx then has three parts: 2a from loss, W'/W from the width, and a ripple of at
+// most 4 k1 e^-2as from the reflected wave. The function compares them. W'/W does not grow towards the drive
+// edge, except on a tabulated taper.
 bool TaylorMarch::State::hidden_by_loss(double x) const {
   if (equation.a.imag() == 0 || std::holds_alternative<TabulatedTaper>(taper.form())) return false;
   const std::complex<double> k = std::sqrt(equation.a);
@@ -116,9 +117,9 @@ double TaylorMarch::State::rise(const Local& g, double x) const {
   return (std::conj(g.g) * g.dg).real() - bend;
 }
 
-// The outermost position at which |v| can have a maximum. On a linear taper the evanescent zone, where Re p <
-// 0, has none: |g|^2 is convex there and starts from zero, so it grows at least in proportion to the distance
-// from the tip, while W grows at most in that proportion.
+// The outermost position at which |v| can have a maximum. On a linear taper there is none in the evanescent
+// zone, where Re p < 0: |g|^2 is convex there and starts from zero, so it grows at least in proportion to the
+// distance from the tip, while W grows at most in that proportion.
 double TaylorMarch::State::outermost_maximum() const {
   const auto* linear = std::get_if<LinearTaper>(&taper.form());
   if (linear == nullptr || linear->slope == 0) return taper.length_m();
@@ -221,8 +222,8 @@ std::optional<double> TaylorMarch::level_m(double level) const {
     inner = outer;
     outer = state_->taper.length_m();
   }
-  // Seen from the tip, |v| rises. The level therefore lies in the first step at whose inner end |v| exceeds
-  // the level.
+  // Seen from the tip, |v| rises until the last maximum. The level therefore lies in the first step at whose
+  // inner end |v| exceeds the level.
   for (const TaylorStep& step : state_->steps) {
     const double end = step.x_start - step.length;
     if (end <= inner) break;
@@ -315,7 +316,7 @@ void TaylorMarch::evaluate(std::span<const double> x, std::complex<double> phase
   for (std::size_t i = 0; i < x.size();) {
     if (step == nullptr || !(x[i] > step->x_start - step->length && x[i] <= step->x_start))
       step = s.step_at(x[i]);
-    // the apex series covers this point, or the point is the end itself, where v is zero
+    // the apex series covers this point, or the point is the held end, where v is zero
     if (step == nullptr || x[i] >= end) {
       const Scaled one = value(x[i]);
       ln_amplitude[i] = one.mantissa == 0.0 ? ln_zero : one.ln_magnitude() - ln_reference;

@@ -1,13 +1,13 @@
 #pragma once
 // Solves g'' + p(x) g = 0 step by step ("marches") from the tip of a surface to its drive edge, with
-// high-order Taylor series. The size of g is kept as a power of two, so that neither the evanescent zone nor
-// strong loss leaves the range of a double.
+// high-order Taylor series:
 //
-//   p(x) = A - (B + C W'(x)^2) / W(x)^2,  A complex with loss
+//    p(x) = A - (B + C W'(x)^2) / W(x)^2,  A complex with loss
 //
-// Starting at the tip is stable, because the solution that vanishes at the tip grows towards the drive edge.
-// The tip is either a clamped end or the apex of a linear taper. The apex is a regular singular point, so the
-// solution starts with Frobenius' series there.
+// The size of g is kept as a power of two, so that g stays in the range of a double even in the evanescent
+// zone or with strong loss. Starting at the tip is stable, because the solution that vanishes at the tip
+// grows towards the drive edge. The tip is either a clamped end or the apex of a linear taper. The apex is a
+// regular singular point, so the solution starts with Frobenius' series there.
 #include <complex>
 #include <memory>
 #include <optional>
@@ -31,13 +31,14 @@ struct Scaled {
   double ln_magnitude() const;  // ln|value|; ln_zero if the value is exactly zero
 };
 
-// One solution of the equation, with an arbitrary constant factor. Immutable; const functions are
+// One solution of the equation, with an arbitrary constant factor. Immutable; functions marked const are
 // thread-safe.
 class TaylorMarch {
  public:
   TaylorMarch(const Taper& taper, const MarchEquation& equation);
-  // Solves only from a point `held_m` in the evanescent zone, where v is set to zero, to the last maximum.
-  // This part contains the last maximum and the levels beyond it. The functions below are valid only there.
+  // Solves only the part from `held_m`, a point in the evanescent zone where v is set to zero, to the last
+  // maximum. This part contains the last maximum and the levels beyond it. The functions below are valid only
+  // there.
   TaylorMarch(const Taper& taper, const MarchEquation& equation, double held_m);
   ~TaylorMarch();
   TaylorMarch(TaylorMarch&&) noexcept;
@@ -53,13 +54,13 @@ class TaylorMarch {
                 std::span<std::complex<double>> v, std::span<double> ln_amplitude) const;
 
   // Position of the outermost maximum of |v| on the surface; empty if |v| rises all the way to the drive
-  // edge, so that the maximum would lie beyond it.
+  // edge.
   std::optional<double> last_peak_m() const;
   // Outermost point at which |v| is `level` times its last maximum, 0 < level < 1; empty if there is none.
   std::optional<double> level_m(double level) const;
   // Number of zeros of a real solution strictly between the drive edge and the tip.
   int zeros() const;
-  // Number of Taylor steps; the cost is proportional to it.
+  // Number of Taylor steps. The cost of a solution is proportional to it.
   int steps() const;
 
  private:

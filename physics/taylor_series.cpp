@@ -8,8 +8,7 @@
 namespace turnpoint::physics {
 namespace {
 
-// The series is cut off where its terms, relative to the larger of the first two, are below
-// exp(ln_truncation).
+// The series ends where its terms are below exp(ln_truncation) times the larger of the first two.
 constexpr double ln_truncation = -39.8;  // that is, 5e-18
 
 // 1/((n + 1)(n + 2))
@@ -20,7 +19,7 @@ constexpr auto inverse_products = [] {
 }();
 
 // The length over which the series is accurate to rounding. It is estimated from the last three terms,
-// because one or two of them may vanish by symmetry.
+// because one or two of these may vanish by symmetry.
 double exact_length(const TaylorStep& step) {
   const double size =
       std::max({std::abs(step.re[0]), std::abs(step.im[0]), std::abs(step.re[1]), std::abs(step.im[1])});
@@ -54,8 +53,8 @@ std::complex<double> SeriesMaker::potential(double x) const {
   return equation_.a - (equation_.b + equation_.c * slope * slope) / (w * w);
 }
 
-// First guess of the step: 3 radians or e-folds of the local solution, but at most 0.35 times the distance to
-// the point where the sides would meet if they continued straight.
+// First guess of the step's length: 3 radians or e-folds of the local solution, but at most 0.35 times the
+// distance to the point where the sides would meet if they continued straight.
 double SeriesMaker::trial_scale(double x) const {
   const double meet = std::abs(taper_.half_width_m(x) / taper_.slope(x));
   double scale = 0.35 * std::min(meet, 1e6 * taper_.length_m());
@@ -200,8 +199,8 @@ void SeriesMaker::fill(const TaylorState& from, TaylorStep& step) const {
     convolved(from.x, knot, step);
   }
   step.length = step.order < taylor_order ? step.scale : exact_length(step);
-  // End exactly on the knot. If rounding left the step's inner end just short of it, another, tiny step would
-  // follow.
+  // End exactly on the knot. Otherwise, if rounding left the step's inner end just short of the knot,
+  // another, tiny step would follow.
   if (step.length > (from.x - knot) * (1 - 1e-9)) step.length = from.x - knot;
 }
 
@@ -210,8 +209,8 @@ ApexSeries::ApexSeries(const Taper& taper, const MarchEquation& equation)
       slope_(std::get<LinearTaper>(taper.form()).slope),
       a_(equation.a) {
   mu_ = std::sqrt(equation.b / (slope_ * slope_) + equation.c + 0.25);
-  // Evaluating a point by this series takes longer than by a Taylor step. Use the series only near the tip,
-  // unless its order mu is so high that many steps would be needed there.
+  // A point takes longer by this series than by a Taylor step, so the series is used only near the tip. If
+  // its order mu is high, it is used farther in, because Taylor steps would have to be short there.
   const double share = 1 / (1 + 9 * std::min(1.0, 20 / mu_));
   const double reach = share * std::min(2 * std::sqrt(mu_ + 1), mu_) / std::sqrt(std::abs(equation.a));
   inner_m_ = std::max(0.0, half_width_m_ / slope_ - reach);
@@ -229,7 +228,7 @@ TaylorState ApexSeries::at(double x) const {
     if (std::abs(term) * j < 1e-18 * std::abs(sum)) break;
   }
   const double power = mu_ + 0.5;
-  // Distances are relative to the inner end of the series, which keeps the logarithm small.
+  // Use distances relative to the inner end of the series, which keeps the logarithm small.
   const double s1 = half_width_m_ / slope_ - inner_m_;
   return {x, sum, -(power * sum + derivative) / s, power * std::log(s / s1), 0};
 }

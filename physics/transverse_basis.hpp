@@ -21,8 +21,8 @@ enum class Parity { even, odd };
 Eigen::VectorXd bubbles_at(int count, int power, Parity parity, double eta);
 
 // Even or odd functions Y_i of eta that vanish at eta = 1. They are (1 - eta^2)^m P_k(eta), with m = 1 for
-// membranes and m = 2 if the slope must vanish, too; or there is just one function, a given shape. Integrals
-// are over [0, 1].
+// membranes, and m = 2 if the slope must vanish at eta = 1 as well. A basis may instead consist of one given
+// shape. Integrals are over [0, 1].
 class TransverseBasis {
  public:
   using Matrix = Eigen::MatrixXd;

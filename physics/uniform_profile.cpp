@@ -33,8 +33,8 @@ class UniformLine final : public CentreLine {
  public:
   UniformLine(const Surface& surface, double f);
   Scaled value(double x) const override;
-  // Computed as a central difference of the logarithm. This shifts the last maximum far less than the error
-  // of the model itself does.
+  // Computed as a central difference of the logarithm. The resulting shift of the last maximum is far smaller
+  // than the model's own error.
   Scaled slope(double x) const override;
   std::optional<double> last_peak_m() const override {
     return turning_m_ < 0 ? std::nullopt : find_last_peak(*this, std::min(turning_m_, length_m_), 0.25 / k_);
@@ -68,7 +68,7 @@ UniformLine::UniformLine(const Surface& surface, double f)
       equation_(march_equation(surface, f, Model::mode, Losses::left_out)),
       k_(wavenumber_per_m(surface, f)),
       length_m_(surface.length_m) {
-  // Langer's correction adds 1/4, which makes the solution right at the apex
+  // Langer's correction adds 1/4; it makes the solution right at the apex
   if (taper_.apex_m()) equation_.c += 0.25;
   find_turning();
   if (!taper_.apex_m()) tabulate();

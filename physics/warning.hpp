@@ -1,5 +1,5 @@
 #pragma once
-// Warnings that a plan, a map or a field should show, each only once.
+// Warnings to show with a plan, a map or a field, each only once.
 #include <span>
 #include <string>
 #include <vector>
@@ -9,7 +9,7 @@
 
 namespace turnpoint::physics {
 
-// A stable code for programs ("yield", "bending-off", "audible", "resonance-gain",
+// A warning: a stable code for programs ("yield", "bending-off", "audible", "resonance-gain",
 // "outside-surface", "no-smooth-zone", "narrow-strip", "thick-plate", "ill-conditioned", "beat") and a
 // sentence for people.
 struct Warning {
@@ -17,15 +17,16 @@ struct Warning {
   std::string text;
 };
 
-// Warns of a tension above the material's yield strength, and of bending that matters but is off.
+// Warns if the tension is above the material's yield strength, or if bending is switched off although it
+// matters.
 std::vector<Warning> surface_warnings(const Surface& surface);
 
 // A tone below this frequency may be audible: the lower edge of the third-octave band centred on 25 kHz.
 inline constexpr double audible_limit_Hz = 22400;
 
-// Warnings about single tones: below 22.4 kHz, turning point outside the surface, strip narrower than a
-// fingertip (14 mm) at the turning point, last-lobe gain above 10, plate theory
-// kirchhoff where shear moves the boundary by more than 1 mm. Codes are not repeated per tone.
+// Warns about single tones: below 22.4 kHz, turning point outside the surface, strip narrower than a
+// fingertip (14 mm) at the turning point, gain at the last maximum above 10, plate theory kirchhoff where
+// shear moves the boundary by more than 1 mm. Each code appears once, not once per tone.
 std::vector<Warning> tone_warnings(const Surface& surface, std::span<const Tone> tones);
 
 }  // namespace turnpoint::physics

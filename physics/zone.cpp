@@ -85,8 +85,8 @@ void require_band(const ZoneProfile& profile, const ZoneRequest& r) {
 
 ZoneDesign design_zone(const Surface& surface, const FrictionMap& friction, const ZoneRequest& request) {
   check(surface, friction, request);
-  // Design with a single tone first. This shows roughly where the highest tone must be, before the others are
-  // chosen.
+  // First design the zone with a single tone. This shows roughly where the highest tone must be before the
+  // other tones are chosen.
   ZoneRequest single = request;
   single.tones = 1;
   ZoneProfile alone(surface, friction, single, first_guess(surface, request));

@@ -21,9 +21,9 @@ struct ToneBand {
   double spacing_Hz = 1000;
 };
 
-// Describes a zone from from_m to boundary_m with the mean relative friction `friction`. boundary_m is where
-// the `edge` of the zone's own amplitude profile must lie. With several tones, this amplitude is the root of
-// summed squares; a turning edge is that of the highest tone.
+// Describes a zone from from_m to boundary_m with the mean relative friction `friction`. boundary_m is the
+// required position of `edge`. The edge belongs to the amplitude profile of the whole zone: the root of
+// summed squares over its tones. A turning edge is that of the highest tone.
 struct ZoneRequest {
   double from_m = 0;
   double boundary_m = 0;
@@ -37,10 +37,11 @@ struct ZoneRequest {
 struct ZoneDesign {
   // highest frequency first; amplitudes are at the drive edge, and phases give a low crest factor
   std::vector<Tone> tones;
-  double boundary_m = 0;  // where the requested edge actually lies
-  double friction = 0;    // the mean friction that was reached
+  double boundary_m = 0;  // where the edge of the designed zone lies
+  double friction = 0;    // mean friction of the designed zone
   double residual = 0;    // rms deviation of the fingertip-averaged friction from its mean in the zone
-  double node_fill = 0;   // smallest squared amplitude in the zone, summed over tones, divided by its mean
+  // smallest squared amplitude in the zone (summed over tones), divided by the mean squared amplitude
+  double node_fill = 0;
   double peak_displacement_m = 0;  // largest amplitude on the surface with all tones in phase
   double crest_factor = 0;         // crest factor of the drive waveform
   std::string reason;              // how the tones were placed, and what limits them
@@ -48,7 +49,8 @@ struct ZoneDesign {
 };
 
 // Designs a zone. Throws std::domain_error with the reason if no tones can produce it: friction below the
-// lowest of the map, a boundary whose tone lies outside the band, or a friction edge outside (friction, 1).
+// lowest of the map, a boundary whose tone lies outside the band, or a friction edge whose level is outside
+// (friction, 1).
 ZoneDesign design_zone(const Surface& surface, const FrictionMap& friction, const ZoneRequest& request);
 
 struct ProfilePoint {
@@ -64,9 +66,9 @@ struct ProfileDesign {
   std::string verdict;
 };
 
-// Designs a profile. Non-negative least squares fit sum a_i^2 |v_i|^2 to the target; candidate frequencies
-// are band.spacing_Hz apart. Only profiles that fall with x can be reached, roughly speaking; `residual` and
-// `reachable` say how close the design comes.
+// Designs a profile. The squared amplitudes sum a_i^2 |v_i|^2 are fitted to the target by non-negative least
+// squares; candidate frequencies are band.spacing_Hz apart. Roughly speaking, only profiles that fall with x
+// can be produced. `residual` and `reachable` say how close the design comes.
 ProfileDesign design_profile(const Surface& surface, std::span<const ProfilePoint> target,
                              const ToneBand& band);
 

@@ -18,7 +18,7 @@ namespace {
 constexpr double grid_step_m = 0.5e-3;
 constexpr int candidates_per_spacing = 3;
 constexpr int most_candidates = 40;
-// Another tone is added only if it reduces the unevenness of the zone to this share or less.
+// A tone is added only if it reduces the unevenness of the zone to this fraction or less.
 constexpr double worthwhile = 0.97;
 
 double interpolate_crossing(double x0, double x1, double y0, double y1, double level) {
@@ -55,8 +55,8 @@ ToneShape ZoneProfile::shape(double f) const {
   return one;
 }
 
-// Returns weights of 0 or more, for which the weighted sum of the squared amplitudes is closest to one in the
-// zone.
+// Returns weights, 0 or more, for which the weighted sum of squared amplitudes is as close to 1 in the zone
+// as possible.
 std::vector<double> ZoneProfile::fit(const std::vector<const ToneShape*>& shapes, double& residual) const {
   std::vector<double> columns, wanted;
   for (const ToneShape* one : shapes) {
@@ -100,7 +100,7 @@ void ZoneProfile::choose_tones(double highest_Hz) {
       trial.push_back(&candidate);
       double residual = 0;
       const auto weights = fit(trial, residual);
-      // The highest tone determines the boundary, so a set without this tone would make a different zone.
+      // The highest tone determines the boundary, so a set of tones without it would make a different zone.
       if (residual < lowest && weights.front() > 0.05 * weights.back()) {
         lowest = residual;
         chosen = &candidate;
@@ -131,7 +131,7 @@ void ZoneProfile::shift_to(double highest_Hz) {
   shapes_.front() = shape(highest_Hz);
   for (std::size_t i = 1; i < shapes_.size();) {
     const double f = std::max(request_.band.low_Hz, shapes_[i].frequency_Hz + by);
-    // at the band's lower end, this tone would be too close to the previous one
+    // at the band's lower end, this tone would be too close to the previous one: remove it
     if (shapes_[i - 1].frequency_Hz - f < 0.999 * request_.band.spacing_Hz) {
       shapes_.erase(shapes_.begin() + static_cast<std::ptrdiff_t>(i));
       weights_.erase(weights_.begin() + static_cast<std::ptrdiff_t>(i));
@@ -167,9 +167,9 @@ double ZoneProfile::zone_mean(const std::vector<double>& values) const {
   return sum / std::max(1, count);
 }
 
-// Returns the weight of the friction at each point in the zone's mean friction. This mean of fingertip
-// averages is linear in the friction: each average is an integral over straight pieces, and each piece adds
-// to the weights of its two ends.
+// Returns the weight of the friction at each point in the zone's mean friction. The mean of the fingertip
+// averages is a linear function of the friction: each average is an integral over straight pieces, and each
+// piece adds to the weights of its two ends.
 std::vector<double> ZoneProfile::mean_weights() const {
   std::vector<double> weight(x_.size(), 0.0);
   const double step = x_[1] - x_[0];
@@ -207,8 +207,8 @@ void ZoneProfile::scale_to_friction() {
     }
     return mean - request_.friction;
   };
-  // Mean friction falls as the level rises. Starting from the previous level, widens a bracket on a
-  // logarithmic scale, then uses false position.
+  // Mean friction falls as the level rises. Widen a bracket on a logarithmic scale, starting from the
+  // previous level, then search it by false position.
   double low = std::log(scale_), high = low;
   double f_low = miss(low), f_high = f_low;
   double step = scaled_before_ ? 0.01 : 0.3;
@@ -219,7 +219,7 @@ void ZoneProfile::scale_to_friction() {
     text << "mean friction " << request_.friction << " is not reachable in the zone";
     throw std::domain_error(text.str());
   }
-  // No search is needed if one end is already the solution.
+  // If the lower end already is the solution, no search is needed.
   const double x = std::abs(f_low) < 1e-9 ? low
                                           : false_position({low, f_low, high, f_high}, miss, {8, true}, 1e-9,
                                                            [](const Chord& c) { return c.width() <= 1e-12; });

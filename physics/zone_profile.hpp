@@ -17,14 +17,15 @@ struct ToneShape {
 
 class ZoneProfile {
  public:
-  // Chooses up to request.tones tones at and below `highest_Hz`, and their relative weights. The weights make
-  // the squared amplitude in the zone as uniform as possible (non-negative least squares).
+  // Chooses up to request.tones tones at and below `highest_Hz`, and their relative weights. Non-negative
+  // least squares finds the weights that make the squared amplitude in the zone as uniform as possible.
   ZoneProfile(const Surface& surface, const FrictionMap& friction, const ZoneRequest& request,
               double highest_Hz);
 
   double highest_Hz() const { return shapes_.front().frequency_Hz; }
-  // Shifts all tones by the same frequency difference and recomputes their shapes. A tone that would leave
-  // the band stays at the band's lower end, or is removed if that is too close to the next tone.
+  // Shifts all tones by the same frequency difference, so that the highest is at `highest_Hz`, and recomputes
+  // their shapes. A tone that would leave the band stays at the band's lower end, or is removed if it would
+  // be too close to the next tone there.
   void shift_to(double highest_Hz);
   // Sets the overall level so that the mean friction in the zone has the desired value. Throws
   // std::domain_error if no level does.
@@ -52,8 +53,9 @@ class ZoneProfile {
   std::vector<ToneShape> shapes_;
   std::vector<double> weights_;          // weight of each tone's squared amplitude
   std::vector<double> weights_of_mean_;  // weight of each point's friction in the zone's mean
-  double scale_ = 1e-12;                 // squared displacement (m^2) where the weighted sum of squares is 1
-  bool scaled_before_ = false;           // true once a scale was found; the next search starts from it
+  // factor (m^2) that turns the weighted sum of squared shapes into squared displacement
+  double scale_ = 1e-12;
+  bool scaled_before_ = false;  // true once `scale_` was found; the next search starts from it
 };
 
 }  // namespace turnpoint::physics
