@@ -80,7 +80,7 @@ std::string newest_for(const std::string& rig_path) {
   std::error_code unreadable;
   for (const auto& entry : std::filesystem::directory_iterator(folder, unreadable)) {
     const auto name = entry.path().filename().string();
-    // Dates in this form sort in the order of time.
+    // Dates of the form YYYY-MM-DD sort in the order of time.
     if (name.starts_with(begins) && name.ends_with(".toml") && name.size() == begins.size() + 15)
       newest = std::max(newest, name);
   }

@@ -7,10 +7,10 @@
 
 namespace turnpoint::calibration {
 
-/// Returns the rig with the calibration's values: each transducer's response and usable band (within the
-/// rig's own), loss, the surface that measured boundaries determine, the responses of the pick-ups, and
-/// friction, which then counts as measured. Throws terms::UsageError for a transducer or a pick-up that the
-/// rig does not have, or a transducer that would be left without a band.
+/// Returns the rig with the values of the calibration: each transducer's response, and its usable band as far
+/// as it lies within the rig's band; loss; the surface that measured boundaries determine; the responses of
+/// the pick-ups; and friction, which then counts as measured. Throws terms::UsageError for a transducer or a
+/// pick-up that the rig does not have, or a transducer that would be left without a band.
 rig::Rig applied(const Calibration& calibration, rig::Rig rig);
 
 /// newest_for() returns the newest file named `RIG.calibration-YYYY-MM-DD.toml` beside the rig file; "" if

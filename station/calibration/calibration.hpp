@@ -36,38 +36,39 @@ struct Calibration {
   std::vector<rig::PickUpResponse> pick_ups;
 };
 
-/// Files with measurements; "" if there is none. Their columns are:
-/// sweep: `frequency_Hz,displacement_um,phase_deg`, measured at `sweep_full_scale`
+/// Names of the files with measurements; "" if there is no such file. Their columns are:
+/// sweep: `frequency_Hz,displacement_um,phase_deg`, measured at the drive amplitude `full_scale`
 /// boundaries: `frequency_Hz,boundary_mm,sd_mm`
 /// friction: `displacement_um,relative_friction`
 /// sound: `frequency_Hz,level_dB` at full scale
 struct Measurements {
   struct Sweep {
     std::string transducer, csv;
-    double full_scale = 1;  ///< drive amplitude during the sweep, 0 to 1 (full scale)
+    double full_scale = 1;  ///< drive amplitude during the sweep, 0 to 1; 1 is full scale
   };
   std::vector<Sweep> sweeps;
   std::string boundaries_csv, friction_csv, sound_csv;
-  std::string edge = "p50";  ///< which edge the boundaries are
+  std::string edge = "p50";  ///< which edge of the vibration was measured, as physics::format() writes it
 };
 
-/// Reads the files and fits. Throws text::BadInput with all problems of all files, or terms::UsageError for
-/// points that do not determine a fit.
+/// Reads the files and fits the measurements. Throws text::BadInput with all problems of all files, or
+/// terms::UsageError for points that do not determine a fit.
 Calibration fit_measurements(const Measurements& measurements, const rig::Rig& rig);
 
 /// Convert to the text of a calibration file (format "friction-calibration/1") and back. load() throws
 /// text::BadInput or std::system_error.
 std::string to_toml(const Calibration& calibration);
 Calibration load(const std::string& path);
-/// Like load(), for text that is already in memory (a resumed session). `path` is only used in messages.
+/// Like load(), for the text of a calibration file that is already in memory (a resumed session). `path` is
+/// only used in messages.
 Calibration parse(const std::string& text, const std::string& path);
 
-/// Returns for how many more days the calibration is valid, counted from `today` (YYYY-MM-DD). If it has
+/// Returns for how many more days the calibration is valid on the day `today` (YYYY-MM-DD). If it has
 /// expired, returns minus the number of days since then.
 int days_left(const Calibration& calibration, const std::string& today);
 
-/// Returns why sessions must not use the calibration: it was made for another rig file, it is not valid on
-/// the day `today`, or nothing was measured. Empty if they may use it.
+/// Returns the reasons why sessions must not use the calibration: it was made for another rig file, it is not
+/// valid on the day `today`, or nothing was measured. Empty if sessions may use it.
 std::vector<std::string> problems(const Calibration& calibration, const std::string& rig_sha256,
                                   const std::string& today);
 

@@ -22,7 +22,7 @@ std::string quoted(const std::string& plain) {
   return out + "\"";
 }
 
-// Writes one line `key = [...]` per key, with one number for each point.
+// Writes one line `key = [...]` per key. Each list has one number for each point.
 template <typename Points, typename Get>
 std::string numbers(const char* key, const Points& points, Get&& get) {
   std::string out = fmt::format("{} = [", key);
@@ -103,7 +103,7 @@ PanelLatency read_panel(const text::Value& table, text::Findings& findings) {
   return panel;
 }
 
-// Reports a problem unless the columns have equal length.
+// Returns true if the columns have equal length; otherwise reports a problem.
 bool same_length(text::TableReader& reader, const char* key, std::size_t length, std::size_t wanted) {
   if (length == wanted) return true;
   reader.problem(key, fmt::format("{} values", length),
@@ -170,7 +170,8 @@ rig::SurfaceFit::Parameter read_parameter(const text::Value& table, std::size_t 
   return parameter;
 }
 
-/// A calibration of an earlier release describes boundaries by a law, which nothing used.
+/// Calibrations of earlier releases have a different kind of boundary fit, which nothing ever used. It is
+/// skipped.
 std::optional<BoundaryFit> read_boundary(const text::Value& table, text::Findings& findings) {
   text::TableReader reader(table, "boundary", findings);
   if (reader.has("law")) return std::nullopt;

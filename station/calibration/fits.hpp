@@ -15,13 +15,14 @@ constexpr double kDegree_rad = std::numbers::pi / 180;
 struct BoundaryPoint {
   double frequency_Hz = 0;
   double boundary_m = 0;
-  double sd_m = 0;        ///< precision of the measurement, above 0
+  double sd_m = 0;        ///< standard deviation of the measurement, above 0
   double residual_m = 0;  ///< measured minus fitted
-  double deviation = 0;   ///< distance from where the others put it, in standard deviations
+  /// distance from the position that the other boundaries predict, in standard deviations
+  double deviation = 0;
   bool outlier = false;
 };
 
-/// What measured boundaries say about the rig's surface.
+/// The result of fitting the rig's surface to measured boundaries.
 struct BoundaryFit {
   std::string edge;  ///< which edge was measured, as physics::format() writes it
   std::vector<BoundaryPoint> points;
@@ -32,7 +33,7 @@ struct BoundaryFit {
 /// physics::fit_boundaries()). Throws terms::UsageError for points that cannot be used.
 BoundaryFit fit_boundaries(const rig::Rig& rig, const std::string& edge, std::vector<BoundaryPoint> points);
 
-/// One frequency of a sweep: displacement of the drive edge at full scale and its phase.
+/// One frequency of a sweep: the drive edge's displacement at full scale and its phase.
 struct ResponsePoint {
   double frequency_Hz = 0;
   double m_per_full_scale = 0;
@@ -43,12 +44,12 @@ struct ResponsePoint {
 /// and unwrapped phases of the nearest `window` points.
 struct ResponseFit {
   std::vector<ResponsePoint> points;
-  double residual_dB = 0;  ///< rms deviation of the measured points
+  double residual_dB = 0;  ///< rms deviation of the measured points from the fit
   double residual_rad = 0;
   double low_Hz = 0, high_Hz = 0;  ///< band in which equalisation stays within equalisation_cap_dB
 };
 
-/// The largest equalisation. A frequency that needs more than this, relative to the best frequency, is
+/// The largest allowed equalisation. A frequency whose response is farther than this below the best one is
 /// outside the band.
 inline constexpr double equalisation_cap_dB = 20;
 
@@ -62,9 +63,9 @@ struct Resonance {
   double quality_factor = 0;
 };
 
-/// Finds resonances by a linear fit: near a peak, 1/|u|^2 is a parabola in f whose width is f0/2Q. Leaves out
-/// peaks with fewer than five points above half power. Also leaves out peaks at which the phase does not
-/// turn, because they belong to the transducer and not to the surface.
+/// Finds resonances by a linear fit: near a peak, 1/|u|^2 (u is the displacement) is a parabola in f whose
+/// width is f0/2Q. Leaves out peaks with fewer than five points above half power. Also leaves out peaks at
+/// which the phase does not turn, because they belong to the transducer and not to the surface.
 std::vector<Resonance> find_resonances(const std::vector<ResponsePoint>& sweep);
 
 /// Median quality factor; empty without resonances.

@@ -6,7 +6,7 @@
 
 namespace turnpoint::calibration {
 
-/// Delays between pairs of events, in seconds.
+/// Statistics of the delays between matching touches and edges, in seconds.
 struct Delay {
   double median_s = 0;
   double sd_s = 0;  ///< standard deviation: the jitter
@@ -14,12 +14,12 @@ struct Delay {
   int unmatched = 0;  ///< touches without exactly one matching edge
 };
 
-/// The reference for the touches. A button under the finger (or a stylus that closes a contact) gives the
-/// time at which the panel was touched, so it measures input latency. A photodiode on the square that flashes
-/// on the screen at each touch gives the time of the light, so it measures display latency.
+/// The source of the reference edges. A button under the finger (or a stylus that closes a contact) gives the
+/// time at which the panel was touched, so it measures input latency. The screen flashes a square at each
+/// touch; a photodiode on this square gives the time of the light, so it measures display latency.
 enum class LatencyReference { button, photodiode };
 
-/// The latency of a touch panel, before and after the time stamp that a touch gets.
+/// The latency of a touch panel: from contact to time stamp (input), and from time stamp to light (display).
 struct PanelLatency {
   std::string made_on;         ///< YYYY-MM-DD
   std::string quality;         ///< source of the touches' time stamps: kernel | toolkit
@@ -27,14 +27,14 @@ struct PanelLatency {
   std::optional<Delay> flash;  ///< from the touch's time stamp to the light on the screen
 };
 
-/// The smallest number of pairs for a latency. Fewer would say little about jitter.
+/// The smallest number of pairs from which a latency is computed. Fewer pairs would say little about jitter.
 inline constexpr int kLeastPairs = 10;
-/// A touch and an edge further apart than this are unrelated.
+/// If a touch and an edge are further apart than this, they are unrelated.
 inline constexpr std::int64_t kLongestLatency_ns = 400'000'000;
 
-/// Pairs each touch with the only edge before it (button) or after it (photodiode) within kLongestLatency_ns.
-/// A touch with no edge, or with several, counts as unmatched. Times are CLOCK_MONOTONIC, in any order. Empty
-/// with fewer than two pairs.
+/// Pairs each touch with the edge before it (button) or after it (photodiode) within kLongestLatency_ns. A
+/// touch with no such edge, or with several, counts as unmatched. Times are CLOCK_MONOTONIC, in any order.
+/// Empty with fewer than two pairs.
 std::optional<Delay> pair_delays(std::vector<std::int64_t> touches_ns, std::vector<std::int64_t> edges_ns,
                                  LatencyReference reference);
 

@@ -11,8 +11,8 @@
 namespace turnpoint::calibration {
 namespace {
 
-// Between its half-power points, a resonance turns the phase by 90 degrees. A hump in the transducer's
-// response turns it only a little.
+// Between the half-power points of a resonance, the phase turns by 90 degrees. At a hump of the transducer's
+// response it turns only a little.
 constexpr double least_turn_rad = std::numbers::pi / 4;
 
 void check(const std::vector<ResponsePoint>& sweep, int window) {
@@ -79,7 +79,7 @@ ResponseFit fit_response(const std::vector<ResponsePoint>& sweep, int window) {
   fit.residual_dB = std::sqrt(fit.residual_dB);
   fit.residual_rad = std::sqrt(fit.residual_rad);
   const double least = best * std::pow(10, -equalisation_cap_dB / 20);
-  // Find the band around the best frequency in which no point needs more than the largest equalisation.
+  // Find the band around the best frequency in which no point needs more than equalisation_cap_dB.
   std::size_t peak = 0;
   for (std::size_t k = 0; k < fit.points.size(); ++k)
     if (fit.points[k].m_per_full_scale == best) peak = k;
@@ -103,8 +103,8 @@ std::vector<Resonance> find_resonances(const std::vector<ResponsePoint>& sweep) 
     while (high + 1 < sweep.size() && sweep[high + 1].m_per_full_scale >= peak / std::numbers::sqrt2) ++high;
     if (high - low + 1 < 5) continue;
     if (std::abs(phases[high] - phases[low]) < least_turn_rad) continue;
-    // With f = f_k + u f_k, fit the parabola 1/|u|^2 ~ a + b u + c u^2. Its minimum is at -b/2c, and its
-    // squared half width is a/c - (b/2c)^2.
+    // With u = f / f_k - 1 and r = (amplitude at the peak k) / (amplitude at f), fit the parabola r^2 = a + b
+    // u + c u^2. Its minimum is at u = -b/2c, and its squared half width is a/c - (b/2c)^2.
     std::vector<std::vector<double>> rows;
     std::vector<double> values;
     for (std::size_t i = low; i <= high; ++i) {

@@ -22,7 +22,7 @@ bool is_on(const std::string& value, const Uri& uri) {
   return value == "on";
 }
 
-/// The settings in the amplifier's URI. `requests` is empty for a simulated amplifier.
+/// The settings that the amplifier's URI asks for. `requests` is empty for a simulated amplifier.
 struct Asked {
   GuardLines roles;
   std::vector<LineRequest> requests;

@@ -38,7 +38,8 @@ class LineReader {
     std::int64_t due = now + settle_check_ns;
     for (const Watched& line : watched_) due = std::min(due, line.filter.due_ns());
     if (const auto edge = lines_->wait(std::max<std::int64_t>(due - now, 0))) return take(*edge);
-    // Read the time before the lines: edges before this time have arrived when the lines are polled again.
+    // Read the clock before the lines: all edges before this time will have arrived when the lines are polled
+    // again.
     const std::int64_t quiet_until = system::monotonic_ns();
     if (const auto edge = lines_->wait(0)) return take(*edge);
     settle(quiet_until);
@@ -91,8 +92,8 @@ class LineReader {
     }
   }
 
-  // Limits how often glitches are reported: interference can come thousands of times per second, but people
-  // read the log.
+  // Reports a glitch, but not too often: interference can come thousands of times per second, and people read
+  // the log.
   void tell_glitch(int line, const LineChange& change) {
     Watched& watched = watched_[static_cast<std::size_t>(line)];
     if (watched.glitch_told_ns && change.time_ns < *watched.glitch_told_ns + glitch_pause_ns) {

@@ -10,13 +10,14 @@
 
 namespace turnpoint::lines {
 
-/// A press of a response button that lasted long enough, stamped at the first edge of its bouncing.
+/// A press of a response button that lasted long enough to count. Its time stamp is that of the first edge of
+/// the bouncing.
 struct Press {
   std::int64_t time_ns = 0;  ///< kernel's time stamp of the first edge (CLOCK_MONOTONIC)
   int button = 0;            ///< index of the button in the order of the URI
 };
 
-/// Interference on a line: its level changed and returned before that could count as a press or a touch.
+/// Interference on a line: the level changed and changed back before it could count as a press or a touch.
 struct Glitch {
   std::int64_t time_ns = 0;    ///< kernel's time stamp of the first edge (CLOCK_MONOTONIC)
   std::string line;            ///< name of the line: "left", "right", "contact"
@@ -28,8 +29,8 @@ struct Glitch {
 /// A fault of the buttons or the contact.
 struct ButtonsFault {
   enum class Kind {
-    edges_lost,  ///< the kernel had more edges than it can store
-    gone,        ///< a chip or a sensor was lost; the panel looks for it until it is back
+    edges_lost,  ///< edges came faster than they were read, and the kernel's buffer overflowed
+    gone,        ///< a GPIO chip or a touch sensor was lost; the station looks for it until it is back
   };
   std::int64_t time_ns = 0;
   Kind kind = Kind::gone;
@@ -42,19 +43,19 @@ struct ButtonsHandlers {
   std::function<void(const touch::Contact&)> contact;
   std::function<void(const Glitch&)> glitch;  ///< called at most once per second for each line
   std::function<void(const ButtonsFault&)> fault;
-  /// called when the lost device is back; a button held at that time does not count as a press
+  /// called when the lost device is back; a button that is held down at that time does not count as a press
   std::function<void(std::int64_t time_ns)> back;
 };
 
-/// `sim:` or `gpio:left=BTN_L,right=BTN_R`, with `active=low` for buttons to ground. `hold_ms` (default 1.5)
-/// is how long a level must last to count. `refractory_ms` (default 50) is the dead time after a press or
-/// release; see EdgeFilter.
+/// The URI of the buttons: `sim:` or `gpio:left=BTN_L,right=BTN_R`, with `active=low` for buttons that
+/// connect to ground. `hold_ms` (default 1.5) is how long a level must last to count. `refractory_ms`
+/// (default 50) is the dead time after a press or release; see EdgeFilter.
 struct ButtonsConfig {
   std::string uri = "sim:";
 };
 
-/// `sim:`, `gpio:line=FINGER` (with the same keys) or `evdev:NAME[,axis=x|y]` (a touch sensor on the
-/// surface; NAME is the device's).
+/// The URI of the finger contact: `sim:`, `gpio:line=FINGER` (with the keys of ButtonsConfig) or
+/// `evdev:NAME[,axis=x|y]` (a touch sensor on the surface; NAME is the name of its input device).
 struct ContactConfig {
   std::string uri = "sim:";
 };
@@ -73,8 +74,8 @@ class Buttons {
   virtual void simulate(const touch::Contact& touch) = 0;
 };
 
-/// Opens the rig's buttons and contact; either may be absent. Throws terms::UsageError for a URI, and
-/// LineError or std::system_error for a device that does not exist.
+/// Opens the rig's buttons and contact; either may be absent. Throws terms::UsageError for a URI that is not
+/// understood, and LineError or std::system_error for a device that does not exist.
 std::unique_ptr<Buttons> open_buttons(const std::optional<ButtonsConfig>& buttons,
                                       const std::optional<ContactConfig>& contact, ButtonsHandlers handlers);
 

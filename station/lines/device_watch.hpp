@@ -12,17 +12,17 @@ namespace turnpoint::lines {
 /// until it is back.
 class DeviceWatch {
  public:
-  /// A function that checks the open device once, waiting a short time for news; throws if the device is
-  /// lost.
+  /// A function that checks the open device once: it waits a short time for an event and handles it. It
+  /// throws if the device is lost.
   using Look = std::function<void()>;
   /// A function that opens the device; throws if the device does not exist.
   using Open = std::function<Look()>;
 
-  /// Opens the device and watches it, with SCHED_FIFO priority `priority` if the system grants it. `handlers`
-  /// must outlive this object. Throws the errors of `open`.
+  /// Opens the device and watches it on a thread with SCHED_FIFO priority `priority`, if the system grants
+  /// this. `handlers` must outlive this object. Throws the errors of `open`.
   DeviceWatch(Open open, int priority, const ButtonsHandlers& handlers);
 
-  /// Why the device cannot be watched at present; "" while it can.
+  /// Why the device cannot be watched at present; "" if it is being watched.
   std::string missing() const;
 
  private:

@@ -7,13 +7,13 @@
 
 namespace turnpoint::lines {
 
-/// The filter's verdict on one or more edges of a line.
+/// What the filter concludes from one or more edges of a line.
 struct LineChange {
   enum class Kind {
     pressed,   ///< the line became active and stayed active
     released,  ///< the line became inactive and stayed inactive
-    glitch,    ///< the line changed its level and returned before the new level had lasted long enough
-    lost,      ///< the level changed without an edge: the kernel dropped edges
+    glitch,    ///< the line changed its level and changed back before the new level had lasted long enough
+    lost,      ///< the level changed, but no edge was reported: the kernel dropped edges
   };
   Kind kind = Kind::pressed;
   /// kernel's time stamp of the first edge; for `lost`, the time at which the change was noticed
@@ -23,13 +23,13 @@ struct LineChange {
   bool active = false;         ///< the current level
 };
 
-/// Distinguishes presses from bouncing contacts and from interference, using only the kernel's stamps.
+/// Distinguishes presses from bouncing contacts and from interference. It uses the kernel's time stamps only.
 /// Edges closer together than `hold_ns` form a burst. If the line holds its new level after a burst, that is
-/// a press or a release, with the stamp of the burst's first edge. If it returns to its old level, that is a
-/// glitch. After each change there is a dead time of `refractory_ns`: a further change is reported only if it
-/// still holds afterwards, with its own stamp. (The kernel's debouncing would stamp the last edge of the
-/// bouncing, milliseconds late.) Pure; times are CLOCK_MONOTONIC in ns.
-/// A spike may come just before a press, in the same burst, so a press can be stamped too early, by at most
+/// a press or a release, with the time stamp of the burst's first edge. If the line returns to its old level,
+/// that is a glitch. After each press or release there is a dead time of `refractory_ns`: a further change is
+/// reported only if it still holds after the dead time, with its own time stamp. (The kernel's debouncing
+/// would stamp the last edge of the bouncing, milliseconds late.) Pure; times are CLOCK_MONOTONIC in ns. If a
+/// spike comes just before a press, both are in the same burst, so the press is stamped too early, by at most
 /// `bounce_ns`. Ganssle measured the bouncing of 18 kinds of switch: 1.6 ms on average, and at most 6.2 ms
 /// with one exception (A Guide to Debouncing, 2004).
 class EdgeFilter {
@@ -43,17 +43,17 @@ class EdgeFilter {
   EdgeFilter(const Rules& rules, bool active) noexcept
       : rules_(rules), level_(active), stable_(active), told_(active) {}
 
-  /// A press, release or glitch that is certain once every edge before `now_ns` has been passed in. Call
-  /// until it returns nothing.
+  /// Returns a press, release or glitch that is certain. Before the call, all edges before `now_ns` must have
+  /// been passed to edge(). Call until it returns nothing.
   std::optional<LineChange> decide(std::int64_t now_ns) noexcept;
 
   /// Takes the next edge; call decide() for its time first. `active` is the level after the edge. Returns a
   /// glitch if the burst has become too long for a bouncing contact.
   std::optional<LineChange> edge(std::int64_t time_ns, bool active) noexcept;
 
-  /// Takes the level read at `now_ns` while no edge is waiting. If it stays different from the level after
-  /// the last edge, edges were lost. The new level is then accepted, but not reported as a press, because its
-  /// time is unknown.
+  /// Takes the level that was read at `now_ns` while no edge was waiting. If this level keeps differing from
+  /// the level after the last edge, edges were lost. The new level is then accepted, but not reported as a
+  /// press, because its time is unknown.
   std::optional<LineChange> level(std::int64_t now_ns, bool active) noexcept;
 
   /// The time at which decide() can judge the current burst; the largest time if there is none.
@@ -73,14 +73,14 @@ class EdgeFilter {
   bool in_burst_ = false;
   std::int64_t first_ns_ = 0, last_ns_ = 0;
   int edges_ = 0;
-  /// time since which the level that was read has differed from `level_`
+  /// time since when readings of the line have differed from `level_`
   std::optional<std::int64_t> elsewhere_since_;
 };
 
 /// Detects lost edges from the kernel's per-line sequence numbers.
 class SequenceCheck {
  public:
-  /// The number of edges lost just before the one with this sequence number.
+  /// Returns the number of edges that were lost just before the edge with this sequence number.
   std::uint32_t missed_before(std::uint32_t sequence) noexcept {
     const std::uint32_t missed = last_ == 0 ? 0 : sequence - last_ - 1;
     last_ = sequence;

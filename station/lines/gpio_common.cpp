@@ -9,7 +9,8 @@ namespace turnpoint::lines {
 std::vector<std::string> chip_paths() {
   std::vector<std::string> paths;
   std::error_code ignored;
-  // Skip links: Raspberry Pi OS has a second name for a chip, so each of its lines would be found twice.
+  // Skip links: Raspberry Pi OS has a link to a chip under a second name, so each of its lines would be found
+  // twice.
   for (const auto& entry : std::filesystem::directory_iterator("/dev", ignored))
     if (entry.path().filename().string().starts_with("gpiochip") && !entry.is_symlink(ignored))
       paths.push_back(entry.path().string());

@@ -11,8 +11,9 @@ namespace turnpoint::lines {
 /// Paths of the machine's GPIO chips in the order of their numbers.
 std::vector<std::string> chip_paths();
 
-/// Waits for one of the descriptors. Returns its index, or nothing after `timeout_ns`. If a descriptor hangs
-/// up or fails, its chip is gone; the holder of a line gets no other notice. Then throws ENODEV.
+/// Waits until one of the descriptors is readable. Returns its index, or nothing after `timeout_ns`. If a
+/// descriptor hangs up or fails, its chip is gone, and the function throws ENODEV. The kernel reports the
+/// loss of a chip in no other way.
 std::optional<std::size_t> wait_readable(std::vector<pollfd>& descriptors, std::int64_t timeout_ns, int wake);
 
 [[noreturn]] void throw_line_error(int error, const std::string& name, const std::string& what);

@@ -1,4 +1,4 @@
-// Kernel lines by libgpiod 1 (Debian 12). gpio_lines_v2.cpp is its counterpart for libgpiod 2.
+// Kernel lines by libgpiod 1 (Debian 12). For libgpiod 2, gpio_lines_v2.cpp is compiled instead.
 #include <gpiod.h>
 
 #include <cerrno>
@@ -18,10 +18,10 @@ using Chip = std::unique_ptr<gpiod_chip, ChipCloser>;
 
 struct Found {
   Chip chip;
-  gpiod_line* line = nullptr;  ///< the line, which belongs to the chip
+  gpiod_line* line = nullptr;  ///< belongs to the chip, which frees it
 };
 
-// Each found line has its own chip handle. Never pass a null chip to the library, because it does not check.
+// Finds a line by name and opens its chip. Never pass a null chip to the library, because it does not check.
 Found find(const std::string& name) {
   Found found;
   int denied = 0;
@@ -82,8 +82,8 @@ class GpioLines final : public Lines {
     Last& last = last_[static_cast<std::size_t>(line)];
     const bool rising = event.event_type == GPIOD_LINE_EVENT_RISING_EDGE;
     // Version 1 of the interface does not number its edges. If the buffer was full, assume that later edges
-    // were lost. Two edges in the same direction do not prove a loss: the direction is the level when the
-    // interrupt was handled, so a short spike can also look like that.
+    // were lost. Two edges in the same direction do not prove a loss: the reported direction is the level at
+    // the time of the interrupt handler, so a short spike can also give two edges in the same direction.
     const bool lost = last.was_full;
     last.was_full = ++last.waiting >= kernel_buffer_edges;
     if (last.was_full) last.waiting = 0;

@@ -1,4 +1,4 @@
-// Kernel lines by libgpiod 2 (Debian 13). gpio_lines_v1.cpp is its counterpart for libgpiod 1.
+// Kernel lines by libgpiod 2 (Debian 13). For libgpiod 1, gpio_lines_v1.cpp is compiled instead.
 #include <gpiod.h>
 
 #include <cerrno>

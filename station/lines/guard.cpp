@@ -5,7 +5,7 @@ namespace turnpoint::lines {
 using drive::AmplifierState;
 using terms::FaultKind;
 
-/// Returns the thread that has not reported for too long, if any.
+/// Returns the kind of thread that has not reported for too long, if any.
 std::optional<FaultKind> Guard::silent(std::int64_t now_ns) const noexcept {
   if (audio_seen_ns_ < 0 || now_ns - audio_seen_ns_ > config_.audio_timeout_ns)
     return FaultKind::audio_silent;
@@ -15,7 +15,7 @@ std::optional<FaultKind> Guard::silent(std::int64_t now_ns) const noexcept {
   return std::nullopt;
 }
 
-/// A fault that is still present and would make the guard switch the amplifier off again.
+/// Returns a fault that is still present, if any. It would make the guard switch the amplifier off again.
 std::optional<FaultKind> Guard::present() const noexcept {
   if (fault_active_) return FaultKind::amplifier;
   if (stop_active_) return FaultKind::stop_pressed;
@@ -73,7 +73,8 @@ void Guard::enable_line(std::int64_t time_ns, bool level) noexcept {
 }
 
 void Guard::trip(std::int64_t time_ns, FaultKind kind, const char* detail) noexcept {
-  if (state_ == AmplifierState::faulted) return;  // keep the first fault, which is the cause of later ones
+  // keep the first fault, because it is the cause of later ones
+  if (state_ == AmplifierState::faulted) return;
   state_ = AmplifierState::faulted;
   fault_ = {kind, detail, time_ns};
 }

@@ -13,9 +13,9 @@ struct GuardOutputs {
   int heartbeat = 0;
 };
 
-/// The amplifier's safety rules as a pure state machine: latched faults, arming by an operator, and a
-/// heartbeat that toggles only while audio, session and page all report that they are alive. Time is
-/// CLOCK_MONOTONIC in ns; it uses no thread, no lines and no heap memory.
+/// The amplifier's safety rules as a pure state machine: faults that are latched, arming by an operator, and
+/// a heartbeat that toggles only while audio, session and page all report that they are alive. Time is
+/// CLOCK_MONOTONIC in ns. Uses no threads, no lines and no heap memory.
 class Guard {
  public:
   struct Config {
@@ -31,7 +31,7 @@ class Guard {
     terms::FaultKind kind = terms::FaultKind::other;
     bool latched = false;
   };
-  /// The latched fault; the detail is a constant string.
+  /// The latched fault. Its detail is a string literal.
   struct Fault {
     terms::FaultKind kind = terms::FaultKind::other;
     const char* detail = "";
@@ -48,16 +48,16 @@ class Guard {
   void disarm() noexcept;
   void disable() noexcept;
 
-  /// Reports a change on a line. `active` is the level after an edge, or a level that was read.
+  /// Reports the level of a line, either after an edge or as it was read.
   void fault_line(std::int64_t time_ns, bool active) noexcept;
   void stop_line(std::int64_t time_ns, bool active) noexcept;
-  /// The actual level of the enable line. If it is high although it was set low, the heartbeat ends as well,
-  /// so that the external monitor switches the amplifier off.
+  /// Reports the actual level of the enable line. If it is high although it was set low, the heartbeat ends
+  /// too, so that the external monitor switches the amplifier off.
   void enable_line(std::int64_t time_ns, bool level) noexcept;
   void trip(std::int64_t time_ns, terms::FaultKind kind, const char* detail = "") noexcept;
 
-  /// Report that a thread is alive, or that time has passed. After the page's first report the guard expects
-  /// it to keep reporting.
+  /// Report that a thread is alive, or that time has passed. After the page's first report, the guard expects
+  /// the page to keep reporting.
   void audio_alive(std::int64_t now_ns) noexcept { audio_seen_ns_ = now_ns; }
   void session_alive(std::int64_t now_ns) noexcept { session_seen_ns_ = now_ns; }
   void page_alive(std::int64_t now_ns) noexcept { page_seen_ns_ = now_ns; }

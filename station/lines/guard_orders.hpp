@@ -18,21 +18,22 @@ class GuardOrders {
   /// Commands of an operator or the session that may be refused.
   enum class Ask : std::uint32_t { nothing, arm, enable, clear };
 
-  /// The commands that the guard finds when it checks. Those that switch off take precedence over the others.
+  /// The commands that the guard finds when it looks. Commands that switch off take precedence over the
+  /// others.
   struct Taken {
     std::uint32_t ticket = 0;
     Ask ask = Ask::nothing;
     bool disable = false, disarm = false;
-    std::uint32_t trips = 0;  ///< faults to trip for; bit k is terms::FaultKind k
+    std::uint32_t trips = 0;  ///< faults that switch the amplifier off; bit k is for terms::FaultKind k
   };
 
-  /// `scheduler_point` (may be empty) is called on the caller's thread between the steps of a command, so
-  /// that a test can stall it there.
+  /// `scheduler_point` (may be empty) is called on the caller's thread between the steps of a command. A test
+  /// can stall the thread there.
   explicit GuardOrders(std::function<void()> scheduler_point)
       : scheduler_point_(std::move(scheduler_point)) {}
 
-  // Gives a command and waits for the answer. For ordinary threads; only one at a time can do this, others
-  // wait for their turn.
+  // Gives a command and waits for the answer. For ordinary threads. If several threads call it, they take
+  // turns.
   std::optional<Guard::Refusal> ask(Ask what);
   void disable() noexcept { post(off_, disable_bit); }
   void disarm() noexcept { post(off_, disarm_bit); }

@@ -27,7 +27,7 @@ constexpr std::int64_t open_again_ns = 100'000'000;
 constexpr std::int64_t look_ns = 500'000;
 static_assert(terms::fault_kinds.size() <= 32, "each kind of fault needs its own bit in the word of trips");
 
-/// The guard's state, published for ordinary threads.
+/// The guard's state, copied for ordinary threads to read.
 struct Report {
   drive::AmplifierState state = drive::AmplifierState::disarmed;
   Guard::Fault fault;
@@ -36,8 +36,8 @@ struct Report {
 /// The reason why the lines were lost, truncated to fit.
 using Reason = std::array<char, 160>;
 
-/// Owns the lines and the guard's rules. All members belong to the guard's thread, which publishes what other
-/// threads may read.
+/// Owns the lines and the guard's rules. All members belong to the guard's thread; other threads read only
+/// what it publishes.
 class GuardThread {
  public:
   GuardThread(OpenLines open, const GuardLines& roles, const GuardOptions& options)
@@ -83,7 +83,7 @@ class GuardThread {
     if (const auto at = page_ns.load(); at >= 0) guard_.page_alive(at);
   }
 
-  /// Starts to use freshly opened lines: outputs are low, and existing stops and faults are read.
+  /// Starts to use freshly opened lines. Outputs are low; stops and faults that are already active are read.
   void take_up() {
     lines_ = open_();
     driven_high_ = false;
@@ -92,8 +92,7 @@ class GuardThread {
     publish();
   }
 
-  /// Gives up the lines after they were lost. The heartbeat ends, so the external monitor switches the
-  /// amplifier off.
+  /// Gives up lines that were lost. The heartbeat ends, so the external monitor switches the amplifier off.
   void let_go(const char* why) noexcept {
     guard_.trip(system::monotonic_ns(), FaultKind::lines_gone);
     lines_.reset();
@@ -104,13 +103,15 @@ class GuardThread {
     publish();
   }
 
-  /// Handles an edge: first sets the enable line low if necessary, and does everything else afterwards.
+  /// Handles an edge. If the edge means a fault or a stop, it first sets the enable line low; everything else
+  /// comes afterwards.
   void edge(const Edge& edge) {
     const bool fault = edge.line == roles_.fault;
     const bool active = fault ? fault_at(edge.rising) : stop_at(edge.rising);
     if (active) {
       lines_->drive(roles_.enable, 0);
-      // If look() has read this level before the edge arrived, the line is already low, since `lowered_ns_`.
+      // If look() read the new level before this edge arrived, the enable line has been low since
+      // `lowered_ns_`.
       reaction_ns_ = (driven_high_ ? system::monotonic_ns() : lowered_ns_) - edge.time_ns;
     }
     fault ? guard_.fault_line(edge.time_ns, active) : guard_.stop_line(edge.time_ns, active);
@@ -118,8 +119,8 @@ class GuardThread {
     publish();
   }
 
-  /// Reads the levels of the lines as well as their edges, because a busy real-time thread can delay the
-  /// kernel thread that delivers edges.
+  /// Reads the levels of the lines. Edges alone are not enough: a busy real-time thread can delay the kernel
+  /// thread that delivers them.
   void look() {
     read_levels();
     drive_enable();
@@ -131,7 +132,8 @@ class GuardThread {
     take_signs();
     guard_.tick(system::monotonic_ns());
     look();
-    // look() has just set the enable line, so it can now be compared with its actual level.
+    // look() has just set the enable line, so its actual level can now be compared with the level that was
+    // set.
     if (const auto level = roles_.read_back ? lines_->read_back(roles_.enable) : std::nullopt)
       guard_.enable_line(system::monotonic_ns(), *level);
     drive_enable();
@@ -185,7 +187,7 @@ class GuardThread {
     if (wants_high() && now >= next_look_ns_) look();
   }
 
-  /// Tries to open lost lines again, at intervals. Answers commands meanwhile, however many come.
+  /// Tries at intervals to open lost lines again. Meanwhile it answers commands, however many come.
   void look_for_lines() {
     const std::int64_t left_ns = std::max<std::int64_t>(0, next_open_ns_ - system::monotonic_ns());
     pollfd order{orders.descriptor(), POLLIN, 0};
@@ -212,7 +214,7 @@ class GuardThread {
   OpenLines open_;
   GuardLines roles_;
   Guard guard_;
-  std::unique_ptr<Lines> lines_;   ///< null while they are lost
+  std::unique_ptr<Lines> lines_;   ///< null while the lines are lost
   std::int64_t next_open_ns_ = 0;  ///< when to try again to open lost lines
   std::int64_t next_look_ns_ = 0;
   bool driven_high_ = false;
@@ -232,7 +234,8 @@ class GuardedAmplifier final : public drive::Amplifier {
   void disarm() noexcept override { guard_.orders.disarm(); }
   void disable() noexcept override { guard_.orders.disable(); }
   void trip(FaultKind kind, std::string_view detail) noexcept override {
-    guard_.orders.trip(kind);  // post this first: the guard must act at once, and does not need the detail
+    // post the command first: the guard must act at once, and does not need the detail
+    guard_.orders.trip(kind);
     const std::lock_guard lock(details_mutex_);
     details_[static_cast<std::size_t>(kind)] = detail;
   }

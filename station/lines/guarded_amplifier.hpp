@@ -16,23 +16,25 @@ struct GuardLines {
   int stop = -1;
   bool fault_active_low = false;
   bool stop_active_low = false;
-  /// compare the actual level of the enable line with the level that was set, if the chip can read it
+  /// compare the actual level of the enable line with the level that was set; used only if the chip can read
+  /// its outputs
   bool read_back = true;
 };
 
 struct GuardOptions {
   Guard::Config config;
-  /// Called on the caller's thread between the steps of each call, never on the guard's thread, so that a
-  /// test can stall the caller there.
+  /// Called on the caller's thread (never the guard's) between the steps of each call. A test can stall the
+  /// caller there.
   std::function<void()> scheduler_point;
 };
 
 /// An amplifier on lines (kernel or simulated) with its guard thread, at SCHED_FIFO 75 if granted. Once the
-/// lines are open, only that thread uses them. It handles the edges of fault and stop, and also reads their
-/// levels: every 0.5 ms while the enable line is high, in every beat, and before each arming and enabling. So
-/// a lost or delayed edge does not matter. The enable line is low on return and after destruction. If the
-/// chip of the lines is lost, that is a latched fault; the guard looks for the lines until they are back, and
-/// then an operator can clear and arm. Throws what `open` throws at the start.
+/// lines are open, only the guard thread uses them. It handles the edges of the fault and stop lines and also
+/// reads their levels: every 0.5 ms while the enable line is high, in every beat, and before each arming and
+/// enabling. A lost or delayed edge therefore does not matter. The enable line is low when this function
+/// returns, and after destruction. If the chip of the lines is lost, that is a latched fault. The guard looks
+/// for the lines until they are back; then an operator can clear the fault and arm. Throws what `open` throws
+/// at the first attempt.
 std::unique_ptr<drive::Amplifier> guard_amplifier(OpenLines open, const GuardLines& roles,
                                                   GuardOptions options = {});
 

@@ -12,31 +12,32 @@ namespace turnpoint::lines {
 /// How a line will be used. Inputs report both edges.
 enum class LineUse { input, output_low };
 
-/// A GPIO line is found by its name, whatever chip it is on and however the chips are numbered.
+/// Asks for a GPIO line by its name. The line may be on any chip, however the chips are numbered.
 struct LineRequest {
   std::string name;      ///< name in the board's device tree
   std::string consumer;  ///< name that the kernel shows to other programs, e.g. "turnpoint-amp-enable"
   LineUse use = LineUse::input;
 };
 
-/// A change of an input with the kernel's own time stamp.
+/// A change of an input, with the kernel's time stamp.
 struct Edge {
   std::int64_t time_ns = 0;  ///< CLOCK_MONOTONIC time at which the interrupt occurred
   int line = 0;              ///< index of the line in the requests
   bool rising = false;       ///< true if the level after the edge is high
-  /// number of the edge on this line, from 1; a gap means that the kernel's buffer overflowed
+  /// number of the edge on this line, from 1; after a gap in the numbers, edges were lost because the
+  /// kernel's buffer was full
   std::uint32_t sequence = 0;
 };
 
-/// Lines requested together. Outputs start low, and go low when this is destroyed, provided that the kernel
-/// releases them. Used by one thread.
+/// Lines that were requested together. Outputs start low. They go low when this object is destroyed, provided
+/// that the kernel releases them. Use an object from one thread only.
 class Lines {
  public:
   virtual ~Lines() = default;
 
-  /// Waits for an edge, at most `timeout_ns` (0: not at all) and at most until the descriptor `wake` (-1:
-  /// none) is readable. Edges of each line come in the order of their time stamps. Throws std::system_error:
-  /// ENODEV if the chip was removed.
+  /// Waits for an edge, but at most `timeout_ns` (0: does not wait), and only until the descriptor `wake`
+  /// (-1: none) is readable. The edges of each line come in the order of their time stamps. Throws
+  /// std::system_error: ENODEV if the chip was removed.
   virtual std::optional<Edge> wait(std::int64_t timeout_ns, int wake = -1) = 0;
   /// The current level of line `index`. Throws std::system_error.
   virtual bool level(int index) = 0;
@@ -47,14 +48,15 @@ class Lines {
   virtual std::optional<bool> read_back(int index) = 0;
 };
 
-/// Why a line is not available: it is on no chip (ENOENT), in use by another program (EBUSY; the message says
+/// Why a line is not available: no chip has it (ENOENT), another program uses it (EBUSY; the message says
 /// which), or access is denied (EACCES).
 class LineError : public std::system_error {
  public:
   using std::system_error::system_error;
 };
 
-/// Requests lines: at the start, and again after their chip was lost, until it is back.
+/// A function that requests lines. It is called at the start, and after their chip was lost until the lines
+/// are back.
 using OpenLines = std::function<std::unique_ptr<Lines>()>;
 
 /// Requests kernel lines by name (libgpiod 1 or 2, as built). Throws LineError naming the line.
@@ -63,7 +65,7 @@ std::unique_ptr<Lines> open_gpio_lines(const std::vector<LineRequest>& requests)
 /// Name and version of the library that this build uses, such as "libgpiod 1.6.3".
 std::string gpio_library();
 
-/// What can be found out about a named line without requesting it; for `doctor`.
+/// What `doctor` can find out about a named line without requesting it.
 struct LineState {
   std::string name, chip;
   int offset = -1;

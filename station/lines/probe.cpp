@@ -18,7 +18,7 @@ namespace {
 
 using Status = Finding::Status;
 
-// True if a key of a URI names a line; false for keys with settings.
+// True if the value of this key of a URI is the name of a line; false for keys with settings.
 bool names_line(const std::string& key) {
   return key != "active" && key != "fault_active" && key != "stop_active" && key != "read_back" &&
          key != "hold_ms" && key != "refractory_ms" && key != "axis";

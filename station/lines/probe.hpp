@@ -5,7 +5,7 @@
 
 namespace turnpoint::lines {
 
-/// One thing that `doctor` checked.
+/// The result of one check by `doctor`.
 struct Finding {
   enum class Status { ok, warning, failed };
   std::string name;
@@ -14,8 +14,8 @@ struct Finding {
   std::string mend;  ///< how to fix it; "" if nothing is wrong
 };
 
-/// Checks that each line of a device's URI (`gpio:...`) is on a chip and not in use. Returns one check per
-/// line; for `sim:`, one that says that it is simulated.
+/// Checks that each line in a device's URI (`gpio:...`) is on a chip and not in use. Returns one finding per
+/// line; for `sim:`, one finding that the device is simulated.
 std::vector<Finding> check_lines(const std::string& device, const std::string& uri);
 
 /// Checks that the touch sensor or panel of an `evdev:NAME` URI exists, is readable and has monotonic stamps.
@@ -29,8 +29,8 @@ struct InputDevices {
 };
 
 /// Opens each input device in `folder` for reading and writing, and closes it. libinput, which eglfs and
-/// linuxfb use for touches, mice and keyboards, opens them in this way. If it is refused, touches never
-/// arrive, even if the device can be read.
+/// linuxfb use for touches, mice and keyboards, opens devices in this way. If it is not allowed to, touches
+/// never arrive, even if the device can be read.
 InputDevices try_input_devices(const std::string& folder = "/dev/input");
 
 }  // namespace turnpoint::lines

@@ -8,8 +8,8 @@
 
 namespace turnpoint::lines {
 
-/// A value that one thread publishes and any thread can read consistently. The writer never waits; a reader
-/// that overlaps with a write reads again (a sequence lock whose words are atomics).
+/// A value that one thread publishes and any thread can read consistently. The writer never waits. A reader
+/// that overlaps with a write starts again (a sequence lock whose words are atomics).
 template <typename T>
 class Published {
   static_assert(std::is_trivially_copyable_v<T>);
@@ -20,8 +20,8 @@ class Published {
     std::memcpy(raw.data(), &value, sizeof value);
     const auto version = version_.load(std::memory_order_relaxed);
     version_.store(version + 1, std::memory_order_relaxed);
-    // A reader that sees one of these words also sees the odd version number. It then knows that a write is
-    // in progress and reads again.
+    // A reader that sees one of these words also sees the odd version number, so it knows that a write is in
+    // progress and reads again.
     for (std::size_t k = 0; k < words; ++k) words_[k].store(raw[k], std::memory_order_release);
     version_.store(version + 2, std::memory_order_release);
   }

@@ -24,16 +24,17 @@ class SimulatedLines : public Lines {
   void set(int index, bool level, std::int64_t time_ns);
   /// Changes an input and changes it back after `length_ns`; both edges are available at once.
   void pulse(int index, std::int64_t time_ns, std::int64_t length_ns);
-  /// Simulates edges for which the kernel's buffer had no room.
+  /// Loses this number of edges, as if the kernel's buffer had no room for them.
   void lose_edges(int index, std::uint32_t count);
-  /// The log of outputs, change by change: which output, its new level, and when.
+  /// One change of an output: which output, its new level, and when.
   struct Driven {
     std::int64_t time_ns = 0;
     int line = 0;
     int level = 0;
   };
   std::vector<Driven> driven() const;
-  /// Unplugs the chip: every further call throws ENODEV until it is plugged in again, with outputs low.
+  /// Unplugs the chip: every further call throws ENODEV until the chip is plugged in again. Outputs are then
+  /// low.
   void remove();
   void put_back();
 

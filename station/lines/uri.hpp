@@ -12,9 +12,10 @@ struct Uri {
       name;  ///< the part before the first comma if it has no `=`, e.g. the device of `evdev:NAME,axis=x`
   std::vector<std::pair<std::string, std::string>> values;
 
-  /// Removes a key and returns its value, or `otherwise`. Keys that are left at the end were not understood.
+  /// Removes a key and returns its value, or `otherwise` if there is no such key. A key that is still there
+  /// at the end was not understood.
   std::string take(const std::string& key, const std::string& otherwise);
-  /// Throws terms::UsageError naming the first key that nobody took.
+  /// Throws terms::UsageError with the name of the first key that nobody took.
   void check_empty(const std::string& allowed) const;
   std::string text;  ///< the URI as written in the file
 };

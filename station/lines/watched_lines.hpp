@@ -22,7 +22,7 @@ struct WatchedLines {
 };
 
 using RequestLines = std::function<std::unique_ptr<Lines>(const std::vector<LineRequest>&)>;
-/// The same as the other open_buttons(), but calls `request` to open the lines that the rig names.
+/// Like open_buttons() in buttons.hpp, but calls `request` to open the lines that the rig names.
 std::unique_ptr<Buttons> open_buttons(const std::optional<ButtonsConfig>& buttons,
                                       const std::optional<ContactConfig>& contact, ButtonsHandlers handlers,
                                       const RequestLines& request);

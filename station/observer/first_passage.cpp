@@ -9,14 +9,14 @@ namespace turnpoint::observer {
 
 namespace {
 
-/// If drift times bound exceeds this value, an observer makes no errors. The argument of exp() can then be
-/// limited to this value.
+/// If drift times bound exceeds this value, an observer makes no errors. Limiting it to this value keeps
+/// exp() from overflowing.
 constexpr double kSurest = 300;
 
 /// Returns the probability with which a time drawn from the inverse Gaussian distribution is accepted. It is
-/// the density of the first passage through -1 or +1 without drift, divided by twice the density of the
-/// passage through +1 alone (which counts paths that were below -1 before). The series has two forms; the one
-/// that needs only a few terms is used.
+/// the density of the first passage through -1 or +1 without drift, divided by twice the density of the first
+/// passage through +1 alone (which also counts paths that went below -1 before). The density is a series in
+/// two forms; the form that needs fewer terms at this time is used.
 double kept_share(double time) {
   double sum = 0, term = 1;
   if (time < 0.7) {
@@ -72,7 +72,8 @@ double upper_probability(double drift, double bound, double range) {
   const double pull = std::clamp(drift * bound, -kSurest, kSurest), inner = 2 * pull * range;
   if (std::fabs(inner) < 1e-4) return upper_probability(pull, 1);
   if (pull < 0) return 1 - upper_probability(-drift, bound, range);
-  // This is the mean of (1 - exp(-2 pull (1 + start))) / (1 - exp(-4 pull)) over all starting points.
+  // This is the mean of (1 - exp(-2 pull (1 + start))) / (1 - exp(-4 pull)) over all starting points from
+  // -range to +range.
   const double hit = random::exp(inner - 2 * pull), miss = random::exp(-inner - 2 * pull);
   return (1 - (hit - miss) / (2 * inner)) / (1 - random::exp(-4 * pull));
 }

@@ -10,14 +10,15 @@ struct Passage {
 };
 
 /// Draws the first passage of a Wiener process through -bound or +bound. The process has unit variance per
-/// second; `bound` (> 0) is in square roots of a second, `drift` per square root of a second. `start` is the
-/// starting point as a fraction of the bound, inside (-1, 1).
+/// second, so `bound` (> 0) has the unit square root of a second, and `drift` one per square root of a
+/// second. `start` is the starting point as a fraction of the bound, inside (-1, 1).
 ///
-/// The result is exact, without time steps. From the middle between two boundaries, the time of the passage
-/// through one boundary is drawn from an inverse Gaussian distribution (Michael, Schucany & Haas 1976). It is
-/// accepted with a probability that follows from Feller's (1968) alternating series for two boundaries. From
-/// any other start, the walk first leaves the largest interval around the start that fits between the
-/// boundaries. The code uses only + - * / and square roots, so every machine draws the same numbers.
+/// The result is exact, without time steps. If the walk starts in the middle between two boundaries, a time
+/// is drawn from the inverse Gaussian distribution of the passage through one boundary (Michael, Schucany &
+/// Haas 1976). It is accepted with a probability that follows from Feller's (1968) alternating series for two
+/// boundaries. From any other start, the walk first leaves the largest interval around the start that fits
+/// between the boundaries. The code uses only + - * / and square roots, so every machine draws the same
+/// numbers.
 Passage first_passage(double drift, double bound, double start, random::Draws& draws);
 
 /// Returns the probability that a walk from the middle ends at the upper boundary: 1 / (1 + exp(-2 drift

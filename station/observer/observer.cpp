@@ -16,12 +16,12 @@ namespace {
 constexpr double kLogStrongest = 4.6;         // ln 99: at 99 times the threshold nobody makes errors
 constexpr double kZ75 = 0.67448975019608171;  // z of 75 % in the normal distribution
 constexpr double kLn2 = 0.69314718055994531;
-// limit of z: beyond it the normal's tail is below 1e-9, and its logarithm loses precision
+// largest |z|: beyond it the tail of the normal distribution is below 1e-9, and its logarithm loses precision
 constexpr double kSurest_sd = 6;
 constexpr double kRatingStep_sd = 0.5;  // distance between the criteria of neighbouring ratings
 constexpr int kMoves = 5;
-constexpr double kLook_s = 1.6;       // time to slide the finger across the surface and back
-constexpr double kLookSpread = 0.25;  // SD of the logarithm of that time
+constexpr double kLook_s = 1.6;       // typical time to slide the finger across the surface and back
+constexpr double kLookSpread = 0.25;  // SD of the logarithm of the time kLook_s
 
 /// Returns half the log odds that a standard normal variable is above -x.
 double half_logit_of_normal(double x) {
@@ -32,8 +32,8 @@ double half_logit_of_normal(double x) {
 }
 
 /// Returns the proportion correct for a task with `answers` answers, if a diffusion ends at its upper
-/// boundary with probability `upper`. The part beyond guessing (Weibull's core) is the same for any number of
-/// answers.
+/// boundary with probability `upper`. Above the guessing rate, the psychometric function has the same shape
+/// (Weibull's) for any number of answers.
 double share_right(double upper, int answers) {
   const double chance = 1.0 / answers;
   return std::max(0.0, chance + (1 - chance) * (2 * upper - 1));
@@ -51,8 +51,8 @@ double mean_over_drift(double drift, double sd, Function function) {
   return sum / weights;
 }
 
-/// Returns the criterion above rating `rating`, in SDs from the mean of noise. The criteria of the ratings
-/// lie symmetrically around the yes/no criterion.
+/// Returns the criterion between rating `rating` and the next higher one, in SDs from the mean of noise. The
+/// criteria of the ratings lie symmetrically around the yes/no criterion.
 double rating_criterion(const Parameters& p, int rating, int ratings) {
   return p.criterion + kRatingStep_sd * (rating - 0.5 * (ratings - 2));
 }
@@ -69,12 +69,12 @@ double Observer::strength(const Question& q, double from) const {
 
 double Observer::sensitivity(const Question& q) const { return q.absent ? 0 : 2 * kZ75 * strength(q, 0); }
 
-/// Returns the drift per square root of a second. A positive drift leads to the right answer, to the answer
-/// for levels above zero, or to "yes".
+/// Returns the drift (1 / square root of a second). A positive drift leads to the right answer
+/// (right_answer), to the answer for levels above the bias (side), or to "yes" (presence).
 double Observer::drift(const Question& q) const {
   double half_logit = 0;
   switch (q.decides) {
-    case Decides::right_answer:  // with two answers, a share of 1 - 2^-(1 + strength) is right
+    case Decides::right_answer:  // with two answers, the proportion correct is 1 - 2^-(1 + strength)
       half_logit = 0.5 * random::log(2 * random::exp(kLn2 * strength(q, 0)) - 1);
       break;
     case Decides::side:
@@ -90,7 +90,8 @@ double Observer::drift(const Question& q) const {
 
 double Observer::bound(double deadline_s) const {
   if (deadline_s <= 0) return parameters_.bound;
-  // The bound follows from P(T > t) <= 4/pi exp(-pi^2 t / (8 bound^2)), the share of late decisions.
+  // Without drift, the proportion of decisions later than t is P(T > t) <= 4/pi exp(-pi^2 t / (8 bound^2)).
+  // The bound is chosen so that this is 4 %.
   const double left_s = std::max(0.02, deadline_s - nondecision_s() - 0.5 * parameters_.residual_range_s);
   return std::min(parameters_.bound, std::sqrt(0.35 * left_s));
 }
@@ -167,8 +168,8 @@ Setting Observer::adjust(const Adjustment& a) const {
   Setting setting;
   double time_s = parameters_.residual_s;
   for (int k = 1; k <= kMoves; ++k) {
-    // Overshoot the target and come back, each time by a smaller amount, as people do when they bracket a
-    // setting.
+    // Overshoots the target and comes back, each time by a smaller amount, as people do when they adjust a
+    // slider.
     const double overshoot = k == kMoves ? 0 : (a.start - wanted) * (k % 2 == 1 ? -0.5 : 0.5) / k;
     time_s += kLook_s * random::exp(kLookSpread * draws.normal());
     setting.moves.push_back({time_s, std::clamp(wanted + overshoot, a.low, a.high)});

@@ -12,33 +12,34 @@ namespace turnpoint::observer {
 /// (first_passage.hpp). The drift is chosen so that, with the full bound, the answers follow a psychometric
 /// function of the level:
 /// - If one answer is right, a Weibull function with the exponent `slope`.
-/// - If the sign of the level decides, a normal distribution function of the distance from `bias`, as |level
-///   - bias|^slope.
+/// - If the sign of the level decides, a normal distribution function of |level - bias|^slope, with the sign
+///   of level - bias.
 /// - For yes/no and ratings, d' grows as level^slope, and the criterion lies at `criterion`.
-/// The threshold is in the unit of the level. Lapses are random answers.
+/// The threshold is in the unit of the level. In a lapse the observer gives a random answer.
 struct Parameters {
   /// The |level| at which 75 % of answers between two alternatives are right; for a signed level, its
-  /// distance from the bias. For yes/no, d' is 1.349 at the threshold, which is 75 % right with the default
-  /// criterion. Empty: the middle of the levels that the protocol presents.
+  /// distance from the bias. For yes/no, d' is 1.349 at the threshold, which gives 75 % right answers with
+  /// the default criterion. If empty: the middle of the levels that the protocol presents.
   std::optional<double> threshold;
   double slope = 1;  ///< exponent of level / threshold; for levels in dB, exponent of the amplitude ratio
   double lapse = 0.02;
   double bias = 0;  ///< the level at which a signed task seems balanced
   /// criterion of yes/no tasks, in SDs above the mean of noise; the false-alarm rate is Phi(-criterion)
   double criterion = 0.67448975019608171;
-  /// half the boundary separation, in square roots of a second; EZ's boundary a is 0.2 times this
+  /// half the distance between the two boundaries, in square roots of a second; the boundary a of
+  /// EZ-diffusion is 0.2 times this
   double bound = 0.85;
-  double residual_s = 0.35;  ///< time outside the decision, not counting `travel_s`
-  double travel_s = 0.15;    ///< time to move from the surface to the answer
-  // The next three parameters are ranges over which the diffusion varies between trials (Ratcliff & McKoon
-  // 2008). By default it does not vary.
+  double residual_s = 0.35;  ///< non-decision time without `travel_s`
+  double travel_s = 0.15;    ///< time to move the finger from the surface to the answer
+  // The next three parameters are the ranges over which the diffusion varies between trials (Ratcliff &
+  // McKoon 2008). With the defaults it does not vary.
   double drift_sd = 0;  ///< SD of the drift (normal), per square root of a second; EZ's eta is 0.1 times this
-  /// range of the starting point (uniform around the middle), as a fraction of the boundary separation, from
-  /// 0 to below 1
+  /// range of the starting point (uniform around the middle), as a fraction of the distance between the
+  /// boundaries, from 0 to below 1
   double start_range = 0;
   /// range of the non-decision time (uniform around residual_s); at most twice residual_s
   double residual_range_s = 0;
-  double anticipation = 0;  ///< share of trials answered before anything can be felt
+  double anticipation = 0;  ///< fraction of trials answered before anything can be felt
 };
 
 /// Reads `sim` or `sim:threshold=6,slope=1.2,lapse=0.02,bias=0,...`. Throws terms::UsageError that names the
@@ -55,15 +56,15 @@ enum class Decides {
 /// The question that a trial asks: everything in the trial on which a simulated observer's answer depends.
 struct Question {
   double level = 0;
-  bool decibel = false;  ///< true if the level is 20 log10 of a strength
+  bool decibel = false;  ///< true if the level is in dB, that is, 20 log10 of a strength
   Decides decides = Decides::right_answer;
-  /// for `side`, the answer that fits a level above zero; for `presence` with two answers, "yes"
+  /// for `side`: the answer that is right for levels above zero; for `presence` with two answers: "yes"
   int positive = 1;
   bool absent = false;         ///< for `presence`: true if the trial has no signal, whatever its level
   std::optional<int> correct;  ///< for `right_answer`: the right answer; empty if no answer is right
   int answers = 2;
-  double default_threshold = 1;  ///< used if the parameters have no threshold
-  /// 0: none; with little time an observer decides sooner and makes more errors
+  double default_threshold = 1;  ///< the threshold, if the parameters have none
+  /// 0: no deadline; if time is short, the observer decides sooner and makes more errors
   double deadline_s = 0;
   random::Key key;  ///< key of the trial's random draws; the observer sets its stream
 };
@@ -89,22 +90,23 @@ struct Setting {
   double done_s = 0;        ///< time at which the participant presses Done
 };
 
-/// A simulated participant. It keeps no state: the same question gets the same answer, on every machine.
+/// A simulated participant. It keeps no state: it gives the same answer to the same question, on every
+/// machine.
 class Observer {
  public:
   explicit Observer(const Parameters& parameters) : parameters_(parameters) {}
   const Parameters& parameters() const { return parameters_; }
-  /// Returns the probability that answer() gives `choice`, lapses included, anticipations excluded.
+  /// Returns the probability that answer() gives `choice`. Lapses are included, anticipations are not.
   double share(const Question& question, int choice) const;
   Reply answer(const Question& question) const;
   /// Returns the bound for this deadline (0: none), in square roots of a second. If time is short, the bound
-  /// is lower: so low that, even if nothing can be felt, only 4 % of the decisions come too late.
+  /// is so low that only 4 % of the decisions come too late, even if nothing can be felt.
   double bound(double deadline_s) const;
-  /// Returns the mean time outside the decision, in s.
+  /// Returns the mean non-decision time, in s.
   double nondecision_s() const { return parameters_.residual_s + parameters_.travel_s; }
-  /// Moves the slider in ever smaller steps to where the stimuli seem equal. The settings scatter around the
-  /// bias with a normal distribution whose 75 % point is the threshold (without a threshold: a tenth of the
-  /// range). A lapse sets the slider anywhere in its range.
+  /// Moves the slider in ever smaller steps to where the stimuli seem equal. The settings follow a normal
+  /// distribution around the bias; its 75 % point is one threshold above the bias (without a threshold: a
+  /// tenth of the range). In a lapse, the setting is anywhere in the range.
   Setting adjust(const Adjustment& adjustment) const;
 
  private:

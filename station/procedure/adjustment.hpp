@@ -6,8 +6,8 @@
 namespace turnpoint::procedure {
 
 /// The method of adjustment. Starting levels are presented like constant stimuli, and the participant's
-/// settings are recorded. The mean of the settings estimates the point of subjective equality ("pse"); the
-/// estimate's mode is their median, its sd their standard deviation. A trial without a setting is repeated
+/// settings are recorded. The estimate is the point of subjective equality ("pse"): its mean, mode and sd are
+/// the mean, the median and the standard deviation of the settings. A trial without a setting is repeated
 /// later.
 class Adjustment : public ConstantStimuli {
  public:

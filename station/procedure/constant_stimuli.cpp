@@ -13,7 +13,8 @@ namespace {
 
 using Levels = std::vector<std::vector<std::size_t>>;
 
-/// Larger numbers of combinations count as this one, to avoid overflow. No design repeats a value more often.
+/// Numbers of combinations above this are reduced to it, to avoid overflow. No design repeats a value as
+/// often.
 constexpr std::size_t kMost = 1'000'000;
 
 /// Returns the number of combinations of these factors' levels, at most kMost.
@@ -23,10 +24,10 @@ std::size_t crossed(const Levels& factors) {
   return cells;
 }
 
-/// Returns the levels of the balanced factors in one repeat of a value. After any number of repeats, each
-/// combination has occurred equally often, or once more than another, and the same holds for each factor's
-/// levels. To achieve this, all factors step to their next level with every repeat. When a factor would meet
-/// a combination of the earlier factors for the second time with the same level, it skips one level.
+/// Returns the levels of the balanced factors in one repeat of a value. After any number of repeats, the
+/// counts of any two combinations differ by at most one, and so do the counts of any two levels of a factor.
+/// To achieve this, all factors step to their next level with every repeat. When a factor would repeat a
+/// level with the same combination of the earlier factors, it skips one level.
 std::vector<std::size_t> combination(const Levels& factors, std::size_t repeat) {
   std::vector<std::size_t> result;
   std::size_t before = 1;
@@ -92,7 +93,8 @@ void ConstantStimuli::break_runs(std::vector<Item>& items, random::Draws& draws)
   const auto n = spec_.shuffle == Shuffle::within_repeat ? spec_.values.size() : items.size();
   for (std::size_t at = 0; at < items.size(); ++at) {
     if (!runs_too_long(items, at)) continue;
-    // Swap with a later item of the same repeat that has a different right answer.
+    // Swap with a later item (of the same repeat, if each repeat is shuffled separately) that makes no run
+    // too long here.
     const auto end = std::min(items.size(), (at / n + 1) * n);
     std::vector<std::size_t> others;
     for (std::size_t i = at + 1; i < end; ++i) {
@@ -104,8 +106,7 @@ void ConstantStimuli::break_runs(std::vector<Item>& items, random::Draws& draws)
       std::swap(items[at], items[others[draws.below(others.size())]]);
       continue;
     }
-    // If there is no such item, move the item to an earlier place in this repeat where it makes no run too
-    // long.
+    // If there is no such item, move the item to an earlier place where it makes no run too long.
     for (std::size_t i = at; i-- > at / n * n;) {
       std::swap(items[at], items[i]);
       bool good = true;
@@ -131,8 +132,8 @@ void ConstantStimuli::record(Answer answer) {
     ++recorded_;
     return;
   }
-  // Insert the trial at a random place among the remaining trials, if possible not as the very next one. If
-  // no trials remain, append it.
+  // Insert the trial at a random place among the remaining trials, but not as the very next one. If no trials
+  // remain, append it.
   random::Draws draws({key_.seed, random::Stream::level_order, key_.block, key_.attempt, 1 + requeued_++});
   const auto left = queue_.size() - position_;
   const auto offset = left == 0 ? 0 : 1 + draws.below(left);

@@ -6,9 +6,9 @@
 
 namespace turnpoint::procedure {
 
-/// Presents every value `repeats` times. Combinations of the balanced factors are spread as evenly as
-/// possible. The order is shuffled in such a way that at most max_run trials in a row have the same right
-/// answer. Unanswered trials are repeated later.
+/// Presents every value `repeats` times. Combinations of the balanced factors occur as equally often as
+/// possible. The order is shuffled so that at most max_run trials in a row have the same right answer.
+/// Unanswered trials are repeated later.
 class ConstantStimuli : public Procedure {
  public:
   ConstantStimuli(const Spec& spec, const Context& context, const random::Key& key);

@@ -11,9 +11,11 @@ namespace turnpoint::procedure {
 /// How a procedure chooses its levels.
 enum class Choice {
   listed,  ///< levels are fixed before the session
-  track,   ///< each answer moves the level by one step; the report prints the procedure's own estimate
-  /// answers update a posterior for an assumed psychometric function, which chooses the levels; the report
-  /// fits that function again
+  /// the level moves up and down in steps that depend on the answers; the report prints the procedure's own
+  /// estimate
+  track,
+  /// the answers update a posterior for an assumed psychometric function, and the posterior determines the
+  /// levels; the report fits the psychometric function again
   posterior,
 };
 
@@ -26,7 +28,7 @@ struct Description {
   /// Reads the keys of this kind from a [[procedure]] table. The keys name, kind, level and copy have already
   /// been read.
   void (*read)(text::TableReader& reader, Spec& spec);
-  /// Adds what is wrong in a specification to `problems`.
+  /// Appends all problems of a specification to `problems`.
   void (*validate)(const Spec& spec, std::vector<Problem>& problems);
   std::unique_ptr<Procedure> (*make)(const Spec& spec, const Context& context, const random::Key& key);
   /// Returns the proportion of answers of 1 at the level on which the procedure converges. `least` and `most`

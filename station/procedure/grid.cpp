@@ -16,7 +16,8 @@ constexpr int most_points = 10001;
 constexpr const char* forms =
     "{ from, to, step }, { from, to, count }, { log_from, log_to, count } or { values = [...] }";
 
-// Computes each value as from + i * step, because repeated addition would accumulate rounding errors.
+// Computes each value as from + i * step, because adding the step again and again would accumulate rounding
+// errors.
 std::vector<double> even_steps(TableReader& reader, double from, double to) {
   const double step = reader.number("step", {0, 1e6, Range::Ends::open_low});
   const double intervals = (to - from) / step;

@@ -6,12 +6,12 @@
 
 namespace turnpoint::procedure {
 
-/// Whether an axis holds levels to present, or values of a parameter. Only a parameter may be tied to another
-/// parameter.
+/// The purpose of an axis: levels to present, or values of a parameter. Only a parameter may be tied to
+/// another parameter.
 enum class Axis { stimuli, parameter };
 
 /// Reads a grid in one of the forms { from, to, step }, { from, to, count }, { log_from, log_to, count }, {
-/// values } or { tied = "lapse" }, and computes its values. They are the same on every machine.
+/// values } or { tied = "lapse" }, and computes its values, which are the same on every machine.
 Grid read_grid(const text::Value& table, const std::string& name, Axis axis, text::Findings& findings);
 
 /// Reads a prior in one of the forms { normal = { mean, sd } } or { weights = [...] }.

@@ -2,8 +2,8 @@
 #include "station/procedure/spec.hpp"
 #include "station/text/reader.hpp"
 
-// Readers for keys of a [[procedure]] table that several kinds of procedures share. Each function reads its
-// keys into the specification and reports problems.
+// Readers for keys of a [[procedure]] table that several kinds of procedures share. The functions read_...()
+// read these keys into the specification and report problems.
 namespace turnpoint::procedure {
 
 inline constexpr text::Range any_level{-1e6, 1e6};

@@ -12,19 +12,19 @@ namespace turnpoint::procedure {
 
 namespace {
 
-/// The lowest probability of an answer. With a probability of 0, a single slip would make the posterior zero
-/// everywhere. The value is so small that it has no other effect.
+/// The lowest probability of an answer. If it were 0, a single slip could make the posterior zero everywhere.
+/// The value is so small that it has no other effect.
 constexpr double kFloor = 1e-14;
 
-/// Used as an infinite distance. Distances of finite levels are always smaller.
+/// Represents an infinite distance. Distances between finite levels are always smaller.
 constexpr double kBeyond = 1e300;
-/// Two distances count as equal if their difference is below this share of the largest distance. Such
-/// differences are rounding errors.
+/// Two distances count as equal if their difference is below this fraction of the largest distance, because
+/// such differences are rounding errors.
 constexpr double kSameDistance = 1e-13;
 
 double likely(double p) { return std::clamp(p, kFloor, 1 - kFloor); }
 
-/// Returns by how much a stimulus lies above a threshold: the difference of their levels on a linear scale,
+/// Returns the distance of a stimulus above a threshold: the difference of their levels on a linear scale,
 /// the logarithm of their ratio on a logarithmic scale.
 double distance(Scale scale, double level, double threshold) {
   if (scale == Scale::linear) return level - threshold;
@@ -38,11 +38,11 @@ double binary_entropy(double p) {
   return -p * random::log(p) - (1 - p) * random::log(1 - p);
 }
 
-/// A sum of products is computed as this number of partial sums in parallel.
+/// Number of partial sums, computed in parallel, of which a sum of products consists.
 constexpr std::size_t kLanes = 8;
 
-// Functions with this attribute are compiled for several kinds of processor, if compiler and C library
-// support that. The results are the same on all of them.
+// A function with this attribute is compiled for several kinds of processor, if compiler and C library
+// support that. Its results are the same on all of them.
 #if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__) && \
     !defined(__SANITIZE_THREAD__)
 #define TURNPOINT_CLONES __attribute__((target_clones("avx2", "default")))
@@ -50,7 +50,7 @@ constexpr std::size_t kLanes = 8;
 #define TURNPOINT_CLONES
 #endif
 
-/// A sum of products. It always uses the same eight partial sums, so that the result does not depend on the
+/// A sum of products. It always uses the same kLanes partial sums, so that the result does not depend on the
 /// compiler.
 struct Products {
   std::array<double, kLanes> lane{};
@@ -61,9 +61,9 @@ struct Products {
   }
 };
 
-/// Adds x * y to the first sum and x * z to the second. Both are computed together, which is faster because
-/// neither waits for the other. Local copies of the partial sums can stay in registers, because they cannot
-/// overlap the inputs.
+/// Adds x * y to the first sum and x * z to the second. Computing both together is faster, because neither
+/// waits for the other. The partial sums are copied to local variables, which cannot overlap the inputs, so
+/// that the compiler can keep them in registers.
 TURNPOINT_CLONES
 void add(Products& first, Products& second, const double* x, const double* y, const double* z,
          std::size_t n) {
@@ -204,8 +204,8 @@ std::size_t Posterior::index_of(std::size_t point, Parameter parameter) const {
   return point / stride_[parameter] % values_[parameter].size();
 }
 
-/// For each stimulus, sums products over all thresholds: `factors` times the stimulus's row of `table`. Both
-/// have `length` entries per threshold.
+/// Returns for each stimulus the sum of products over all thresholds: `factors` times the rows of `table`
+/// that belong to the stimulus. Both have `length` entries per threshold.
 std::vector<double> Posterior::sums(const std::vector<double>& factors, const std::vector<double>& table,
                                     std::size_t length) const {
   const std::size_t n = stimuli_.size();
@@ -223,8 +223,8 @@ std::vector<double> Posterior::sums(const std::vector<double>& factors, const st
 }
 
 std::vector<double> Posterior::predictives() const {
-  // The answer's probability is a linear function of guess and of 1 - guess - lapse, so sum over these two
-  // first.
+  // The answer's probability is a linear function of guess and of 1 - guess - lapse, so first average over
+  // these two.
   std::vector<double> range(values_[threshold].size() * padded_slopes_);
   double floor = 0;
   for (std::size_t t = 0; t < values_[threshold].size(); ++t)
@@ -241,9 +241,10 @@ std::vector<double> Posterior::predictives() const {
   return all;
 }
 
-/// Groups grid points with the same kept parameters, averages the probability of the answer within each group
-/// (over the nuisance parameters), and returns the weighted mean of the groups' entropies for each stimulus.
-/// A group's weight, and the part of its probability that comes from guessing, do not depend on the stimulus.
+/// Returns the expected entropy of the answer at each stimulus if the kept parameters were known. It groups
+/// grid points with the same kept parameters, averages the probability of the answer within each group (over
+/// the nuisance parameters), and returns the weighted mean of the groups' entropies. A group's weight, and
+/// the part of its probability that comes from guessing, do not depend on the stimulus.
 std::vector<double> Posterior::kept_entropies() const {
   std::vector<double> weight(groups_), guess_part(groups_), ones(groups_), entropies;
   for (std::size_t i = 0; i < size(); ++i) {

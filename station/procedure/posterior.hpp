@@ -11,21 +11,21 @@ namespace turnpoint::procedure {
 
 /// The posterior on a grid of threshold, slope, guess and lapse.
 ///
-/// The psychometric functions depend only on the distance between stimulus and threshold, and linearly on
-/// guess and lapse. Small tables are therefore enough: for each distance that occurs, the function between
-/// its asymptotes, and the entropy of the answer. If stimuli and thresholds have commensurate steps, the
-/// number of distances is about the number of stimuli plus the number of thresholds; otherwise it is their
-/// product. Memory: 8 bytes per grid point, and 8 bytes for each combination of distance, slope, guess and
-/// lapse.
+/// The psychometric function depends on stimulus and threshold only through their distance, and linearly on
+/// guess and lapse. Small tables are therefore enough. They hold, for each distance that occurs, the function
+/// between its asymptotes, and the entropy of the answer. If the steps of stimuli and thresholds are
+/// commensurate, the number of distances is about the number of stimuli plus the number of thresholds;
+/// otherwise it is their product. Memory: 8 bytes per grid point, and 8 bytes for each combination of
+/// distance, slope, guess and lapse.
 class Posterior {
  public:
   enum Parameter { threshold, slope, guess, lapse };
 
   explicit Posterior(const Spec& spec);
 
-  /// Returns the index of the stimulus from which most information about the kept parameters is expected. It
-  /// has the largest mutual information, which means the smallest expected entropy. If several are equal,
-  /// returns the first.
+  /// Returns the index of the stimulus that is expected to give most information about the kept parameters:
+  /// the one with the largest mutual information, that is, the smallest expected entropy. If several are
+  /// equal, returns the first.
   std::size_t best_stimulus() const;
   /// Returns the mutual information (nats) of each stimulus.
   std::vector<double> information() const;
@@ -64,7 +64,8 @@ class Posterior {
   std::vector<double> stimuli_;
   Axes values_;
   std::array<std::size_t, 4> stride_{};
-  /// number of slopes; this number rounded up for fast sums; number of combinations of guess and lapse
+  /// number of slopes; the same number rounded up to whole groups, for fast sums; number of combinations of
+  /// guess and lapse
   std::size_t slopes_ = 1, padded_slopes_ = 1, ends_ = 1;
   /// guess, and 1 - guess - lapse, for each combination of guess and lapse
   std::vector<double> guesses_, ranges_;
@@ -75,8 +76,8 @@ class Posterior {
   std::vector<double> core_;
   /// entropy of the answer for [distance][slope][guess][lapse]; used only without nuisance parameters
   std::vector<double> entropy_;
-  /// for each grid point, the number of its group of points with the same kept parameters; empty without
-  /// nuisance parameters
+  /// for each grid point, the number of its group; a group consists of points with the same kept parameters;
+  /// empty without nuisance parameters
   std::vector<std::uint32_t> kept_;
   std::size_t groups_ = 0;
 };

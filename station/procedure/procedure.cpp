@@ -7,8 +7,8 @@
 
 namespace turnpoint::procedure {
 
-// The kinds are listed here explicitly. They cannot register themselves, because a linker leaves out an
-// object of a static library to which nothing refers.
+// The kinds are listed here explicitly. They could not register themselves: a linker leaves out an object
+// file of a static library if nothing refers to it.
 extern const Description constant_stimuli;
 extern const Description up_down;
 extern const Description weighted_up_down;

@@ -13,7 +13,7 @@
 
 namespace turnpoint::procedure {
 
-/// A level to present. A proposal of constant stimuli also gives the level of each balanced factor.
+/// A level to present. For constant stimuli, a proposal also contains the level of each balanced factor.
 struct Proposal {
   double level = 0;
   /// pairs of a factor and the index of its level
@@ -55,12 +55,12 @@ class Procedure {
   /// Records the setting of an adjustment. Other kinds of procedures throw std::logic_error.
   virtual void record_setting(double setting);
   virtual int recorded() const = 0;  ///< number of recorded trials that count
-  /// total number of trials; an estimate if a stopping rule ends the procedure
+  /// total number of trials; an estimate if a stopping rule decides when the procedure ends
   virtual int expected() const = 0;
   virtual std::map<std::string, Estimate> estimates() const { return {}; }
   virtual std::optional<double> entropy_nats() const { return std::nullopt; }
   virtual std::vector<double> reversals() const { return {}; }
-  /// hash of the discrete state (counters and indices), to compare two procedures
+  /// hash of the discrete state (counters and indices), to check whether two procedures are in the same state
   virtual std::uint64_t state_hash() const = 0;
 };
 

@@ -11,8 +11,8 @@ namespace {
 
 constexpr double kLn10 = 2.302585092994045684;
 
-/// The exponential function without overflow: its argument is limited. The psychometric functions are flat
-/// beyond the limit.
+/// The exponential function with a limited argument, so that it cannot overflow. Beyond the limit, the
+/// psychometric functions are flat.
 double saturating_exp(double x) { return random::exp(std::min(x, 700.0)); }
 
 double core(Function function, Scale scale, double threshold, double slope, double level) {
@@ -46,7 +46,7 @@ double normal_cdf(double z) {
     for (int n = 3; term > 1e-18 * sum; n += 2) term *= a * a / n, sum += term;
     tail = 0.5 - density * sum;
   } else {
-    // For larger values use Laplace's continued fraction of Mills' ratio.
+    // For larger |a| use Laplace's continued fraction for Mills' ratio.
     double ratio = a;
     for (int n = 60; n >= 1; --n) ratio = a + n / ratio;
     tail = density / ratio;

@@ -8,8 +8,9 @@
 namespace turnpoint::procedure {
 
 /// QUEST+ (Watson 2017), psi (Kontsevich & Tyler 1999; QUEST+ on threshold and slope) and psi-marginal (Prins
-/// 2013; uses the entropy of the kept parameters). An unanswered trial is repeated at the same level. After
-/// three unanswered trials in a row, one trial of the budget is used up, so that the procedure always ends.
+/// 2013; uses the entropy of the kept parameters). An unanswered trial is repeated at the same level, up to
+/// three times in a row. If the last repeat is unanswered as well, one trial of the budget counts as used, so
+/// that the procedure always ends.
 class QuestPlus : public Procedure {
  public:
   explicit QuestPlus(const Spec& spec);

@@ -23,9 +23,8 @@ using terms::Function;
 enum class Scale { linear, log10, dB };
 enum class Shuffle { within_repeat, within_block, none };
 enum class StopRule {
-  any,
-  all
-  /// any ("or"): the first rule that is met ends the procedure; all ("and"): all rules must be met
+  any,  ///< "or": the procedure ends when one rule is met
+  all   ///< "and": the procedure ends when all rules are met
 };
 enum class Select { min_expected_entropy };
 
@@ -67,7 +66,7 @@ struct Spec {
   // The following members are for procedures that move one level. The first three are starting level and
   // limits.
   std::optional<double> start, min, max;
-  /// sizes of the steps; after each reversal the next size is used, until the last one
+  /// sizes of the steps; each reversal switches to the next size, until the last size is reached
   std::vector<double> step, step_down, step_up;
   /// for weighted staircases: the proportion of answers of 1 on which the staircase converges
   std::optional<double> target;
@@ -80,7 +79,7 @@ struct Spec {
   Function function = Function::weibull;
   Grid stimuli, threshold, slope, guess, lapse;
   Prior prior_threshold, prior_slope, prior_guess, prior_lapse;
-  /// parameters over which the posterior is summed before the entropy is computed (psi-marginal)
+  /// nuisance parameters (psi-marginal): the posterior is summed over them before the entropy is computed
   std::vector<std::string> nuisance;
   Select select = Select::min_expected_entropy;
 
@@ -99,7 +98,7 @@ struct Problem {
 /// Returns all problems of a specification; empty if a procedure can run with it.
 std::vector<Problem> validate(const Spec& spec);
 /// Returns warnings about settings that work but are probably mistakes: a grid with only one stimulus, steps
-/// that miss the target, a grid whose only lapse is 0.
+/// that miss the target, a lapse grid whose only value is 0.
 std::vector<Problem> advise(const Spec& spec);
 
 }  // namespace turnpoint::procedure

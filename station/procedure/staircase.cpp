@@ -45,7 +45,8 @@ void Staircase::learn(Answer answer) {
 }
 
 std::map<std::string, Estimate> Staircase::estimates() const {
-  // Use an even number of reversals, as many peaks as valleys. If an odd number is left, leave out one more.
+  // Use an even number of reversals, so that there are as many peaks as valleys. If the number is odd, leave
+  // out one more.
   const auto discarded = static_cast<std::size_t>(spec_.discard_reversals);
   if (reversals_.size() < discarded + 2) return {};
   const std::size_t first = discarded + (reversals_.size() - discarded) % 2;

@@ -6,9 +6,9 @@
 namespace turnpoint::procedure {
 
 /// Staircases: n-down-m-up (Levitt 1971) and weighted up-down (Kaernbach 1991; step_up = step_down p / (1 -
-/// p)). After each reversal the next step size is used. The estimate is the mean of the reversals, or of
-/// their logarithms if steps multiply. It leaves out the first `discard_reversals`, and one more if an odd
-/// number is left.
+/// p), p is the target). Each reversal switches to the next step size. The estimate is the mean of the
+/// reversals, or of their logarithms if steps multiply the level. It leaves out the first `discard_reversals`
+/// and, if the number of the others is odd, one more.
 class Staircase : public Track {
  public:
   explicit Staircase(const Spec& spec);

@@ -3,7 +3,7 @@
 
 namespace turnpoint::procedure {
 
-/// FNV-1a hash over 64-bit words. It serves to tell states apart, not as protection against tampering.
+/// FNV-1a hash over 64-bit words. It is used to compare states; it does not protect against tampering.
 class StateHash {
  public:
   void add(std::uint64_t word) {

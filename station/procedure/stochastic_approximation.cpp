@@ -15,13 +15,13 @@ namespace {
 ///     x_{n+1} = x_n - c / (2 + m) (Z_n - phi)  from n = 3 on
 ///
 /// x_n is the level of trial n, Z_n its answer (1 or 0), c the "step", phi the "target", and m the number of
-/// changes between a 1 and a 0 among the first n answers. (Kesten's own m leaves out the change at answer n
-/// itself, so his steps are one change behind.)
+/// changes between 1 and 0 among the first n answers. (Kesten's own m does not count a change at answer n, so
+/// his steps become smaller one answer later.)
 ///
-/// Each change counts as a reversal. A stopping rule "reversals" therefore ends the procedure at a smallest
-/// step, c / (2 + reversals). The estimate is the level after the last answer; as a single level it has no
-/// standard deviation. Before the first change there is no estimate, because the levels have moved in one
-/// direction only.
+/// Each change counts as a reversal. A stopping rule "reversals" therefore ends the procedure when the step
+/// has shrunk to c / (2 + reversals). The estimate is the level after the last answer. It is a single level,
+/// so it has no standard deviation. Before the first change there is no estimate, because the levels have
+/// moved in one direction only.
 class StochasticApproximation : public Track {
  public:
   using Track::Track;

@@ -8,7 +8,7 @@
 
 namespace turnpoint::procedure {
 
-/// The levels that a procedure presents if the participant gives certain answers.
+/// The levels that a procedure presents in response to given answers.
 struct Trace {
   std::vector<double> levels;  ///< the level to which each answer was given
   std::optional<double> next;  ///< the next level; empty if the procedure has stopped

@@ -38,8 +38,8 @@ std::optional<Proposal> Track::next() const {
 
 void Track::record(Answer answer) {
   if (answer == Answer::none) {
-    // Repeat the same level. After three repeats, one trial counts as used up, so that the procedure ends
-    // even if nobody answers.
+    // Repeat the same level. If three repeats in a row are unanswered as well, one trial counts as used, so
+    // that the procedure ends even if nobody answers.
     if (++unanswered_ > kRepeats) unanswered_ = 0, ++spent_;
     return;
   }
@@ -66,7 +66,7 @@ void Track::move(double size) {
       level_ *= factor(size * 0.11512925464970228420);
       break;
   }
-  // If the protocol sets no limits, these limits keep the level finite. They lie far beyond any useful level.
+  // These limits keep the level finite if the protocol sets none. They lie far beyond any useful level.
   const bool multiplies = spec_.scale != Scale::linear;
   level_ = std::clamp(level_, multiplies ? kSmallest : -kLargest, kLargest);
   if (spec_.min) level_ = std::max(level_, *spec_.min);

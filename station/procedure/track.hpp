@@ -6,10 +6,11 @@
 
 namespace turnpoint::procedure {
 
-/// The common part of all procedures that move one level up and down from the answers: its limits and scale,
-/// reversals, and stopping rules. Each answer is followed at once by a step. A reversal is the level at which
-/// the direction changed. On a log10 or dB scale, steps multiply the level. An unanswered trial repeats the
-/// same level, at most three times in a row; then one trial of the budget is used up and the track continues.
+/// The common part of all procedures that move one level up and down: limits and scale of the level,
+/// reversals, and stopping rules. learn() moves the level after each answer. A reversal is the level at which
+/// the direction changed. On a log10 or dB scale, steps multiply the level. An unanswered trial is repeated
+/// at the same level, up to three times in a row. If the last repeat is unanswered as well, one trial of the
+/// budget counts as used, and the track continues.
 class Track : public Procedure {
  public:
   explicit Track(const Spec& spec);
@@ -22,7 +23,7 @@ class Track : public Procedure {
   std::uint64_t state_hash() const override;
 
  protected:
-  /// Moves the level after an answer.
+  /// Updates the procedure with an answer and moves the level if necessary.
   virtual void learn(Answer answer) = 0;
 
   enum class Direction { none, down, up };

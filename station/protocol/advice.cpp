@@ -15,7 +15,7 @@ using text::number;
 // 2017) to 0.2 (Fehlberg et al. 2022). The advice assumes that everybody feels more than 0.2.
 constexpr double felt_by_all = 0.2;
 
-// How much one unit of the factor changes the value of this expression, such as a boundary in mm.
+// How much the value of this expression (for example, a boundary in mm) changes per unit of the factor.
 double coefficient(const std::optional<Linear>& expression, const std::string& factor) {
   if (!expression || expression->absolute) return 0;
   for (const auto& [name, value] : expression->terms)
@@ -36,8 +36,9 @@ double largest(const std::vector<double>& levels) {
   return most;
 }
 
-// Each level must move the scene by at least four times the error that its tolerance allows the planner. If
-// even the largest level moves it by less, the advice is to change the tolerance instead of the levels.
+// The smallest level must change the scene by at least four times the scene's tolerance, which is the error
+// that the planner may make. If even the largest level changes it by less, the advice is about the tolerance
+// instead of the levels.
 void check_fineness(AdviceList& advice, const procedure::Spec& spec) {
   if (spec.kind != procedure::Kind::constant_stimuli || smallest(spec.values) == 0) return;
   for (const auto& name : scenes_used(advice.protocol)) {
@@ -58,7 +59,7 @@ void check_fineness(AdviceList& advice, const procedure::Spec& spec) {
   }
 }
 
-// No threshold can be found if everybody feels every level.
+// If everybody feels every level, no threshold can be found.
 void check_coarseness(AdviceList& advice, const procedure::Spec& spec) {
   auto levels = spec.values;
   levels.insert(levels.end(), spec.stimuli.values.begin(), spec.stimuli.values.end());
@@ -81,8 +82,8 @@ void check_coarseness(AdviceList& advice, const procedure::Spec& spec) {
   }
 }
 
-// If the steps up and down differ, a staircase converges where P(step down) * size of a step down = P(step
-// up) * size of a step up (Kaernbach 1991, generalised by Garcia-Perez 1998).
+// With unequal steps, a staircase converges where P(step down) * size of a step down = P(step up) * size of a
+// step up (Kaernbach 1991, generalised by Garcia-Perez 1998).
 void check_unequal_steps(AdviceList& advice, const procedure::Spec& spec) {
   if (spec.kind != procedure::Kind::up_down || spec.step_down.empty() || spec.step_up.empty()) return;
   const double down = spec.step_down.back(), up = spec.step_up.back();

@@ -22,23 +22,24 @@ struct AdviceList {
   std::vector<text::Problem> found;
 };
 
-/// The fastest responses to touch take about 0.15 s, so nobody can meet a shorter deadline than this.
+/// The fastest responses to touch take about 0.15 s, so nobody can reliably meet a deadline shorter than
+/// this.
 constexpr double shortest_deadline_s = 0.2;
 
-/// The path of a procedure's key in KeyPlaces, such as `procedure.levels.start` for the procedure named
+/// The path in KeyPlaces of a procedure's key, such as `procedure.levels.start` for the procedure named
 /// `levels`.
 inline std::string key_of(const procedure::Spec& spec, const std::string& key) {
   return "procedure." + spec.name + "." + key;
 }
 
-/// The path of a key of a block or sequence in KeyPlaces: `block.main.trials` or
+/// The path in KeyPlaces of a key of a block or sequence: `block.main.trials` or
 /// `sequence.main.block.trials`.
 std::string key_of(const std::variant<Block, Sequence>& part, const std::string& key);
 
 /// The path of the key that sets the levels of a procedure.
 std::string levels_key(const procedure::Spec& spec);
 
-/// The proportion correct of somebody who guesses.
+/// The proportion correct of a participant who guesses.
 double chance(const Protocol& protocol);
 
 /// Compares levels with tolerances, steps and limits; finds factors, scenes and procedures that nothing uses.

@@ -14,8 +14,8 @@ namespace {
 using procedure::Spec;
 using text::number;
 
-/// Number of cases in which each answer is right (`times`), in which any answer is right (`scored`), and of
-/// all cases (`all`).
+/// Counts cases: for each answer, those in which it is right (`times`); those in which some answer is right
+/// (`scored`); and all (`all`).
 struct Right {
   std::map<std::string, int> times;
   int scored = 0, all = 0;
@@ -80,7 +80,7 @@ void check_each_answer(AdviceList& advice) {
   }
 }
 
-// If the same answer is right throughout a block, always giving it scores 100 %.
+// Reports a block in which the same answer is always right: a participant who always gives it scores 100 %.
 void check_block(AdviceList& advice, const std::variant<Block, Sequence>& part) {
   const auto& protocol = advice.protocol;
   const auto& block = block_of(part);
@@ -107,8 +107,8 @@ void check_block(AdviceList& advice, const std::variant<Block, Sequence>& part) 
                "use levels at which each answer is right equally often");
 }
 
-// A staircase or a Bayesian procedure assumes that the task gets easier in one direction only: towards higher
-// levels, or towards lower ones.
+// A staircase or a Bayesian procedure assumes that the task becomes easier in one direction only, either
+// towards higher or towards lower levels. Reports one whose task is easy on both sides of zero.
 void check_followed(AdviceList& advice, const Source& source) {
   const auto* spec = source.spec;
   if (!spec || !spec->tracks.empty() || !spec->values.empty()) return;
@@ -123,8 +123,8 @@ void check_followed(AdviceList& advice, const Source& source) {
         "only");
 }
 
-// Checks that an order exists that keeps `max_run`. A run of trials with the same right answer can be ended
-// only by a trial with another right answer.
+// Checks that some order of the trials satisfies `max_run`. Only a trial with another right answer can end a
+// run of trials with the same right answer.
 void check_runs(AdviceList& advice, const Spec& spec) {
   if (!spec.max_run || spec.values.empty()) return;
   const auto right = right_at(advice.protocol, spec.level, spec.values);
@@ -137,7 +137,7 @@ void check_runs(AdviceList& advice, const Spec& spec) {
           "set a larger \"max_run\", or use levels at which each answer is right equally often");
 }
 
-// The share of practice trials that a participant gets right by always pressing the same key.
+// The fraction of practice trials that a participant gets right by always pressing the same key.
 double one_key_share(const Protocol& protocol, const Block& block) {
   const auto& task = protocol.task;
   if (task.kind != TaskKind::single_interval || block.levels.empty()) return chance(protocol);
@@ -177,10 +177,10 @@ void check_catch(AdviceList& advice, const std::variant<Block, Sequence>& part) 
                         "the catch trials of \"" + block_of(part).name + "\" have " +
                             (right.times.empty() ? "no right answer" : "only one right answer"),
                         easy_on_both_sides(protocol, trials->factor));
-    // a catch trial without a signal is easy too
+    // catch trials without a signal are easy as well
     if (answer_rule(protocol, trials->factor).kind == AnswerKind::presence) return;
   }
-  // The larger a level, the easier the trial. Levels in dB are compared with their sign, all others by their
+  // The larger a level, the easier the trial. For levels in dB the value itself counts, for all others the
   // magnitude.
   const bool decibel = trials->factor.ends_with("_dB");
   const auto sources = sources_of(protocol);

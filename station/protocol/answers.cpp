@@ -16,7 +16,7 @@ int index_of(const Task& task, const std::string& id) {
   return -1;
 }
 
-/// Index of the choice that is right at this level; -1 if no choice is.
+/// Index of the choice that is right at this level; -1 if no choice is right.
 int right_at(const Protocol& protocol, const std::string& level, double value) {
   auto factors = any_factors(protocol);
   factors[level] = value;
@@ -25,8 +25,8 @@ int right_at(const Protocol& protocol, const std::string& level, double value) {
   return -1;
 }
 
-/// The levels of a source of trials. For a staircase, a few levels between its limits represent all levels
-/// that it may reach.
+/// The levels of a source of trials. A staircase may reach any level between its limits; a few of them
+/// represent all.
 std::vector<double> levels_of(const Source& source) {
   if (!source.spec || !source.spec->min || !source.spec->max) return source.levels;
   constexpr int steps = 100;

@@ -9,15 +9,15 @@ namespace turnpoint::protocol {
 enum class AnswerKind {
   right_answer,  ///< one of the choices is right; the level determines how easy it is to find
   side,          ///< two answers: one is right for levels below zero, the other for levels above
-  /// two answers: one is right if the level is zero (same-different: the scenes are the same), the other if
-  /// not
+  /// two answers: one is right if the level is zero, the other if it is not (for same-different: zero means
+  /// that both scenes are the same)
   presence,
 };
 
 struct AnswerRule {
   AnswerKind kind = AnswerKind::right_answer;
-  /// index of a choice: for `side`, the answer that is right for levels above zero; for `presence`, the
-  /// answer that is right for every level but zero
+  /// index of a choice. For `side`: the answer that is right for levels above zero. For `presence`: the
+  /// answer that is right for every level except zero
   int positive = 1;
 };
 
@@ -25,9 +25,10 @@ struct AnswerRule {
 /// the ends of the factor's range.
 AnswerRule answer_rule(const Protocol& protocol, const std::string& level);
 
-/// A typical level of the factor `level` in the protocol's procedures (or in its blocks, if there are no
-/// procedures): for a factor in dB the median, otherwise the median magnitude of all nonzero levels. For a
-/// staircase, evenly spaced levels between its limits are used. Returns 1 if there are no levels.
+/// A typical level of the factor `level` in the protocol's procedures, or in its blocks if it has no
+/// procedures. For a factor in dB it is the median of all levels, otherwise the median magnitude of all
+/// nonzero levels. For a staircase, evenly spaced levels between its limits are used. Returns 1 if there are
+/// no levels.
 double middle_level(const Protocol& protocol, const std::string& level);
 
 }  // namespace turnpoint::protocol

@@ -7,9 +7,9 @@ namespace turnpoint::protocol {
 
 namespace {
 
-// A Williams square (1949): row r is the zig-zag 0, 1, n-1, 2, n-2, ... with r added to each number modulo n,
-// so that every condition follows every other one equally often. If n is odd, this also needs the reversed
-// rows.
+// A Williams square (1949): row r is the zig-zag 0, 1, n-1, 2, n-2, ... with r added to each number modulo n.
+// Every condition then follows every other one equally often. If n is odd, this holds only for the rows
+// together with the reversed rows.
 std::vector<int> williams_row(int n, int row) {
   const bool reversed = n % 2 == 1 && row % (2 * n) >= n;
   std::vector<int> order;

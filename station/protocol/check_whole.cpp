@@ -48,7 +48,8 @@ void check_answers(const std::vector<Source>& sources, const Reading& reading) {
   }
 }
 
-// If no answer is correct, a procedure cannot follow correctness and practice cannot be passed.
+// Without correct answers, a procedure cannot follow right answers, and practice cannot be passed. Reports
+// such procedures and blocks.
 void check_scored(text::TableReader& file, const Reading& reading) {
   const auto& protocol = reading.protocol;
   const auto& task = protocol.task;
@@ -98,13 +99,14 @@ bool has_change(const Task& task) {
                      [](const auto& scenes) { return scenes.size() > 1; });
 }
 
-// Each block uses the deadline of its instruction, else that of [timing].
+// Returns the name of a block without a deadline, if any. Each block uses the deadline of its instruction, or
+// else that of [timing].
 std::optional<std::string> block_without_deadline(const Protocol& protocol) {
   for (const auto& block : all_blocks(protocol)) {
     const auto fixed = block.fixed.find("instruction");
     const auto* name = fixed == block.fixed.end() ? nullptr : std::get_if<std::string>(&fixed->second);
     const auto found = name ? protocol.instructions.find(*name) : protocol.instructions.end();
-    // an unknown instruction is reported where it is named
+    // an unknown instruction is reported at the place where it is used
     const bool unknown = name && found == protocol.instructions.end();
     if (!unknown && (!name || !found->second.deadline_s)) return block.name;
   }
@@ -138,8 +140,8 @@ void check_timing(text::TableReader& file, const Reading& reading) {
     if (const auto block = block_without_deadline(protocol))
       findings.add(table->place, "block \"" + *block + "\" has no deadline: [timing] has no \"deadline_s\"",
                    "set \"deadline_s\" here, or in the block's [instructions.NAME]");
-  // If anticipation_s is not shorter than a deadline, blame the less usual value. Normally anticipation_s is
-  // about 0.15, so a deadline that is shorter than any person's response is to blame.
+  // If anticipation_s is not shorter than a deadline, one of them is wrong. A deadline shorter than any
+  // person's response is to blame; otherwise anticipation_s is, which is normally about 0.15 s.
   const auto check_anticipation = [&](const std::string& key, double deadline_s) {
     if (timing.anticipation_s >= deadline_s)
       findings.add(

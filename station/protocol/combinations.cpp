@@ -32,7 +32,7 @@ void cross(const Protocol& protocol, const Source& source, const std::string& sc
         next.push_back(std::move(combination));
       }
     product = std::move(next);
-    // thinned() keeps only some of the combinations later, so this part of a large design is enough.
+    // thinned() will keep only some of the combinations, so this part of a large design is enough.
     if (product.size() > 20000) product.resize(20000);
   }
   all.insert(all.end(), product.begin(), product.end());
@@ -47,8 +47,9 @@ std::vector<T> evenly(const std::vector<T>& sorted, std::size_t most) {
   return chosen;
 }
 
-// Chooses values of each factor so that at most `most` combinations result. Begins with both extremes of each
-// factor. Then repeatedly adds one value to the factor of which the smallest share has been chosen.
+// Chooses values of each factor so that at most `most` combinations result. It begins with the two extreme
+// values of each factor. Then it adds one value at a time, always to the factor of which the smallest
+// fraction of values has been chosen.
 std::map<std::string, std::set<FactorValue>> grid_of(
     const std::map<std::string, std::set<FactorValue>>& values, std::size_t most) {
   std::map<std::string, std::size_t> counts;

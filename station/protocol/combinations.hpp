@@ -12,20 +12,21 @@ struct Combination {
   Factors factors;
 };
 
-/// All different combinations in which scenes of the task can occur: the levels of each source of trials,
-/// crossed with the levels of the factors that are drawn at random.
+/// All different combinations in which scenes of the task can occur: each source's levels, crossed with the
+/// levels of the factors that are drawn at random.
 std::vector<Combination> combinations_of(const Protocol& protocol);
 
-/// The expression of the scene that contains factors, if there is exactly one; otherwise null.
+/// The scene's expression that contains factors, if there is exactly one; otherwise null.
 const Linear* only_expression(const Scene& scene);
 
-/// True if roving the scene's strength also moves its edge. That is so for an edge defined by friction,
-/// except in a zone, whose tones are designed without roving.
+/// True if roving the scene's strength also moves its edge. This is the case for an edge defined by friction.
+/// It is not the case in a zone, because the tones of a zone are designed without roving.
 bool edge_moves_with_strength(const Scene& scene);
 
-/// At most `most` combinations of one scene, with the extreme values among them, so that the others can be
-/// interpolated. They are evenly spaced in the value of only_expression(), or in each factor if that is null.
-/// If there are more extremes than `most`, returns the first `most` combinations.
+/// At most `most` combinations of one scene, including the extreme values, so that results for the others can
+/// be interpolated. They are evenly spaced in the value of only_expression(), or in each factor if
+/// only_expression() is null. If there are more than `most` combinations of extremes, returns the first
+/// `most` of them.
 std::vector<Combination> thinned(const Scene& scene, const std::vector<Combination>& of_the_scene,
                                  std::size_t most);
 

@@ -16,8 +16,8 @@ std::string word_of(const std::string& factor, const protocol::FactorValue& valu
          (words.unit.empty() ? "" : " " + words.unit);
 }
 
-/// Adds a name for each combination of the levels of factor number `next` in `by` and of all factors after
-/// it.
+/// For factor number `next` in `by` and all factors after it: adds a name for each combination of their
+/// levels.
 void combine(const protocol::Protocol& protocol, std::size_t next, protocol::Factors& factors,
              std::vector<std::string>& names) {
   const auto& by = protocol.analysis.by;

@@ -6,13 +6,14 @@
 
 namespace turnpoint::protocol {
 
-/// The condition of a trial, from the factors that `[analysis] by` names: "dry", "mark 150 mm", "speed, mark
-/// 150 mm". Without `by` it is the block's instruction; "" if there is none either.
+/// The name of a trial's condition, made from the factors that `[analysis] by` lists: "dry", "mark 150 mm",
+/// "speed, mark 150 mm". Without `by` it is the block's instruction, or "" if the block has none.
 std::string condition_of(const protocol::Protocol& protocol, const protocol::Factors& factors,
                          const std::string& instruction);
 
-/// All conditions of the protocol, in the same order for every participant: that of the factor's levels in
-/// the file. Instructions come in the order in which the file's blocks use them.
+/// All conditions of the protocol, in the order of the factors' levels in the file. Without `by`,
+/// instructions come in the order in which the blocks in the file use them. The order is the same for every
+/// participant.
 std::vector<std::string> conditions(const protocol::Protocol& protocol);
 
 /// A factor's name in words and its unit: `mark_mm` gives "mark" and "mm", `_um` gives the unit \u00b5m. The

@@ -233,8 +233,8 @@ void advise_on_plan(AdviceList& advice) {
 namespace {
 
 constexpr std::size_t most_repeats = 10000;  // largest number of repeats that a protocol may ask for
-// larger numbers of combinations count as this one; otherwise the product for a hundred factors with many
-// levels would overflow
+// Larger numbers of combinations are reduced to this one. Otherwise the product for a hundred factors with
+// many levels would overflow.
 constexpr std::size_t most_cells = 1'000'000'000'000;
 
 /// Reports a procedure whose `repeats` cannot be spread evenly over `cells` combinations of factors; `what`

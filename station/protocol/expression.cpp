@@ -15,8 +15,8 @@ struct SyntaxError {
   std::string what, allowed;
 };
 
-// A recursive-descent parser for an expression, or for one side of a comparison. Every intermediate result is
-// linear in the factors, so at least one operand of a product must be a constant.
+// A recursive-descent parser for an expression, or for one side of a comparison. Every intermediate result
+// must be linear in the factors, so at least one operand of a product must be a constant.
 class Parser {
  public:
   Parser(const std::string& source, std::size_t begin, std::size_t end, const std::vector<Factor>& factors)
@@ -162,7 +162,7 @@ class Parser {
   int depth_ = 0;
 };
 
-// The place of a character of the text in the file. The text starts one column after its opening quote.
+// The place in the file of a character of the text. The text starts one column after its opening quote.
 // Columns count characters, not bytes.
 text::Place inside(const text::Place& place, const std::string& source, std::size_t at) {
   const auto end = source.begin() + static_cast<std::ptrdiff_t>(std::min(at, source.size()));

@@ -14,7 +14,7 @@ namespace turnpoint::protocol {
 std::optional<Linear> parse_linear(const std::string& source, const text::Place& place,
                                    const std::vector<Factor>& factors, text::Findings& findings);
 
-/// Parses two linear sides with one of < <= == >= > between them.
+/// Parses a comparison: two linear expressions with one of < <= == >= > between them.
 std::optional<Comparison> parse_comparison(const std::string& source, const text::Place& place,
                                            const std::vector<Factor>& factors, text::Findings& findings);
 
@@ -27,17 +27,17 @@ std::optional<Linear> linear_from(const text::Value& value, const std::string& k
 /// independently of the others.
 std::pair<double, double> bounds(const Linear& expression, const std::vector<Factor>& factors);
 
-/// The smallest and largest value of a numeric factor; empty for a text factor.
+/// The smallest and the largest value of a numeric factor; empty for a text factor.
 std::optional<std::pair<double, double>> span(const Factor& factor);
 
-/// True if the factor's values could not be read. The reader has already reported this, so do not report
-/// further problems that follow from it.
+/// True if the factor's values could not be read. The reader has already reported that, so problems that only
+/// follow from it should not be reported.
 bool is_broken(const Factor& factor);
 
 const Factor* find_factor(const std::vector<Factor>& factors, const std::string& name);
 std::vector<std::string> names(const std::vector<Factor>& factors);
 
-/// `did you mean "x"? known: a, b, c`.
+/// Returns a text for messages: `did you mean "x"? known: a, b, c`.
 std::string suggestion(const std::string& word, const std::vector<std::string>& known);
 
 }  // namespace turnpoint::protocol

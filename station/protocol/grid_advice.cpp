@@ -31,7 +31,7 @@ void check_level(AdviceList& advice, const Spec& spec) {
              "use a scene with \"" + spec.level + "\" in its arithmetic");
 }
 
-// Reports levels that differ only by rounding errors, because they were meant to be the same level.
+// Reports levels that differ only by a rounding error, because they were probably meant to be the same level.
 void check_values(AdviceList& advice, const Spec& spec) {
   auto values = spec.values;
   std::sort(values.begin(), values.end());
@@ -55,8 +55,8 @@ void check_steps(AdviceList& advice, const Spec& spec) {
                "use steps that become smaller, such as [4.0, 2.0, 1.0]");
 }
 
-// If wrong answers move a staircase at least as often as right ones do, it converges where at most half of
-// the answers are right.
+// If wrong answers move a staircase at least as often as right answers do, it converges at a level where at
+// most half of the answers are right.
 void check_target(AdviceList& advice, const Spec& spec) {
   const double guessing = chance(advice.protocol);
   if (spec.target && *spec.target <= guessing + 1e-9)

@@ -7,15 +7,16 @@
 
 namespace turnpoint::protocol {
 
-/// The line and column of each key in a protocol file. A key has a path such as `task.correct.left`. Tables
-/// with a `name` are listed by this name (`procedure.levels.values`), other list items by number
+/// The line and column of each key in a protocol file. Each key has a path such as `task.correct.left`. A
+/// table with a `name` is listed by this name (`procedure.levels.values`), other list items by number
 /// (`task.choices.1`).
 class KeyPlaces {
  public:
   KeyPlaces(const std::string& source, const std::string& path);
   KeyPlaces(const text::Value& document, const std::string& path);
 
-  /// The place of the key. If the file does not contain it, the place of the table that would.
+  /// Returns the place of the key. If the file does not contain the key, returns the place of the table to
+  /// which it belongs.
   text::Place of(std::string key) const;
   bool has(const std::string& key) const { return places_.count(key) > 0; }
 

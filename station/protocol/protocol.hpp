@@ -22,8 +22,8 @@ using Localised = std::map<std::string, std::string>;
 using FactorValue = std::variant<double, std::string>;
 using Factors = std::map<std::string, FactorValue>;
 
-/// A linear combination of numeric factors, such as `150 - 0.5 * spread_mm` or `-30`; its magnitude if
-/// `absolute` is set, as in `abs(change)`.
+/// A linear combination of numeric factors, such as `150 - 0.5 * spread_mm` or `-30`. If `absolute` is set,
+/// its value is the magnitude of the combination, as in `abs(change)`.
 struct Linear {
   double constant = 0;
   std::vector<std::pair<std::string, double>> terms;  ///< each factor's name with its coefficient
@@ -39,7 +39,7 @@ double evaluate(const Linear& expression, const Factors& factors);
 
 enum class Relation { less, less_equal, equal, greater_equal, greater };
 
-/// `offset_mm < 0`: two linear sides and a relation.
+/// Two linear expressions and a relation, such as `offset_mm < 0`.
 struct Comparison {
   Linear left, right;
   Relation relation = Relation::less;
@@ -73,13 +73,14 @@ struct Zone {
   std::optional<int> tones;
 };
 
-/// The accuracy that a scene requires. The planner uses the cheapest model that meets all given tolerances.
+/// The accuracy that a scene requires. The planner uses the cheapest model that meets all tolerances that are
+/// given.
 struct Tolerance {
   std::optional<double> boundary_mm, level_dB, friction;
 };
 
-/// A scene after its `base` has been merged in. It describes what one interval presents, with factors still
-/// as variables.
+/// A scene after its `base` has been merged in. It describes what one interval presents. Its expressions
+/// still contain factors.
 struct Scene {
   std::string name, base;
   std::optional<Linear> boundary_mm;
@@ -91,10 +92,10 @@ struct Scene {
   std::optional<Linear> displacement_under_finger_um, finger_mm;
   std::vector<SceneTone> tones;
   std::optional<Zone> zone;
-  /// lowers the friction below that of the base scene; in dB, 20 log10(difference / friction of the base
+  /// how far the friction is below that of the base scene, in dB: 20 log10(difference / friction of the base
   /// scene)
   std::optional<Linear> friction_contrast_dB;
-  /// each trial changes the displacement by a random value, uniform within +- this value
+  /// in each trial the displacement is changed by a random value, uniform between -rove_dB and +rove_dB
   double rove_dB = 0;
   double ramp_ms = 50;
   Tolerance tolerance;
@@ -122,7 +123,7 @@ struct Task {
   std::string standard, target;                     ///< scenes of an oddity or same-different task
   Odd odd = Odd::either;
   std::optional<double> duration_s, gap_s;
-  std::optional<Distribution> foreperiod_s;  ///< time from the interval's start to its second scene
+  std::optional<Distribution> foreperiod_s;  ///< time from the start of an interval to its second scene
   std::optional<double> transition_ms;
   Device device = Device::touch;
   Place device_place;
@@ -143,8 +144,9 @@ using terms::ResponseZero;
 struct Timing {
   ResponseZero response_zero = ResponseZero::go_cue;
   Place response_zero_place;
-  std::optional<double> explore_s;   ///< for a single interval: the longest time that the tones last
-  std::optional<double> deadline_s;  ///< counted from response_zero; empty if the instructions give it
+  /// for a single interval: the longest time for which the tones are presented
+  std::optional<double> explore_s;
+  std::optional<double> deadline_s;  ///< counted from response_zero; empty if each instruction gives its own
   Distribution iti_s;
   double anticipation_s = 0;
 };
@@ -173,7 +175,7 @@ struct Break {
 struct Block {
   std::string name;
   std::vector<std::string> procedures;
-  std::string level;           ///< for practice with fixed levels: the factor that the levels set
+  std::string level;           ///< for practice with fixed levels: the factor to which the levels belong
   std::vector<double> levels;  ///< the fixed levels, presented in shuffled order
   std::optional<int> trials;
   Feedback feedback = Feedback::none;
@@ -188,7 +190,7 @@ struct Block {
 
 struct Sequence {
   std::string name;
-  std::string over;  ///< the factor that differs between the blocks
+  std::string over;  ///< the factor whose level differs between the blocks
   int cycles = 1;
   bool mirror = false;
   Block block;
@@ -203,7 +205,7 @@ struct Instruction {
 struct Analysis {
   std::vector<std::string> by;  ///< factors with levels: each combination of them is analysed separately
   std::optional<Linear> difficulty;
-  /// parts of the report to show; empty: all parts that suit the task
+  /// parts of the report to show; if empty, all parts that suit the task are shown
   std::optional<std::vector<std::string>> show;
   double exclude_below_s = 0;
   std::optional<double> exclude_mad;
@@ -218,14 +220,15 @@ struct Resume {
   std::string restart_unit;  ///< "block" if a resumed session restarts the interrupted block, otherwise ""
 };
 
-/// A complete and checked protocol file; every reference inside it resolves.
+/// A complete and checked protocol file. Everything that it refers to by name exists.
 struct Protocol {
   std::string path, source, sha256;
   std::string id, version;
   std::string title;
   std::vector<std::string> languages;
-  std::optional<std::uint64_t> seed;  ///< seed of the random numbers; empty for "per-session"
-  std::vector<Factor> factors;        ///< factors in the order of the file
+  /// seed of the random numbers; empty if each session has its own ("per-session")
+  std::optional<std::uint64_t> seed;
+  std::vector<Factor> factors;  ///< factors in the order of the file
   std::map<std::string, Scene> scenes;
   Task task;
   Timing timing;
@@ -241,11 +244,11 @@ struct Protocol {
 /// Throws text::BadInput with all problems at once, or std::system_error if the file cannot be read.
 Protocol load(const std::string& path);
 
-/// Like load(), for a text that is already in memory (of a resumed session); `path` is only used in messages.
+/// Like load(), for text that is already in memory (a resumed session). `path` is only used in messages.
 Protocol parse(const std::string& source, const std::string& path);
 
-/// The blocks in the order for the participant with this sequence index (from 0): the Williams square, cycles
-/// and mirror of each sequence are applied.
+/// Returns the blocks in the order for the participant with this sequence index (from 0). Applies the
+/// Williams square, cycles and mirror of each sequence.
 std::vector<Block> block_order(const Protocol& protocol, int sequence_index);
 
 }  // namespace turnpoint::protocol

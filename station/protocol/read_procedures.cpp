@@ -17,8 +17,8 @@ using text::Value;
 
 namespace {
 
-// Returns the table `below` of the copied procedure with the keys of `own` added or replaced. The inner
-// tables of "grid" and "prior" are merged key by key.
+// Returns the copied procedure's table `below`, with the keys of `own` added or replaced. The inner tables
+// "grid" and "prior" are merged key by key.
 Value overlay(Value below, const Value& own) {
   for (const auto& entry : own.entries) {
     const auto found = std::find_if(below.entries.begin(), below.entries.end(),
@@ -86,8 +86,8 @@ void check_levels(TableReader& reader, const Spec& spec, const Factor& factor) {
   if (spec.max) check("max", *spec.max);
 }
 
-// Checks the procedure with procedure::validate(). Each fault names its key; dots separate the names of inner
-// tables.
+// Checks the procedure with procedure::validate(). Each problem names its key; in the path of a key, dots
+// separate the names of inner tables.
 void check_spec(const Value& table, const Spec& spec, text::Findings& findings) {
   for (const auto& fault : procedure::validate(spec)) {
     const Value* at = &table;
@@ -127,7 +127,7 @@ std::string name_of(const Value& table) {
   return name && name->value.kind == Value::Kind::string ? name->value.string : "";
 }
 
-// Merges the table with the procedures that it copies. Those must be above it in the file.
+// Merges the table with the procedures that it copies. The copied procedures must be above it in the file.
 Value with_copies(const Value& table, const std::map<std::string, Value>& above, text::Findings& findings) {
   const auto* copy = table.find("copy");
   if (!copy) return table;
@@ -153,8 +153,8 @@ void read_procedures(TableReader& file, Reading& reading) {
     const bool broken_copy = !found.problems.empty();
     Spec spec;
     if (!broken_copy) spec = read_procedure(whole, reading, found);
-    // A mistake in a procedure is found again in each procedure that copies it, so report only one problem at
-    // each place in the file.
+    // A mistake in a procedure is found again in each procedure that copies it, so only one problem is
+    // reported at each place in the file.
     for (auto& problem : found.problems)
       if (places.insert({problem.place.line, problem.place.column}).second)
         reading.findings.problems.push_back(std::move(problem));

@@ -89,7 +89,7 @@ Tolerance read_tolerance(const Value& table, const std::string& name, Findings& 
   return tolerance;
 }
 
-// A displacement under a finger needs the finger's place.
+// A displacement under a finger needs the position of the finger.
 void check_finger(TableReader& reader, const Scene& scene) {
   const bool wanted = reader.has("displacement_under_finger_um");
   if (wanted && !reader.has("finger_mm"))
@@ -266,8 +266,8 @@ class Resolver {
     return nullptr;
   }
 
-  // A mistake in a base scene is found again in every scene that builds on it, so report only one problem at
-  // each place in the file.
+  // A mistake in a base scene is found again in every scene that builds on it, so only one problem is
+  // reported at each place in the file.
   void read(const std::string& name, const Value& table, const Value& own) {
     Findings found;
     auto scene = read_scene(table, name, own, found, reading_);

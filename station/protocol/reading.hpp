@@ -7,16 +7,16 @@
 #include "station/protocol/protocol.hpp"
 #include "station/text/reader.hpp"
 
-// Used only to implement load() and parse(): one function per part of a protocol file. Each reads its tables
-// into the protocol and reports problems. Call the functions in the order of their declaration, because later
-// ones rely on earlier ones.
+// Used only to implement load() and parse(). There is one function for each part of a protocol file. It reads
+// its tables into the protocol and reports problems. Call the functions in the order of their declaration,
+// because later ones rely on earlier ones.
 namespace turnpoint::protocol {
 
 struct Reading {
   Protocol& protocol;
   text::Findings& findings;
   const KeyPlaces& places;
-  /// names of all scenes in the file, including scenes with problems
+  /// names of all scenes in the file, even of those that could not be read
   std::vector<std::string> declared_scenes;
 };
 
@@ -31,26 +31,26 @@ void read_plan(text::TableReader& file, Reading& reading);
 void read_analysis(text::TableReader& file, Reading& reading);
 void read_resume(text::TableReader& file, Reading& reading);
 
-/// Checks what can be checked only in the whole file: values of factors in each trial, answers, pass
-/// criteria, deadlines.
+/// Checks what can be checked only when the whole file has been read: values of factors in each trial,
+/// answers, pass criteria, deadlines.
 void check_whole(text::TableReader& file, Reading& reading);
 
-/// Reads a text in each declared language. A missing or undeclared language is a problem.
+/// Reads a text in each declared language. Reports a problem for a missing or an undeclared language.
 Localised read_localised(text::TableReader& reader, const std::string& key, const Reading& reading);
 Localised localised_from(const text::Value& value, const std::string& key, const Reading& reading);
 
 /// Reads a number, or { uniform = [low, high] }.
 std::optional<Distribution> read_distribution(text::TableReader& reader, const std::string& key);
 
-/// Reads a name made of letters, digits, _ and -. Anything else is a problem.
+/// Reads a name made of letters, digits, _ and -. Reports a problem for any other character.
 std::string read_name(text::TableReader& reader, const std::string& key, const std::string& what);
 
 /// Reads a value of a factor and checks it against the factor's range or levels.
 std::optional<FactorValue> read_factor_value(const text::Value& value, const Factor& factor,
                                              text::Findings& findings);
 
-/// The factor that `key` names. Reports a problem and returns nullptr if there is none or if it is not
-/// numeric.
+/// Returns the factor that `key` names. If there is no such factor or it is not numeric, reports a problem
+/// and returns nullptr.
 const Factor* read_numeric_factor(text::TableReader& reader, const std::string& key, const Reading& reading);
 
 }  // namespace turnpoint::protocol

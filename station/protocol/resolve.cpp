@@ -23,8 +23,8 @@ scene::ToneTarget tone_of(const SceneTone& tone, const Factors& factors) {
   return target;
 }
 
-/// The friction for which the zone's tones are designed: the friction of the base scene's zone if it has one,
-/// otherwise of the scene's own zone.
+/// The friction for which the zone's tones are designed: that of the base scene's zone if it has one,
+/// otherwise that of the scene's own zone.
 double design_friction(const Protocol& protocol, const Scene& scene, const Factors& factors) {
   const Scene* design = &scene;
   if (!scene.base.empty()) design = &protocol.scenes.at(scene.base);

@@ -12,7 +12,8 @@ namespace turnpoint::protocol {
 scene::Scene resolve(const Protocol& protocol, const std::string& scene, const Factors& factors,
                      double rove_dB);
 
-/// The friction that differs from `reference` by 20 log10((reference - friction) / reference) = contrast_dB.
+/// Returns the friction below `reference` for which 20 log10((reference - friction) / reference) =
+/// contrast_dB.
 double friction_at_contrast(double reference, double contrast_dB);
 
 }  // namespace turnpoint::protocol

@@ -17,7 +17,7 @@ void add_steps(double low, double high, int steps, std::vector<double>& levels) 
 }
 
 // A staircase can present any level between its limits, and a slider any value in the range of its factor.
-// Evenly spaced levels represent all of them.
+// Evenly spaced values represent them.
 std::vector<double> levels_of(const Protocol& protocol, const procedure::Spec& spec) {
   auto levels = spec.values;
   levels.insert(levels.end(), spec.stimuli.values.begin(), spec.stimuli.values.end());
@@ -108,7 +108,7 @@ Factors any_factors(const Protocol& protocol) {
     else if (factor.range)
       factors[factor.name] = 0.5 * (factor.range->first + factor.range->second);
     else
-      factors[factor.name] = 0.0;  // the factor has neither range nor levels, which read_factors() reports
+      factors[factor.name] = 0.0;  // the factor has neither a range nor levels; read_factors() reports this
   }
   return factors;
 }

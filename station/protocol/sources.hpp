@@ -13,8 +13,9 @@ struct Source {
   const Block* block = nullptr;
   /// name of the source for messages: `procedure "levels"`, `fixed levels`, `catch trials`
   std::string what;
-  std::string level;           ///< name of the factor whose levels the source presents
-  std::vector<double> levels;  ///< values that this factor can take; samples for a staircase or slider
+  std::string level;  ///< name of the factor whose levels the source presents
+  /// values that this factor can take; for a staircase or slider, evenly spaced samples
+  std::vector<double> levels;
   /// names of all factors that the source or its block sets; the values of other factors are drawn at random
   std::set<std::string> sets;
   const procedure::Spec* spec = nullptr;
@@ -32,7 +33,7 @@ std::set<std::string> factors_used(const Protocol& protocol);
 /// The scenes that the task presents, each once.
 std::vector<std::string> scenes_used(const Protocol& protocol);
 
-/// A value for each factor: its first level, or else the middle of its range.
+/// Returns a value for each factor: its first level or, if it has no levels, the middle of its range.
 Factors any_factors(const Protocol& protocol);
 
 const procedure::Spec* find_procedure(const Protocol& protocol, const std::string& name);

@@ -20,12 +20,12 @@ namespace turnpoint::protocol {
 
 namespace {
 
-// A check should feel immediate, but planning a zone takes about 15 ms, a boundary less than 2. A zone that
-// depends on a single expression needs only a few plans, because results between them can be interpolated.
-// Other zones need a grid of plans.
+// Limits of the number of plans, because a check should feel immediate: planning a zone takes about 15 ms, a
+// boundary less than 2 ms. A zone that depends on a single expression needs only a few plans, because results
+// between them can be interpolated. Other zones need a grid of plans.
 constexpr std::size_t most_plans_of_a_scene = 120, most_plans_of_a_zone = 6, most_plans_of_a_zone_grid = 36;
 
-// For messages: describes where this rig can place a boundary with the edge of the scene.
+// Returns a text for messages that says where this rig can place a boundary with the scene's edge.
 std::string reach(const scene::Scene& scene, const rig::Rig& rig, const scene::Planner& planner) {
   if (!scene.boundary_m) return "";
   physics::MapOptions options;
@@ -69,8 +69,8 @@ Sight sight_of(const Combination& combination, const scene::DrivePlan& plan) {
   return sight;
 }
 
-// A problem that occurs in several combinations. It is reported once, with the first combination and the
-// number of others.
+// A problem that may occur in several combinations. It is reported once, with the first combination and the
+// number of the others.
 struct Trouble {
   std::string first, allowed;
   Place place = {};
@@ -103,7 +103,8 @@ std::vector<Combination> planned(const Protocol& protocol, const std::vector<Com
   return chosen;
 }
 
-// The planner's answer for one combination: a plan, or why there is none and what would be possible.
+// The planner's answer for one combination: a plan, or the reason why there is none and what would be
+// possible.
 struct Answer {
   std::optional<scene::DrivePlan> plan;
   std::optional<scene::Cues> cues_roved_down;
@@ -111,8 +112,7 @@ struct Answer {
   Place place;  ///< place of the key that the rig cannot satisfy
 };
 
-// True if the same scene could be planned with a thousandth of its strength, which means that the strength is
-// the problem.
+// True if the scene could be planned with a thousandth of its strength. The strength is then the problem.
 bool can_plan(const scene::Scene& scene, scene::Planner& planner) {
   try {
     planner.plan(scene);
@@ -127,7 +127,7 @@ bool is_too_strong(scene::Scene scene, scene::Planner& planner) {
   return can_plan(scene, planner);
 }
 
-// The place of a scene's key. If the scene takes the key from a base scene, the place in that base scene.
+// Returns the place of a scene's key, or its place in the base scene if the scene takes the key from there.
 Place place_of(const Protocol& protocol, const KeyPlaces& places, const Scene& scene,
                const std::string& key) {
   const auto* at = &scene;
@@ -200,9 +200,9 @@ void plan_range(const Protocol& protocol, const rig::Rig& rig, const std::vector
   }
 }
 
-// Neighbouring combinations are similar, and a planner caches its maps. So the first combination is planned
-// alone, which fills the cache; two threads then plan half of the rest each, with their own copy of the
-// planner.
+// Neighbouring combinations are similar, and a planner caches its maps. The first combination is therefore
+// planned alone, which fills the cache. Then two threads plan half of the others each, one of them with a
+// copy of the planner.
 std::vector<Answer> plan_all(const Protocol& protocol, const rig::Rig& rig,
                              const std::vector<Combination>& combinations, const std::stop_token& stop) {
   std::vector<Answer> answers(combinations.size());
@@ -224,7 +224,7 @@ void plan_scenes(const Protocol& protocol, const rig::Rig& rig, const std::stop_
   const auto combinations = planned(protocol, all);
   const auto answers = plan_all(protocol, rig, combinations, stop);
   std::map<std::string, Trouble> unreachable, inexact;
-  // text of the first warning of each code, so that each code is reported once
+  // text of the first warning of each code; each code is reported only once
   std::map<std::string, std::string> told;
   for (std::size_t i = 0; i < answers.size(); ++i) {
     const auto& combination = combinations[i];
@@ -248,7 +248,7 @@ void plan_scenes(const Protocol& protocol, const rig::Rig& rig, const std::stop_
   for (const auto& [name, trouble] : inexact)
     survey.warnings.push_back({protocol.scenes.at(name).place, counted(trouble),
                                "no physical model is known to meet the scene's tolerance"});
-  // a rig that reproduces a historical one is known to have weaknesses, so leave out the planner's warnings
+  // the weaknesses of a rig that reproduces a historical one are known, so leave out the planner's warnings
   if (rig.reproduction) return;
   for (const auto& [code, warning] : told) survey.warnings.push_back({{protocol.path, 0, 0}, warning, ""});
 }

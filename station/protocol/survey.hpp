@@ -20,7 +20,7 @@ struct Sight {
   std::string block;
   Factors factors;  ///< the factors on which the scene depends
   double lowest_Hz = 0, highest_Hz = 0;
-  std::vector<physics::Tone> tones;  ///< at the drive edge, with the strength roved upwards
+  std::vector<physics::Tone> tones;  ///< tones at the drive edge, with the strength roved upwards
   physics::Model field_model = physics::Model::mode;
   std::optional<double> boundary_mm;
   /// largest displacement anywhere on the surface, with the strength roved upwards
@@ -32,8 +32,8 @@ struct Sight {
   double uncertainty_mm = 0;
   bool inside_tolerance = true;
   scene::Cues cues;  ///< the cues when the strength is roved upwards
-  /// The cues when the strength is roved downwards. Set only if roving changes more than the strength, that
-  /// is, for edges defined by friction.
+  /// The cues when the strength is roved downwards. Set only for edges defined by friction, where roving
+  /// changes more than the strength.
   std::optional<scene::Cues> cues_roved_down;
 };
 
@@ -41,27 +41,28 @@ struct Sight {
 struct Survey {
   std::vector<text::Problem> problems, warnings;
   std::vector<Sight> sights;  ///< in the order of blocks in the file; each combination appears once
-  /// number of combinations that can occur; if `sights` has fewer, only the extremes and even steps between
-  /// them were planned
+  /// number of combinations that can occur; if `sights` has fewer, only the extremes and evenly spaced values
+  /// between them were planned
   std::size_t combinations = 0;
   std::set<std::string> models;
 };
 
-/// Thrown if the caller stops survey() before there is a result.
+/// Thrown if survey() is stopped before it has a result.
 class Abandoned : public std::runtime_error {
  public:
   Abandoned() : std::runtime_error("the check of the protocol was stopped before it had a result") {}
 };
 
-/// Plans every scene for the combinations of factors that can occur (for a staircase: its limits), and checks
-/// devices, limits and levels. Beyond 120 combinations of a scene (36 with a zone, 6 with a zone that depends
-/// on a single sum of factors) it plans only the extremes and even steps between them; compare sights.size()
-/// with combinations. Throws Abandoned soon after `stop` is requested (after the current plan).
+/// Plans every scene for the combinations of factors that can occur (for a staircase: for its limits), and
+/// checks devices, limits and levels. If a scene has more than 120 combinations (36 with a zone, 6 with a
+/// zone that depends on a single expression), only the extremes and evenly spaced values between them are
+/// planned; sights.size() is then below `combinations`. After `stop` is requested, finishes the current plan
+/// and throws Abandoned.
 Survey survey(const Protocol& protocol, const rig::Rig& rig, const std::stop_token& stop = {});
 
-/// Advice about mistakes that are likely on any rig, each at the line of its key. Examples: levels smaller
-/// than the tolerance, answers that are never right, practice that is passed by always pressing the same key,
-/// times in wrong units, breaks that never come, and scenes that nothing uses.
+/// Returns advice about mistakes that are likely on any rig, each at the line of its key. Examples: levels
+/// smaller than the tolerance, answers that are never right, practice that is passed by always pressing the
+/// same key, times in wrong units, breaks that never come, and scenes that nothing uses.
 std::vector<text::Problem> advice(const Protocol& protocol);
 
 }  // namespace turnpoint::protocol

@@ -7,7 +7,7 @@
 
 namespace turnpoint::random {
 
-/// The purpose of a random draw. Recorded data depend on these numbers: never change one, only add.
+/// The purpose of a random draw. Recorded data depend on these numbers: never change one, only add new ones.
 enum class Stream : std::uint32_t {
   level_order = 1,
   factor_level = 2,
@@ -25,8 +25,8 @@ enum class Stream : std::uint32_t {
   masking_noise = 14,
 };
 
-/// Identifies a random draw. The same key always gives the same numbers, whatever else was drawn. A repeated
-/// or void trial therefore does not change the draws of other trials.
+/// Identifies a random draw. The same key always gives the same numbers, whatever else was drawn. Repeating a
+/// trial, or making it void, therefore does not change the draws of other trials.
 struct Key {
   std::uint64_t seed = 0;
   Stream stream = Stream::level_order;
@@ -37,7 +37,7 @@ struct Key {
 /// Turns a counter and a key into 128 random bits, with ten rounds of Philox 4x32 (Salmon et al., SC 2011).
 std::array<std::uint32_t, 4> philox(std::array<std::uint32_t, 4> counter, std::array<std::uint32_t, 2> key);
 
-/// A sequence of random numbers for one key. It gives the same bits on every machine, with and without fused
+/// A sequence of random numbers for one key. It has the same bits on every machine, with and without fused
 /// multiply-add, because it uses only integer arithmetic and exact scaling.
 class Draws {
  public:
@@ -49,7 +49,7 @@ class Draws {
   double uniform(double low, double high) { return low + (high - low) * uniform(); }
   /// Returns an integer uniform in 0 ... n - 1, for n > 0. Rejection avoids the bias of a plain remainder.
   std::uint64_t below(std::uint64_t n);
-  /// Returns a standard normal number, by Marsaglia's polar method with the logarithm of elementary.hpp.
+  /// Returns a standard normal number. Uses Marsaglia's polar method and the logarithm of elementary.hpp.
   double normal();
 
   /// Shuffles in place (Fisher-Yates).

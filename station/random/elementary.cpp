@@ -16,7 +16,7 @@ double log(double x) {
   if (!(x > 0) || !(x <= 1.7976931348623157e308))
     throw std::domain_error("log: the argument must be above 0 and finite");
   int exponent = 0;
-  double m = std::frexp(x, &exponent);  // exact, because it only changes the exponent
+  double m = std::frexp(x, &exponent);  // exact, because frexp only changes the exponent
   if (m < 0.70710678118654752) m *= 2, --exponent;
   const double z = (m - 1) / (m + 1), z2 = z * z;  // |z| < 0.1716
   // 2 atanh(z) = 2 z (1 + z^2/3 + z^4/5 + ...); the remainder after 11 terms is 1e-18.
@@ -37,7 +37,8 @@ double exp(double x) {
 
 double normal_cdf(double x) {
   if (!(std::fabs(x) < 8)) return x > 0 ? 1 : 0;
-  // The series x + x^3 / 3 + x^5 / (3 5) + ... has only terms of the same sign (Marsaglia 2004).
+  // All terms of the series x + x^3 / 3 + x^5 / (3 5) + ... have the same sign, so no digits cancel
+  // (Marsaglia 2004).
   double sum = x, term = x;
   for (int k = 1; std::fabs(term) > 1e-17; ++k) term *= x * x / (2 * k + 1), sum += term;
   return 0.5 + 0.39894228040143267794 * exp(-0.5 * x * x) * sum;

@@ -19,8 +19,7 @@ using terms::RunMode;
 using terms::TrialType;
 
 enum class SessionStatus { running, completed, interrupted, stopped, abandoned };
-/// The reason stored for an interrupted session whose process died. It is written when the database is next
-/// opened.
+/// The reason stored for a session whose process died. It is written when the database is next opened.
 inline constexpr const char* kLostReason = "the process ended without a word";
 inline constexpr const char* kAbandonedReason = "no trial was made";
 
@@ -29,7 +28,8 @@ const char* name(SessionStatus status);
 /// The value of a factor in a trial. Exports have one column per factor.
 using FactorValue = std::variant<double, std::string>;
 
-/// Where the data of a session come from: everything needed to run the session again or to explain it later.
+/// Where the data of a session come from: everything that is needed to run the session again or to explain it
+/// later.
 struct SessionStart {
   std::string participant;
   RunMode run_mode = RunMode::live;
@@ -83,8 +83,8 @@ struct ToneRow {
 
 /// The result of one trial. It is committed as a whole before the next trial begins.
 struct TrialRow {
-  int segment_index = 1;   ///< from 1; the session log sets it, not the caller
-  int trial_index = 0;     ///< from 0 within the session; counts every presented trial
+  int segment_index = 1;   ///< from 1; set by the session log, not by the caller
+  int trial_index = 0;     ///< from 0 within the session; every presented trial counts
   int trial_in_block = 0;  ///< number of the trial within its block; part of the key of its random draws
   TrialType type = TrialType::experimental;
   std::string procedure;
@@ -106,12 +106,14 @@ struct TrialRow {
   /// slope and residual of the regression of time over frames
   std::optional<double> clock_slope_ns_per_frame, clock_residual_ns;
   std::uint64_t state_hash = 0;  ///< hash of the state of the block's procedures after this trial
-  /// What the pick-up says about the stimuli of the trial; of several intervals, the worst counts.
+  /// The verdict on the stimuli of the trial; of several intervals, the worst verdict counts.
   Proof proof = Proof::unproven;
   ProofCause proof_cause = ProofCause::none;
-  std::optional<double> drive_ratio_dB;     ///< measured over planned amplitude; furthest from 0 dB
-  std::optional<double> drive_residual_dB;  ///< what was not planned, relative to the plan
-  std::optional<double> onset_error_us;     ///< measured minus planned onset
+  /// measured amplitude divided by planned amplitude; of several values, the one furthest from 0 dB
+  std::optional<double> drive_ratio_dB;
+  /// the part of the measured vibration that was not planned, relative to the planned vibration
+  std::optional<double> drive_residual_dB;
+  std::optional<double> onset_error_us;  ///< measured minus planned onset
   std::vector<ToneRow> tones;
 };
 
@@ -127,7 +129,7 @@ struct EventRow {
   std::string kind;
   std::string value;
   std::optional<int> trial_index;
-  int segment_index = 1;  ///< from 1; the session log sets it
+  int segment_index = 1;  ///< from 1; set by the session log
 };
 
 }  // namespace turnpoint::records

@@ -6,9 +6,9 @@
 
 namespace turnpoint::rig {
 
-/// Reads rows of numbers from a comma-separated file whose first line must name exactly `columns`. Empty
-/// lines and lines that start with # are skipped. Problems (with the line in that file) go to `findings`; the
-/// readable rows are returned. `needed_by` is the place in the rig file that names this file.
+/// Reads rows of numbers from a comma-separated file whose first line must name exactly `columns`. Skips
+/// empty lines and lines that start with #. Adds problems, with their line in that file, to `findings` and
+/// returns the readable rows. `needed_by` is the place in the rig file that names the file.
 std::vector<std::vector<double>> read_table(const std::string& path, const std::vector<std::string>& columns,
                                             const text::Place& needed_by, text::Findings& findings);
 

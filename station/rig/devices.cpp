@@ -24,8 +24,8 @@ std::string read_uri(TableReader& reader, const std::vector<std::string>& scheme
 
 namespace {
 
-// Checks a URI gpio:name=LINE,name=LINE: it must have exactly the names in `needed`, and may have those in
-// `optional`.
+// Checks a URI gpio:name=LINE,name=LINE. It must contain all names in `needed`, may contain those in
+// `optional`, and must contain no others.
 void check_gpio(TableReader& reader, const std::string& uri, const std::vector<std::string>& needed,
                 const std::vector<std::string>& optional) {
   if (uri.rfind("gpio:", 0) != 0) return;

@@ -7,7 +7,8 @@
 
 namespace turnpoint::rig {
 
-/// Reads the key "uri" of a table. In `schemes`, a scheme that must be followed by something ends with "*".
+/// Reads the key "uri" of a table. `schemes` lists the allowed schemes; "*" at the end of one means that text
+/// must follow it.
 std::string read_uri(text::TableReader& reader, const std::vector<std::string>& schemes,
                      const std::string& allowed);
 

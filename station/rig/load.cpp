@@ -125,7 +125,8 @@ void check_device_channels(TableReader& file, const Rig& rig) {
 
 void check_bands(TableReader& file, const Rig& rig) {
   if (rig.output.rate_Hz <= 0) return;
-  // Above 0.45 of the rate the level depends on the converter's filter, which the rig file does not describe.
+  // Above 0.45 of the sampling rate the level depends on the converter's filter, which the rig file does not
+  // describe.
   const double limit_Hz = terms::kHighestShareOfRate * rig.output.rate_Hz;
   for (const auto* table : file.tables("transducer")) {
     const auto* band = table->find("band_kHz");

@@ -20,17 +20,19 @@ struct Taper {
 enum class Edges { supported, clamped };
 enum class Bending { automatic, on, off };
 enum class WideEnd { left, right };
-/// The theory of a clamped plate; `automatic` is the simplest that meets a scene's tolerance.
+/// The theory for bending of a clamped plate; `automatic` chooses the simplest theory that meets a scene's
+/// tolerance.
 enum class PlateTheory { kirchhoff, mindlin, elastic, automatic };
 
-/// What measured boundaries say about a surface; part of its calibration. SI units.
+/// Parameters of the surface, fitted to measured boundaries. Part of the rig's calibration. SI units.
 struct SurfaceFit {
   struct Parameter {
-    std::string name;                  ///< as physics::name() writes it
-    double change = 0;                 ///< how far the estimate is from the rig file's value
-    double sd = 0;                     ///< standard deviation of the estimate
-    double stated_sd = 0;              ///< in the rig file
-    std::vector<double> correlations;  ///< of the errors, with each of the parameters before it
+    std::string name;      ///< as physics::name() writes it
+    double change = 0;     ///< the estimate minus the value in the rig file
+    double sd = 0;         ///< standard deviation of the estimate
+    double stated_sd = 0;  ///< standard deviation in the rig file
+    /// correlations of its error with those of the parameters before it in the list
+    std::vector<double> correlations;
   };
   std::vector<Parameter> parameters;
 };
@@ -57,7 +59,7 @@ struct Surface {
          modulus_sd_Pa = 0, decay_length_sd_m = 0, clamp_line_sd_m = 0, temperature_sd_K = 0;
   /// Relative change of every length, and of Young's modulus, per kelvin; 0 if not known.
   double expansion_per_K = 0, modulus_per_K = 0;
-  SurfaceFit fit;  ///< empty without a calibration that has measured boundaries
+  SurfaceFit fit;  ///< empty if there is no calibration with measured boundaries
 };
 
 /// One drive element with its band, output channel and displacement of the drive edge at full scale.
@@ -72,8 +74,8 @@ struct Transducer {
   std::vector<ResponsePoint> response;  ///< from response_csv, in order of frequency
 };
 
-/// The audio thread reports to the amplifier's guard once per period, and the guard expects a report every
-/// 100 ms. Two periods must fit into that time.
+/// Longest period of the audio stream. The audio thread reports to the amplifier's guard once per period, and
+/// the guard expects a report every 100 ms. Two periods must fit into 100 ms.
 inline constexpr double longest_period_s = 0.05;
 
 /// The output of the drive: `null:`, `wav:FILE` or `alsa:NAME`.
@@ -83,8 +85,9 @@ struct Output {
   int bits = 24;
   int period_frames = 384;
   int periods = 4;
-  double converter_delay_s = 0;  ///< time from the moment a sample leaves the buffer to the analog output
-  /// channels of an ALSA device that has more than are used; 0: the number that is used
+  /// time from the moment when a sample leaves the buffer to the analog output
+  double converter_delay_s = 0;
+  /// number of channels of an ALSA device that has more channels than are used; 0: no more than are used
   int device_channels = 0;
   std::vector<std::string> allow_plugin;
 };
@@ -130,7 +133,8 @@ struct MaskingNoise {
   double low_Hz = 100, high_Hz = 8000;
 };
 
-/// The map from amplitude to relative friction: the illustrative load-sharing curve or a measured table.
+/// The relation between amplitude and relative friction: the illustrative load-sharing curve or a measured
+/// table.
 struct Friction {
   bool stated = false;    ///< true if the file has a [friction] table
   bool measured = false;  ///< true for a measured table; false for load sharing, which live mode refuses
@@ -144,8 +148,9 @@ struct Friction {
 /// deviations between people.
 struct Finger {
   double impedance_Ns_per_m = 55, impedance_sd_Ns_per_m = 15;
-  double phase_rad = 0, phase_sd_rad = 0;  ///< above zero: force before velocity, as of a mass
-  double contact_m = 0.008;                ///< diameter of the contact
+  /// a phase above zero means that force leads velocity, as for a mass
+  double phase_rad = 0, phase_sd_rad = 0;
+  double contact_m = 0.008;  ///< diameter of the contact
 };
 
 /// Limits that must never be exceeded.
@@ -156,7 +161,7 @@ struct Limits {
   double session_minutes = 60;
 };
 
-/// A station's hardware as described in its rig file; valid once loaded.
+/// A station's hardware as described in its rig file. A loaded Rig is valid.
 struct Rig {
   std::string path, source, sha256;
   std::string name;
@@ -183,11 +188,11 @@ std::vector<std::string> unproven_transducers(const Rig& rig);
 /// std::system_error if the file cannot be read.
 Rig load(const std::string& path);
 
-/// The same for text that is already in memory (a resumed session). Files named in it are searched beside
-/// `path`.
+/// Like load(), for text that is already in memory (a resumed session). Files named in it are looked for in
+/// the folder of `path`.
 Rig parse(const std::string& source, const std::string& path);
 
-/// The number of channels of the stream: at least two, and as many as the rig uses.
+/// Returns the number of channels of the stream: as many as the rig uses, but at least two.
 int channels(const Rig& rig);
 
 /// Names of the materials for which density, modulus, Poisson ratio and yield strength are built in.

@@ -8,7 +8,7 @@ namespace turnpoint::rig {
 inline constexpr int kLastChannel = 7;
 
 /// Reads [marker], [noise] and [capture], which use channels that drive no transducer. Call after the
-/// transducers and the output.
+/// transducers and the output have been read.
 void read_spare_channels(text::TableReader& file, Rig& rig);
 
 }  // namespace turnpoint::rig

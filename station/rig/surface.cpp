@@ -11,10 +11,10 @@ using text::Range;
 using Ends = text::Range::Ends;
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-// Handbook values for common tempers. A rig used for research should give its own. The yield strength is only
-// used to warn about a tension that the material cannot carry. The last two are the relative changes of
-// length and of Young's modulus per kelvin at room temperature (of aluminium, from NIST's fits for 6061-T6);
-// a modulus is left constant where its change depends on the product.
+// Handbook values for common tempers. A rig used for research should state its own values. The yield strength
+// is only used to warn about a tension that the material cannot carry. expansion_per_K and modulus_per_K are
+// the relative changes of length and of Young's modulus per kelvin at room temperature (for aluminium, from
+// NIST's fits for 6061-T6). modulus_per_K is 0 where it depends on the product.
 struct Material {
   const char* name;
   double density_kg_m3, modulus_GPa, poisson, yield_MPa, expansion_per_K, modulus_per_K;
@@ -144,7 +144,7 @@ void read_taper(const text::Value& table, Surface& surface, text::Findings& find
   reader.finish();
 }
 
-/// Standard deviations, and how the surface changes with temperature.
+/// Reads standard deviations, and the changes of the surface with temperature.
 void read_deviations(text::TableReader& reader, Surface& surface) {
   const auto number = [&](const char* key, const Range& range) {
     return reader.maybe_number(key, range).value_or(0);

@@ -28,8 +28,8 @@ physics::Bending bending_of(rig::Bending bending) {
   return physics::Bending::automatic;
 }
 
-/// Returns the plate theory to use. If the rig file does not choose a theory, this is the most exact theory
-/// in which every model can be computed for this surface.
+/// Returns the plate theory for this surface. If the rig file leaves the choice open, this is the most exact
+/// theory in which every model can be computed for the surface.
 physics::PlateTheory theory_of(rig::PlateTheory theory, const rig::Surface& surface) {
   switch (theory) {
     case rig::PlateTheory::kirchhoff:

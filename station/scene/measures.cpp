@@ -38,8 +38,8 @@ ZoneFriction zone_friction(const std::vector<double>& x_m, const std::vector<dou
   return {mean, std::sqrt(std::max(0.0, squares / n - mean * mean))};
 }
 
-/// Returns the last position at which the profile falls below `share` of its last maximum (linear
-/// interpolation). If it never does, returns the end of the profile.
+/// Returns the last position at which the profile falls below the fraction `share` of its last maximum
+/// (linear interpolation). If there is none, returns the end of the profile.
 double last_crossing(const std::vector<double>& x_m, const std::vector<double>& a, std::size_t peak,
                      double share) {
   const double level = share * a[peak];
@@ -133,7 +133,7 @@ double scale_to_friction(const physics::Surface& surface, const physics::Frictio
                       text::number(scene.zone->friction, 4), text::number(mean_at(high), 4)));
     low = high, high *= 2;
   }
-  // Regula falsi (Illinois): the mean falls smoothly with the scale, so a few steps suffice.
+  // Regula falsi (Illinois): the mean friction falls smoothly as the scale rises, so a few steps are enough.
   double at_low = low == 0 ? 1 - scene.zone->friction : mean_at(low) - scene.zone->friction;
   double at_high = mean_at(high) - scene.zone->friction;
   for (int i = 0; i < 60 && high - low > 1e-10 * high; ++i) {

@@ -10,11 +10,11 @@
 
 namespace turnpoint::scene {
 
-/// A plan is measured at this number of evenly spaced points along the surface, ends included.
+/// Number of evenly spaced points along the surface, ends included, at which a plan is evaluated.
 inline constexpr int profile_points = 601;
 
-/// Fills in how the surface will behave: peak displacement, lowest friction, mean and residual of the zone's
-/// friction, cues. `fields` holds each tone's displacement (m) at `profile_points` points.
+/// Fills in the predicted behaviour of the surface: peak displacement, lowest friction, mean and residual of
+/// the zone's friction, cues. `fields` holds each tone's displacement (m) at `profile_points` points.
 void measure(const physics::Surface& surface, const physics::FrictionMap& friction, const rig::Rig& rig,
              const std::vector<physics::Tone>& tones, const std::vector<physics::ToneField>& fields,
              DrivePlan& plan);
@@ -24,8 +24,8 @@ void measure(const physics::Surface& surface, const physics::FrictionMap& fricti
 double scale_to_friction(const physics::Surface& surface, const physics::FrictionMap& friction,
                          const rig::Rig& rig, const std::vector<physics::Tone>& tones, const Scene& scene);
 
-/// Returns the relative change of amplitude that changes friction by `tolerance`, where friction depends most
-/// steeply on amplitude.
+/// Returns the relative change of amplitude that changes friction by `tolerance`, at the amplitude where
+/// friction changes most steeply.
 double amplitude_tolerance(const physics::FrictionMap& friction, double tolerance);
 
 }  // namespace turnpoint::scene

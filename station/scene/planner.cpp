@@ -30,12 +30,12 @@ using text::number;
 
 namespace {
 
-/// No surface is driven as far as this.
+/// The drive edge never moves as far as this.
 constexpr double kMostDrive_m = 1e-3;
 
 constexpr std::size_t kRemembered = 512, kSolutions = 128;
 
-/// Returns a text with everything in a scene that affects its plan. It is the key of the cache.
+/// Returns a text that contains everything in a scene that affects its plan. It is the key of the cache.
 std::string key_of(const Scene& scene) {
   const auto maybe = [](const std::optional<double>& value) {
     return value ? fmt::format("{}", *value) : "-";
@@ -55,9 +55,9 @@ std::string key_of(const Scene& scene) {
   return key;
 }
 
-/// How the surface moves for a set of tones per metre of displacement at the drive edge, so that roving does
-/// not change it. If the chosen model is coarser than `mode`, `fields` are computed with `mode`, because the
-/// rig's limits must not be checked with a coarser model.
+/// How the surface moves for a set of tones, per metre of displacement at the drive edge. It is therefore the
+/// same for all roved strengths. `fields` are computed with the chosen model, or with `mode` if the chosen
+/// model is coarser, because the rig's limits must not be checked with a coarser model.
 struct Solution {
   physics::PlanChoice choice;
   std::vector<double> frequencies_Hz;  ///< computed with the chosen model, rounded to 1 / kGridPerHz
@@ -74,7 +74,7 @@ Model at_least_mode(Model chosen) { return chosen == Model::modes ? Model::modes
 struct Planner::State : ToneDesigner {
   std::map<std::string, DrivePlan> plans;
   std::map<std::string, Solution> solutions;
-  /// planners for the plate theories, if the rig does not choose one
+  /// one planner per plate theory, used if the rig file leaves the choice of the theory open
   std::map<physics::PlateTheory, Planner> by_theory;
 
   using ToneDesigner::ToneDesigner;
@@ -89,7 +89,8 @@ struct Planner::State : ToneDesigner {
   double drive_under_finger_m(const Scene& scene, double frequency_Hz);
 
  private:
-  /// displacement under a finger per displacement of the drive edge, by frequency (Hz) and place (m)
+  /// displacement under a finger divided by that of the drive edge, by frequency (Hz) and position of the
+  /// finger (m)
   std::map<std::pair<double, double>, double> moved_under_finger_;
 };
 
@@ -108,8 +109,8 @@ physics::PlanChoice Planner::State::choose(const Scene& scene, const std::vector
   return physics::choose_model(surface, request);
 }
 
-/// Sets the frequency of each tone that has a boundary so that, according to the model `modes`, the tone's
-/// edge lies at this boundary. Returns false if no frequency does that.
+/// For each tone that has a boundary: finds the frequency for which the tone's edge lies at this boundary
+/// according to the model `modes`. Returns false if there is no such frequency.
 bool Planner::State::place_by_field(const std::vector<WantedTone>& wanted,
                                     std::vector<double>& frequencies_Hz) const {
   for (std::size_t i = 0; i < wanted.size(); ++i) {
@@ -124,7 +125,7 @@ bool Planner::State::place_by_field(const std::vector<WantedTone>& wanted,
   return true;
 }
 
-/// The boundary of a scene is that of its furthest tone.
+/// The boundary of a scene is the one of its furthest tone.
 double boundary_uncertainty_m(const physics::Surface& surface, const Scene& scene,
                               const std::vector<WantedTone>& wanted) {
   if (wanted.empty()) return 0;
@@ -144,7 +145,7 @@ Solution Planner::State::solve(const Scene& scene, const std::vector<WantedTone>
     solution.frequencies_Hz.push_back(tone.frequency_Hz);
   }
   // Zones are designed with the first mode. Their boundary has the error of that model, whichever model is
-  // chosen later.
+  // later chosen for the field.
   const auto placed_by = scene.zone ? std::optional(Model::mode) : std::nullopt;
   solution.choice = choose(scene, tones, placed_by);
   if (solution.choice.model == Model::modes && !place_by_field(wanted, solution.frequencies_Hz))
@@ -212,7 +213,7 @@ void Planner::State::refuse_beyond_limits(const DrivePlan& plan) const {
                                   number(plan.peak_full_scale, 4)));
 }
 
-/// Amplitude of the drive edge that gives the wanted displacement under the rig's finger.
+/// Returns the amplitude of the drive edge that gives the required displacement under the rig's finger.
 double Planner::State::drive_under_finger_m(const Scene& scene, double frequency_Hz) {
   const double finger_m = scene.under_finger->finger_m;
   if (finger_m > surface.length_m)
@@ -266,11 +267,11 @@ DrivePlan Planner::plan(const Scene& scene) {
   auto& plans = state_->plans;
   const auto key = key_of(scene);
   if (const auto found = plans.find(key); found != plans.end()) return found->second;
-  // With roving, almost every scene is new. Clear the cache when it is full, so that it does not grow with
-  // the session.
+  // With roving, almost every scene is new. Clear the cache when it is full, because it would otherwise grow
+  // during the session.
   if (plans.size() >= kRemembered) plans.clear();
-  // These errors of the physics library mean that the scene is impossible: the surface does not have this
-  // edge, or the zone lies beyond the strip.
+  // These errors of the physics library mean that the rig cannot present the scene: the surface does not have
+  // this edge, or the zone lies beyond the strip.
   try {
     return plans.emplace(key, make(scene)).first->second;
   } catch (const std::domain_error& error) {

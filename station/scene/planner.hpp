@@ -31,19 +31,19 @@ struct DrivenTone {
   double phase_rad = 0;    ///< phase at the drive edge
   std::string transducer;
   int channel = 0;
-  double full_scale = 0;  ///< peak at the converter, as a share of full scale
+  double full_scale = 0;  ///< peak value at the converter; 1 is full scale
   /// phase at the converter: `phase_rad` minus the phase shift of the transducer
   double output_phase_rad = 0;
-  std::optional<double> boundary_m;  ///< where this tone alone would put the scene's edge
+  std::optional<double> boundary_m;  ///< where the scene's edge would be with this tone alone
   std::optional<double> turning_point_m, last_peak_m, nearest_resonance_Hz;
-  /// peak displacement at the tone's last maximum, or the largest peak if there is no maximum
+  /// peak displacement at the tone's last maximum, or the largest peak displacement if there is no maximum
   double displacement_m = 0;
   double gain = 0;
 };
 
 /// How this rig presents a scene: the tones, the chosen model with the reason and its error bounds, and the
-/// predicted behaviour of the surface. The error of the model and the uncertainty of the rig's parameters are
-/// kept separate.
+/// predicted behaviour of the surface. The error of the model and the uncertainty from the rig's parameters
+/// are separate.
 struct DrivePlan {
   Scene scene;
   std::vector<DrivenTone> tones;  ///< in order of falling frequency
@@ -52,8 +52,9 @@ struct DrivePlan {
   double error_bound_m = 0;    ///< model error of the boundary
   double level_bound_dB = 0;   ///< model error of the level at the last maximum
   double amplitude_bound = 0;  ///< relative model error of the amplitude
-  double uncertainty_m = 0;    ///< one standard deviation of the boundary, from those in the rig file
-  std::string reason;          ///< why this model was chosen
+  /// standard deviation of the boundary, from the standard deviations in the rig file
+  double uncertainty_m = 0;
+  std::string reason;                                             ///< why this model was chosen
   physics::PlateTheory theory = physics::PlateTheory::kirchhoff;  ///< plate theory, if the surface is a plate
   /// How far the boundary would move with the next more exact plate theory; empty for membranes.
   std::optional<double> shear_shift_m;
@@ -64,25 +65,29 @@ struct DrivePlan {
   double lowest_friction = 1;
   /// largest displacement anywhere on the surface, if all tones were in phase
   double peak_displacement_m = 0;
-  double peak_full_scale = 0;  ///< largest value of all converter channels, if all tones were in phase
+  double peak_full_scale = 0;  ///< largest value at any converter channel, if all tones were in phase
   double crest_factor = 0;
   std::vector<physics::Product> audible_products;
   Cues cues;
   std::vector<physics::Warning> warnings;
 };
 
-/// A planned scene under the rig's finger, with the drive unchanged. Displacements are means over the
-/// finger's contact, root of the summed squares over tones; friction is averaged over the fingertip.
+/// A planned scene under the rig's finger. The drive is the same as without a finger. Displacements are means
+/// over the finger's contact, combined over the tones as the root of summed squares. Friction is averaged
+/// over the fingertip.
 struct UnderFinger {
-  double finger_m = 0;        ///< place of the finger: the scene's, or the last maximum of the highest tone
-  double free_m = 0;          ///< displacement there without a finger
-  double displacement_m = 0;  ///< displacement under the finger
-  double least_m = 0, most_m = 0;  ///< displacement for fingers one standard deviation heavier or lighter
-  double free_friction = 1, friction = 1;  ///< at `finger_m`: without a finger, and under the finger
-  double lowest_friction = 1;              ///< lowest friction for any place of the finger
-  /// under a finger in the zone: mean friction, and rms deviation from it
+  /// position of the finger: as the scene says, or at the last maximum of the highest tone
+  double finger_m = 0;
+  double free_m = 0;          ///< displacement at `finger_m` without a finger
+  double displacement_m = 0;  ///< displacement at `finger_m` under the finger
+  /// smallest and largest displacement for fingers one standard deviation from the rig's finger
+  double least_m = 0, most_m = 0;
+  /// at `finger_m`: friction without a finger's load, and under the finger
+  double free_friction = 1, friction = 1;
+  double lowest_friction = 1;  ///< lowest friction for any position of the finger
+  /// for a finger in the zone: mean friction, and rms deviation from this mean
   std::optional<double> zone_friction, residual;
-  /// distance by which a moving finger displaces the edge of the highest tone
+  /// how far the edge of the highest tone is shifted for a moving finger
   std::optional<double> boundary_shift_m;
 };
 
@@ -93,21 +98,21 @@ class Planner {
   explicit Planner(const rig::Rig& rig);
   ~Planner();
   Planner(Planner&&) noexcept;
-  /// Copies the caches too, so that another thread can use the copy.
+  /// Copies the caches as well. Another thread can use the copy.
   Planner(const Planner& other);
 
   /// Returns the plan with the cheapest model that meets the scene's tolerance. Throws Unreachable if the
   /// surface, a transducer's band, the converter or the rig's limits cannot present the scene.
   DrivePlan plan(const Scene& scene);
 
-  /// The displacement of a plan (m, root of summed squares over the tones) and the friction averaged over the
-  /// fingertip, at evenly spaced points along the surface, ends included.
+  /// At evenly spaced points along the surface, ends included: the displacement of a plan (m, root of summed
+  /// squares over the tones) and the friction averaged over the fingertip.
   struct Profile {
     std::vector<double> x_m, displacement_m, friction;
   };
   Profile profile(const DrivePlan& plan, int points);
 
-  /// The plan's scene under a finger. Takes some 100 ms, on a thick plate 1 s per tone.
+  /// Computes the plan's scene under a finger. Takes some 100 ms; on a thick plate 1 s per tone.
   UnderFinger under_finger(const DrivePlan& plan);
 
   const physics::Surface& surface() const;

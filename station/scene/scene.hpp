@@ -19,13 +19,14 @@ struct ToneTarget {
 struct ZoneTarget {
   double from_m = 0;
   double friction = 1;  ///< desired mean over the zone, relative to the friction of the surface at rest
-  int tones = 1;        ///< the most tones that may be used
-  /// the tones are designed for this friction; then their amplitudes are scaled to give `friction`
+  int tones = 1;        ///< largest number of tones
+  /// if set, the tones are designed for this friction, and then their amplitudes are scaled to give
+  /// `friction`
   std::optional<double> design_friction;
 };
 
-/// A displacement wanted under the rig's finger, as a mean over its contact. The drive is the same wherever
-/// the finger then goes.
+/// A displacement that is wanted under the rig's finger, as a mean over the finger's contact. The drive is
+/// computed for a finger at `finger_m` and does not change when the finger moves.
 struct FingerTarget {
   double displacement_m = 0;
   double finger_m = 0;  ///< place of the finger
@@ -36,19 +37,19 @@ struct Tolerance {
   std::optional<double> boundary_m, level_dB, friction;
 };
 
-/// What one interval presents on the surface, in SI units. It is exactly one of: a boundary alone, explicit
-/// tones, or a zone (which has a boundary too).
+/// What one interval presents on the surface, in SI units: either a boundary alone, or explicit tones, or a
+/// zone (which also has a boundary).
 struct Scene {
   std::string name;
   std::optional<double> boundary_m;
   physics::Edge edge;
-  /// values at the last maximum of the free surface; for a boundary alone, one of these two or `under_finger`
-  /// is set
+  /// values at the last maximum of the free surface; for a boundary alone, exactly one of displacement_m,
+  /// friction and under_finger is set
   std::optional<double> displacement_m, friction;
   std::optional<FingerTarget> under_finger;
   std::vector<ToneTarget> tones;
   std::optional<ZoneTarget> zone;
-  double rove_dB = 0;  ///< random change of all displacements in this trial
+  double rove_dB = 0;  ///< random change of all displacements, drawn for this trial
   double ramp_s = 0.050;
   Tolerance tolerance;
 };

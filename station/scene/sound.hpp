@@ -8,10 +8,10 @@
 
 namespace turnpoint::scene {
 
-/// An upper bound of the airborne ultrasound at the participant's ear. It is computed with Rayleigh's
-/// integral, with the clamp frame as an infinite baffle and without absorption, for the loudest place at the
-/// ear's distance (physics/airborne.hpp). Of all third-octave bands, this is the band that exceeds its limit
-/// most or comes nearest to it.
+/// An upper bound of the airborne ultrasound at the participant's ear, for the third-octave band that exceeds
+/// its limit most or comes nearest to it. It is computed with Rayleigh's integral for the loudest place at
+/// the ear's distance, with the clamp frame as an infinite baffle and without absorption
+/// (physics/airborne.hpp).
 struct SoundBound {
   double level_dB = 0;      ///< rms level of all tones in the band, re 20 uPa
   double allowed_dB = 0;    ///< limit of the band, see terms::allowed_sound_dB()
@@ -23,7 +23,8 @@ struct SoundBound {
 std::optional<SoundBound> sound_bound(const rig::Rig& rig, std::span<const physics::Tone> tones,
                                       physics::Model model);
 
-/// The smallest distance that the bound assumes between the participant's ear and the surface.
+/// The distance between the participant's ear and the surface for which the bound is computed. The ear must
+/// not be closer.
 inline constexpr double kEarDistance_m = 0.4;
 
 }  // namespace turnpoint::scene

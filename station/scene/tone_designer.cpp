@@ -14,8 +14,8 @@ using text::number;
 
 static_assert(terms::kAudible_Hz == physics::audible_limit_Hz);
 
-/// An edge defined by a percentage, a peak or a turning point depends only on the surface, so one map serves
-/// all displacements. The map covers the tones that this rig can play.
+/// An edge defined by a percentage, a peak or a turning point does not depend on the displacement, so one map
+/// is enough. The map covers the frequencies that this rig can play.
 const physics::BoundaryMap& ToneDesigner::map_for(const physics::Edge& edge) {
   const auto key = physics::format(edge);
   auto found = maps_.find(key);
@@ -41,13 +41,13 @@ double ToneDesigner::frequency_for(double boundary_m, const physics::Edge& edge,
   const auto options = edge_options(edge, displacement_m);
   if (edge.kind == physics::Edge::Kind::friction) {
     // An edge defined by friction depends on the displacement. Roving changes the displacement in every
-    // trial, so a map would be used only once.
+    // trial, so each map would be used only once.
     if (const auto frequency = physics::solve_frequency_Hz(surface, options, boundary_m)) return *frequency;
   } else if (const auto frequency = map_for(edge).frequency_Hz(boundary_m)) {
     return *frequency;
   }
   // The rig's tones cannot put the edge there. Use a map over all frequencies, so that the message can say
-  // whether the surface could.
+  // whether the surface itself could.
   const physics::BoundaryMap whole(surface, options);
   if (const auto frequency = whole.frequency_Hz(boundary_m)) return *frequency;
   throw Unreachable(fmt::format("no frequency puts the {} edge at {} mm: {}", physics::format(edge),
@@ -56,7 +56,7 @@ double ToneDesigner::frequency_for(double boundary_m, const physics::Edge& edge,
 
 double ToneDesigner::target_displacement(const Scene& scene) const {
   if (scene.displacement_m) return *scene.displacement_m;
-  if (scene.under_finger) return scene.under_finger->displacement_m;  // the planner sets the drive
+  if (scene.under_finger) return scene.under_finger->displacement_m;  // the planner computes the drive later
   const double wanted = scene.friction.value_or(1.0);
   if (const auto displacement = friction.displacement_m(wanted)) return *displacement;
   throw Unreachable(fmt::format("relative friction {} is below the lowest that this surface gives, {}",

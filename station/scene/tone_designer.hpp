@@ -14,9 +14,10 @@
 
 namespace turnpoint::scene {
 
-/// Planned tones are rounded to a grid. The reason: the last bits of sines and logarithms differ between
-/// processors and C libraries, and the same session must give the same samples everywhere. The grid is far
-/// too fine to matter: 1 uHz, 1 fm (-180 dB re 1 um), 1 nrad.
+/// Frequencies, amplitudes and phases of planned tones are rounded to multiples of 1 uHz, 1 fm (-180 dB re 1
+/// um) and 1 nrad. The reason: the last bits of sines and logarithms differ between processors and C
+/// libraries, but the same session must give the same samples everywhere. The steps are far too small to
+/// matter.
 inline constexpr double kGridPerHz = 1e6, kGridPerMetre = 1e15, kGridPerRadian = 1e9;
 inline double on_grid(double value, double per_unit) { return std::round(value * per_unit) / per_unit; }
 
@@ -26,7 +27,7 @@ struct WantedTone {
   double displacement_m = 0;  ///< displacement at the tone's last maximum
   double phase_rad = 0;
   physics::Edge edge;
-  std::optional<double> boundary_m;  ///< required position of the tone's own edge; empty for tones of a zone
+  std::optional<double> boundary_m;  ///< required position of this tone's edge; empty for tones of a zone
 };
 
 /// Finds the tones that a scene needs, from the first mode of this rig's surface. Caches boundary maps and

@@ -9,7 +9,7 @@ namespace turnpoint::scene {
 void assign_transducer(const rig::Rig& rig, DrivenTone& tone);
 
 /// Return the lowest and the highest frequency that the transducers can play. The lowest is at least
-/// `preferred_Hz` if the bands extend above it; the highest is below `limit_Hz`.
+/// `preferred_Hz`, unless all bands lie below it. The highest is at most `limit_Hz`.
 double lowest_frequency(const rig::Rig& rig, double preferred_Hz);
 double highest_frequency(const rig::Rig& rig, double limit_Hz);
 

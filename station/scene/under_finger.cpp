@@ -13,8 +13,8 @@ namespace {
 
 constexpr int points = 301;
 
-/// Displacement of each tone of a plan at evenly spaced points, and the load of a finger at these points and,
-/// last, at the finger's place.
+/// For each tone of a plan: the displacement at evenly spaced points, and the load of a finger at these
+/// points. The last load is that at the finger's position.
 struct Loaded {
   std::vector<double> x_m;
   std::vector<physics::ToneField> fields;  ///< displacements in m
@@ -38,8 +38,8 @@ Loaded solve(const physics::Surface& surface, const physics::Finger& finger, phy
   return all;
 }
 
-/// Returns the friction under a finger at each place along the surface, averaged over the fingertip. A finger
-/// reduces a tone by the same factor everywhere under it.
+/// Returns the friction under a finger at each position along the surface, averaged over the fingertip. The
+/// finger reduces each tone by one factor for its whole contact.
 std::vector<double> felt(const Loaded& loaded, const physics::FrictionMap& friction, double fingertip_m,
                          const physics::Finger& finger) {
   std::vector<double> all;

@@ -12,10 +12,10 @@ class ClockWatch {
 
   struct News {
     std::optional<double> suspended_s;  ///< how long the machine slept
-    std::optional<double> jump_s;       ///< how much the wall clock was changed, suspend not counted
+    std::optional<double> jump_s;       ///< how much the wall clock was changed, not counting time asleep
   };
-  /// Returns what happened since the previous call. Slow corrections by a time service (at most 500 ppm) do
-  /// not count as a jump.
+  /// Returns what has happened since the previous call. Slow corrections by a time service (at most 500 ppm)
+  /// do not count as a jump.
   News look(const Clocks& now) noexcept;
 
  private:

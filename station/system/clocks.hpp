@@ -3,7 +3,7 @@
 
 namespace turnpoint::system {
 
-/// Returns CLOCK_MONOTONIC in nanoseconds. All events in the station have times of this clock.
+/// Returns CLOCK_MONOTONIC in nanoseconds. The times of all events in the station are from this clock.
 std::int64_t monotonic_ns() noexcept;
 
 /// Returns CLOCK_MONOTONIC_RAW minus CLOCK_MONOTONIC in ns. The difference is the sum of all corrections that
@@ -21,7 +21,7 @@ struct Clocks {
 };
 Clocks read_clocks() noexcept;
 
-/// Sleeps until that time. Signals do not end the sleep.
+/// Sleeps until `time_ns` on CLOCK_MONOTONIC. Signals do not end the sleep.
 void sleep_until_ns(std::int64_t time_ns) noexcept;
 
 }  // namespace turnpoint::system

@@ -21,7 +21,7 @@ class FileDescriptor {
 
   bool is_open() const noexcept { return number_ >= 0; }
   int get() const noexcept { return number_; }
-  /// Gives the descriptor up; the caller must close it.
+  /// Gives up ownership and returns the descriptor; the caller must close it.
   int release() noexcept { return std::exchange(number_, -1); }
 
  private:

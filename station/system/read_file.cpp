@@ -16,7 +16,7 @@ namespace {
 
 }  // namespace
 
-// O_NONBLOCK prevents that opening a pipe waits for a writer.
+// With O_NONBLOCK, opening a pipe does not wait for a writer.
 FileReader::FileReader(const std::string& path)
     : path_(path), file_(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK)) {
   if (!file_.is_open()) refuse(path_, errno);

@@ -20,16 +20,16 @@
 namespace turnpoint::system {
 namespace {
 
-constexpr std::size_t used_stack = 256 * 1024;  ///< in bytes; enough for any real-time thread here
+constexpr std::size_t used_stack = 256 * 1024;  ///< in bytes; enough for any real-time thread of the station
 
-// Touches the stack that the thread will use, so that no page of it has to be loaded later.
+// Touches 64 KiB of the stack, so that these pages are loaded before the thread needs them.
 void prefault_stack() noexcept {
   volatile unsigned char stack[64 * 1024];
   for (std::size_t k = 0; k < sizeof stack; k += 1024) stack[k] = 0;
 }
 
-/// Reads a line of /proc/self/maps. Returns its memory range if the range should be locked: the heap, and
-/// readable files such as the program and its libraries.
+/// Reads a line of /proc/self/maps. Returns its memory range if it should be locked: the heap, or a mapped
+/// file that can be read, such as the program and its libraries.
 std::optional<MemoryRange> lockable(const std::string& line) {
   std::istringstream words(line);
   std::string range, rights, offset, device, path;

@@ -11,14 +11,14 @@ struct Rights {
   bool asked = false;     ///< whether rights were requested; a synchronous stream needs none
   int fifo_priority = 0;  ///< 0: the thread is not real-time
   bool memory_locked = false;
-  std::string note;  ///< why a right was denied; "" if none was
+  std::string note;  ///< why a right was denied or what is not locked; "" if there is nothing to say
 };
 
 /// Locks memory, so that the audio thread never waits for a page. Call this before the thread starts. It
-/// locks the program, its libraries, the heap as it is now, and the given ranges. Objects that were made by a
-/// thread other than the first are not in the heap, so their ranges must be given. `note` in the result says
-/// why locking failed. If it succeeded, `note` is `left_out`: memory that the audio thread uses but that is
-/// in no range. mlockall is not used because it also pins pages that a garbage collector gives back:
+/// locks the program, its libraries, the heap as it is now, and the given ranges. Objects that another thread
+/// than the first has made are not in the heap, so their ranges must be given. If locking failed, `note` in
+/// the result says why; otherwise it is `left_out`, a text about memory that the audio thread uses but that
+/// is in no range. mlockall is not used because it would also pin pages that a garbage collector gives back:
 /// madvise(MADV_DONTNEED) then fails, and Qt's JavaScript engine, which expects zeroed pages, crashes.
 Rights lock_memory(const std::vector<MemoryRange>& ranges, const std::string& left_out = "");
 

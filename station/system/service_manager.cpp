@@ -18,11 +18,12 @@ void notify_service_manager(std::string_view state) {
   address.sun_family = AF_UNIX;
   if (path == nullptr || std::strlen(path) >= sizeof address.sun_path) return;
   std::strcpy(address.sun_path, path);
-  // '@' marks a name in the abstract namespace, which begins with a zero byte
+  // '@' at the start of a name means the abstract namespace, where the first byte is zero
   if (address.sun_path[0] == '@') address.sun_path[0] = '\0';
   const FileDescriptor socket(::socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0));
   if (!socket.is_open()) return;
-  // Ignore failure: a manager that does not receive the state restarts the station, and its journal says why.
+  // Failure can be ignored: if the manager does not receive the state, it restarts the station, and its
+  // journal says why.
   [[maybe_unused]] const auto sent = ::sendto(
       socket.get(), state.data(), state.size(), MSG_NOSIGNAL, reinterpret_cast<const sockaddr*>(&address),
       static_cast<socklen_t>(offsetof(sockaddr_un, sun_path) + std::strlen(path)));

@@ -7,8 +7,8 @@ namespace turnpoint::system {
 /// nothing if no service manager started the process.
 void notify_service_manager(std::string_view state);
 
-/// Returns the interval at which to report to the service manager's watchdog, in ms: half of the longest
-/// interval that it allows. Returns 0 if no watchdog watches this process.
+/// Returns the interval, in ms, at which to report to the service manager's watchdog: half of the longest
+/// interval that the watchdog allows. Returns 0 if no watchdog watches this process.
 int watchdog_interval_ms();
 
 }  // namespace turnpoint::system

@@ -16,7 +16,7 @@ namespace {
 
 constexpr int kSignals[] = {SIGTERM, SIGINT, SIGHUP};
 
-/// These are global because a signal handler cannot be given an argument.
+/// Global variables, because a signal handler cannot be given an argument.
 std::atomic<int> wake_descriptor = -1;
 std::atomic<int> first_signal = 0;
 static_assert(std::atomic<int>::is_always_lock_free);

@@ -9,9 +9,10 @@
 namespace turnpoint::system {
 
 /// Catches the signals that ask the program to end: SIGTERM (from the service manager, also at shutdown),
-/// SIGINT and SIGHUP. Before take_over(), each signal kills the process at once, as by default. After
-/// take_over(), the first signal is only recorded, so that the program can shut down cleanly. To learn of it,
-/// call wait(), watch descriptor(), or poll told(). A second signal of the same kind kills the process.
+/// SIGINT and SIGHUP. Before take_over(), each of them kills the process at once, as by default. After
+/// take_over(), the first signal is only recorded, so that the program can shut down cleanly. The program
+/// learns of the signal from wait(), descriptor() or told(). A second signal of the same kind kills the
+/// process.
 ///
 /// Only one object may exist at a time, because the signal handler finds its eventfd in a global variable.
 /// The handler only records the signal and writes to the eventfd.

@@ -20,8 +20,8 @@ namespace fs = std::filesystem;
   throw std::system_error(code, std::generic_category(), "writing " + path);
 }
 
-/// Follows symbolic links that belong to this user or to the system, and returns the file to write. Throws
-/// for a link that another user has made.
+/// Follows symbolic links and returns the file to write. Throws for a link that belongs to neither this user
+/// nor root.
 std::string destination(const std::string& path) {
   struct stat status {};
   if (::lstat(path.c_str(), &status) != 0 || !S_ISLNK(status.st_mode)) return path;

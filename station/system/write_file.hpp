@@ -8,8 +8,8 @@
 
 namespace turnpoint::system {
 
-/// Writes a whole file, or changes nothing. The bytes go to PATH.new; commit() syncs that file and renames it
-/// to PATH. `mode` is reduced by the process's umask. A device or a pipe is written directly.
+/// Writes a file completely or leaves it unchanged. The bytes go to PATH.new; commit() syncs that file and
+/// renames it to PATH. `mode` is reduced by the process's umask. A device or a pipe is written directly.
 ///
 /// It is safe for root to write into another user's folder: a symbolic link that another user has made is
 /// refused, and whatever exists as PATH.new is replaced and never followed. All functions throw
@@ -29,7 +29,7 @@ class FileWriter {
   FileDescriptor file_;
 };
 
-/// Writes a file whose bytes are already complete, in the same way.
+/// Writes a file in the way of FileWriter, if all its bytes are already in memory.
 void write_file(const std::string& path, std::string_view bytes, mode_t mode = 0666);
 
 }  // namespace turnpoint::system

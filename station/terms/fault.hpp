@@ -4,9 +4,9 @@
 
 namespace turnpoint::terms {
 
-/// Everything that can go wrong in the room. The part that finds a fault (amplifier guard, audio stream,
-/// panel, store) chooses its kind, and the kind is passed on unchanged to the page that explains it. Each
-/// kind has its own page.
+/// Everything that can go wrong in the room. The part of the station that finds a fault (amplifier guard,
+/// audio stream, panel, store) chooses its kind. The kind is passed on unchanged to the page that explains
+/// the fault. Each kind has its own page.
 enum class FaultKind {
   other,                ///< a fault without a kind of its own; see the detail
   converter_gone,       ///< the converter was unplugged, or its driver gave up
@@ -48,7 +48,8 @@ const char* name(FaultKind kind);
 /// Describes the kind in plain English for messages: "emergency stop pressed".
 const char* describe(FaultKind kind);
 
-/// A fault, or the reason why the station refuses something: its kind, and details that the station found.
+/// A fault, or the reason why the station refuses something: its kind, and details from the part that found
+/// it.
 struct Fault {
   FaultKind kind = FaultKind::other;
   std::string detail;  ///< for the log and for the small print on a page; may be ""

@@ -3,26 +3,25 @@
 
 namespace turnpoint::terms {
 
-/// A tone below this frequency may be audible, and the stricter limit of airborne sound applies. This is the
-/// lower end of the third-octave band around 25 kHz.
+/// A tone below this frequency may be audible, and the stricter limit of airborne sound applies to it. It is
+/// the lower end of the third-octave band around 25 kHz.
 inline constexpr double kAudible_Hz = 22400;
 
-/// The recommended limit of airborne sound (rms, re 20 uPa) in the third-octave band of a frequency: 75 dB in
-/// the bands up to 20 kHz, 110 dB above. For workplaces: INIRC/IRPA, Health Physics 46 (1984) 969; Health
-/// Canada, Safety Code 24 (1991). For the public INIRC/IRPA recommends 70 and 100 dB.
+/// Returns the recommended limit of airborne sound (rms, re 20 uPa) in the third-octave band of a frequency:
+/// 75 dB in the bands up to 20 kHz, 110 dB above. These are limits for workplaces: INIRC/IRPA, Health Physics
+/// 46 (1984) 969; Health Canada, Safety Code 24 (1991). For the public, INIRC/IRPA recommends 70 and 100 dB.
 constexpr double allowed_sound_dB(double frequency_Hz) { return frequency_Hz < kAudible_Hz ? 75 : 110; }
 
-/// Highest frequency of a tone as a share of the sampling rate. Common converters pass frequencies up to this
-/// share.
+/// Highest frequency of a tone divided by the sampling rate. Common converters pass frequencies up to this
+/// fraction.
 inline constexpr double kHighestShareOfRate = 0.45;
 
 /// A touch counts as an answer only if no other touch follows within this time. The reason: when a hand lands
 /// on the panel, its fingers touch it within about 30 ms of each other.
 inline constexpr std::int64_t kOneTouch_ns = 40'000'000;
-/// The page waits this long before it passes a touch to the session: kOneTouch_ns, and some margin for
-/// timers.
+/// The page waits this long before it passes a touch to the session: kOneTouch_ns and a margin for timers.
 inline constexpr std::int64_t kTouchToAnswer_ns = 60'000'000;
-/// The session waits this long for touches with an earlier time stamp that may still arrive.
+/// The session waits this long for touches that have an earlier time stamp but arrive late.
 inline constexpr std::int64_t kWatermark_ns = 80'000'000;
 static_assert(kOneTouch_ns < kTouchToAnswer_ns && kTouchToAnswer_ns < kWatermark_ns);
 

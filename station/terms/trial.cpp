@@ -4,7 +4,7 @@ namespace turnpoint::terms {
 
 namespace {
 
-// The words are in the order of the enumerators, like the arrays in trial.hpp.
+// The words are in the order of the enumerators.
 constexpr const char* kOutcomes[] = {"answered", "timeout", "anticipation", "aborted", "fault"};
 constexpr const char* kTypes[] = {"experimental", "catch", "practice", "warmup"};
 constexpr const char* kZeros[] = {"go_cue", "change", "interval_off", "first_contact", "lift_off"};

@@ -7,15 +7,15 @@ namespace turnpoint::terms {
 /// How a trial ended.
 enum class Outcome { answered, timeout, anticipation, aborted, fault };
 
-/// The purpose of a trial. Only experimental trials are fitted. Catch trials are easy, and test whether the
-/// participant pays attention.
+/// The purpose of a trial. Only experimental trials are used in fits. Catch trials are easy; they test
+/// whether the participant pays attention.
 enum class TrialType { experimental, catch_trial, practice, warmup };
 
 /// The moment from which response times are measured.
 enum class ResponseZero { go_cue, change, interval_off, first_contact, lift_off };
 
-/// Who answers. live: a person, for the study. pilot: a person, not for the study. simulated: a simulated
-/// observer.
+/// Who answers, and for what. live: a person, for the study. pilot: a person, not for the study. simulated: a
+/// simulated observer.
 enum class RunMode { live, pilot, simulated };
 
 inline constexpr std::array outcomes{Outcome::answered, Outcome::timeout, Outcome::anticipation,

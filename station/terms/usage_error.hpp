@@ -7,9 +7,9 @@ namespace turnpoint::terms {
 /// understand or that this station cannot do. The message names the value and what is allowed; the programs
 /// exit with status 2.
 ///
-/// Other errors have other types: a failure at run time (a disk, a device) is any other exception, with exit
-/// status 1. If one part of the program breaks another's contract, that is a std::logic_error, with exit
-/// status 70 and the request to report it.
+/// Other errors have other types. A breach of contract between parts of the program is a std::logic_error
+/// (exit status 70, with the request to report it). A failure at run time (a disk, a device) is any other
+/// exception (exit status 1).
 class UsageError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;

@@ -24,7 +24,7 @@ std::string quoted(const std::string& plain) {
   return out + "\"";
 }
 
-/// JSON has no number for infinity or NaN, so these are written as text.
+/// JSON has no numbers for infinity and NaN, so they are written as text.
 std::string number_text(double number) {
   if (number - number == 0) return exact(number);
   return number > 0 ? "\"inf\"" : number < 0 ? "\"-inf\"" : "\"nan\"";

@@ -3,8 +3,8 @@
 
 namespace turnpoint::text {
 
-/// Formats a number for people; no other code does. Prints at most `digits` significant digits, no trailing
-/// zeros, and no exponent between 1e-4 and 1e9. Returns "none" for infinity and NaN.
+/// Formats a number for people. All code uses this function for that. Prints at most `digits` significant
+/// digits, no trailing zeros, and no exponent between 1e-4 and 1e9. Returns "none" for infinity and NaN.
 std::string number(double value, int digits = 6);
 
 /// Rounds an estimate to two digits of its uncertainty (a standard error or deviation, see uncertainty()) and
@@ -12,16 +12,16 @@ std::string number(double value, int digits = 6);
 /// uncertainty is not a positive finite number.
 std::string estimated(double value, double uncertainty);
 
-/// Returns the uncertainty of an estimate from its interval: half the distance to the nearer end, which is
-/// about one standard error for a 95 % interval. If the estimate lies on an end, returns a quarter of the
-/// interval's width.
+/// Returns the uncertainty of an estimate from its confidence interval: the distance to the nearer end,
+/// halved, which is about one standard error for a 95 % interval. If the estimate lies on an end, returns a
+/// quarter of the interval's width.
 double uncertainty(double value, double low, double high);
 
 /// Formats a number for files: the shortest decimal text that reads back as the same double; "n/a" for
 /// infinity and NaN.
 std::string exact(double value);
 
-/// Lower-case hexadecimal SHA-256 (FIPS 180-4) of the bytes.
+/// Returns the SHA-256 (FIPS 180-4) of the bytes in lower-case hexadecimal.
 std::string sha256(const std::string& bytes);
 
 }  // namespace turnpoint::text

@@ -16,7 +16,7 @@ struct Place {
 struct Problem {
   Place place;
   std::string what;
-  std::string allowed;  ///< may be empty if `what` is enough
+  std::string allowed;  ///< what would be correct; may be empty if `what` says enough
 };
 
 /// Returns `file:line:column: what; allowed`. Parts that are not set are left out.

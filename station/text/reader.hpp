@@ -39,8 +39,9 @@ std::string titled(const std::string& list, const Value& table);
 std::string quoted_list(const std::vector<std::string>& words);
 
 /// Reads one table key by key. Each getter marks its key as known; finish() reports all other keys and
-/// suggests the nearest known one. If a value has the wrong type or is out of range, the getter reports a
-/// problem and returns a harmless value, so that reading can continue. The table must outlive the reader.
+/// suggests the nearest known key for each. If a value has the wrong type or is out of range, the getter
+/// reports a problem and returns a valid value instead, so that reading can continue. The table must outlive
+/// the reader.
 class TableReader {
  public:
   /// `name` is the dotted path that appears in messages and in the list of defaults; "" for the whole file.
@@ -48,7 +49,8 @@ class TableReader {
 
   /// Returns the raw value and marks the key as known; nullptr if the key is absent.
   const Value* take(const std::string& key);
-  /// Like take(), but reports a problem if the key is absent. `what` says in the message what the key is for.
+  /// Like take(), but reports a problem if the key is absent. `what` is the part of the message that says
+  /// what the key is for.
   const Value* require(const std::string& key, const std::string& what);
   bool has(const std::string& key) const { return table_->find(key) != nullptr; }
 

@@ -10,9 +10,9 @@ namespace turnpoint::text {
 
 namespace {
 
-// The standard defines the round constants as the fractional parts of the cube roots of the first 64 primes.
-// The start values are those of the square roots of the first 8 primes. They are computed here, so that no
-// table can contain a typing error.
+// The standard defines the round constants as the first 32 bits of the fractional parts of the cube roots of
+// the first 64 primes, and the start values as those of the square roots of the first 8 primes. They are
+// computed here, because a table could contain a typing error.
 std::uint32_t fractional_bits(unsigned prime, int root) {
   // Finds, by bisection in 128 bits, the largest integer n with n^root <= prime * 2^(32 root), and returns
   // its low 32 bits.

@@ -8,8 +8,8 @@
 #include "station/text/toml_scan.hpp"
 
 // Some malformed files trip assertions of toml++ 3.3, for example a key that begins with an invalid byte. An
-// abort would take the station down, so assertions become exceptions. With NDEBUG defined, toml++ would
-// assume that its conditions hold, so NDEBUG must be undefined.
+// abort would take the station down, so assertions are turned into exceptions. NDEBUG must be undefined: with
+// NDEBUG, toml++ tells the compiler that its assertions always hold.
 #undef NDEBUG
 namespace turnpoint::text {
 namespace {

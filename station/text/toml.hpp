@@ -9,8 +9,8 @@ namespace turnpoint::text {
 
 struct Entry;
 
-/// One value of a TOML document and its place in the file. A table keeps the order of the file, which toml++
-/// does not.
+/// One value of a TOML document and its place in the file. The keys of a table are in the order of the file
+/// (toml++ sorts them).
 struct Value {
   enum class Kind { boolean, integer, number, string, date, array, table };
   Kind kind = Kind::table;
@@ -20,7 +20,7 @@ struct Value {
   double number = 0;           ///< also set for an integer
   std::string string;          ///< in UTF-8
   std::vector<Value> items;    ///< the values of an array
-  std::vector<Entry> entries;  ///< for a table, in file order
+  std::vector<Entry> entries;  ///< the keys of a table, in file order
 
   /// Returns the entry of a table with this key, or nullptr.
   const Entry* find(const std::string& key) const;
@@ -33,8 +33,8 @@ struct Entry {
   Value value;
 };
 
-/// Parses `source`. `path` appears in the places of problems. Throws BadInput with the place of a syntax
-/// error, of a list with more than 10 000 items, or of a key with more than 16 parts.
+/// Parses `source`. `path` is the file name in the places of problems. Throws BadInput with the place of a
+/// syntax error, of a list with more than 10 000 items, or of a key with more than 16 parts.
 Value parse_toml(const std::string& source, const std::string& path);
 
 /// Names the type of a value for messages: `a number`, `text`, `a table`, ...

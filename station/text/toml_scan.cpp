@@ -15,7 +15,8 @@ struct Character {
   std::size_t bytes = 1;
 };
 
-// Decodes the UTF-8 character at `at`. An invalid character counts as a single byte; the parser reports it.
+// Decodes the UTF-8 character at `at`. An invalid byte counts as a character of its own; the parser reports
+// it.
 Character character_at(std::string_view text, std::size_t at) {
   const auto lead = static_cast<unsigned char>(text[at]);
   const std::size_t bytes = lead < 0x80 ? 1 : lead >= 0xF0 ? 4 : lead >= 0xE0 ? 3 : lead >= 0xC0 ? 2 : 1;
@@ -84,7 +85,8 @@ class Scanner {
     }
   }
 
-  // The parser recurses for each part of a key, so a very long key would exhaust the stack.
+  // Counts the dotted parts of a key. The parser recurses for each part, so a key with very many parts would
+  // exhaust the stack.
   void count_parts(char c) {
     if (c == '.')
       ++parts_;
@@ -99,7 +101,8 @@ class Scanner {
   void inside(const Character& character) {
     if (!escaped_ && source_.substr(at_).starts_with(quote_)) {
       copy(quote_.size());
-      // A multi-line string may end with one or two quotes of its own before the three that close it.
+      // A multi-line string may end with one or two quotes as part of its text, directly before the three
+      // that close it.
       while (quote_.size() == 3 && at_ < source_.size() && source_[at_] == quote_[0]) copy(1);
       quote_ = {};
       trimming_ = false;

@@ -10,7 +10,7 @@ namespace turnpoint::texts {
 /// Returns the two-letter codes of the languages that the station speaks, sorted.
 std::vector<std::string> languages();
 
-/// Returns all texts of the station in one of these languages, by key. Keys of a table are joined by dots:
+/// Returns all texts of the station in one of these languages, by key. The key of a text in a table has dots:
 /// "fault.disk_full.happened".
 const std::map<std::string, std::string>& catalogue(const std::string& language);
 
@@ -18,7 +18,7 @@ const std::map<std::string, std::string>& catalogue(const std::string& language)
 /// language. Throws std::logic_error for a key that no catalogue has.
 const std::string& text(const std::string& key, const std::string& language);
 
-/// Explains a fault to the person in front of the screen: what happened, what is safe, what to do.
+/// The explanation of a fault for the person in front of the screen: what happened, what is safe, what to do.
 struct FaultText {
   std::string happened, safe, to_do;
 };

@@ -4,7 +4,7 @@
 
 namespace turnpoint::touch {
 
-/// A finger touches the surface of the rig, or leaves it.
+/// A change of a finger's contact with the surface of the rig: it touches, moves, or leaves.
 struct Contact {
   std::int64_t time_ns = 0;
   bool on = false;

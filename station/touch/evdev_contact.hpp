@@ -8,10 +8,10 @@
 
 namespace turnpoint::touch {
 
-/// Converts the states of a touch sensor to contacts. Pure.
+/// Converts a touch sensor's states to contacts. Pure.
 class ContactReader {
  public:
-  /// Positions are scaled from `range` to [0, 1].
+  /// Scales positions from `range` to [0, 1].
   explicit ContactReader(AxisRange range) noexcept : range_(range) {}
 
   /// Takes the sensor's state at the end of a report. Returns a contact if the finger came, left, or moved by

@@ -48,7 +48,7 @@ std::optional<EvdevDevice> EvdevDevice::find(const std::string& path_or_name) {
     try {
       EvdevDevice device(descriptor, path_or_name);
       if (libevdev_get_name(device.device_.get()) == path_or_name) return device;
-      // the device may just have been unplugged; try the next device
+      // this device may just have been unplugged; try the next one
     } catch (const std::system_error& going) {
       error = going.code().value();
     }

@@ -17,7 +17,7 @@ struct AxisRange {
 
 /// A kernel input device, which libevdev reads report by report. key(), axis() and slot() give the state at
 /// the end of the last report. Time stamps are from CLOCK_MONOTONIC. Other programs can read the same device
-/// at the same time. Use an object from one thread at a time.
+/// at the same time. Use an object from one thread only.
 class EvdevDevice {
  public:
   /// Opens the device with this path or (without a leading slash) this name, for reading only. Empty if there
@@ -35,8 +35,9 @@ class EvdevDevice {
   AxisRange range(int axis) const;
 
   enum class News {
-    none,    ///< no event is waiting
-    report,  ///< a report is complete
+    none,  ///< no event is waiting
+    /// the kernel dropped events: the state is up to date, but the events that led to it are unknown
+    report,
     /// the kernel dropped events: the state is the current one, but the events that led to it are unknown
     resynchronised,
   };

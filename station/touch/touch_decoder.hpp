@@ -14,7 +14,7 @@ struct PanelTouch {
   double x = 0, y = 0;       ///< from 0 to 1, measured from the panel's left and top
 };
 
-/// One finger of a panel's state. x and y are in the panel's own units.
+/// The state of one finger on a panel. x and y are in the panel's own units.
 struct Finger {
   std::optional<int> id;  ///< a different number for each touch; empty while no finger is there
   int x = 0, y = 0;

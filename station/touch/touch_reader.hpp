@@ -7,10 +7,10 @@
 
 namespace turnpoint::touch {
 
-/// Says that the panel was disconnected or is back. It is reported on the reader's thread.
+/// Reported on the reader's thread when the panel was disconnected or is back.
 enum class TouchPanelState { lost, back };
 
-/// Reads a touch panel on its own thread (SCHED_FIFO 60 if allowed), at the same time as the toolkit. Opens
+/// Reads a touch panel on its own thread (SCHED_FIFO 60 if allowed), in parallel with the toolkit: it opens
 /// the device for reading only and does not grab it. Time stamps are the kernel's, from CLOCK_MONOTONIC. If
 /// the panel is unplugged, the reader looks for a device of the same name every second.
 class TouchReader {

@@ -9,14 +9,15 @@
 namespace turnpoint::touch {
 
 /// Finds the kernel's time stamp of a touch that a toolkit reports. The kernel knows when the panel was
-/// touched, the toolkit knows what was touched. Two touches match only if there is no doubt: exactly one
-/// kernel touch lies within `nearness` (in units of the panel's width and height) and at most `latest_ns`
-/// before the toolkit saw the touch. May be used from any thread.
+/// touched; the toolkit knows what was touched. A kernel touch matches if it lies within `nearness` (in units
+/// of the panel's width and height) of the toolkit's touch and at most `latest_ns` before the toolkit saw it.
+/// If several kernel touches match, none is used. May be used from any thread.
 class TouchTimes {
  public:
   struct Rules {
     double nearness = 0.04;
-    std::int64_t latest_ns = 400'000'000;  ///< a touch is not matched if the toolkit sees it later than this
+    /// longest time from the kernel's time stamp until the toolkit sees the touch
+    std::int64_t latest_ns = 400'000'000;
   };
 
   TouchTimes() = default;
@@ -25,8 +26,8 @@ class TouchTimes {
   void add(const PanelTouch& touch);
 
   /// Returns the kernel's time of the touch at (x, y), each from 0 to 1, that the toolkit saw at `seen_ns`.
-  /// Empty if no kernel touch fits, or more than one. A kernel touch is used once only; those that made a
-  /// match ambiguous are not used again either.
+  /// Empty if no kernel touch matches, or more than one. Each kernel touch is used at most once; touches that
+  /// made a match ambiguous are not used again.
   std::optional<std::int64_t> claim(double x, double y, std::int64_t seen_ns);
 
  private:

@@ -25,7 +25,7 @@ void Director::State::enter_block() {
   if (b == nullptr) return;
   for (const auto& name : b->procedures) {
     specs.push_back(find_spec(name));
-    // The number of the procedure within its block is part of the key, so that interleaved procedures draw
+    // The key contains the number of the procedure within its block, so that interleaved procedures draw
     // different numbers.
     random::Key key{seed, Stream::level_order, static_cast<int>(block * 64 + procedures.size()), attempt, 0};
     procedures.push_back(procedure::make_procedure(*specs.back(), context_for(*specs.back()), key));
@@ -192,7 +192,7 @@ std::uint64_t Director::state_hash() const {
        {static_cast<int>(state_->block), state_->attempt, state_->trial, state_->right, state_->done})
     hash.add(static_cast<std::uint64_t>(word));
   for (const auto& p : state_->procedures) hash.add(p->state_hash());
-  // Use 63 bits, because SQLite's integers are signed.
+  // Use 63 bits, because the integers of SQLite are signed.
   return hash.value() >> 1;
 }
 

@@ -21,7 +21,7 @@ struct TrialSpec {
   std::optional<double> level;
   protocol::Factors factors;
   std::vector<std::vector<std::string>> intervals;  ///< scene names in the order of presentation
-  std::vector<double> rove_dB;                      ///< random change of strength for each interval
+  std::vector<double> rove_dB;                      ///< random change of strength of each interval
   /// index of the right choice; empty if no choice is right
   std::optional<int> correct;
   std::optional<SliderSpan> slider;  ///< the slider; only for an adjustment
@@ -50,8 +50,8 @@ std::string in_words(const ProcedureEstimate& estimate);
 
 /// Decides what comes next: blocks in the participant's order, practice until it is passed, procedures and
 /// their interleaving, catch trials, orders of intervals, roving, and times. Pure: the same protocol,
-/// sequence index, seed and results give the same trials, no matter how many void trials come in between. To
-/// resume a session, its stored results are replayed through a director.
+/// sequence index, seed and results give the same trials, no matter how many void trials come in between. A
+/// session is resumed by replaying its stored results through a director.
 class Director {
  public:
   Director(const protocol::Protocol& protocol, int sequence_index, std::uint64_t seed);
@@ -64,8 +64,8 @@ class Director {
   int attempt() const;
   int blocks() const;
 
-  /// Returns the next trial of this block; after a void trial, the same trial again. Empty when the block is
-  /// done.
+  /// Returns the next trial of this block. After a void trial, returns the same trial again. Empty when the
+  /// block is done.
   std::optional<TrialSpec> next();
   /// Records the result of the trial that next() returned last.
   void record(const TrialEnd& end);
@@ -78,16 +78,16 @@ class Director {
   /// Inserts this number of warm-up trials before the next trial. They have their own rows and random draws.
   void warm_up(int trials);
 
-  /// why the session ends before its last block; otherwise ""
+  /// why the session ends before its last block; "" if it does not
   const std::string& ended_because() const;
-  /// Number of counted trials: those done so far, and in total. The total is an estimate if procedures have
+  /// Numbers of trials that count: done so far, and in total. The total is an estimate if procedures have
   /// stopping rules.
   int trials_done() const;
   int trials_expected() const;
-  /// Estimates of those procedures of the block that estimate something.
+  /// Estimates of all procedures of the block that have one.
   std::vector<ProcedureEstimate> estimates() const;
-  /// Threshold (or PSE) and its SD as estimated by the procedure of the last trial; empty if it estimates
-  /// none.
+  /// Threshold (or PSE) and its SD, as estimated by the procedure of the last trial; empty if that procedure
+  /// has no estimate.
   std::optional<std::pair<double, std::optional<double>>> threshold() const;
   /// Returns a hash of all discrete state. If the hash differs after a replay, the replay did not reproduce
   /// the session.

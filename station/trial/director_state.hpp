@@ -16,9 +16,10 @@ struct Director::State {
   std::uint64_t seed;
   std::vector<protocol::Block> blocks;
   std::size_t block = 0;
-  /// number of this attempt at the block, and of the first attempt since the session was started or restarted
+  /// number of the current attempt at the block, and of the first attempt since the session was started or
+  /// restarted
   int attempt = 0, first_attempt = 0;
-  /// number of counted trials of the block so far; part of the key of the next trial's draws
+  /// number of trials of the block so far that count; part of the key of the next trial's draws
   int trial = 0;
   int shown = 0, right = 0;
   int warmups = 0, warmups_given = 0;

@@ -10,8 +10,8 @@ using random::Stream;
 
 namespace {
 
-/// Returns the easiest levels for warm-up: those of largest magnitude. If there are levels on both sides of
-/// zero, each warm-up trial uses one side, drawn at random.
+/// Returns the easiest levels, for warm-up: the highest level or, if there are levels on both sides of zero,
+/// the lowest and the highest. Each warm-up trial draws one of them at random.
 std::vector<double> easy_levels(const std::vector<double>& values) {
   const auto [low, high] = std::minmax_element(values.begin(), values.end());
   if (values.empty()) return {};
@@ -34,7 +34,7 @@ double Director::State::deadline() const {
   return protocol.timing.deadline_s.value_or(0);
 }
 
-/// Draws levels for the factors that nothing else sets. A factor that the block fixes keeps its value.
+/// Draws levels for the factors that nothing else sets. A factor that is fixed for the block keeps its value.
 protocol::Factors Director::State::drawn_factors() const {
   auto factors = now()->fixed;
   auto draw = draws(Stream::factor_level, trial);
@@ -76,7 +76,7 @@ TrialSpec Director::State::blank(terms::TrialType type) const {
   return spec;
 }
 
-/// Fills in what follows from level and factors: order of intervals, right answer, roving, times.
+/// Fills in what follows from the level and the factors: order of intervals, right answer, roving, times.
 void Director::State::complete(TrialSpec& spec) const {
   const int key = spec.type == terms::TrialType::warmup ? -1 - warmups_given : trial;
   const auto order = order_for(protocol.task, seed, static_cast<int>(block), attempt,
@@ -95,8 +95,8 @@ void Director::State::complete(TrialSpec& spec) const {
     spec.foreperiod_s = draws(Stream::foreperiod, key).uniform(foreperiod->low, foreperiod->high);
 }
 
-/// The slider shows a window that is wider than the range by a fifth. This surplus is divided between the two
-/// ends at random, in whole steps.
+/// Returns the window that the slider shows. It is a fifth wider than the range. This surplus is divided
+/// between the two ends at random, in whole steps.
 std::optional<SliderSpan> Director::State::slider(int key) const {
   const auto& task = protocol.task;
   for (const auto& factor : protocol.factors) {
@@ -137,7 +137,7 @@ TrialSpec Director::State::catch_trial() const {
   auto spec = blank(terms::TrialType::catch_trial);
   const auto& wanted = *now()->catch_trials;
   auto draw = draws(Stream::catch_trial, trial);
-  draw.uniform();  // skip the random number that decided to make this a catch trial
+  draw.uniform();  // skip the random number that has decided that this is a catch trial
   spec.level = wanted.levels[draw.below(wanted.levels.size())];
   spec.factors[wanted.factor] = *spec.level;
   complete(spec);

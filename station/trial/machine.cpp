@@ -54,8 +54,8 @@ std::vector<Action> Machine::start(std::int64_t now_ns) {
 
 std::vector<Action> Machine::handle(const Event& event) {
   if (phase_ == Phase::idle || phase_ == Phase::done) return {};
-  // First process everything that is due before this event. An onset may lie in the future, so it does not
-  // advance the time.
+  // First process everything that is due before this event. The time of an onset may lie in the future, so it
+  // does not advance the machine's time.
   if (event.kind != EventKind::onset) now_ns_ = std::max(now_ns_, event.time_ns);
   advance(now_ns_);
   if (phase_ == Phase::done) return std::exchange(actions_, {});
@@ -97,8 +97,8 @@ std::vector<Action> Machine::handle(const Event& event) {
 
 std::optional<std::int64_t> Machine::wake_ns() const {
   if (phase_ == Phase::idle || phase_ == Phase::done) return std::nullopt;
-  // while the outcome is not final, the pause between trials ends with the last `heard` event, not at a set
-  // time
+  // as long as the outcome is not final, the pause between trials ends with the last `heard` event, not at a
+  // given time
   if (phase_ == Phase::interval && !decided()) return std::nullopt;
   const bool answering = phase_ == Phase::stimulus || phase_ == Phase::response;
   const auto deadline = answering ? deadline_at() : kNever;
@@ -242,8 +242,8 @@ void Machine::conclude(Outcome outcome, std::int64_t at_ns) {
   const bool cut = outcome == Outcome::aborted || outcome == Outcome::fault;
   if (cut && !concluded_) return end(outcome, at_ns);
   if (cut) {
-    // The trial has a result, but it becomes final only if all intervals were presented without loss. After a
-    // fault, end without feedback.
+    // The trial already has a result, but the result becomes final only if all intervals were presented
+    // without loss. After a fault before that, end at once, without feedback.
     if (outcome == Outcome::fault && !decided()) return end(outcome, at_ns);
     return enter(Phase::interval, at_ns);
   }

@@ -8,7 +8,7 @@
 
 namespace turnpoint::trial {
 
-/// The moment from which response times are counted. It has the names of the protocol file.
+/// The moment from which response times are counted. The enumerators have the names used in protocol files.
 using terms::ResponseZero;
 
 enum class Phase {
@@ -25,7 +25,7 @@ enum class Phase {
 
 using terms::Outcome;
 
-/// One interval: its duration, and the times from its onset at which its second and later scenes begin.
+/// One interval: its duration, and the times at which its later scenes begin, counted from its onset.
 struct IntervalTiming {
   std::int64_t duration_ns = 0;
   std::vector<std::int64_t> scene_starts_ns;  ///< ascending, without the first scene (which starts at 0)
@@ -58,9 +58,9 @@ enum class EventKind {
   onset,
   heard,    ///< value: index of an interval that has been played completely and as scheduled
   answer,   ///< value: index of the answer
-  touch,    ///< a touch beside the answers
+  touch,    ///< value 1: a finger touched the surface; 0: it left
   contact,  ///< value 1: finger on the surface; 0: finger lifted
-  xrun,     ///< the drive lost frames; value 1: in an interval of this trial, 0: in silence
+  xrun,     ///< value: index of an interval in which the surface did not move as planned
   refuted,  ///< the surface did not move as planned in an interval; value: its index
   fault,    ///< drive, amplifier or panel cannot continue
   abort,    ///< the participant or the operator stops the trial
@@ -103,14 +103,14 @@ struct Result {
 /// thread; the same events give the same actions. Events must come in the order of their time stamps, with
 /// one exception: an answer stamped before a deadline is accepted until watermark_ns after the deadline.
 ///
-/// The audio stream reports only some time after a stimulus whether it was played without loss. An outcome
-/// therefore becomes final only when every interval has been reported as played without loss (event `heard`).
-/// If a loss is reported first, the trial is void. The phases continue meanwhile, but the trial does not end
-/// before its outcome is final.
+/// Whether a stimulus was played without loss is known only some time after it, from the audio stream. An
+/// outcome therefore becomes final only when every interval has been reported as played without loss (event
+/// `heard`). If a loss is reported first, the trial is void. The phases continue meanwhile, but the trial
+/// does not end before its outcome is final.
 class Machine {
  public:
-  /// Throws std::invalid_argument for a plan without intervals, with a negative time, without answers, or
-  /// with a response_zero that cannot happen (`change` without a second scene).
+  /// Throws std::invalid_argument for a plan without intervals or answers, with a negative time, or with a
+  /// response_zero that cannot happen (`change` without a second scene).
   explicit Machine(Timing plan);
 
   std::vector<Action> start(std::int64_t now_ns);

@@ -10,7 +10,8 @@ namespace {
 
 using protocol::TaskKind;
 
-constexpr int kRun = 12;  // length of a run of trials; divisible by every possible number of orders
+// number of trials in a run (see order_for()); divisible by every possible number of orders
+constexpr int kRun = 12;
 
 int choice_index(const protocol::Task& task, const std::string& id) {
   for (std::size_t i = 0; i < task.choices.size(); ++i)

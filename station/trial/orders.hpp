@@ -15,13 +15,13 @@ struct IntervalOrder {
 };
 
 /// Returns all orders of intervals that a task can have: 2 for two intervals, 2 or 4 for same-different, 3 or
-/// 6 for oddity, otherwise 1. `correct` is empty if the right choice depends on the factors (comparisons with
-/// one interval).
+/// 6 for oddity, otherwise 1. `correct` is empty if the right choice depends on the factors (tasks with one
+/// interval).
 std::vector<IntervalOrder> orders_of(const protocol::Task& task);
 
-/// Returns the order for a trial. Trials are divided into runs whose length is a multiple of the number of
-/// orders. Each run contains every order equally often. The draws that shuffle a run have the run's number in
-/// their key, so the order of trial k can be computed without the others.
+/// Returns the order for a trial. Trials are divided into runs of equal length, and each run contains every
+/// order equally often. The run's number is part of the key of the draws that shuffle it, so the order of
+/// trial k can be computed without the other runs.
 IntervalOrder order_for(const protocol::Task& task, std::uint64_t seed, int block, int attempt, int trial);
 
 /// Returns the right choice of a single-interval task for these factors; empty if none of the task's

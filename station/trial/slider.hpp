@@ -5,16 +5,16 @@
 namespace turnpoint::trial {
 
 /// The limits and the display of a slider in one trial. The screen shows a window from `shown_low` to
-/// `shown_high`, which is placed at random around the range. The same place on the screen is therefore a
-/// different setting in each trial, and participants cannot use the screen to repeat a setting.
+/// `shown_high`, which is placed at random around the range. A given position on the screen is therefore a
+/// different setting in each trial, so that participants cannot repeat a setting by its position.
 struct SliderSpan {
-  double low = 0, high = 1;  ///< limits of the settings that the surface follows, in the unit of the factor
+  double low = 0, high = 1;  ///< limits of the settings, in the unit of the factor
   double step = 0;           ///< possible settings are low + k * step
   double shown_low = 0, shown_high = 1;
 };
 
-/// Duration of a glide of the surface to a new setting, and time between two glides. Glides never overlap,
-/// and to the finger they are one continuous movement.
+/// Duration of one glide of the surface to a new setting, and time from the start of one glide to the next.
+/// Glides never overlap. To the finger, successive glides are one continuous movement.
 inline constexpr double kGlide_s = 0.03, kGlideEvery_s = 0.05;
 
 /// The setting of an adjustment while the slider moves. Pure: moves go in, glides come out.
@@ -26,13 +26,13 @@ class Slider {
   void move(double wanted);
   /// The slider's position.
   double setting() const { return setting_; }
-  /// The last setting that the surface has followed. Done confirms this setting.
+  /// The last setting to which the surface has begun to glide. The Done button confirms this setting.
   double felt() const { return felt_; }
 
   /// The time at which the surface should glide to the setting; empty if the surface is already there.
   std::optional<std::int64_t> glide_due_ns() const;
-  /// Call this to move the surface. Returns the setting to which the surface must glide. Call followed() once
-  /// the glide has begun, which makes this setting the felt one.
+  /// Starts a glide. Returns the setting to which the surface must glide. Call followed() once the glide has
+  /// begun; felt() then returns this setting.
   double glide(std::int64_t now_ns);
   void followed() { felt_ = asked_; }
 

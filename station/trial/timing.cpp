@@ -21,7 +21,7 @@ std::vector<IntervalTimes> interval_times(const protocol::Protocol& protocol, co
   std::vector<IntervalTimes> times;
   for (const auto& scenes : spec.intervals) {
     IntervalTimes interval;
-    // An explored interval lasts until the answer, at most explore_s. Without explore_s, it lasts until the
+    // An explored interval lasts until the answer, but at most explore_s or, if that is not set, until the
     // deadline.
     const double whole = explored(task)
                              ? protocol.timing.explore_s.value_or(spec.foreperiod_s + spec.deadline_s)
