@@ -42,7 +42,7 @@ struct Dispersion {
   double thickness_m_ = 0;
 };
 
-// These functions throw std::invalid_argument for arguments that are not finite and above zero.
+// These functions throw std::invalid_argument unless all arguments are finite and above zero.
 double wavenumber_per_m(const Surface& surface, double frequency_Hz);
 double frequency_for_wavenumber_Hz(const Surface& surface, double wavenumber_per_m);
 double cut_off_frequency_Hz(const Surface& surface, double half_width_m);

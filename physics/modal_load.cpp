@@ -50,9 +50,9 @@ class Chain {
   struct Link {
     Eigen::Index left, right;
     Eigen::PartialPivLU<Matrix> bubbles;
-    Matrix follow;                                // bubbles = -follow (left, right)
+    Matrix follow;                                // gives bubbles = -follow (left, right)
     Eigen::PartialPivLU<Matrix> right_stiffness;  // stiffness of the right vertex and everything beyond it
-    Matrix pull;                                  // right vertex = -pull left vertex
+    Matrix pull;                                  // gives right vertex = -pull (left vertex)
   };
   std::vector<Link> links_;
 };

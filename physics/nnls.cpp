@@ -67,8 +67,8 @@ class Solver {
   void descend(std::size_t entered) {
     while (!passive_.empty()) {
       std::vector<double> z = solve_passive();
-      // Rounding can make a column look useful although its weight comes out negative: exclude this column
-      // for good.
+      // Rounding can make a column look useful although its weight comes out negative. Exclude this column
+      // until another one has been added.
       if (passive_.back() == entered && !(z.back() > 0)) {
         passive_.pop_back();
         blocked_[entered] = true;

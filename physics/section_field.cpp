@@ -26,7 +26,7 @@ Eigen::MatrixXcd section_element_matrix(const SectionBasis& section, const Modal
   for (std::size_t q = 0; q < rule.x.size(); ++q) {
     const double x = e.x0 + e.h * rule.x[q], w = setup.taper.half_width_m(x);
     const double r = -setup.taper.slope(x) / w, s = 1 / w;
-    // The strain is f' X + f (r R + s Y + Z), as in SectionBasis.
+    // The strain is f' X + f (r R + s Y + Z), with X, R, Y and Z as in SectionBasis.
     const Eigen::MatrixXd mixed = r * section.stiff[S::along][S::stretch] +
                                   s * section.stiff[S::along][S::across] + section.stiff[S::along][S::local];
     const Eigen::MatrixXd cross = r * s * section.stiff[S::stretch][S::across] +

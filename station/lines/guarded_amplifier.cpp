@@ -267,7 +267,7 @@ class GuardedAmplifier final : public drive::Amplifier {
   }
 
   mutable std::mutex details_mutex_;  ///< used only by ordinary threads
-  /// details of faults that the station itself reported
+  /// details of faults that ordinary threads reported
   std::array<std::string, terms::fault_kinds.size()> details_;
   GuardThread guard_;
 };

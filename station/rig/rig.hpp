@@ -108,8 +108,8 @@ struct PickUpResponse {
   int drive_channel = 0;  ///< output channel
   struct Point {
     double frequency_Hz = 0;
-    double amplitude = 0;  ///< of full scale of the capture, for a tone of full scale of the output
-    double phase_rad = 0;  ///< without the delay of the loop
+    double amplitude = 0;  ///< captured amplitude for a tone of full scale; 1 is full scale of the capture
+    double phase_rad = 0;  ///< without the phase from the delay of the loop
   };
   std::vector<Point> points;  ///< in order of frequency
 };
@@ -118,9 +118,9 @@ struct PickUpResponse {
 /// `alsa:NAME` (the capture of the card that plays).
 struct Capture {
   std::string uri;
-  int channels = 2;           ///< of the capture device
-  std::vector<int> pick_ups;  ///< captured channels of the sensors of vibration
-  int reference = 0;          ///< captured channel to which `excitation_channel` is wired
+  int channels = 2;           ///< number of channels of the capture device
+  std::vector<int> pick_ups;  ///< captured channels with vibration sensors
+  int reference = 0;          ///< captured channel that is wired to `excitation_channel`
   /// output channel of the pilot, which finds the delay of the loop; set for `alsa:`
   std::optional<int> excitation_channel;
   std::vector<PickUpResponse> responses;  ///< empty without a calibration of the pick-ups
@@ -180,8 +180,8 @@ struct Rig {
   std::vector<std::string> defaults_used;  ///< `key = value` for each default that was used
 };
 
-/// Names of the transducers whose vibration the rig captures with a card but cannot prove, because the
-/// calibration has no response of a pick-up to them.
+/// Names of the transducers whose vibration cannot be proven although the rig captures with a card, because
+/// the calibration has no response of a pick-up to them.
 std::vector<std::string> unproven_transducers(const Rig& rig);
 
 /// Reads and checks a rig file (format "friction-rig/1"). Throws text::BadInput with all problems at once, or

@@ -112,7 +112,7 @@ std::optional<double> TableReader::number_from(const Value* value, const std::st
 }
 
 namespace {
-// Returns a valid value for use in place of a wrong one that was reported, so that reading can continue. No
+// Returns a valid value to use instead of a wrong one that was reported, so that reading can continue. No
 // session ever uses it.
 double harmless(const Range& range) {
   if (std::isfinite(range.low) && std::isfinite(range.high)) return 0.5 * (range.low + range.high);

@@ -43,8 +43,8 @@ std::string describe(const Value& value);
 /// Size limit for files that people write (protocols, rigs, calibrations).
 constexpr std::size_t most_text_bytes = 4 << 20;
 
-/// Reads a file that people write. Throws BadInput if there is no such file or it is longer than
-/// `most_text_bytes`, and otherwise like system::read_file.
+/// Reads a file that people write. Throws BadInput if there is no such file or if it is longer than
+/// `most_text_bytes`; other errors are those of system::read_file.
 std::string read_text_file(const std::string& path);
 
 }  // namespace turnpoint::text

@@ -35,10 +35,9 @@ class EvdevDevice {
   AxisRange range(int axis) const;
 
   enum class News {
-    none,  ///< no event is waiting
+    none,    ///< no event is waiting
+    report,  ///< a report is complete
     /// the kernel dropped events: the state is up to date, but the events that led to it are unknown
-    report,
-    /// the kernel dropped events: the state is the current one, but the events that led to it are unknown
     resynchronised,
   };
   /// Reads up to the end of the next report, without waiting. Throws std::system_error with ENODEV if the

@@ -58,10 +58,10 @@ enum class EventKind {
   onset,
   heard,    ///< value: index of an interval that has been played completely and as scheduled
   answer,   ///< value: index of the answer
-  touch,    ///< value 1: a finger touched the surface; 0: it left
-  contact,  ///< value 1: finger on the surface; 0: finger lifted
-  xrun,     ///< value: index of an interval in which the surface did not move as planned
-  refuted,  ///< the surface did not move as planned in an interval; value: its index
+  touch,    ///< a touch beside the answers
+  contact,  ///< value 1: a finger is on the surface; 0: it was lifted
+  xrun,     ///< the drive lost frames; value 1: in an interval of this trial, 0: in silence
+  refuted,  ///< value: index of an interval in which the surface did not move as planned
   fault,    ///< drive, amplifier or panel cannot continue
   abort,    ///< the participant or the operator stops the trial
 };
