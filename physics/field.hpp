@@ -54,8 +54,8 @@ struct Field {
   Model model = Model::mode;
   Normalise normalise = Normalise::drive;
   std::vector<ToneField> tones;
-  std::vector<double> amplitude;     // root of the summed squares of |v| over tones, one value per point
-  std::vector<double> ln_amplitude;  // logarithm of `amplitude`
+  std::vector<double> amplitude;  // root of the summed squares of |v| over tones, one value per point
+  std::vector<double> ln_amplitude;
 };
 
 // Evaluates the field at the points `x_m`, in any order. Throws std::invalid_argument if a point is outside

@@ -22,7 +22,7 @@ struct Strip {
   std::vector<ModalElement> elements;
   std::vector<Matrix> matrices;
   Eigen::VectorXd drive;  // unknowns of the drive edge
-  // number of functions before those of the deflection; the latter are bubbles_at with `power`
+  // number of functions before those of the deflection, which are bubbles_at with `power`
   int other_functions;
   int power;  // exponent of (1 - eta^2) in the functions of the deflection
   Parity parity;

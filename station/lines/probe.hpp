@@ -10,7 +10,7 @@ struct Finding {
   enum class Status { ok, warning, failed };
   std::string name;
   Status status = Status::ok;
-  std::string what;  ///< what was found
+  std::string what;
   std::string mend;  ///< how to fix it; "" if nothing is wrong
 };
 

@@ -31,7 +31,6 @@ class Posterior {
   std::vector<double> information() const;
   /// Returns the posterior predictive probability of answer 1 at this stimulus.
   double predictive(std::size_t stimulus) const;
-  /// Updates the posterior with an answer at a stimulus.
   void update(std::size_t stimulus, bool one);
 
   /// Returns mean and sd of the parameter's marginal. The mode is the parameter's value at the grid point of
@@ -42,7 +41,6 @@ class Posterior {
   double entropy_nats() const;
   const std::vector<double>& stimuli() const { return stimuli_; }
   std::size_t size() const { return weights_.size(); }
-  /// Memory used by the tables and the weights.
   std::size_t memory_bytes() const;
 
  private:
