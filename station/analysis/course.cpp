@@ -74,7 +74,7 @@ struct Sample {
   double trial, value;
 };
 
-/// Fits one slope to all groups: both variables are taken relative to their group means.
+/// Fits one slope to all groups. From both variables, the mean of the group is subtracted first.
 std::optional<Trend> within_groups(const std::vector<Sample>& samples) {
   std::map<std::pair<double, std::string>, std::array<double, 3>> sums;
   for (const auto& sample : samples) {

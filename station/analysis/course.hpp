@@ -26,14 +26,14 @@ std::vector<Trace> traces(const std::vector<TrialRecord>& trials);
 struct Bias {
   int answered = 0, second_choice = 0;
   double share_second = 0;
-  Interval interval;  ///< Wilson interval of the share
+  Interval interval;  ///< Wilson interval of `share_second`
   /// criterion c with the log-linear correction (signal_detection.hpp); positive if the second choice is
   /// avoided
   std::optional<double> criterion;
   std::vector<Statement> statements;
 };
 /// Computes the bias from answered experimental trials with response 0 or 1; empty if there are none. Adds a
-/// statement if `interval` does not contain the share of trials in which the second choice was right.
+/// statement if `interval` does not contain the proportion of trials in which the second choice was right.
 std::optional<Bias> choice_bias(const std::vector<TrialRecord>& trials);
 
 struct Proportion {

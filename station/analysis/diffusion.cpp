@@ -9,21 +9,21 @@ namespace turnpoint::analysis {
 
 namespace {
 
-/// If the proportion correct Pc differs from 1/2 by less than this, use the formulas' limits at 1/2. In the
-/// formulas themselves, terms cancel down to the order of logit(Pc)^3, which loses precision.
+/// If the proportion correct Pc differs from 1/2 by less than this, use the limits of the formulas at Pc =
+/// 1/2. There the formulas themselves lose precision, because almost equal terms are subtracted.
 constexpr double kNearChance = 1e-3;
 
 /// The variance of the decision time is (a / s)^4 h(L), with the boundary separation a, the scaling parameter
 /// s and L = logit(proportion correct).
 double h(double L) {
   L = std::abs(L);
-  // near 0, use the Taylor series, because the closed form loses digits by cancellation
+  // near L = 0 the closed form subtracts almost equal terms, so use the Taylor series
   if (L < 0.02) return (1 - L * L / 10) / 24;
   const double e = std::exp(-L);
   return (1 - 2 * L * e - e * e) / (2 * L * L * L * (1 + e) * (1 + e));
 }
 
-/// The mean decision time is (a / s)^2 m(L), with the same symbols.
+/// The mean decision time is (a / s)^2 m(L), with the symbols explained at h().
 double m(double L) { return std::abs(L) < 1e-4 ? 0.25 : std::tanh(L / 2) / (2 * L); }
 
 double corrected(const EzMoments& moments) {

@@ -23,7 +23,8 @@ struct EzDiffusion {
 };
 
 struct EzResult {
-  std::optional<EzDiffusion> parameters;  ///< empty if not identifiable; a statement says why
+  std::optional<EzDiffusion> parameters;  ///< empty if they cannot be determined; a statement then gives the
+                                          ///< reason
   std::vector<Statement> statements;
 };
 
@@ -36,9 +37,9 @@ EzResult ez_diffusion(const EzMoments& moments);
 /// difficulty has its own drift.
 struct SharedEz {
   double boundary = 0, nondecision_s = 0;
-  /// Standard deviation of the estimate of ln(boundary), by the delta method with the kurtosis that the model
-  /// predicts. The kurtosis of a sample is far too low, so bootstrap intervals over trials would be too
-  /// short.
+  /// Standard deviation of the estimate of ln(boundary), by the delta method. The kurtosis of the times is
+  /// taken from the model. That of a sample is far too low, so intervals from a bootstrap over trials would
+  /// be too short.
   double log_boundary_sd = 0;
   std::vector<double> drift;  ///< in the order of the moments
 };

@@ -12,7 +12,7 @@ std::optional<Statement> unusable(const std::vector<LevelCount>& data, const Fit
 AxisCounts axis_counts(const std::vector<LevelCount>& data, Function function, Scale scale);
 ThetaBounds theta_bounds(const AxisCounts& counts, const FitOptions& options);
 Psychometric from_theta(const Theta& theta, const FitOptions& options);
-/// Adds a statement for each interval of which an end lies on a bound of the parameter.
+/// Adds a statement for each interval that ends at a bound of its parameter.
 void say_what_touches(PsychometricIntervals& intervals);
 
 }  // namespace turnpoint::analysis

@@ -22,11 +22,12 @@ LeastSquares least_squares(const std::vector<std::vector<double>>& rows, const s
   matrix.array().rowwise() /= scale.array();
 
   Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(matrix);
-  // a column whose independent part is below this share of its length counts as dependent on the others
+  // A column counts as linearly dependent if the part of it that is orthogonal to the other columns is below
+  // this fraction of its length.
   qr.setThreshold(3e-7);
   if (qr.rank() < n) throw terms::UsageError("the measured points are not enough to determine the fit");
   const Eigen::VectorXd solution = qr.solve(right);
-  // The covariance is (R'R)^-1, in the order of the pivots.
+  // The covariance is (R'R)^-1, with R of the QR decomposition; its rows are in the order of the pivots.
   const Eigen::MatrixXd inverse =
       qr.matrixR().topLeftCorner(n, n).triangularView<Eigen::Upper>().solve(Eigen::MatrixXd::Identity(n, n));
   const Eigen::VectorXd sd = qr.colsPermutation() * inverse.rowwise().norm();

@@ -23,7 +23,7 @@ bool solve(const std::array<std::array<double, 4>, 4>& a, const std::array<doubl
   }
   const Eigen::LLT<Eigen::Matrix4d> factor(system);
   if (factor.info() != Eigen::Success || !factor.matrixLLT().allFinite())
-    return false;  // if there are NaNs, this condition is true too
+    return false;  // also returns here if the matrix contains NaN
   Eigen::Map<Eigen::Vector4d>(x.data()) = factor.solve(right);
   return true;
 }
@@ -64,7 +64,7 @@ std::array<double, 4> Likelihood::gradient_of_probability(const Theta& theta, co
                                                           double u) const {
   const double rate = std::exp(theta[1]), height = 1 - theta[3] - theta[2], from = rate * (u - theta[0]);
   const double f = core(function_, from + at.z), df = core_derivative(function_, from + at.z);
-  // In trials without a signal, `from` is minus infinity and the derivative with respect to the slope is 0.
+  // In trials without a signal, `from` is minus infinity. The derivative with respect to the rate is then 0.
   std::array<double, 4> dp{-height * df * rate, df > 0 ? height * df * from : 0,
                            -f + height * df * at.dz_dlapse, 1 - f + height * df * at.dz_dguess};
   if (guess_ == Guess::tied_to_lapse) dp[2] += dp[3], dp[3] = 0;
@@ -108,8 +108,8 @@ Likelihood::Maximum Likelihood::climb(Theta start) const {
       continue;
     }
     Theta next = theta;
-    // Limit each step: the threshold moves at most two units of 1 / rate, the rate changes at most by a
-    // factor of e.
+    // Limit each step: the threshold moves by at most two units of 1 / rate, and the rate changes by at most
+    // a factor of e.
     step[0] = std::clamp(step[0], -2 / std::exp(theta[1]), 2 / std::exp(theta[1]));
     step[1] = std::clamp(step[1], -1.0, 1.0);
     for (int i = 0; i < 4; ++i) next[i] += step[i];
@@ -132,9 +132,8 @@ Likelihood::Maximum Likelihood::climb(Theta start) const {
 }
 
 Likelihood::Maximum Likelihood::steepest(const Maximum& found) const {
-  // If the answers jump between two levels, functions of any greater steepness fit equally well, and the
-  // climb ends at an arbitrary slope. In that case return the upper bound of the slope, by which callers
-  // recognise a step.
+  // If the answers jump between two levels, all steeper functions fit equally well, and the climb ends at an
+  // arbitrary slope. Return the upper bound of the slope in that case: callers take it as the sign of a step.
   std::vector<double> thresholds{found.theta[0]};
   for (std::size_t i = 1; i < counts_.u.size(); ++i)
     if (counts_.u[i - 1] != kNoise && counts_.u[i - 1] <= found.theta[0] && found.theta[0] <= counts_.u[i])

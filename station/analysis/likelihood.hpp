@@ -20,7 +20,7 @@ struct ThetaBounds {
 /// Numbers of trials and of positive answers at each level. `u` is the level's axis_position(). Only
 /// `positive` differs between the replicates of a bootstrap.
 struct AxisCounts {
-  std::vector<double> u, trials, positive;  ///< u is ascending; its first may be kNoise
+  std::vector<double> u, trials, positive;  ///< `u` is ascending; u[0] may be kNoise
   /// Returns the lowest level with a signal.
   double lowest() const { return u.front() == kNoise && u.size() > 1 ? u[1] : u.front(); }
 };
@@ -28,7 +28,7 @@ struct AxisCounts {
 /// The likelihood of one set of counts and its maximum.
 class Likelihood {
  public:
-  /// If an anchor is given, theta[0] is the level at which the probability is `anchor`, instead of the
+  /// With an `anchor`, theta[0] is the level at which the probability is `anchor`; without one, it is the
   /// threshold. Counts and bounds must outlive the object.
   Likelihood(Function function, Guess guess, const AxisCounts& counts, const ThetaBounds& bounds,
              std::optional<double> anchor = std::nullopt)

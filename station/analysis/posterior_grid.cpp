@@ -9,10 +9,11 @@ namespace turnpoint::analysis {
 
 namespace {
 
-/// A cell is left out if its profile likelihood is this far below the maximum (4.2 standard deviations).
+/// A cell is left out if its profile log-likelihood is this far below the maximum. For a normal likelihood
+/// that is 4.2 standard deviations.
 constexpr double kNegligible_nats = 9;
-/// An end of the prior is excluded beyond this distance from the maximum: half the 95 % point of chi squared
-/// with one degree of freedom.
+/// The data exclude an end of the prior if the log-likelihood there is this far below the maximum: half the
+/// 95 % point of chi squared with one degree of freedom.
 constexpr double kNotExcluded_nats = 1.92;
 constexpr int kMostRefinements = 16;
 /// Number of cells for threshold, ln rate, lapse and guess. With a fitted guess the other parameters get
@@ -95,8 +96,8 @@ void PosteriorGrid::add_log_likelihoods(const std::vector<double>& between) {
 }
 
 /// Returns the box for the next, finer grid: the cells that are not negligible, and one more cell on each
-/// side. The box keeps at least half the width of the previous one: if cells are far wider than the
-/// posterior, the cell with the highest likelihood may not contain the maximum.
+/// side. The box keeps at least half the width of the previous one. If cells are far wider than the
+/// posterior, the maximum may lie outside the cell with the highest likelihood.
 Box PosteriorGrid::narrowed() const {
   Box box = box_;
   for (std::size_t p = 0; p < kParameters; ++p) {

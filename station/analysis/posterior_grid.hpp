@@ -15,14 +15,13 @@ constexpr std::size_t kParameters = 4;
 using Box = std::array<Cells, kParameters>;
 
 /// The posterior of a psychometric function, computed on a grid. The prior is uniform for lapse and guess.
-/// For threshold and rate it is flat in the middle and falls linearly to 0 over a share of the range at
-/// either end.
+/// For threshold and rate it is flat in the middle and falls linearly to 0 towards both ends of the range.
 class PosteriorGrid {
  public:
-  /// Evaluates coarse grids first, each on the part of the previous grid that has noticeable probability,
+  /// Evaluates several coarse grids, each on the part of the previous grid that has noticeable probability,
   /// until that part hardly shrinks. Then evaluates a fine grid. A parameter whose cells have no width is
-  /// fixed. With Guess::tied_to_lapse, the guess equals the lapse and its cells are ignored. `counts` must
-  /// have at least one level.
+  /// fixed. With Guess::tied_to_lapse, the guess equals the lapse and the cells of the guess are ignored.
+  /// `counts` must have at least one level.
   PosteriorGrid(Function function, Guess guess, const AxisCounts& counts, const Box& prior,
                 double falling_share);
 
@@ -33,12 +32,12 @@ class PosteriorGrid {
   /// Returns the marginal distribution of the probability at a position on the axis.
   Marginal marginal_of_probability(double u) const;
 
-  /// True if the data exclude neither end of the prior: an interval would then merely repeat the prior. An
-  /// end is not excluded if, under a flat prior, the likelihood ratio between the maximum and that end stays
-  /// below its 95 % limit.
+  /// True if the data exclude neither end of the prior. An interval would then merely repeat the prior. The
+  /// data exclude an end if, under a flat prior, the likelihood ratio between the maximum and that end
+  /// exceeds its 95 % limit.
   bool undetermined(Parameter parameter) const { return open_low(parameter) && open_high(parameter); }
-  /// open_low() is true if the data do not exclude the low end of the prior, open_high() if they do not
-  /// exclude its high end. There the prior limits the parameter, not the data.
+  /// True if the data do not exclude the low or the high end of the prior. At that end, the prior limits the
+  /// parameter, not the data.
   bool open_low(Parameter parameter) const;
   bool open_high(Parameter parameter) const;
 

@@ -14,7 +14,7 @@ namespace turnpoint::analysis {
 namespace {
 
 /// A quantity for which an interval is computed: the element of theta with the index `parameter`. With an
-/// `anchor`, theta[0] is the level at which the probability is `anchor`, instead of the threshold.
+/// `anchor`, theta[0] is the level at which the probability is `anchor`; without one, it is the threshold.
 struct Quantity {
   int parameter;
   std::optional<double> anchor;
@@ -56,7 +56,7 @@ struct Replicator {
     return second.negative_log < first.negative_log - 1e-9 ? second : first;
   }
 
-  /// Returns the maximum of the likelihood with one quantity fixed at a value, climbing from `start`.
+  /// Returns the maximum of the likelihood with `quantity` fixed at a value. The climb begins at `start`.
   Likelihood::Maximum held(const AxisCounts& of, const Quantity& quantity, double value, Theta start) const {
     ThetaBounds narrowed = bounds;
     narrowed.low[quantity.parameter] = narrowed.high[quantity.parameter] = value;
@@ -90,15 +90,15 @@ Replicator replicator(const PsychometricFit& fit) {
   return result;
 }
 
-/// Returns the point on one side of the estimate where the likelihood ratio reaches `critical`, or the bound
-/// if the ratio never does.
+/// Returns the value, on the side of `bound`, at which the likelihood ratio reaches `critical`. Returns the
+/// bound if the ratio stays below `critical`.
 double profile_end(const Replicator& base, const Quantity& quantity, Theta start, double bound,
                    double best_cost, double critical) {
   double inside = start[quantity.parameter], outside = bound;
   auto at_bound = base.held(base.counts, quantity, bound, start);
   if (2 * (at_bound.negative_log - best_cost) <= critical) return bound;
   for (int i = 0; i < 40 && std::abs(outside - inside) > 1e-5 * (1 + std::abs(inside)); ++i) {
-    // The bound is usually far away and the end of the interval near the estimate. Therefore each of the
+    // The end of the interval is usually near the estimate and the bound far away. Therefore each of the
     // first three steps cuts off three quarters of the distance.
     const double middle = i < 3 ? inside + (outside - inside) / 4 : (inside + outside) / 2;
     const auto found = base.held(base.counts, quantity, middle, start);
@@ -114,8 +114,8 @@ double profile_end(const Replicator& base, const Quantity& quantity, Theta start
 
 ParameterInterval profile(const Replicator& base, const Quantity& quantity, const Theta& start,
                           double best_cost, std::vector<double> ratios, double confidence) {
-  // The chi-square value is a lower limit of the critical value: if the fitted slope is too steep, the
-  // replicates hardly vary and would give a value that is too small.
+  // The critical value is at least the chi-square value. If the fitted slope is too steep, the replicates
+  // hardly vary, and their own critical value is too small.
   const double z = normal_quantile(0.5 + confidence / 2);
   const double critical = std::max(quantile(std::move(ratios), confidence), z * z);
   const double low = base.bounds.low[quantity.parameter], high = base.bounds.high[quantity.parameter];

@@ -21,8 +21,8 @@ struct LevelCount {
 };
 
 /// How the lower asymptote is determined: fixed (1 / alternatives), fitted within bounds, or tied to the
-/// lapse rate. It is tied for two answers on a signed level, where a slip can go either way. If there are
-/// trials without a signal, a fitted asymptote is the rate of false alarms.
+/// lapse rate. It is tied if the level is signed and there are two answers, because a slip then makes either
+/// answer wrong. If there are trials without a signal, a fitted asymptote is the rate of false alarms.
 enum class Guess { fixed, fitted, tied_to_lapse };
 
 struct FitOptions {
@@ -35,7 +35,7 @@ struct FitOptions {
   int minimum_levels = 3, minimum_trials = 15;  ///< with fewer levels or trials, a statement replaces the fit
 };
 
-/// Marks estimates that lie on a bound. The data then only set a limit to the parameter.
+/// Marks estimates that lie on a bound. The data then give only a limit for the parameter, not an estimate.
 struct AtBound {
   bool slope_low = false, slope_high = false, lapse_low = false, lapse_high = false, guess = false;
 };
@@ -62,7 +62,7 @@ PsychometricFit fit_psychometric(const std::vector<LevelCount>& data, const FitO
 
 struct ParameterInterval {
   Interval interval;
-  /// true if this end of the interval lies on a bound, so that the data do not limit it
+  /// true if this end of the interval is the bound of the parameter, so the data do not limit the interval
   bool touches_low = false, touches_high = false;
 };
 

@@ -17,8 +17,8 @@ namespace {
 constexpr double kShallow = 1.5, kSteep = 24;
 /// An estimate in the outer quarter of the prior's range, at either end, gets a statement in the report.
 constexpr double kOuter = 0.25;
-/// Width of the prior's falling part at either end, as a share of the flat part (kBeyond) and of the whole
-/// range (kFallingShare).
+/// Width of the part at either end in which the prior falls to 0: kBeyond is relative to the width of the
+/// flat part, kFallingShare to the whole range.
 constexpr double kBeyond = 0.25, kFallingShare = kBeyond / (1 + 2 * kBeyond);
 
 void check(const Prior& prior) {

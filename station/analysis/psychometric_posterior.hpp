@@ -7,7 +7,7 @@
 
 namespace turnpoint::analysis {
 
-/// Lowest and highest value, in the unit of the quantity.
+/// Lowest and highest value of a quantity, in its unit.
 using Range = std::pair<double, double>;
 
 /// Returns the prior for a design that can present a range of levels.

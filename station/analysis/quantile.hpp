@@ -12,12 +12,12 @@ double sorted_quantile(const std::vector<double>& sorted, double p);
 /// Like sorted_quantile(), for values in any order.
 double quantile(std::vector<double> values, double p);
 
-/// Returns the interval between two quantiles of bootstrap replicates, with equal shares outside at both
-/// ends.
+/// Returns the interval between two quantiles of bootstrap replicates. Equally many replicates lie below it
+/// and above it.
 Interval percentile_interval(std::vector<double> replicates, double confidence = 0.95);
 
-/// The 97.5 % quantile of Student's t distribution with 1 degree of freedom or more, to 0.8 %. An estimate
-/// plus and minus this many standard errors is a 95 % interval.
+/// The 97.5 % quantile of Student's t distribution with 1 degree of freedom or more, accurate to 0.8 %. An
+/// estimate plus and minus this many standard errors is a 95 % interval.
 double student_t_975(int degrees);
 
 double mean(const std::vector<double>& values);      ///< needs at least one value

@@ -53,7 +53,7 @@ YesNoCounts operator+(const YesNoCounts& a, const YesNoCounts& b) {
           a.correct_rejections + b.correct_rejections};
 }
 
-/// Returns the variance of z(p) for a log-linear proportion p from this number of trials.
+/// Returns the variance of z(p), where p is the log-linear proportion of this number of trials.
 double variance_of_z(double p, int trials) {
   const double density = normal_density(normal_quantile(p));
   return p * (1 - p) / (trials + 1) / (density * density);
@@ -74,7 +74,7 @@ void estimate(Detection& detection, double scale) {
 }
 
 struct Collected {
-  YesNoCounts noise;  ///< counts of the noise trials, all levels together
+  YesNoCounts noise;  ///< counts of the noise trials, summed over all levels
   std::map<double, YesNoCounts> levels;
 };
 

@@ -42,7 +42,7 @@ enum class Detecting {
 /// Sensitivity and criterion in one condition, at one level or over all levels.
 struct Detection {
   std::string condition;
-  std::optional<double> level;  ///< |level|; empty for all levels together
+  std::optional<double> level;  ///< absolute value of the level; empty for all levels together
   YesNoCounts counts;
   /// Empty if there were no signal trials or no noise trials. The 95 % intervals use the variance of
   /// Gourevitch & Galanter (1967) at the corrected rates.
@@ -50,9 +50,9 @@ struct Detection {
 };
 
 /// Analyses answered experimental trials that have a right answer. The results come in the order of
-/// conditions_of(). For each condition, the levels come first, ascending, and then all levels together. With
-/// more than `most_levels` levels, as after an adaptive procedure, only all levels together are returned.
-/// `positive` is the choice that means "yes".
+/// conditions_of(). Each condition has one result per level, ascending, followed by one for all levels
+/// together. With more than `most_levels` levels, as after an adaptive procedure, the results per level are
+/// left out. `positive` is the choice that means "yes".
 std::vector<Detection> detect(const std::vector<TrialRecord>& trials, const std::vector<std::string>& order,
                               Detecting detecting, int positive, std::size_t most_levels = 8);
 

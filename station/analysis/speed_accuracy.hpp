@@ -50,7 +50,7 @@ struct TimeExclusion {
 };
 
 /// Returns true for each time that is kept. Median and MAD (median absolute deviation) are computed from the
-/// times of at least `below_s`. If the MAD is 0, no time is excluded by it.
+/// times of at least `below_s`. If the MAD is 0, the limit of the MAD is not applied.
 std::vector<bool> keep_times(const std::vector<double>& times_s, const TimeExclusion& rule);
 
 }  // namespace turnpoint::analysis

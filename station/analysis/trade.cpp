@@ -131,7 +131,8 @@ std::optional<Estimate> estimate(const std::optional<double>& value, std::vector
   return Estimate{*value, percentile_interval(std::move(replicates), options.confidence)};
 }
 
-/// Fills in the results of one condition that need no bootstrap. Returns its trials by difficulty.
+/// Computes the results of one condition that need no bootstrap. Returns the condition's trials, grouped by
+/// difficulty.
 Group collect(const std::vector<TrialRecord>& trials, const TradeOptions& options,
               InstructionResult& result) {
   std::vector<const TrialRecord*> scored;
@@ -243,7 +244,7 @@ constexpr MeasureName kNames[measures] = {{"proportion correct", "proportion"},
                                           {"inverse efficiency", "s"},
                                           {"BIS", "SD"}};
 
-/// The measures of each condition, in the session itself and in each bootstrap replicate of it.
+/// The measures of each condition: for the session itself, and for each bootstrap replicate of the session.
 struct Sessions {
   std::vector<Measures> values;
   std::vector<std::vector<Measures>> replicates;

@@ -17,11 +17,11 @@ struct DifficultyCell {
   double proportion_correct = 0;
   Interval accuracy;                     ///< Wilson interval
   std::optional<double> mean_correct_s;  ///< empty if no answer was correct
-  std::optional<double> drift;           ///< from the diffusion fit that all difficulties share
+  std::optional<double> drift;           ///< drift rate from the diffusion fit of all difficulties together
 };
 
 /// The results of one condition: an instruction, or whatever else TrialRecord::instruction contains. Accuracy
-/// and times are those of answered experimental trials that the exclusion rule keeps. A score that cannot be
+/// and times come from the answered experimental trials that the exclusion rule keeps. A score that cannot be
 /// computed is empty.
 struct InstructionResult {
   std::string instruction;
@@ -61,13 +61,13 @@ struct TradeOptions {
   std::uint64_t seed = 1;
 };
 
-/// Analyses speed and accuracy by condition. The diffusion model is fitted to the difficulties of a
-/// condition, with shared boundary and Ter. Intervals are percentiles of a bootstrap that resamples trials
-/// within condition and difficulty. The boundary's interval is different: it is normal in the logarithm, with
-/// the standard deviation of shared_ez_diffusion(). If more than 5 % of the replicates cannot be fitted, both
-/// the number and its interval are empty. LISAS uses the standard deviations over all trials of the session,
-/// BIS those over the session's cells. A single condition has no BIS, because the scores of its cells always
-/// average 0.
+/// Analyses speed and accuracy by condition. The diffusion model is fitted to all difficulties of a condition
+/// together, with one boundary and one Ter. Intervals are percentiles of a bootstrap that resamples trials
+/// within condition and difficulty. Only the boundary's interval is different: it assumes that the logarithm
+/// of the boundary is normal, with the standard deviation of shared_ez_diffusion(). If more than 5 % of the
+/// replicates cannot be fitted, both the number and its interval are empty. LISAS uses the standard
+/// deviations over all trials of the session, BIS those over the session's cells. A single condition has no
+/// BIS, because the scores of its cells always average 0.
 Trade trade(const std::vector<TrialRecord>& trials, const TradeOptions& options);
 
 }  // namespace turnpoint::analysis

@@ -37,7 +37,7 @@ struct TrialRecord {
 std::vector<std::string> conditions_of(const std::vector<TrialRecord>& trials,
                                        const std::vector<std::string>& order);
 
-/// A remark to be shown with a number or in its place: a stable code and a sentence for people.
+/// A remark that the report shows beside a number or instead of it: a stable code and a sentence for people.
 struct Statement {
   std::string code;
   std::string text;

@@ -48,7 +48,7 @@ void Exposure::check(double displacement_m, double length_s) const {
                                     limits_.duty * window_s, window_s));
 }
 
-// Checks only the window that ends with this stimulus, because the duty cycle is largest there.
+// The duty cycle is checked only in the window that ends with this stimulus, because it is largest there.
 bool Exposure::fits(double start_s, double length_s) const {
   constexpr double rounding_s = 1e-9;
   const double end_s = start_s + length_s;
@@ -63,8 +63,8 @@ double Exposure::earliest_start_s(double wanted_s, double length_s) const {
   check(0, length_s);
   double start_s = recent_.empty() ? wanted_s : std::max(wanted_s, recent_.back().end_s);
   if (!fits(start_s, length_s)) {
-    // A stimulus that may begin at some time may also begin at any later time, so bisection finds the
-    // earliest. `late_s` is always allowed: by then, all earlier stimuli are too old to count.
+    // If a stimulus may begin at some time, it may also begin at any later time. Therefore bisection finds
+    // the earliest time. `late_s` is always allowed: by then, all earlier stimuli have left the window.
     double too_soon_s = start_s, late_s = start_s + window_s + rest_s;
     for (int k = 0; k < 60; ++k) {
       const double middle_s = 0.5 * (too_soon_s + late_s);

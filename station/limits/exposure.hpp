@@ -11,20 +11,20 @@ namespace turnpoint::limits {
 /// The largest vibration that a rig may deliver to a finger.
 struct ExposureLimits {
   double displacement_m = 0;  ///< peak anywhere on the surface, with all tones added
-  double continuous_s = 30;   ///< longest vibration without a rest of 0.5 s
-  double duty = 0.8;          ///< largest share of vibration in any 60 s
+  double continuous_s = 30;   ///< longest vibration without a pause of 0.5 s
+  double duty = 0.8;          ///< largest fraction of any 60 s in which the surface may vibrate
   double session_s = 3600;    ///< length of one period of exposure, pauses included
 };
 
-/// The time of a stimulus that was presented, in seconds. The clock must continue when the station restarts,
-/// like the wall time in the database.
+/// The start and end of a stimulus that was presented, in seconds. The clock must not restart with the
+/// station: the wall time in the database is such a clock.
 struct Exposed {
   double start_s = 0;
   double end_s = 0;
 };
 
-/// Thrown if a limit forbids a stimulus, for now or for good. The message names the limit, the value and what
-/// is allowed.
+/// Thrown if a limit forbids a stimulus, either now or always. The message names the limit, the value and
+/// what is allowed.
 class LimitExceeded : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
@@ -49,13 +49,14 @@ class Exposure {
   /// presented, or if the period of exposure would end before the stimulus does.
   double earliest_start_s(double wanted_s, double length_s) const;
 
-  /// The same for all stimuli of one trial. They are given in order, with times from the start of the trial.
+  /// Returns the earliest time at which a whole trial may begin. `trial` lists the trial's stimuli in order,
+  /// with times from the start of the trial.
   double earliest_start_s(double wanted_s, std::span<const Exposed> trial) const;
 
   /// Records a stimulus that was presented. Add stimuli in order of time.
   void add(const Exposed& exposed);
 
-  double on_time_s(double from_s, double to_s) const;  ///< duration of vibration between two times
+  double on_time_s(double from_s, double to_s) const;  ///< duration of vibration between the two times
 
  private:
   bool fits(double start_s, double length_s) const;

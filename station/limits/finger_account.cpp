@@ -88,8 +88,8 @@ FingerHistory read_finger_history(const std::string& database, const std::string
 
 namespace {
 
-// Shifts times towards 0: seconds since 1970 are so large that too few digits remain for comparing with a
-// limit.
+// Shifts times towards 0. Seconds since 1970 are so large that a double has too few digits left for comparing
+// them with a limit.
 std::vector<Exposed> shifted(std::vector<Exposed> stimuli, double by_s) {
   for (auto& stimulus : stimuli) stimulus.start_s -= by_s, stimulus.end_s -= by_s;
   return stimuli;

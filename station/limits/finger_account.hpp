@@ -10,21 +10,22 @@
 
 namespace turnpoint::limits {
 
-/// Converts the rig's limits. A simulated session may last any time.
+/// Converts the rig's limits. A simulated session may have any length.
 ExposureLimits limits_of(const rig::Rig& rig, terms::RunMode mode);
 
-/// The stimuli of a participant's earlier segments, from the database, in order of time; and the start of the
-/// period of exposure on the wall clock (s since 1970). A pause of half an hour starts a new period. A new
-/// process, or another session of the same participant, does not.
+/// The vibration that a participant's finger has received so far: the stimuli of earlier segments, from the
+/// database and in order of time, and the start of the period of exposure on the wall clock (s since 1970).
+/// Only a pause of half an hour starts a new period; a restart of the program or another session of this
+/// participant does not.
 struct FingerHistory {
   std::vector<Exposed> stimuli;
   double period_start_s = 0;
 };
 inline constexpr double kNewPeriod_s = 1800;
 
-/// Uses the sessions that ended within the half hour before `now_s`. If a trial was presented but never
-/// finished (a crash), it counts as a stimulus of `longest_s`. Times after `now_s` count as `now_s`, because
-/// the clock must have been set back.
+/// Uses the sessions that ended within the half hour before `now_s`. A trial that was presented but never
+/// finished, because of a crash, counts as a stimulus of `longest_s`. A time after `now_s` counts as `now_s`,
+/// because the clock must have been set back.
 FingerHistory finger_history(const std::vector<store::StoredSession>& sessions, double now_s,
                              double longest_s);
 
