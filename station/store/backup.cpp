@@ -43,7 +43,8 @@ std::vector<StoredBackup> backups_of(const std::string& directory, const std::st
 
 std::string record_path(const std::string& database) { return database + ".last-backup"; }
 
-/// Records the backup for the operator's page. If the record cannot be written, the backup is still valid.
+/// Records the backup, so that the operator's page can show its age. If that fails, the backup is still
+/// valid.
 void record(BackupReport& report, const std::string& database, const std::string& database_id) {
   try {
     const auto name = record_path(database);
@@ -54,7 +55,8 @@ void record(BackupReport& report, const std::string& database, const std::string
   }
 }
 
-/// Counts the sessions and trials in the finished file. A faulty copy may contain fewer than the database.
+/// Counts the sessions and trials in the finished file. Throws if it contains fewer sessions than the
+/// database.
 void read_back(BackupReport& report, std::int64_t sessions) {
   Database copy(report.path, Database::Access::immutable);
   report.sessions = copy.integer("SELECT count(*) FROM session");

@@ -27,7 +27,7 @@ struct BackupReport {
   std::int64_t number = 0;
   std::int64_t sessions = 0, trials = 0;
   std::vector<std::string> removed;  ///< older backups that were removed to keep only `keep`
-  std::string unrecorded;            ///< why last_backup() will not find this backup; "" if it will find it
+  std::string unrecorded;            ///< why last_backup() will not report this backup; "" if it will
 };
 
 /// Copies a database to `directory`/NAME-NUMBER-TIME.sqlite, even while a session is writing to it. The copy
@@ -35,7 +35,8 @@ struct BackupReport {
 /// database removed, so a damaged database never replaces good backups. Throws StoreError.
 BackupReport backup(const std::string& database, const BackupOptions& options);
 
-/// The newest backup of a database that was read back and checked. The backup may have been moved since.
+/// The newest backup of a database that was read back and checked. Somebody may have moved the file since
+/// then.
 struct LastBackup {
   std::string path;
   std::int64_t realtime_ns = 0;  ///< wall-clock time at which it was made

@@ -19,7 +19,7 @@ struct StoredBackup {
   /// increases with each backup in the folder; 0 for backups of older releases
   std::int64_t number = 0;
   std::int64_t made_realtime_ns = 0;  ///< time of the backup, read from its file name
-  /// why the backup could not be read; "" if it could be read or is known to be damaged
+  /// error that prevented reading the backup; "" if it could be read or is known to be damaged
   std::string trouble;
   bool readable() const { return !database_id.empty(); }
 };
@@ -28,7 +28,7 @@ struct StoredBackup {
 /// with other names are ignored. Throws StoreError if the folder cannot be listed.
 std::vector<StoredBackup> stored_backups(const std::string& folder);
 
-/// Returns a number greater than the numbers of all backups in the folder, of whichever database.
+/// Returns a number greater than that of any backup in the folder, whichever database it belongs to.
 std::int64_t next_backup_number(const std::string& folder);
 
 /// Writes stem and number into a backup. clear_backup_note() removes them after the backup was restored.
@@ -38,8 +38,8 @@ void clear_backup_note(Database& copy);
 /// Removes a backup and its checksum file.
 void remove_backup(const std::string& path);
 
-/// A lock that only one process holds, which may then change a folder of backups. Other processes wait. Has
-/// no effect on file systems without locks.
+/// Holds the lock of a folder of backups. Only the process that holds it may change the folder; other
+/// processes wait for it. On file systems without locks it does nothing.
 class BackupFolderLock {
  public:
   explicit BackupFolderLock(const std::string& folder);
@@ -49,8 +49,8 @@ class BackupFolderLock {
 };
 
 /// Throws StoreError (missing) unless a separate disk is mounted at the folder or at its parent folder. The
-/// disk must not be the database's. If a disk is not mounted, its mount point is an ordinary empty folder on
-/// the system disk.
+/// database's own disk does not count. (If a disk is not mounted, its mount point is an ordinary empty folder
+/// on the system disk.)
 void require_disk(const std::string& folder, const std::string& database);
 
 /// Returns the name of the file into which a drill restores a backup. If the drill is killed, this file is
@@ -58,7 +58,7 @@ void require_disk(const std::string& folder, const std::string& database);
 std::string drill_file(const std::string& backup);
 
 /// Removes the unfinished files of interrupted backups from a folder, and returns their names. Holds the
-/// folder's lock meanwhile.
+/// folder's lock while it does so.
 std::vector<std::string> remove_interrupted_backups(const std::string& folder);
 
 }  // namespace turnpoint::store

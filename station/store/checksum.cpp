@@ -15,7 +15,7 @@ namespace turnpoint::store {
 
 namespace {
 
-/// Hashes each value with its type and length. Different rows then always give different bytes.
+/// Hashes each value together with its type and length, so that different rows never give the same bytes.
 void add_row(text::Sha256& hash, const Statement& row) {
   std::string bytes;
   for (int i = 0; i < row.columns(); ++i) {
@@ -34,15 +34,15 @@ void add_row(text::Sha256& hash, const Statement& row) {
 
 }  // namespace
 
-/// Turns the rows of one session into the bytes that are hashed, in a given encoding. It prepares its
-/// statements only once, because each trial of a session adds two links.
+/// Turns the rows of one session into the bytes that are hashed, in a given encoding. The statements are
+/// prepared only once, because each trial of a session adds two links.
 class Encoder {
  public:
   Encoder(Database& database, std::string schema, std::string session_id, std::int64_t encoding = kEncoding)
       : database_(database), schema_(std::move(schema)), id_(std::move(session_id)), encoding_(encoding) {}
 
-  /// Hashes the data with which the session started. The session's status is left out, because it changes
-  /// later and each link contains it.
+  /// Hashes the data with which the session started. The session's status is left out: it changes later, and
+  /// each link contains it anyway.
   void add_provenance(text::Sha256& hash) const {
     auto session = session_table();
     session.fields.resize(session.fields.size() - 2);
@@ -142,9 +142,9 @@ Link link_from(const Statement& row) {
   return link;
 }
 
-/// True if the session may have this status after its last link. Usually the status is that of the link.
-/// Opening a database changes the status of sessions whose process died without adding a link, so exactly
-/// these changes are accepted too.
+/// True if a session with this last link may have this status. Usually it is the status in the link. When a
+/// database is opened, the status of a session whose process died is changed without a new link, so these
+/// changes are accepted too.
 bool follows(const Link& last, const std::string& status, const std::string& reason) {
   if (status == last.status && reason == last.status_reason) return true;
   const std::string running = name(SessionStatus::running), interrupted = name(SessionStatus::interrupted);
@@ -194,11 +194,11 @@ Link check_links(Database& database, const std::string& schema, VerifiedSession&
   return previous;
 }
 
-/// Returns the sessions (all, or the one with `session_id`) whose place in the counterbalancing agrees with
+/// Returns the sessions (all, or only `session_id`) whose sequence index in the counterbalancing agrees with
 /// the participant's enrolment. The enrolment must come from a station at which the participant has a
 /// session. If the database has tombstones, it may come from any station, because the session at that station
-/// may have been withdrawn. One query checks all sessions, because a query for each session would read all
-/// sessions each time.
+/// may have been withdrawn. A single query checks all sessions: a query per session would read all sessions
+/// each time.
 std::set<std::string> enrolled(Database& database, const std::string& schema,
                                const std::string& session_id = "") {
   std::set<std::string> ids;

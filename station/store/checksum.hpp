@@ -10,13 +10,12 @@
 
 namespace turnpoint::store {
 
-/// Number of the rule that turns rows into the bytes to be hashed. The bytes of an encoding never change. A
-/// later release that adds columns or tables adds an encoding; older links are still checked with the
-/// encoding that they were made with.
+/// Version of the rule that turns rows into the bytes to be hashed. The bytes of a version never change. A
+/// later release that adds columns or tables adds a version; older links are still checked with the version
+/// with which they were made.
 constexpr int kEncoding = 2;
 
-/// The last row of a session in each table, given by the row's key. If a table has no rows, the value is
-/// below the first key.
+/// The keys of a session's last row in each table. If a table has no rows, its value is below the first key.
 struct Extent {
   std::int64_t segment = 0;  ///< segment_index of the last segment; the first has index 1
   std::int64_t block = -1;   ///< run_order of the last block
@@ -68,9 +67,9 @@ struct VerifiedSession {
   std::vector<std::string> problems;  ///< differences from what was recorded; empty if there are none
 };
 
-/// Checks every link of a session against the rows that it covers, and checks that every row is covered.
-/// `schema` is "main" or the name of an attached database. If somebody rewrote both the rows and the links,
-/// this check passes. To detect that, compare the last checksum with one that was exported earlier
+/// Checks every link of a session against the rows that it covers, and checks that a link covers every row.
+/// `schema` is "main" or the name of an attached database. The check cannot detect that somebody rewrote both
+/// the rows and the links. To detect that, compare the last checksum with one that was exported earlier
 /// (holds_link).
 VerifiedSession verify_session(Database& database, const std::string& session_id,
                                const std::string& schema = "main");
@@ -85,8 +84,8 @@ bool holds_link(Database& database, const std::string& session_id, const std::st
 /// Returns the checksum of a session's last link; "" if the session has no chain.
 std::string last_checksum(Database& database, const std::string& session_id);
 
-/// Returns the SHA-256 over all rows of a session, annotations included, status excluded. Two databases give
-/// the same value exactly if they contain the same session.
+/// Returns the SHA-256 over all rows of a session, with annotations and without the status. Two databases
+/// give the same value exactly if they contain the same session.
 std::string session_checksum(Database& database, const std::string& schema, const std::string& session_id);
 
 }  // namespace turnpoint::store

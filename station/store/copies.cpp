@@ -15,7 +15,8 @@ enum class Holds { no, yes, unreadable };
 Holds holds(const std::string& path, const std::vector<std::string>& session_ids) {
   try {
     for (const auto* suffix : {"-wal", "-journal"})
-      // SQLite's log has data that are not in the database file yet
+      // Data in SQLite's log are not yet in the database file, so reading only that file could miss a
+      // session.
       if (file_size(path + suffix) > 0) return Holds::unreadable;
     Database copy(path, Database::Access::immutable);
     Statement rows(copy, "SELECT 1 FROM session WHERE session_id = ?");

@@ -6,8 +6,8 @@
 
 namespace turnpoint::store {
 
-/// Files beside a database that contain some of the given sessions, or that may contain them because they
-/// cannot be read.
+/// Files beside a database that contain some of the given sessions, or that cannot be read and therefore may
+/// contain them.
 struct Copies {
   std::vector<std::string> own;  ///< backups of this database, and its copies from before a migration
   /// Files that must not be removed without asking: backups of other databases, damaged files that were set
@@ -20,7 +20,7 @@ struct Copies {
 Copies copies_of(const std::string& path, Database& database, const std::string& backup_folder,
                  const std::vector<std::string>& session_ids);
 
-/// Removes the files in `own`, and what interrupted backups have left in the folder.
+/// Removes the files in `own`, and the files that interrupted backups have left in the folder of backups.
 void remove_copies(const Copies& copies, const std::string& backup_folder);
 
 }  // namespace turnpoint::store

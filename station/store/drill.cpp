@@ -18,7 +18,8 @@ namespace {
 std::int64_t sessions_in(Database& database) { return database.integer("SELECT count(*) FROM session"); }
 std::int64_t trials_in(Database& database) { return database.integer("SELECT count(*) FROM trial"); }
 
-/// Returns the newest backup of this database, even if it cannot be read: a restore would need it too.
+/// Returns the newest backup of this database, even if it cannot be read, because a real restore would need
+/// it too.
 StoredBackup newest_backup(const std::string& directory, const std::string& path, const std::string& id) {
   const auto stem = std::filesystem::path(path).stem().string();
   StoredBackup newest;
@@ -36,7 +37,7 @@ StoredBackup newest_backup(const std::string& directory, const std::string& path
   return newest;
 }
 
-/// A restored backup that exists only during the drill.
+/// The temporary file into which a drill restores the backup. The destructor removes it.
 class Restored {
  public:
   explicit Restored(const StoredBackup& backup) : path_(drill_file(backup.path)) {
@@ -51,19 +52,19 @@ class Restored {
     try {
       remove_database(path_);
     } catch (const StoreError&) {
-      // The next backup or drill removes the file.
+      // If removing fails, the next backup or drill removes the file.
     }
   }
   const std::string& path() const { return path_; }
-  /// Removes the file. Throws if that fails: a drill must not leave a file behind without a message.
+  /// Removes the file. Throws if that fails, so that the drill reports the remaining file.
   void remove() { remove_database(std::exchange(path_, "")); }
 
  private:
   std::string path_;
 };
 
-/// Compares a session of the backup with the database. Returns a difference; "" if there is none, or if the
-/// session has only grown or been withdrawn since the backup.
+/// Compares a session of the backup with the database. Returns a description of the difference; "" if there
+/// is none. It is no difference if the session has grown or was withdrawn after the backup.
 std::string difference(Database& live, const VerifiedSession& session) {
   Statement withdrawn(live, "SELECT 1 FROM tombstone WHERE session_id = ?");
   Statement there(live, "SELECT 1 FROM session WHERE session_id = ?");

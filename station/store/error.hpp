@@ -4,7 +4,7 @@
 
 namespace turnpoint::store {
 
-/// The kind of a database error. Kinds differ in what the caller can do about them.
+/// The kind of a database error. Each kind calls for another reaction by the caller.
 enum class ErrorKind {
   disk_full,       ///< earlier rows are intact; repeat the same call once there is space
   read_only,       ///< the file, folder or disk cannot be written

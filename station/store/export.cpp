@@ -22,7 +22,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Makes a folder name from a protocol id. Researchers may write any text as id, so characters that could
+/// Makes a folder name from a protocol id. Researchers may write any text as the id, so characters that could
 /// lead out of the folder are replaced.
 std::string folder_name(const std::string& protocol_id) {
   std::string name = protocol_id.empty() || protocol_id.front() == '.' ? "_" : "";
@@ -82,7 +82,7 @@ std::vector<ProtocolSelection> select(Database& database, const std::string& dir
 
 namespace {
 
-/// Size of the text that is collected before it is written to a table's file.
+/// Size of the piece of text that is collected before it is written to a table's file.
 constexpr std::size_t kPieceBytes = 1U << 18U;
 
 /// Calls `write`. If `write` fails, throws an error that says what the export was writing and what to do.

@@ -31,9 +31,9 @@ struct Labels {
   std::map<std::string, std::string> sessions;      ///< label of each session, by session_id
 };
 
-/// Makes labels of letters and digits only, as BIDS requires. They differ even if case is ignored, as some
-/// file systems do. If two names would get the same label, part of the name's hash is appended; it is the
-/// same in every export.
+/// Makes labels of letters and digits only, as BIDS requires. Labels differ even if case is ignored, because
+/// some file systems ignore it. If two names would get the same label, part of the name's hash is appended,
+/// which is the same in every export.
 std::map<std::string, std::string> labels_for(const std::set<std::string>& names) {
   std::map<std::string, int> users;
   const auto folded = [](std::string text) {
@@ -73,8 +73,8 @@ Labels label_all(const ProtocolSelection& selection) {
   return labels;
 }
 
-/// Throws if the folder has files of participants who are not part of this export, because they would look
-/// like part of it.
+/// Throws if the folder has files of participants who are not part of this export, because readers would take
+/// them for part of it.
 void refuse_leftovers(const std::string& folder, const Labels& labels) {
   std::error_code ignored;
   std::set<std::string> expected;

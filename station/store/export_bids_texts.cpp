@@ -27,7 +27,7 @@ const text::Value* at(const text::Value& table, const std::string& key) {
   return entry == nullptr ? nullptr : &entry->value;
 }
 
-/// Texts of a protocol, as its newest session has stored them.
+/// The texts of a protocol that were stored with its newest session.
 struct Texts {
   std::string title, instructions;
 };

@@ -11,7 +11,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// Makes the exported column `csv` from the field of `table` with this export name.
+/// Makes the exported column `csv` from the field of `table` that has this export name.
 template <class Record>
 ExportColumn exported(const Table<Record>& table, const std::string& csv, const Record* ExportRow::*record) {
   for (const auto& field : table.fields)
@@ -48,9 +48,9 @@ ExportColumn participant_id() {
       [](const ExportRow& row) { return cell(row.session->person); }};
 }
 
-/// In version 2 of the columns, onset and duration describe the stimulus, as in BIDS. The zero of the
-/// response time and the length of the trial have columns of their own. The participant column names a
-/// person.
+/// In version 2 of the columns, onset and duration describe the stimulus, as in BIDS. Response zero (the
+/// moment from which response times count) and the length of the trial have separate columns. The participant
+/// column names a person.
 ExportColumn columns_version() {
   return {{"columns_version", "Version of this set of columns", "", ""},
           [](const ExportRow&) { return cell(std::string("2")); }};

@@ -11,7 +11,7 @@ namespace turnpoint::store {
 
 /// The sessions of one protocol that are exported, and the columns of the protocol's factors.
 struct ProtocolSelection {
-  /// folder: where the files of this protocol are written, without a slash at the end
+  /// `folder`: the folder for the files of this protocol, without a slash at the end
   std::string protocol_id, folder;
   std::vector<std::string> factors;
   std::vector<SessionRecord> sessions;

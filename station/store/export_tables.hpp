@@ -33,8 +33,8 @@ double event_length_s(const EventRow& event);
 /// which the session learned of them.
 std::vector<EventRow> in_order_of_time(std::vector<EventRow> events);
 
-/// What the columns of one line of an export are computed from. Each table sets the pointers that its columns
-/// need; the others are null.
+/// The data from which the columns of one exported line are computed. Each table sets the pointers that its
+/// columns need; the others are null.
 struct ExportRow {
   const SessionRecord* session = nullptr;
   const BlockStart* block = nullptr;
@@ -45,7 +45,8 @@ struct ExportRow {
   std::optional<StimulusSpan> span = {};  ///< time span of the trial's stimuli
 };
 
-/// A column of an exported table: its description, and the function that computes its value for a line.
+/// A column of an exported table: its description, and the function that computes the column's value in a
+/// line.
 struct ExportColumn {
   Column column;
   std::function<Cell(const ExportRow&)> cell;
@@ -63,7 +64,7 @@ std::vector<std::string> names_of(const ExportColumns& columns);
 std::vector<std::string> names_of(const std::vector<Column>& columns);
 std::vector<Cell> cells_of(const ExportColumns& columns, const ExportRow& row);
 
-/// Returns the data dictionary of a folder as JSON. Columns are grouped by table.
+/// Returns the data dictionary (codebook) of an export folder as JSON. Columns are grouped by table.
 std::string codebook_json(const std::string& protocol_id, const std::vector<std::string>& factors);
 
 /// Returns only the columns as JSON, in the form of BIDS sidecars and codebooks: name -> Description, Units,

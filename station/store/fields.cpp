@@ -76,7 +76,7 @@ Cell cell_of(const Value& value) {
   if constexpr (Optional<Value>::value)
     return value ? cell_of(*value) : Cell{};
   else if constexpr (std::is_same_v<Value, std::uint64_t>)
-    // the number uses all 64 bits, so SQLite stores large ones as negative; print it unsigned
+    // The number uses all 64 bits. SQLite stores a large one as a negative number, so print it as unsigned.
     return cell(std::to_string(value));
   else if constexpr (std::is_integral_v<Value>)
     return cell(static_cast<std::int64_t>(value));
@@ -95,7 +95,7 @@ struct MemberOf<Value Class::*> {
   using Record = Class;
 };
 
-/// Follows a path of pointers to members: member<&A::b, &B::c>(a) is a.b.c.
+/// Applies pointers to members one after another: member<&A::b, &B::c>(a) is a.b.c.
 template <auto First, auto... Rest, class Record>
 auto& member(Record& record) {
   if constexpr (sizeof...(Rest) == 0)
@@ -104,8 +104,8 @@ auto& member(Record& record) {
     return member<Rest...>(record.*First);
 }
 
-/// The names and texts of a column. field() finds out the type and the functions from the pointer to the data
-/// member.
+/// The names and texts of a column. field() derives the type and the functions of the column from the pointer
+/// to the data member.
 struct About {
   const char* name;
   const char* csv = "";
@@ -130,7 +130,7 @@ Field<typename MemberOf<decltype(First)>::Record> field(const About& about) {
           [](const Record& r) { return cell_of(member<First, Rest...>(r)); }};
 }
 
-/// A column that the checksum covers only from this encoding on.
+/// Makes a column that the checksum covers only from the given encoding on.
 template <class Record>
 Field<Record> since(int encoding, Field<Record> field) {
   field.since = encoding;
@@ -143,7 +143,7 @@ Field<SessionRecord> start(const About& about) {
   return field<&SessionRecord::start, Member>(about);
 }
 
-/// This column is NULL if there is no response time, because then there is no clock to name.
+/// This column is NULL if there is no response time: then no clock was read.
 Field<TrialRow> response_time_quality() {
   auto quality = field<&TrialRow::response_time_quality>({"response_time_quality", "response_time_quality",
                                                           "Clock that gave the time stamp of the answer", "",

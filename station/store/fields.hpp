@@ -33,8 +33,8 @@ struct Field {
   int since = 1;  ///< the first encoding of the checksum that covers this column (see checksum.hpp)
 };
 
-/// A table of the database. Its first columns (`place`) contain the keys, and other values that only the
-/// session log knows. The columns for the members of Record (`fields`) follow.
+/// A table of the database. Its first columns (`place`) contain the keys, and other values that are known to
+/// the session log but not stored in a Record. The columns for the members of Record (`fields`) follow.
 template <class Record>
 struct Table {
   const char* name;
@@ -48,8 +48,8 @@ const Table<TrialRow>& trial_table();
 const Table<ToneRow>& tone_table();
 const Table<EventRow>& event_table();
 
-/// The data of a session are in four tables, because many sessions share a protocol, a rig and a calibration.
-/// Status and reason are the last columns, and the only columns that ever change.
+/// The columns of a session. Its data are in four tables, because many sessions share a protocol, a rig and a
+/// calibration. Status and reason are the last columns, and the only ones that ever change.
 const Table<SessionRecord>& session_table();
 const Table<SessionRecord>& protocol_table();
 const Table<SessionRecord>& rig_table();

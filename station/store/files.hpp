@@ -20,7 +20,7 @@ ErrorKind kind_of_errno(int code);
 /// the database.
 inline constexpr const char* kLogSuffixes[] = {"-wal", "-shm", "-journal"};
 
-/// True if there is a file or folder with this name. Throws if that cannot be found out.
+/// True if there is a file or folder with this name. Throws if the system does not let us find out.
 bool file_exists(const std::string& path);
 /// Size in bytes; 0 if there is no such file.
 std::uint64_t file_size(const std::string& path);
@@ -33,12 +33,12 @@ std::string folder_of(const std::string& path);
 /// Returns the names in a folder, sorted. Throws if the folder is missing or cannot be listed completely.
 std::vector<std::string> list_folder(const std::string& path);
 
-/// Returns the absolute path of a file with all links resolved, so that a database has the same lock under
-/// all its names.
+/// Returns the absolute path of a file with all links resolved. A database then has the same lock, whichever
+/// of its paths was given.
 std::string canonical(const std::string& path);
 
-/// Opens the lock file, and creates it if it is missing. If it is a link, or a file with a second name, it is
-/// refused and left unchanged.
+/// Opens the lock file, and creates it if it is missing. Throws if it is a symbolic link or has a second name
+/// (hard link), and leaves it unchanged.
 system::FileDescriptor open_lock(const std::string& path);
 
 /// Creates an empty file that only its owner may read.
@@ -46,8 +46,8 @@ void create_private(const std::string& path);
 /// If root created the file, gives it to the owner of the folder.
 void give_to_owner_of_folder(const std::string& path);
 /// Gives a file the permissions of the file `original`, restricted to those that are useful for data files.
-/// If `original` does not exist, the file stays private. If `original` is "", the file gets the permissions
-/// of a new database: 0640.
+/// If `original` does not exist, only the owner may read the file. If `original` is "", the file gets the
+/// permissions of a new database: 0640.
 void permit_as(const std::string& original, const std::string& path);
 
 /// Syncs the contents of a file or folder to disk.

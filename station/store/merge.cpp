@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
 namespace {
 
 /// A table to be merged: its name and key, the columns that are not compared because each database has its
-/// own values, and the SQL condition for the rows to take.
+/// own values, and the SQL condition that selects the rows.
 struct Part {
   std::string table, key, own_columns, incoming;
 };
@@ -70,7 +70,7 @@ std::string same_key(const Part& part, const std::vector<std::string>& columns) 
   return condition;
 }
 
-/// Throws for the first row that has different values in the two databases. One pass over the table compares
+/// Throws for the first row whose values differ between the two databases. Reads the table once and compares
 /// all columns.
 void refuse_conflicts(Database& database, const Part& part) {
   const auto columns = columns_of(database, part.table);
@@ -85,8 +85,8 @@ void refuse_conflicts(Database& database, const Part& part) {
     values += fmt::format(", m.{0} IS NOT s.{0}, m.{0}, s.{0}", column);
   }
   if (compared.empty()) return;
-  // Look up each incoming row in this database. The opposite direction would be slow, because the table in
-  // this database may be far larger.
+  // Look up each incoming row in this database. Looking up each row of this database in the source would be
+  // slow, because this database may be far larger.
   Statement rows(
       database,
       fmt::format("SELECT {}{} FROM source.{} s CROSS JOIN main.{} m ON {} WHERE {} AND ({}) LIMIT 1", key,
@@ -103,8 +103,8 @@ void refuse_conflicts(Database& database, const Part& part) {
                       rows.text(3 * i + 3)));
 }
 
-/// Throws if the two databases gave the same place in the counterbalancing to different people. That happens
-/// if two stations use the same name.
+/// Throws if the two databases gave the same sequence index of the counterbalancing to different people. That
+/// happens if two stations use the same station name.
 void refuse_shared_places(Database& database) {
   Statement rows(
       database,
@@ -229,8 +229,8 @@ MergeReport merge_attached(Database& database, const std::string& source) {
   return report;
 }
 
-/// A private, migrated and checked copy of the source. With the copy, the merge does not depend on the
-/// source's schema, nor on a session that may be writing to the source.
+/// A private, migrated and checked copy of the source. Because of the copy, neither the source's schema nor a
+/// session that is writing to the source affects the merge.
 class SourceCopy {
  public:
   SourceCopy(const std::string& source, const std::string& beside) : path_(beside + ".merging") {
@@ -245,7 +245,7 @@ class SourceCopy {
     try {
       remove_database(path_);
     } catch (const StoreError&) {
-      // The next process that writes to this database removes the copy.
+      // If removing fails, the next process that writes to this database removes the copy.
     }
   }
   const std::string& path() const { return path_; }

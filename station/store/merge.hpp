@@ -24,7 +24,7 @@ const char* name(MergedSession::What what);
 
 struct MergeReport {
   std::vector<MergedSession> sessions;
-  /// sessions that this database has, but that were withdrawn from the other database
+  /// sessions of this database that were withdrawn from the other database
   std::vector<std::string> withdrawn_there;
 };
 

@@ -48,7 +48,7 @@ void recover_sessions(Database& database) {
   transaction.commit();
 }
 
-/// Throws if the file cannot be written. SQLite gives no error for that and opens the file read-only.
+/// Throws if the file cannot be written. (SQLite reports no error in that case and opens the file read-only.)
 void require_writable(Database& database) {
   if (sqlite3_db_readonly(database.handle(), "main") == 0) return;
   throw StoreError(
@@ -58,8 +58,8 @@ void require_writable(Database& database) {
                   database.path()));
 }
 
-/// Opens a file for reading. Some file systems and folders do not allow the shared memory that WAL mode
-/// needs. The file is then read without shared memory, but only if there is no log.
+/// Opens a file for reading. WAL mode needs shared memory beside the file, which some file systems and
+/// folders do not allow. The file is then read without shared memory, but only if there is no log.
 Database open_plain_reader(const std::string& path) {
   try {
     Database database(path, Database::Access::read_only);
@@ -74,8 +74,8 @@ Database open_plain_reader(const std::string& path) {
   return Database(path, Database::Access::immutable);
 }
 
-/// Refuses a file that has two names. A lock file belongs to one name, so a second station could lock the
-/// other name and write to the file at the same time.
+/// Throws if a file has two names (hard links). A lock file belongs to one name, so a second station could
+/// lock the other name and write to the file at the same time.
 void refuse_second_name(const std::string& path) {
   struct stat status {};
   if (::lstat(path.c_str(), &status) != 0 || !S_ISREG(status.st_mode) || status.st_nlink < 2) return;
@@ -133,8 +133,8 @@ std::string remembered_database_id(const std::string& database) {
 
 namespace {
 
-/// Returns a name for the copy of a database before its migration. It never is the name of an existing file,
-/// which may be a copy of another database.
+/// Returns a name for the copy of a database before its migration. No file with that name exists: an existing
+/// one could be a copy of another database.
 std::string copy_before_migration(const std::string& path) {
   const auto name = fmt::format("{}.before-v{}", path, schema_version());
   if (!file_exists(name)) return name;

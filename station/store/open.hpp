@@ -10,7 +10,7 @@ namespace turnpoint::store {
 /// kernel releases it, however the process ends. Move-only.
 class StationLock {
  public:
-  /// Throws StoreError (busy) if another process has the lock. The message names that process.
+  /// Throws StoreError (busy) if another process has the lock. The message gives that process's id.
   explicit StationLock(const std::string& database);
 
   /// Stores the database's id in the lock file. If the database is lost, this id identifies its backups.

@@ -24,11 +24,11 @@ class People {
   explicit People(Database& database);
 
   /// Returns the name of this person in exports and lists: the code, or CODE@STATION if other people in this
-  /// database have the same code. If codes were joined, the code that was the first argument of join()
-  /// counts.
+  /// database have the same code. If the person has several codes, joined by join(), the first argument of
+  /// join() gives the name.
   std::string label(const Bearer& bearer) const;
 
-  /// Returns all bearers that are the same person, the given one included.
+  /// Returns all bearers of the same person, including the given one.
   std::vector<Bearer> same_as(const Bearer& bearer) const;
 
   /// Returns the people whom `name` may mean, each as a list of bearers. `name` is a code, CODE@STATION or a
@@ -44,15 +44,15 @@ class People {
 
 enum class Relation { same_person, two_people };
 
-/// Records that two codes are the same person, or undoes that. Each code is written as CODE@STATION, or as
-/// CODE if only one person has it. Trials and codes do not change. Returns the person's label. Throws
-/// StoreError: missing for a code without a session, refused for an ambiguous code or if both codes are the
-/// same.
+/// With Relation::same_person, records that two codes belong to the same person; with two_people, undoes
+/// that. Each code is written as CODE@STATION, or as CODE if only one person has it. Trials and codes do not
+/// change. Returns the person's label. Throws StoreError: missing for a code without a session, refused for
+/// an ambiguous code or if both codes are the same.
 std::string join(const std::string& database, const std::string& first, const std::string& second,
                  Relation relation = Relation::same_person);
 
-/// Returns the person whom `name` means. Throws StoreError: missing if there is none, refused if there are
-/// several (the message lists them).
+/// Returns the person whom `name` means. Throws StoreError: missing if nobody has this name, refused if
+/// several people have it (the message lists them).
 std::vector<Bearer> only_person(const People& people, const std::string& name, const std::string& what);
 
 }  // namespace turnpoint::store

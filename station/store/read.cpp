@@ -28,7 +28,7 @@ std::vector<Table<SessionRecord>> session_tables(LongTexts texts) {
   return tables;
 }
 
-/// Reads single sessions by their keys, without reading the others.
+/// Reads single sessions by their keys, so that the whole table need not be read.
 class SessionReader {
  public:
   SessionReader(Database& database, LongTexts texts)
@@ -180,7 +180,7 @@ StoredSession read_session(const std::string& path, const std::string& session_i
 
 std::optional<Interrupted> interrupted_session(const std::string& path, const std::string& session_id) {
   auto database = open_reader(path);
-  // Use trial ids, which increase in the order of storing. The wall clock may have been set back.
+  // Order by trial id, which increases with each stored trial. The wall clock may have been set back.
   Statement newest(
       database,
       "SELECT s.session_id, (SELECT max(trial_id) FROM trial t WHERE t.session_id = s.session_id) AS last"

@@ -41,7 +41,7 @@ std::string id_of_lost(const std::string& path) {
     const auto id = damaged.text("SELECT value FROM meta WHERE key = 'database_id'");
     if (id.size() == 36) return id;
   } catch (const StoreError&) {
-    // The meta table is damaged too, so try the lock file.
+    // The meta table is damaged too, so read the id from the lock file.
   }
   return remembered_database_id(path);
 }
@@ -109,8 +109,8 @@ Candidates candidates_for(const std::string& path, const RestoreOptions& options
   return candidates;
 }
 
-/// Returns false for a damaged backup. If the checksum of a backup is right but the backup cannot be read,
-/// the disk is at fault. The function then throws, so that no older backup is restored instead.
+/// Returns false for a damaged backup. If the backup cannot be read although its checksum is right, the disk
+/// is at fault. Then it throws, so that no older backup is restored instead.
 bool is_good(const StoredBackup& candidate) {
   if (!agrees_with_checksum(candidate.path)) return false;
   try {

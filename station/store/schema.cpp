@@ -236,9 +236,9 @@ CREATE TRIGGER session_stays_gone BEFORE INSERT ON session
   BEGIN SELECT RAISE(ABORT, 'the session was withdrawn'); END;
 )sql";
 
-// Version 3 adds a chain of checksums to each session (checksum.hpp). Sessions that an earlier release
-// recorded have no chain until they are resumed. This version lists them; otherwise they would look like
-// sessions whose chain somebody removed.
+// Version 3 adds a chain of checksums to each session (checksum.hpp). Sessions of earlier releases have no
+// chain until they are resumed. They are listed here, because otherwise they would look as if somebody had
+// removed their chain.
 const char* const kStep3 = R"sql(
 CREATE TABLE link (
   session_id TEXT NOT NULL REFERENCES session (session_id),
@@ -264,9 +264,9 @@ CREATE TRIGGER link_is_never_deleted BEFORE DELETE ON link
   BEGIN SELECT RAISE(ABORT, 'link is append-only'); END;
 )sql";
 
-// Version 4. A code belongs to the station that assigned it; two codes are one person only if a row says so.
-// A tombstone names the station of its code; '' in older tombstones means any station. A tombstone without a
-// hash withdraws only a session, not a code.
+// Version 4. A code belongs to the station that assigned it. Two codes belong to one person only if a row
+// says so. A tombstone names the station of its code; '' in older tombstones means any station. A tombstone
+// without a hash withdraws a single session and leaves the code in use.
 const char* const kStep4 = R"sql(
 CREATE TABLE same_person (
   station_a TEXT NOT NULL,

@@ -28,7 +28,7 @@ constexpr std::uint64_t kFreeBytesWanted = 16U << 20U;
 void require_space(const std::string& database) {
   struct statvfs disk {};
   auto folder = std::filesystem::absolute(database).parent_path().string();
-  // if the folder does not exist, opening the file gives a better message
+  // if the folder does not exist, continue: opening the file gives a better message
   if (::statvfs(folder.c_str(), &disk) != 0) return;
   const auto free_bytes = static_cast<std::uint64_t>(disk.f_bavail) * disk.f_frsize;
   if (free_bytes >= kFreeBytesWanted) return;
@@ -42,8 +42,8 @@ void refuse(Database& database, ErrorKind kind, const std::string& what) {
   throw StoreError(kind, fmt::format("database {}: {}", database.path(), what));
 }
 
-/// Returns the participant's place in the protocol's counterbalancing. A known participant keeps the existing
-/// place. A new one gets the lowest free place, so that withdrawals leave no gaps in the design.
+/// Returns the participant's sequence index in the protocol's counterbalancing. A known participant keeps the
+/// index. A new one gets the lowest free index, so that withdrawals leave no gaps in the design.
 int enrol(Database& database, const SessionStart& start) {
   const Bearer bearer{start.station_id, start.participant};
   if (is_withdrawn(database, bearer))
@@ -56,7 +56,7 @@ int enrol(Database& database, const SessionStart& start) {
       database,
       "SELECT sequence_index FROM enrolment WHERE protocol_id = ? AND station_id = ? AND participant = ?");
   auto same = People(database).same_as(bearer);
-  same.insert(same.begin(), bearer);  // look first for the place that this station assigned
+  same.insert(same.begin(), bearer);  // prefer the index that this station assigned
   for (const auto& one : same) {
     known.bind(start.protocol_id, one.station_id, one.code);
     if (known.step()) return static_cast<int>(known.integer(0));
@@ -151,8 +151,8 @@ struct SessionLog::Impl {
     auto index = next_event;
     for (const auto& event : events) rows.event(place, index++, event);
   }
-  /// Adds a checksum link over everything that the transaction wrote, and commits. Events that were kept in
-  /// memory are then on disk.
+  /// Adds a checksum link over everything that the transaction wrote, and commits. The commit also stores the
+  /// events that were kept in memory.
   void commit(Transaction& transaction) {
     auto link = chain->add();
     transaction.commit();

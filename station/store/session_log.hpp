@@ -21,7 +21,7 @@ struct SessionRecord {
   int trials = 0;  ///< committed trials of every type and outcome
   /// wall-clock time at which the last trial or segment was committed
   std::int64_t last_activity_realtime_ns = 0;
-  /// increases with every trial in this database, even if the clock is set back
+  /// increases with every trial stored in this database, whatever the clock says
   std::int64_t last_trial_id = 0;
   bool merged = false;                   ///< true if the session came from another database
   std::vector<std::string> annotations;  ///< notes of researchers, oldest first

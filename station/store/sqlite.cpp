@@ -141,7 +141,7 @@ void Statement::bind_integer(int index, std::int64_t value) {
   if (const int code = sqlite3_bind_int64(statement_, index, value)) database_->fail(code, "bind");
 }
 void Statement::bind_real(int index, double value) {
-  // SQLite would store NaN as NULL without an error, so the value would be missing.
+  // SQLite would silently store NaN as NULL, so the value would be missing.
   if (!std::isfinite(value))
     throw StoreError(ErrorKind::refused,
                      fmt::format("database {}: parameter {} of {} is not a finite number; the row "
@@ -170,8 +170,8 @@ Database::Database(const std::string& path, Access access) : path_(path) {
                                system != 0 ? fmt::format(" ({})", std::strerror(system)) : "", advice(kind)));
 }
 
-// The cached statements refer to the old object, so they are not moved. They are prepared again at their next
-// use.
+// The cached statements belong to the old object, so they are not moved. Each is prepared again when it is
+// next used.
 Database::Database(Database&& other) noexcept
     : path_(std::move(other.path_)), handle_(std::exchange(other.handle_, nullptr)) {
   other.begin_.reset();
@@ -220,7 +220,7 @@ void Database::fail(int code, const std::string& what) const {
 Transaction::Transaction(Database& database) : database_(database) { database_.begin_statement().run(); }
 
 Transaction::~Transaction() {
-  // SQLite may have rolled back by itself; then there is nothing to do.
+  // If SQLite has already rolled back by itself, there is nothing to do.
   if (open_ && sqlite3_get_autocommit(database_.handle()) == 0)
     sqlite3_exec(database_.handle(), "ROLLBACK", nullptr, nullptr, nullptr);
 }

@@ -32,7 +32,7 @@ class Statement {
     return *this;
   }
 
-  /// Binds one parameter; the first has index 1. Call reset() before.
+  /// Binds one parameter; the first has index 1. Call reset() before binding.
   template <class Value>
   void bind_value(int index, const Value& value) {
     if constexpr (std::is_same_v<Value, std::nullopt_t>)
