@@ -10,8 +10,8 @@ namespace turnpoint::store {
 
 namespace {
 
-/// True if the text is a number. Slider settings are stored as text; even a negative one needs no apostrophe,
-/// because a spreadsheet cannot take a number for a formula.
+/// True if the text is a number. Slider settings are stored as text. A negative setting needs no apostrophe
+/// although it begins with "-", because a spreadsheet reads it as a number and not as a formula.
 bool is_number(const std::string& text) {
   double value = 0;
   const auto* end = text.data() + text.size();

@@ -54,8 +54,8 @@ void publish(const std::string& to, const std::string& original,
   sync_path(folder_of(to));
 }
 
-/// If files show that a database of this name once existed (its log, or an unfinished restore), returns one
-/// of them. Otherwise returns "".
+/// Looks for files that show that a database of this name once existed: its log, or an unfinished restore.
+/// Returns one of them, or "".
 std::string orphan_of(const std::string& path) {
   for (const auto* suffix : {"-wal", "-journal"})
     if (file_size(path + suffix) > 0) return path + suffix;
@@ -116,10 +116,10 @@ void refuse_absent(const std::string& path) {
 
 void create_file(const std::string& path) {
   if (!orphan_of(path).empty()) refuse_absent(path);
-  // An empty log or old shared memory has no data that any database needs.
+  // An empty log or old shared memory contains no data, so remove them.
   for (const auto* suffix : kLogSuffixes) remove_file(path + suffix);
   publish(path, "", [](const std::string& temporary) {
-    // In rollback mode, all data are in the one file when the transaction has ended.
+    // In rollback mode, all data are in this one file once the transaction has ended.
     Database database(temporary, Database::Access::read_write);
     database.execute("PRAGMA journal_mode = DELETE; PRAGMA synchronous = EXTRA");
     create_schema(database, schema_version());
@@ -144,9 +144,9 @@ void copy_to_file(Database& from, const std::string& to, const std::string& orig
 std::string replace_by_restored(const std::string& path) {
   const auto aside = path + ".damaged-" + time_stamp();
   bool moved = false;
-  // Move the database file first. If this is interrupted, there is no database under this name, and every
-  // program refuses to create one. Otherwise a log without its file, or a new file with an old log, could be
-  // mistaken for a database.
+  // Move the database file first. If the program is interrupted after that, there is no database under this
+  // name, and every program refuses to create one. In another order, a log without its file, or a new file
+  // with an old log, could be mistaken for a database.
   for (const auto* suffix : {"", "-wal", "-journal", "-shm"}) {
     if (!file_exists(path + suffix)) continue;
     rename_file(path + suffix, aside + suffix);

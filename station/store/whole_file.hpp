@@ -11,12 +11,12 @@ namespace turnpoint::store {
 // functions throw StoreError.
 
 /// Makes a new, empty database. Throws StoreError (missing) if a log or an unfinished restore with this name
-/// exists: the database that belonged to it is lost.
+/// exists, because then a database of this name has been lost.
 void create_file(const std::string& path);
 
-/// Copies all of `from` into the file `to`, reads the copy back and checks it. Before the check, `finish` may
-/// change the copy. The file is private until it is complete. Then it gets the permissions of the file
-/// `original`, from which `from` was read.
+/// Copies all of `from` into the file `to`, reads the copy back and checks it. `finish` may change the copy
+/// before the check. Only the owner may read the file until it is complete. Then it gets the permissions of
+/// the file `original`, from which `from` was read.
 void copy_to_file(Database& from, const std::string& to, const std::string& original,
                   const std::function<void(Database&)>& finish = {});
 

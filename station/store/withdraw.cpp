@@ -34,7 +34,7 @@ bool has_tombstone(Database& database, const std::string& station, const std::st
   return false;
 }
 
-/// For a name without sessions: throws unless sessions of this participant were withdrawn before.
+/// For a name without sessions: throws unless this participant's sessions were withdrawn earlier.
 void require_withdrawn_before(Database& database, const WithdrawOptions& options) {
   const auto at = options.participant.rfind('@');
   const auto code = options.participant.substr(0, at);
@@ -141,7 +141,7 @@ void remove_sessions(Database& database, const Withdrawal& withdrawal) {
   transaction.commit();
 }
 
-/// Removes the remains of deleted rows: rewrites the file, which drops its free pages, and empties the log.
+/// Removes what is left of deleted rows: rewrites the file without its free pages, and empties the log.
 void scrub(Database& database) {
   database.execute("PRAGMA wal_checkpoint(TRUNCATE)");
   database.execute("PRAGMA temp_store = MEMORY; VACUUM");
@@ -182,7 +182,7 @@ Withdrawal withdraw(const std::string& name, const WithdrawOptions& options) {
   auto withdrawal = choose(database, options);
   count_rows(database, withdrawal);
   const auto ids = ids_of(database, withdrawal);
-  // throws before anything is deleted if a folder cannot be read
+  // throws if a folder cannot be read, before anything is deleted
   copies_of(path, database, options.backup_directory, ids);
   database.execute("PRAGMA secure_delete = ON");
   remove_sessions(database, withdrawal);

@@ -7,8 +7,8 @@
 
 namespace turnpoint::store {
 
-/// Whose sessions to remove. `participant` is CODE@STATION, or a code that only one person has; all codes of
-/// a joined person are included. `station` and `session_id` restrict the removal to sessions of that station,
+/// The sessions to remove. `participant` is CODE@STATION, or a code that only one person has; all codes of a
+/// joined person are included. `station` and `session_id` restrict the removal to sessions of that station,
 /// or to that session; "" means all. If only one session is withdrawn, the code stays in use.
 struct WithdrawOptions {
   std::string participant, station, session_id;
@@ -18,8 +18,8 @@ struct WithdrawOptions {
 /// What a withdrawal removes, or would remove.
 struct Withdrawal {
   std::string participant;
-  /// the removed sessions; empty if all had been removed before and only the cleaning of free space was
-  /// repeated
+  /// the removed sessions; empty if an earlier call removed them all and this one only erased free space
+  /// again
   std::vector<SessionRecord> sessions;
   std::vector<Bearer> bearers;  ///< codes that will not be assigned to another person
   std::int64_t trials = 0, tones = 0, events = 0, annotations = 0;
@@ -34,16 +34,16 @@ struct Withdrawal {
 /// throws the error of listing it.
 Withdrawal plan_withdrawal(const std::string& database, const WithdrawOptions& options);
 
-/// Removes the sessions of a participant. No other function deletes data.
+/// Removes the sessions of a participant. No other function deletes recorded data.
 ///
 /// It deletes the sessions from every table, and then from the file's free pages and its log (secure_delete,
 /// VACUUM, checkpoint). Then it deletes copies of this database that contain the sessions: files that
 /// interrupted operations and migrations have left beside the database, and its backups, if a folder of
 /// backups is given. Before it removes backups, it makes a new one.
 ///
-/// Tombstones remain in the database. They prevent that a merge brings the sessions back, or that the code is
-/// assigned again. Repeating the call does no harm and completes an interrupted withdrawal. Errors are those
-/// of plan_withdrawal(), before anything is deleted.
+/// Tombstones remain in the database. They prevent a merge from bringing the sessions back, and the code from
+/// being assigned again. Repeating the call does no harm and completes an interrupted withdrawal. Before
+/// anything is deleted, it throws the errors of plan_withdrawal().
 Withdrawal withdraw(const std::string& database, const WithdrawOptions& options);
 
 /// True if this code was withdrawn from this database.
