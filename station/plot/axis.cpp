@@ -10,8 +10,8 @@ namespace turnpoint::plot {
 
 namespace {
 
-/// Two numbers that differ by less than this fraction are treated as equal: the difference is a rounding
-/// error, and the number of ticks between them would overflow.
+/// Two numbers whose relative difference is below this are treated as equal. Such a difference is a rounding
+/// error, and dividing it into ticks would give an enormous number of them.
 constexpr double kRounding = 1e-9;
 
 bool differ(double low, double high) {
@@ -61,7 +61,7 @@ std::vector<Tick> log_ticks(const Axis& axis, int wanted) {
   const int last = static_cast<int>(std::ceil(std::log10(axis.high)));
   const bool decades_only = 2 * (last - first) > wanted;
   const bool powers = decades_only && (first < -4 || last > 4);
-  // Over many decades each decade has a tick, but only every second, third, ... tick has a label.
+  // Over many decades, each decade has a tick, but labels stand only at every second, third, ... tick.
   const int labelled = (last - first) / std::max(1, 2 * wanted) + 1;
   std::vector<Tick> result;
   for (int decade = first; decade <= last; ++decade)

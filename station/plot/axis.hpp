@@ -31,7 +31,7 @@ std::vector<Tick> ticks(const Axis& axis, int wanted = 6);
 double position(const Axis& axis, double value);
 
 /// Returns an axis whose limits include all finite values (for log10: all positive values), with a margin of
-/// `margin` times their range. If all values are equal or there are none, the limits leave room around them.
+/// `margin` times their range. If all values are equal, or if there are none, the limits still differ.
 Axis fitted(std::string label, const std::vector<double>& values, double margin = 0.05,
             AxisScale scale = AxisScale::linear);
 

@@ -36,11 +36,11 @@ class Canvas {
   virtual void polygon(const std::vector<Point>& points, const Paint& paint) = 0;
   virtual void rectangle(Point corner, double width, double height, const Paint& paint) = 0;
   virtual void circle(Point centre, double radius, const Paint& paint) = 0;
-  /// Draws one line of text. `anchor` says whether its baseline starts, is centred, or ends at `at`. `weight`
-  /// is 400 (normal) or 600 (bold). `degrees` turns the text counter-clockwise about `at`.
+  /// Draws one line of text. `anchor` says which point of the baseline is at `at`: its start, middle or end.
+  /// `weight` is 400 (normal) or 600 (bold). `degrees` turns the text counter-clockwise about `at`.
   virtual void text(Point at, const std::string& text, double size, Anchor anchor, const std::string& colour,
                     int weight = 400, double degrees = 0) = 0;
-  /// Until end_clip(), shapes are clipped to this rectangle.
+  /// Shapes drawn until end_clip() are clipped to this rectangle.
   virtual void begin_clip(Point corner, double width, double height) = 0;
   virtual void end_clip() = 0;
 };

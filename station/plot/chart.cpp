@@ -86,7 +86,7 @@ struct Draw {
       }
   }
 
-  /// Draws only the line. Its label follows later, when it is known which places are free.
+  /// Draws only the line. Its label is drawn after everything else, in a free place.
   void operator()(const Rule& rule) const {
     if (!is_shown(rule, frame)) return;
     const bool flat = rule.direction == Rule::Direction::horizontal;
@@ -227,7 +227,7 @@ void draw_axes(Canvas& canvas, const Frame& frame, const std::vector<Tick>& acro
   canvas.text({frame.x + frame.width / 2, bottom + 37}, frame.across->label, kText, Anchor::middle, kInk);
 }
 
-/// Returns the ticks of the horizontal axis whose labels fit. On a log axis, some ticks have no label.
+/// Returns those ticks of the horizontal axis whose labels fit. On a log axis, some ticks have no label.
 std::vector<Tick> ticks_with_room(const Axis& axis, double width) {
   for (int wanted = 7; wanted > 2 && axis.scale == AxisScale::linear; --wanted) {
     const auto some = ticks(axis, wanted);
@@ -271,7 +271,8 @@ Division divided(const Chart& chart, const Place& place, VerticalLabels where, i
   return d;
 }
 
-/// Divides a chart's area. Vertical ticks are as many as fit, one and a half lines of text apart or more.
+/// Divides a chart's area among title, legend and data. The vertical axis gets as many ticks as fit with a
+/// distance of one and a half lines of text.
 Division divided(const Chart& chart, const Place& place, VerticalLabels where) {
   for (int wanted = 5;; --wanted) {
     auto d = divided(chart, place, where, wanted);
@@ -303,7 +304,8 @@ void draw_chart(Canvas& canvas, const Chart& chart, const Place& place, const Di
   if (const auto* map = heat_map(chart)) draw_colour_bar(canvas, frame, d.left + d.width, *map);
 }
 
-/// Data of charts side by side have the same height: if one has a label above them, all leave room for it.
+/// Charts side by side must have data areas of the same height: if one chart has a label above its data, all
+/// charts leave room for one.
 VerticalLabels labels_of(const std::vector<Chart>& charts, const std::vector<Place>& places) {
   for (std::size_t i = 0; i < charts.size(); ++i)
     for (const auto& label : divided(charts[i], places[i], VerticalLabels::beside).labelled.labels)
@@ -375,7 +377,7 @@ Figure laid_out(Figure figure, double width_px, double height_px) {
     figure.chart_width_px = width / columns;
     figure.chart_height_px = std::max(
         least_height, (height_px * larger - (caption > 0 ? kPad + kCaptionLine * caption : 0)) / rows);
-    // Prefer the layout that distorts the charts' proportions least and makes the document grow least.
+    // Prefer the layout whose charts are closest to the best proportions, and whose document grows least.
     const double off =
         std::abs(std::log(figure.chart_width_px / figure.chart_height_px / best)) + 2 * std::log(larger);
     if (off < nearest) nearest = off, chosen = figure;

@@ -45,16 +45,16 @@ struct Histogram {
   std::string name;
 };
 
-/// A grid of coloured cells. `values` are listed row by row, starting at the lowest y; in each direction
-/// there is one more edge than there are cells. The colours run from light to dark blue over [low, high].
-/// Cells whose value is not finite stay empty.
+/// A grid of coloured cells. `values` are listed row by row, starting at the lowest y. In each direction
+/// there is one more edge than there are cells. The colours run from light blue at `low` to dark blue at
+/// `high`. Cells whose value is not finite stay empty.
 struct HeatMap {
   std::vector<double> x_edges, y_edges, values;
   double low = 0, high = 1;
   std::string name;  ///< label of the colour bar
 };
 
-/// A thin dashed line across the chart with a small label. It marks a chance level, a deadline or a
+/// A thin dashed line across the chart with a small label, for example at the chance level, a deadline or a
 /// threshold.
 struct Rule {
   enum class Direction { horizontal, vertical } direction = Direction::horizontal;
@@ -87,8 +87,8 @@ void draw(Canvas& canvas, const Figure& figure);
 std::string render(const Figure& figure);
 
 /// Returns the figure laid out for a document of this size. The number of columns is chosen so that the
-/// charts have the best proportions. If there is not enough room, the document becomes larger in the same
-/// proportions, because text keeps its size.
+/// charts have the best proportions. Text is never made smaller: if there is not enough room, the document
+/// becomes larger and keeps its proportions.
 Figure laid_out(Figure figure, double width_px, double height_px);
 
 /// Counts `values` in at most `bins` bins of equal width. The bins reach from `low` to `high`, rounded

@@ -15,7 +15,7 @@ struct Style {
 /// those of Okabe & Ito (2008) without their yellow, which is too light for thin lines on paper.
 Style style(int series);
 
-/// Returns a blue from light (share 0) to dark (share 1). Its luminance decreases steadily.
+/// Returns a blue between light (share 0) and dark (share 1). A larger share gives a lower luminance.
 std::string shade(double share);
 
 }  // namespace turnpoint::plot

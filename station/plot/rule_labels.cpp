@@ -9,7 +9,7 @@ namespace turnpoint::plot {
 namespace {
 
 constexpr double kAscent = 9.5, kDescent = 3, kRow = 13, kBeside = 4;
-constexpr double kOver = 6;  // how far lines and markers may extend beyond the frame
+constexpr double kOver = 6;  // how far lines and markers may extend beyond the frame, in px
 
 Box box_of(const std::string& text, Point at, Anchor anchor) {
   const double width = text_width(text, kLabelText_px);
@@ -23,8 +23,8 @@ RuleLabel label_at(const Rule& rule, Point at, Anchor anchor) {
 
 bool is_flat(const Rule& rule) { return rule.direction == Rule::Direction::horizontal; }
 
-/// Covers a straight line with boxes of a few px. For a sloping line, a single box would also cover much free
-/// space.
+/// Covers a straight line with boxes of a few px. A single box around a sloping line would also cover much
+/// free space.
 void cover(std::vector<Box>& boxes, Point a, Point b, double half) {
   const double length = std::max(std::abs(b.first - a.first), std::abs(b.second - a.second));
   const int pieces = std::max(1, static_cast<int>(std::ceil(length / 4)));
@@ -102,7 +102,7 @@ std::vector<RuleLabel> places_beside(const Rule& rule, const Frame& frame) {
       places.push_back(label_at(rule, {x - kBeside, base}, Anchor::end));
     }
   }
-  // Remove places outside the frame; a label may reach 1 px above its top.
+  // Remove places outside the frame. A label may extend 1 px above the upper edge of the frame.
   std::erase_if(places, [&](const RuleLabel& place) {
     return place.box.left < frame.x || place.box.right > right || place.box.top < frame.y - 1 ||
            place.box.bottom > bottom;
@@ -117,7 +117,7 @@ RuleLabel lower(RuleLabel label) {
   return label;
 }
 
-/// Returns the frame that is left for the data after room was made for these rules' labels outside the data.
+/// Returns the frame that remains for the data after the labels of these rules got room outside it.
 Frame without_labels(Frame frame, const std::set<const Rule*>& rules) {
   double right = 0;
   for (const auto* rule : rules) {
@@ -132,7 +132,8 @@ Frame without_labels(Frame frame, const std::set<const Rule*>& rules) {
   return frame;
 }
 
-/// Places a rule's label outside the data: above it in the given row, or to its right for a horizontal rule.
+/// Places a rule's label outside the data: above the data, in the given row, for a vertical rule; to the
+/// right of the data for a horizontal rule.
 RuleLabel outside(const Rule& rule, const Frame& frame, int row) {
   if (is_flat(rule)) {
     const auto at = frame.at(frame.across->high, rule.at);

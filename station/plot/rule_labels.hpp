@@ -11,8 +11,8 @@ struct Frame {
   double x = 0, y = 0, width = 0, height = 0;
   const Axis *across, *up;
 
-  /// Returns the position of a data point in px. A point far outside the axes is moved to within a few chart
-  /// widths.
+  /// Returns the position of a data point in px. A point far outside the axes is moved closer, to a distance
+  /// of a few chart widths.
   Point at(double value_x, double value_y) const;
 };
 
@@ -22,8 +22,8 @@ bool drawable(const Axis& axis, double value);
 /// False if the rule lies outside the chart's axes.
 bool is_shown(const Rule& rule, const Frame& frame);
 
-/// Returns the nominal radii of markers in px from their weights. No marker extends further than 1.3 radii
-/// plus its outline.
+/// Returns the nominal radii of markers in px from their weights. Including its outline, a marker extends at
+/// most 1.3 radii plus the outline's width from its centre.
 std::vector<double> marker_radii_px(const Points& dots);
 
 /// Text size of a rule's label.
@@ -34,8 +34,8 @@ struct Box {
 };
 bool overlap(const Box& a, const Box& b);
 
-/// Returns the area that contains everything drawn for the data. It is larger than the frame, because markers
-/// at the upper and right end extend beyond the frame.
+/// Returns the area in which the data are drawn. It is larger than the frame, because markers at the upper
+/// and right edge extend beyond the frame.
 Box drawn_in(const Frame& frame);
 
 /// Returns small boxes that cover the chart's curves, markers, bars, cells and rules. Bands are left out,

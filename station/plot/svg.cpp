@@ -56,7 +56,8 @@ std::string escaped(const std::string& text) {
 }
 
 void Svg::begin(double width, double height, const std::string& title) {
-  // One HTML page may contain several SVG documents, so ids are made unique by a hash of the title.
+  // One HTML page may contain several SVG documents. A hash of title and size at the beginning of each id
+  // keeps ids unique.
   prefix_ = "c" + text::sha256(title + px(width) + px(height)).substr(0, 8);
   body_ = "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"" + px(width) + "\" height=\"" + px(height) +
           "\" viewBox=\"0 0 " + px(width) + " " + px(height) +

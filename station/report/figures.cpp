@@ -11,11 +11,12 @@ namespace turnpoint::report {
 
 namespace {
 
-/// A cell is the trials of one condition with equal difficulty. Cells with fewer trials than kFewestOfCell
-/// are left out of the figure. If there are more cells than kMostJoined, no line joins them.
+/// A cell contains the trials of one condition with equal difficulty. Cells with fewer trials than
+/// kFewestOfCell are left out of the figure. If there are more cells than kMostJoined, no line joins them.
 constexpr int kFewestOfCell = 5;
 constexpr std::size_t kMostJoined = 8;
-constexpr double kLowestLevel_dB = -40;  // a surface that hardly moves is drawn here
+constexpr double kLowestLevel_dB = -40;  // a level below this, from a surface that hardly moves, is drawn at
+                                         // this level
 
 plot::Points observed(const NamedFit& named, int series, const std::string& name) {
   plot::Points points;
@@ -49,7 +50,7 @@ plot::Line curve(const NamedFit& named, int series, const plot::Axis& axis, cons
   return line;
 }
 
-/// Returns the share of "yes" answers in trials without a signal.
+/// Returns the proportion of "yes" answers in trials without a signal.
 std::optional<double> false_alarms(const NamedFit& named) {
   for (const auto& point : named.fit.data)
     if (point.level == analysis::kNoise) return static_cast<double>(point.positive) / point.trials;
@@ -129,7 +130,7 @@ std::optional<plot::Figure> trace_figure(const Summary& summary) {
     panel.title = or_default(trace.procedure, "all trials");
     panel.x = plot::fitted("Trial (number in the session)", line.x, 0.03);
     panel.y = plot::fitted(summary.data.level_label, line.y, 0.1);
-    // Draw a line only if the procedure moves in small steps. A line through shuffled levels would just
+    // Draw a line only if the procedure moves in small steps. A line through shuffled levels would only
     // zigzag.
     double steps = 0;
     for (std::size_t i = 1; i < line.y.size(); ++i) steps += std::abs(line.y[i] - line.y[i - 1]);
@@ -187,7 +188,8 @@ std::optional<plot::Figure> vibration_figure(const Summary& summary) {
   plot::Chart chart;
   chart.x = plot::fitted("Trial (number)", points.x, 0.03);
   auto levels = points.y;
-  levels.insert(levels.end(), {-0.6, 0.6});  // the limits of a flag stay visible
+  levels.insert(levels.end(), {-0.6, 0.6});  // the axis always includes 0.6 dB below and above the plan,
+                                             // beyond the 0.5 dB of ProofLimits::level_dB
   chart.y = plot::fitted("Measured against plan (dB)", levels, 0.1);
   chart.layers.push_back(plot::Rule{plot::Rule::Direction::horizontal, 0, "as planned"});
   chart.layers.push_back(points);
@@ -264,7 +266,7 @@ std::optional<plot::Figure> trade_figure(const Summary& summary) {
     bin_line.x = bins.x, bin_line.y = bins.y;
     cell_line.x = by_difficulty.x, cell_line.y = by_difficulty.y;
     caf.layers.insert(caf.layers.end(), {bin_line, bins});
-    // Leave out the line if there are many levels, as after an adaptive procedure: it would just zigzag.
+    // If there are many levels, as after an adaptive procedure, leave out the line: it would only zigzag.
     if (cell_line.x.size() <= kMostJoined) cells.layers.push_back(cell_line);
     cells.layers.push_back(by_difficulty);
   }

@@ -13,16 +13,16 @@ namespace turnpoint::report {
 std::optional<plot::Figure> psychometric_figure(const Summary& summary);
 /// Plots the levels in order of presentation, one panel per procedure. Open markers are wrong answers.
 std::optional<plot::Figure> trace_figure(const Summary& summary);
-/// Draws a histogram of the response times for each instruction, all on the same time axis.
+/// Draws one histogram of the response times for each instruction. All have the same time axis.
 std::optional<plot::Figure> response_time_figure(const Summary& summary);
 /// Plots the settings of a slider in order of presentation, with the slider's starting positions and the mean
 /// setting.
 std::optional<plot::Figure> settings_figure(const Summary& summary);
-/// Plots the measured level of the vibration, relative to the plan, in order of presentation. Open markers
-/// are trials that are void for it.
+/// Plots the level of the measured vibration relative to the planned vibration, in order of presentation.
+/// Open markers are trials that are void because of their level.
 std::optional<plot::Figure> vibration_figure(const Summary& summary);
-/// Plots accuracy against response time, in two panels: the conditional accuracy functions, and the mean of
-/// each difficulty.
+/// Plots accuracy against response time in two panels: the conditional accuracy functions, and one point for
+/// the trials of each difficulty.
 std::optional<plot::Figure> trade_figure(const Summary& summary);
 
 }  // namespace turnpoint::report

@@ -34,7 +34,7 @@ std::string minus(std::string text) {
 
 std::string number(double value, int digits = 3) { return minus(text::number(value, digits)); }
 
-/// Formats a value and its interval, both rounded to the digits that the width of the interval justifies.
+/// Formats a value and its interval. Both are rounded to the digits that the width of the interval justifies.
 std::string estimated(double value, const Interval& interval) {
   const double error = text::uncertainty(value, interval.low, interval.high);
   const auto shown = [error](double number) { return minus(text::estimated(number, error)); };
@@ -142,8 +142,8 @@ std::string settings_section(const Summary& summary) {
 
 std::string name_of(const std::string& condition) { return condition.empty() ? "all trials" : condition; }
 
-/// A row of the table of speed and accuracy. `part` names the part of the report that the protocol must show
-/// for this row to appear.
+/// A row of the table of speed and accuracy. The row appears only if the protocol shows the part of the
+/// report that `part` names.
 struct MeasureRow {
   const char *title, *measure, *part;
   std::optional<Estimate> analysis::InstructionResult::*value;

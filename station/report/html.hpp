@@ -9,7 +9,7 @@ namespace turnpoint::report {
 /// script, no external files.
 std::string to_html(const Summary& summary);
 
-/// Returns the same numbers as one JSON document. Missing values are null.
+/// Returns the content of the report as one JSON document. Missing values are null.
 std::string to_json(const Summary& summary);
 
 }  // namespace turnpoint::report

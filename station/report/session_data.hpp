@@ -25,7 +25,7 @@ enum class Design {
 /// True if some trials have no signal, so that "yes" is a false alarm in them.
 inline bool has_noise(Design design) { return design == Design::yes_no || design == Design::same_different; }
 
-/// The estimate of one procedure in one block. `basis` names the data from which it was computed, such as
+/// The estimate of one procedure in one block. `basis` says from which data it was computed, such as
 /// "reversals 5 to 12 of 12".
 struct StaircaseResult {
   std::string block, procedure;
@@ -37,11 +37,11 @@ struct StaircaseResult {
 /// A name and its text, for the head or the health table of a report.
 using Fact = std::pair<std::string, std::string>;
 
-/// How a trial's stimuli vibrated, measured against the plan.
+/// The measured vibration of a trial's stimuli, compared with the plan.
 struct MeasuredTrial {
   int trial_index = 0;
-  double level_dB = 0;  ///< of the tone that differs most
-  bool counts = true;   ///< false: too far from the plan, so the trial is void
+  double level_dB = 0;  ///< measured relative to planned level, of the tone that differs most
+  bool counts = true;   ///< false: the vibration was too far from the plan, so the trial is void
 };
 
 /// All data for a report. They come from a database (desk/report_data.cpp) or from a simulated session.
@@ -64,13 +64,13 @@ struct SessionData {
   bool scored = true;
   /// conditions in the order of the report; each TrialRecord::instruction is one of them
   std::vector<std::string> conditions;
-  /// parts of the report that the protocol chooses; empty: all parts that suit the design
+  /// parts of the report that the protocol chooses; if empty, the report has all parts that suit the design
   std::optional<std::vector<std::string>> show;
   std::vector<StaircaseResult> staircases;
   std::vector<analysis::TrialRecord> trials;
   std::vector<MeasuredTrial> measured;  ///< empty without a pick-up
-  /// Set if the answers determined the levels: intervals then come from the posterior under this prior. Empty
-  /// if levels were fixed before the session: intervals then come from bootstraps.
+  /// Set if the answers determined the levels: the intervals then come from the posterior under this prior.
+  /// Empty if the levels were fixed before the session: the intervals then come from bootstraps.
   std::optional<analysis::Prior> prior;
   analysis::TimeExclusion exclusion;
   std::uint64_t seed = 1;  ///< seed of the bootstraps' random numbers

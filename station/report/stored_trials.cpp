@@ -88,8 +88,8 @@ report::Design design_of(const protocol::Protocol& protocol, const protocol::Ans
   return single && below && above ? report::Design::two_sided : report::Design::forced_choice;
 }
 
-/// Chooses the function to fit: the one that the protocol's procedure assumes, otherwise one that suits the
-/// levels.
+/// Chooses the function to fit: the one that the protocol's procedure assumes. If no procedure assumes one,
+/// chooses a function that suits the levels.
 void choose_function(const protocol::Protocol& protocol, report::SessionData& data) {
   const bool decibel = data.level_unit == "dB";
   const bool detection = report::has_noise(data.design);
@@ -110,8 +110,8 @@ void choose_function(const protocol::Protocol& protocol, report::SessionData& da
 
 using analysis::Range;
 
-/// Returns the range that contains the levels that an adaptive procedure can present and the thresholds of
-/// its grid.
+/// Returns the range of the levels that an adaptive procedure can present. The range also includes the
+/// thresholds of the procedure's grid.
 Range levels_of(const procedure::Spec& spec, const protocol::Protocol& protocol) {
   Range range{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
   const auto include = [&range](double level) {
@@ -129,8 +129,8 @@ Range levels_of(const procedure::Spec& spec, const protocol::Protocol& protocol)
   return range;
 }
 
-/// A logarithmic axis cannot start at 0. A range that starts at 0 then starts at this share of its upper end
-/// (60 dB below it).
+/// A logarithmic axis cannot start at 0. If a range of levels starts at 0, the axis starts at this fraction
+/// of its upper end (60 dB below it).
 constexpr double kLowestRatio = 1e-3;
 
 /// True if the slopes of a procedure's grid have the same meaning as the slope of the fit.
@@ -162,7 +162,7 @@ std::optional<analysis::Prior> prior_of(const protocol::Protocol& protocol, cons
 }
 
 /// Derives the axis label from the factor's name: `contrast_dB` gives `Contrast` and `dB`. In a yes/no task
-/// the levels lose their sign.
+/// the levels have no sign.
 void set_level_words(const std::string& level, report::SessionData& data) {
   const auto words = protocol::words_of(level);
   auto name = level.empty() ? std::string("level") : words.name;

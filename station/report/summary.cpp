@@ -14,7 +14,8 @@ using analysis::TrialRecord;
 
 constexpr int kBandPoints = 61;
 
-/// Returns the choice that is right at levels above 0. If that is unknown, returns the second choice.
+/// Returns the choice that is right at levels above 0. If no trial shows which one that is, returns the
+/// second choice.
 int rising_choice(const std::vector<TrialRecord>& trials) {
   std::map<int, std::pair<double, int>> sums;
   for (const auto& trial : trials) {

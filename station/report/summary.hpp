@@ -11,7 +11,7 @@
 
 namespace turnpoint::report {
 
-/// One psychometric fit: to all trials, or to those of one condition.
+/// One psychometric fit, either to all trials or to the trials of one condition.
 struct NamedFit {
   std::string name;      ///< name of the condition; "" for all trials
   std::string positive;  ///< the answer whose probability the curve shows
@@ -34,12 +34,12 @@ struct Summary {
   std::vector<analysis::Settings> settings;
 };
 
-/// Returns only the psychometric fits: one to all trials, or one per instruction if there are several. If
-/// data.replicates is 0, there are no bootstraps and no bands.
+/// Returns only the psychometric fits: one to all trials, or one per instruction if there are several
+/// instructions. If data.replicates is 0, there are no bootstraps and no bands.
 std::vector<NamedFit> fits_of(const SessionData& data);
 
-/// False if the data only set a limit to the slope. The slope then lies on a bound of the maximum-likelihood
-/// fit, or the posterior does not determine it.
+/// False if the data give only a limit for the slope. The slope then lies on a bound of the
+/// maximum-likelihood fit, or the posterior does not determine it.
 bool slope_estimated(const NamedFit& named);
 
 /// Says in a sentence or two how the intervals of a fit were computed, and with which prior.
