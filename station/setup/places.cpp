@@ -15,8 +15,8 @@ namespace fs = std::filesystem;
 
 std::string shipped(const std::string& folder) {
   const auto program = fs::read_symlink("/proc/self/exe").parent_path();
-  // When installed, the program is in PREFIX/bin beside PREFIX/share/turnpoint. In a source tree it is in
-  // build/<preset>/bin.
+  // An installed program is in PREFIX/bin, and its folders are in PREFIX/share/turnpoint. In a source tree
+  // the program is in build/<preset>/bin.
   const auto installed = program.parent_path() / "share/turnpoint" / fs::path(folder).filename();
   if (fs::is_directory(installed)) return installed.lexically_normal().string();
   return (program.parent_path().parent_path().parent_path() / folder).lexically_normal().string();
@@ -36,7 +36,8 @@ std::string rig_or_default(const std::string& named, std::ostream& messages) {
 }
 
 std::string screen_card(const std::string& drm) {
-  // sort cards with a screen first, then by number
+  // cards with a screen come first; among these, and among the others, the card with the shorter and then the
+  // lower number
   std::vector<std::tuple<bool, std::size_t, std::string>> cards;
   std::error_code ignored;
   for (const auto& entry : fs::directory_iterator(drm, ignored)) {

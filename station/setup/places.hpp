@@ -4,8 +4,8 @@
 
 namespace turnpoint::setup {
 
-/// Returns the rig file to use: the named file; otherwise /etc/turnpoint/rig.toml; otherwise the simulated
-/// rig that comes with the program. If no file was named, prints the choice on `messages`. Throws
+/// Returns the rig file to use: `named` if it is not ""; otherwise /etc/turnpoint/rig.toml; otherwise the
+/// simulated rig that comes with the program. If `named` is "", prints the choice on `messages`. Throws
 /// text::BadInput if no file is found.
 std::string rig_or_default(const std::string& named, std::ostream& messages);
 

@@ -41,8 +41,8 @@ std::string choose_language(const std::string& wanted, const protocol::Protocol&
   return wanted;
 }
 
-/// True if the calibration contains a transducer response. A live session needs one; a calibration with only
-/// the latency of the touch panel is not enough.
+/// True if the calibration contains a transducer response, as a live session requires. A calibration may
+/// contain nothing but the latency of the touch panel.
 bool has_response(const session::Setup& setup) {
   return !setup.calibration_text.empty() &&
          !calibration::parse(setup.calibration_text, "calibration").transducers.empty();
@@ -63,8 +63,8 @@ std::string unmeasured_sound(const session::Setup& setup, const protocol::Sight&
       1e-3 * bound->frequency_Hz, bound->level_dB, scene::kEarDistance_m, bound->allowed_dB);
 }
 
-/// Checks the additional requirements of a live session: everything that reaches the finger must have been
-/// measured.
+/// Checks what only a live session requires: a measured friction table, a rig that is not the reproduction of
+/// a historical one, a calibration, and a known sound level of every scene.
 void check_live(const session::Setup& setup, const protocol::Survey& survey, std::vector<Problem>& problems) {
   const auto& rig = setup.rig;
   const auto add = [&](const std::string& what, const std::string& allowed) {
@@ -79,8 +79,8 @@ void check_live(const session::Setup& setup, const protocol::Survey& survey, std
   if (!has_response(setup) && rig.amplifier_uri != "sim:")
     add("the rig has no valid calibration", "turnpoint calibrate --rig " + rig.path + " makes one");
   for (const auto& sight : survey.sights) {
-    // Check only that the level was measured. Whether the level is allowed depends on each tone's amplitude
-    // and is checked in the trial.
+    // Use an amplitude near 0, so that this checks only whether the level was measured. Whether the sound is
+    // too loud depends on each tone's amplitude and is checked in the trial.
     auto problem = limits::sound_problem(sight.lowest_Hz, 1e-9, setup.sound);
     if (problem.empty()) problem = unmeasured_sound(setup, sight);
     if (problem.empty()) continue;

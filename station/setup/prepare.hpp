@@ -14,27 +14,28 @@ struct RunRequest {
   std::string protocol, rig, participant, database;
   std::string mode = "pilot";  ///< live | pilot
   std::string language;        ///< "" uses the protocol's first language
-  std::string observer;        ///< "" for a person answering
+  std::string observer;        ///< the simulated observer, such as "sim"; "" if a person answers
   std::optional<std::uint64_t> seed;
   std::string consent_version;  ///< version of the consent form; "" if the study needs none
   bool headless = false, buttons_only = false;
-  std::string calibration;  ///< file; "" uses the newest one beside the rig file, if any
+  std::string calibration;  ///< path of the calibration file; "" uses the newest one beside the rig file, if
+                            ///< there is one
 };
 
 /// Loads and checks everything that a session needs, and applies the calibration to the rig. Throws
-/// text::BadInput with all problems of both files, of the protocol on this rig, and of participant code,
-/// language and mode. A calibration that has expired or belongs to another rig is an error if it was named or
-/// if the session is live; otherwise it is ignored. Throws protocol::Abandoned soon after `stop` is
-/// requested.
+/// text::BadInput with all problems: of both files, of the protocol on this rig, and of participant code,
+/// language and mode. A calibration that has expired or belongs to another rig is an error if the request
+/// names it or if the session is live; otherwise it is ignored. Throws protocol::Abandoned soon after `stop`
+/// is requested.
 session::Setup prepare(const RunRequest& request, const std::stop_token& stop = {});
 
 /// Applies the text of a calibration file to the rig, to the sound levels, and to the values that are stored
 /// with the session. Throws text::BadInput or terms::UsageError.
 void take_calibration(const std::string& source, const std::string& path, session::Setup& setup);
 
-/// The rig with the named calibration, or with the newest valid one beside its file, if there is one. Says on
-/// `messages` which one it is. Throws text::BadInput, or terms::UsageError for a named calibration that this
-/// rig must not use.
+/// Returns the rig with the named calibration applied. If none is named, applies the newest valid one beside
+/// the rig file, if there is one. Says on `messages` which one it is. Throws text::BadInput, or
+/// terms::UsageError for a named calibration that this rig must not use.
 rig::Rig calibrated_rig(const std::string& rig, const std::string& calibration, std::ostream& messages);
 
 }  // namespace turnpoint::setup

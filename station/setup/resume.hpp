@@ -13,14 +13,14 @@ struct ResumeRequest {
   std::string
       policy;  ///< resume | restart | block; "" uses the protocol's policy, and "ask" then means resume
   bool headless = false;
-  /// continue the session even if it is older than its protocol allows, for example because the clock was
+  /// continue the session although it is older than its protocol allows, for example because the clock was
   /// wrong
   bool any_age = false;
 };
 
-/// Returns the setup for continuing an interrupted session. Rig, protocol text, observer and language come
-/// from the session's row in the database. Empty if no session was interrupted. Throws text::BadInput for a
-/// session older than its protocol allows, and store::StoreError.
+/// Returns the setup for continuing an interrupted session. Rig, protocol text, observer and language are
+/// those stored with the session. Empty if no session was interrupted. Throws text::BadInput for a session
+/// older than its protocol allows, and store::StoreError.
 std::optional<session::Setup> prepare_resume(const ResumeRequest& request, std::ostream& messages);
 
 }  // namespace turnpoint::setup

@@ -7,7 +7,7 @@ namespace turnpoint::setup {
 struct StationRequest {
   std::string protocols;  ///< the folder with the protocols
   std::string rig, database;
-  bool locked = false;  ///< also ask for the operator's code before the start page
+  bool locked = false;  ///< true if the operator's code must be entered before the start page
 };
 
 }  // namespace turnpoint::setup

@@ -16,12 +16,12 @@ namespace {
 
 using protocol::Protocol;
 
-// A rehearsal leaves out the time for which people read an instruction, explore before a decision (as a share
-// of the duration of the tones), and set a slider. These are estimates of those times.
+// A rehearsal leaves out the time in which people read an instruction, explore before a decision (a fraction
+// of the duration of the tones), and set a slider. These constants are estimates of those times.
 constexpr double instruction_s = 12, explored_share = 0.5, setting_s = 15;
 
-/// A simulated session: its duration for a person, and the number of trials in each block. Repeated attempts
-/// at a block are added up.
+/// The result of one simulated session: the time that a person would take, and the number of trials in each
+/// block. Repeated attempts at a block are added up.
 struct Estimate {
   double duration_s = 0;
   std::vector<CheckedBlock> blocks;
@@ -32,7 +32,8 @@ double longest_s(const Protocol& protocol) {
   return protocol.task.duration_s.value_or(protocol.timing.explore_s.value_or(0));
 }
 
-/// The observer of `run --observer sim`, but setting a slider takes as long as it takes a person.
+/// The observer of `run --observer sim`, with one difference: setting a slider takes as long as it takes a
+/// person.
 Rehearser person(const Protocol& protocol) {
   auto person = rehearser(observer::Observer{observer::Parameters{}});
   person.adjust = [adjust = person.adjust, done_s = std::min(setting_s, longest_s(protocol))](
@@ -61,7 +62,7 @@ double breaks_s(const protocol::Block& block, std::size_t trials) {
 }
 
 Estimate simulate(const Protocol& protocol, std::uint64_t seed) {
-  // Always use sequence index 0: other indices have the same blocks in another order.
+  // Use sequence index 0: every other index has these blocks too, in another order.
   const auto order = protocol::block_order(protocol, 0);
   const auto rehearsal = rehearse(protocol, 0, seed, person(protocol));
   Estimate estimate;
@@ -168,7 +169,7 @@ Check check(const std::string& protocol_path, const std::string& rig_path, const
   } catch (const protocol::Abandoned&) {
     throw;
   } catch (const std::exception& error) {
-    // If a procedure cannot work, report it here and not in the middle of a session.
+    // If a procedure cannot work, report that here rather than in the middle of a session.
     check.problems.push_back({{protocol_path, 0, 0}, error.what(), ""});
   }
   if (!check.cues.not_compared.empty())

@@ -37,11 +37,11 @@ struct Check {
   int simulated_sessions = 0;
   protocol::Survey survey;
   CueGuard cues;
-  /// bound of the airborne sound for the loudest combination of factors; empty if CheckOptions::sound is
-  /// false or if this rig has no known bound
+  /// upper limit of the airborne sound level for the loudest combination of factors; empty if
+  /// CheckOptions::sound is false or if no limit is known for this rig
   std::optional<scene::SoundBound> sound;
-  /// what a finger leaves of the displacement at the last maxima of the lowest and the highest tone; empty if
-  /// CheckOptions::finger is false or there are no last maxima
+  /// fraction of the displacement that remains under a finger, at the last maxima of the lowest and the
+  /// highest tone; empty if CheckOptions::finger is false or there are no last maxima
   std::optional<scene::FingerShares> finger;
   std::vector<std::string> protocol_defaults, rig_defaults;
 };
@@ -50,8 +50,10 @@ struct Check {
 struct CheckOptions {
   /// number of sessions to simulate, to estimate the number of trials and the duration; 0: none
   int sessions = 21;
-  bool sound = false;  ///< also compute the bound of the airborne sound, about 10 ms per tone
-  /// also compute which share of the displacement a finger leaves, for the lowest and the highest tone
+  bool sound = false;  ///< also compute the upper limit of the airborne sound level, which takes about 10 ms
+                       ///< per tone
+  /// also compute the fraction of the displacement that remains under a finger, for the lowest and the
+  /// highest tone
   bool finger = false;
 };
 

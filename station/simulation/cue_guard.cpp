@@ -33,7 +33,7 @@ struct CueKind {
   double scale;
   Source source;
   double scene::Cues::*cue;
-  bool follows_strength;  ///< true if roving always changes this cue
+  bool follows_strength;  ///< true if roving the strength always changes this cue
 };
 
 constexpr CueKind cue_kinds[] = {
@@ -49,8 +49,8 @@ constexpr CueKind cue_kinds[] = {
 
 constexpr double smallest_difference = 1e-3, smallest_difference_dB = 0.01;
 
-// Wanted precision of an observer's accuracy in simulated sessions (three standard errors). The first
-// sessions give an estimate of the number of sessions needed, which is limited to `most_sessions`.
+// The accuracy of an observer in simulated sessions shall have this precision (three standard errors). The
+// first sessions give an estimate of the number of sessions that this takes, at most `most_sessions`.
 constexpr double precision = 0.01;
 constexpr int first_sessions = 30, most_sessions = 1000;
 
@@ -68,7 +68,7 @@ struct Interval {
 struct Presentation {
   std::vector<Interval> intervals;
   int correct = 0;
-  /// probability of this order of intervals and combination of factors in a trial of the cell
+  /// probability that a trial of this cell has this order of intervals and this combination of factors
   double share = 0;
   double turn = 0.5;  ///< offset into the sequence of quasi-random strengths (see looks())
 };
@@ -79,8 +79,8 @@ using Cells = std::vector<std::pair<const std::vector<Presentation>*, double>>;
 /// Which value of the cue the observer uses in an interval that changes from one scene to another.
 enum class Feature { last, change, first };
 
-/// Each trial has two equally large sets of drawn strengths. The first chooses the rule and the second
-/// measures its accuracy, because a rule always looks better on the draws for which it was chosen.
+/// Each trial has two equally large sets of drawn strengths. The first set chooses the rule and the second
+/// measures its accuracy, because any rule looks too good on the draws for which it was chosen.
 enum class Draws { to_choose, to_judge };
 
 struct Strategy {
@@ -199,8 +199,8 @@ Cells Guard::cells_of(const TrialCensus& census) {
   return cells;
 }
 
-// Roving draws strengths from a uniform distribution. Here they come from a low-discrepancy sequence (Roberts
-// 2018), one dimension per interval, because it needs fewer points than random draws.
+// Roving draws strengths from a uniform distribution. Here a low-discrepancy sequence (Roberts 2018), with
+// one dimension per interval, replaces the random draws, because fewer points are then enough.
 std::vector<Look> Guard::looks(const CueKind& kind, Feature feature, const Cells& cells, Draws draws) const {
   constexpr double g = 1.2207440846057596;
   constexpr double steps[] = {1 / g, 1 / (g * g), 1 / (g * g * g)};
@@ -277,8 +277,9 @@ void Guard::run_sessions(const CueKind& kind, const Strategy& strategy, int coun
   }
 }
 
-// Returns the accuracy of a rule that is equally good at every level. Its answers may lead to any levels
-// without changing the accuracy. Empty if the accuracy depends on the level.
+// Returns the accuracy of a rule that is equally good at every level; empty if the accuracy depends on the
+// level. Such a rule needs no simulated sessions: whichever levels its answers lead to, the accuracy is the
+// same.
 std::optional<Reached> Guard::same_everywhere(const CueKind& kind, const Strategy& strategy,
                                               const Cells& all) const {
   if (protocol_.task.kind == TaskKind::single_interval) return std::nullopt;
@@ -292,7 +293,7 @@ std::optional<Reached> Guard::same_everywhere(const CueKind& kind, const Strateg
   return Reached{std::max(0.5 * (low + high), by_guessing), by_guessing, 0.5 * (high - low)};
 }
 
-// The number of sessions is estimated from the first sessions alone. If it depended on later results, the
+// Only the first sessions determine the number of sessions. If later results influenced that number, the
 // accuracy would be biased.
 Reached Guard::by_itself(const CueKind& kind, const Strategy& strategy, const Cells& all) {
   if (const auto same = same_everywhere(kind, strategy, all)) return *same;

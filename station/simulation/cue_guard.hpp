@@ -14,8 +14,8 @@ struct Reached {
   /// the proportion correct that an observer reaches in the same trials without the cue, by guessing or by
   /// always pressing the same key
   double chance = 0;
-  /// three standard errors of `accuracy` or `chance` (the larger), or half the range of accuracies over the
-  /// levels; 0: exact
+  /// three standard errors of `accuracy` or of `chance`, whichever is larger, or half the range of accuracies
+  /// over the levels; 0 if the accuracy is exact
   double error = 0;
 };
 
@@ -23,7 +23,7 @@ struct Reached {
 /// either the task asks about this cue, or the cue is a leak.
 struct CueReport {
   std::string cue;           ///< "pitch", "loudness", "amplitude at the wide end", ...
-  double low = 0, high = 0;  ///< range over everything that the main trials present, in `unit`
+  double low = 0, high = 0;  ///< lowest and highest value of the cue in the main trials, in `unit`
   std::string unit;
   double accuracy = 0, chance = 0.5, error = 0;  ///< see Reached
   /// The result of simulated sessions in which this observer's answers set the levels; set only if a
@@ -39,7 +39,7 @@ struct CueGuard {
   std::vector<CueReport> reports;  ///< one report per cue; if empty, one of the next two members says why
   /// why the task has no right answers that a cue could give away; otherwise ""
   std::string nothing_to_tell;
-  /// which trials could not be compared; if not empty, nothing is known about any cue
+  /// which trials could not be planned or interpolated; if not empty, no cue was examined
   std::string not_compared;
 };
 

@@ -22,10 +22,10 @@ struct RovedCues {
   scene::Cues at(double drawn_dB) const;
 };
 
-/// Finds the cues that a scene offers an observer, for any factors that a trial can have. It takes them
-/// from one of three sources: the survey's plans; plans made here (at most 200 more, and none for zones,
-/// which take long); or linear interpolation between plans. If only one sum of factors in the scene matters,
-/// interpolation runs along that sum, otherwise along each factor.
+/// Finds the cues that a scene offers an observer, for any factors that a trial can have. The cues come from
+/// one of three sources: the survey's plans; plans made here (at most 200 more, and none for zones, which
+/// take long); or linear interpolation between plans. If the scene depends on a single sum of factors, the
+/// table interpolates along that sum, otherwise along each factor.
 class CueTable {
  public:
   CueTable(const protocol::Protocol& protocol, const rig::Rig& rig, const protocol::Survey& survey);
@@ -36,7 +36,7 @@ class CueTable {
  private:
   struct Entry {
     std::vector<double> values;  ///< values of the scene's factors, in the order of their names
-    double sum = 0;              ///< value of the expression in the scene that contains factors
+    double sum = 0;              ///< value of the one expression in the scene that contains factors
     RovedCues cues;
   };
   struct SceneEntries {

@@ -49,14 +49,15 @@ struct Weighed {
   double weight = 0;
 };
 
-// A group of cue values that count as equal. `excess` is the weight of the trials in which one answer is
-// right, minus the weight of the trials in which the other is right.
+// A group of neighbouring cue values that count as equal. `excess` is the weight of the trials in which the
+// one answer is right, minus the weight of the trials in which the other answer is right.
 struct Group {
   double first = 0, last = 0, excess = 0;
 };
 
-// Finds the best band: within it the observer answers `inside`, outside it the other answer. The band is the
-// run of neighbouring groups with the largest sum of `excess` (Kadane's algorithm).
+// Finds the best band: if the cue lies within it, the observer gives the answer `inside`, otherwise the other
+// answer. The best band is the run of neighbouring groups with the largest sum of `excess` (Kadane's
+// algorithm).
 Rule best_band(std::vector<Weighed> values, Statistic statistic, const Grain& grain) {
   std::sort(values.begin(), values.end(), [](const auto& a, const auto& b) { return a.value < b.value; });
   std::vector<Group> groups;

@@ -16,19 +16,20 @@ struct Look {
 
 /// How an observer derives an answer from the values of one cue.
 enum class Statistic {
-  value,   ///< one interval: one answer if the cue lies inside a band, the other answer outside
+  value,   ///< one interval: the observer gives one answer if the cue lies inside a band, and the other
+           ///< answer otherwise
   change,  ///< same or different: like `value`, applied to the difference between the two intervals
   most,    ///< which interval: the observer chooses the interval with the largest cue
   least,   ///< which interval: the observer chooses the interval with the smallest cue
   /// which interval: the observer chooses the interval that differs most from the other intervals; with two
   /// intervals, the one that differs most from `usual`
   odd,
-  even,  ///< like `odd`, but the interval that differs least
+  even,  ///< which interval: the observer chooses the interval that differs least (see `odd`)
 };
 
-/// Cue values that differ by less than this count as equal. Two intervals are compared with `relative`, a
-/// share of the larger value, or with `absolute` if `relative` is 0. A band may end only where neighbouring
-/// values, over all trials, are further apart than `absolute`.
+/// Resolution for cue values: values that differ by less count as equal. To compare two intervals, `relative`
+/// (a fraction of the larger value) is used, or `absolute` if `relative` is 0. A band may end only between
+/// two neighbouring values, of all trials, that differ by more than `absolute`.
 struct Grain {
   double absolute = 0, relative = 0;
 };

@@ -4,8 +4,8 @@
 namespace turnpoint::simulation {
 
 /// Calls work(0) ... work(count - 1), each once and in no particular order, on this number of threads. Calls
-/// `progress(done, count)` (which may be empty) from one thread at a time. Returns when all calls have ended.
-/// If a call throws, no further calls are started, and this function throws the first exception.
+/// `progress(done, count)`, unless `progress` is empty, from one thread at a time. Returns when all calls
+/// have ended. If a call throws, no further calls are started, and this function throws the first exception.
 void in_parallel(int count, int threads, const std::function<void(int done, int of)>& progress,
                  const std::function<void(int)>& work);
 

@@ -51,8 +51,8 @@ void add_estimates(const Rehearsal& rehearsal, const std::string& unit, std::vec
       findings.push_back({"procedure " + estimate.procedure, estimate.parameter, unit, estimate.mean, {}});
 }
 
-/// True for estimates whose distribution has a long tail. If the best fit is a step, its slope has no upper
-/// limit.
+/// True for estimates whose distribution has a long tail. A slope is one of them: if the best fit is a step,
+/// the slope has no upper limit.
 bool heavy_tailed(const std::string& parameter) { return parameter == "slope" || parameter == "spread"; }
 
 const char* spread_name(const analysis::FitOptions& options) {
@@ -201,7 +201,7 @@ class Truths {
         };
         add_gap("proportion correct", generating.share_correct(names[a]), generating.share_correct(names[b]));
         add_gap("boundary", generating.boundary(names[a], observer), generating.boundary(names[b], observer));
-        // a simulated observer's time outside the decision is the same in all conditions
+        // the time that a simulated observer needs outside the decision is equal in all conditions
         add(source, "time outside the decision", 0);
       }
   }

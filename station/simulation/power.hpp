@@ -15,40 +15,41 @@ struct PowerOptions {
   int observers = 1000;
   observer::Parameters observer;
   std::uint64_t seed = 1;  ///< session i runs with seed + i and sequence index i
-  /// Number of sessions that also get bootstrap intervals, which take most of the time. Where the answers
-  /// chose the levels, intervals come from a posterior, which is cheap: every session gets those.
+  /// Number of sessions with bootstrap intervals, which take most of the time. If the answers chose the
+  /// levels, intervals come from a posterior instead. That is fast, so every session gets them.
   int interval_sessions = 200;
   int replicates = 200;  ///< number of resamples for each bootstrap interval, at least 40
   int threads = 2;
   std::function<void(int done, int of)> progress;  ///< called from any of the threads, one at a time
 };
 
-/// How well sessions recover one number. `truth` is a parameter of the observer or is computed from the
-/// observer's parameters. It is never an estimate.
-/// - Procedure: the level at which the observer gives the proportion of answers on which the procedure
-///   converges. For a posterior's threshold this proportion is a fixed share of the way between the
-///   asymptotes; for a staircase, the target of its rule and steps.
-/// - Fit: the level at which the observer's own function has the value that the fitted function has at its
-///   threshold. The slope has a truth only if both functions are of the same family.
-/// - Difference between conditions: the difference of the probabilities, boundaries and times that produced
-///   the answers.
-/// - Response times, and scores computed from them: no truth.
+/// How well sessions recover one number. `truth` is a parameter of the simulated observer, or is computed
+/// from such parameters; it is never an estimate.
+/// - Procedure: the truth is the level at which the observer gives the proportion of answers on which the
+///   procedure converges. For a posterior's threshold, that proportion lies at a fixed fraction of the way
+///   between the asymptotes; for a staircase, it is the target of its rule and steps.
+/// - Fit: the truth is the level at which the observer's own function has the value that the fitted function
+///   has at its threshold. The slope has a truth only if both functions are of the same family.
+/// - Difference between conditions: the truth is the difference of the probabilities, boundaries and times
+///   that produced the answers.
+/// - Response times, and scores computed from them, have no truth.
 struct Recovery {
   std::string source;     ///< "procedure upper", "fit", "fit speed", "accuracy - speed"
   std::string parameter;  ///< "threshold", "PSE", "spread", "75 % point", "proportion correct", ...
   std::string unit;       ///< "" if the protocol's level has no unit
   std::optional<double> truth;
-  std::vector<double> estimates;  ///< estimates of the sessions that have one, in the order of the sessions
+  std::vector<double> estimates;  ///< the estimates, in the order of the sessions; sessions without an
+                                  ///< estimate are left out
   int sessions = 0;               ///< number of sessions analysed, with or without an estimate
   bool heavy_tailed = false;      ///< true for slopes and spreads: use median and quartiles, not mean and SD
   double mean = 0, sd = 0;
   double median = 0, lower_quartile = 0, upper_quartile = 0;
   std::optional<double> bias;                    ///< mean - truth; if heavy-tailed, median - truth
-  std::optional<analysis::Proportion> coverage;  ///< share of 95 % intervals that contain the truth
+  std::optional<analysis::Proportion> coverage;  ///< proportion of 95 % intervals that contain the truth
   std::optional<double> interval_width;          ///< median width of the 95 % intervals
 };
 
-/// What sessions of a protocol would find if their participant were this observer.
+/// The results of simulated sessions of a protocol with one observer as the participant.
 struct Power {
   int observers = 0, interval_sessions = 0;
   double trials = 0, minutes = 0;  ///< averages over the simulated sessions

@@ -15,7 +15,7 @@ plot::Chart panel_of(const Recovery& recovery) {
   panel.title = recovery.source + ": " + recovery.parameter;
   auto sorted = recovery.estimates;
   std::sort(sorted.begin(), sorted.end());
-  // Choose the axis without the lowest and the highest 1 % of the values, because a few of them may lie very
+  // Choose the axis from the values without the lowest and the highest 1 %, because a few values may lie very
   // far out.
   const auto at = [&](double share) {
     return sorted[static_cast<std::size_t>(share * static_cast<double>(sorted.size() - 1))];

@@ -15,8 +15,8 @@ namespace turnpoint::simulation {
 
 namespace {
 
-/// Returns the probability of the tracked answer as a function of the level, or of the right answer if no
-/// answer is tracked. Empty if this probability depends on more than the level.
+/// Returns the probability of the answer that the procedure tracks, or of the right answer if it tracks none,
+/// as a function of the level. Empty if this probability depends on more than the level.
 std::function<double(double)> share_of_ones(const protocol::Protocol& protocol, const procedure::Spec& spec,
                                             const observer::Observer& observer) {
   trial::TrialSpec trial;
@@ -51,7 +51,7 @@ std::optional<double> crossing(const std::function<double(double)>& share, doubl
   return physics::bisect({high, low}, [&](double level) { return !below(level); }).middle();
 }
 
-/// A range that contains all levels between the two asymptotes, for any unit of the level.
+/// A range of levels that is wide enough, in any unit, to reach both asymptotes.
 struct Reach {
   double low = 0, high = 0;
 };
@@ -60,8 +60,8 @@ Reach reach_of(const observer::Question& question) {
   return {question.decides == observer::Decides::side ? -1e6 : 0, 1e6};
 }
 
-/// Bisection leaves rounding errors in the last digits, so a level below 1e-9 of the threshold is returned as
-/// 0.
+/// Returns 0 for a level below 1e-9 of the threshold, because bisection leaves rounding errors in the last
+/// digits.
 std::optional<double> without_rounding(const std::optional<double>& level, double threshold) {
   return level && std::fabs(*level) < 1e-9 * std::fabs(threshold) ? 0 : level;
 }

@@ -12,9 +12,9 @@
 
 namespace turnpoint::simulation {
 
-/// The level on which a procedure would converge with this observer and unlimited trials. Empty if there is
-/// no such level: for constant stimuli, if a step up takes several wrong answers, or if the probability of
-/// the tracked answer does not depend on the level.
+/// The level on which a procedure would converge with this observer in unlimited trials. There is none, and
+/// the result is empty, in three cases: for constant stimuli, if a step up takes several wrong answers, or if
+/// the probability of the tracked answer does not depend on the level.
 std::optional<double> settled_level(const protocol::Protocol& protocol, const procedure::Spec& spec,
                                     const observer::Observer& observer);
 
@@ -23,8 +23,8 @@ struct FitTruth {
   std::optional<double> threshold, slope, level_75;
 };
 
-/// Computes the true values that produced the answers, by condition. They come from the observer's own
-/// functions; the proportion correct comes from the observer's probabilities in the presented trials.
+/// Computes the true values that produced the answers of each condition. They come from the observer's own
+/// functions. The proportion correct is the mean of the observer's probabilities in the presented trials.
 class GeneratingValues {
  public:
   void add(const protocol::Protocol& protocol, const trial::TrialSpec& trial,

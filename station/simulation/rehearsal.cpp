@@ -19,13 +19,12 @@ using trial::TrialSpec;
 
 // The simulated participant reads each page for this time, as in a session on the virtual clock.
 constexpr std::int64_t page_ns = 1'000'000'000;
-// The protocol reader refuses procedures without an end. This limit is a safeguard against one that the
-// reader missed.
+// Safeguard against a procedure that never ends and that the protocol reader failed to refuse.
 constexpr int most_trials = 100'000;
 
 std::int64_t ns(double s) { return static_cast<std::int64_t>(s * 1e9); }
 
-/// The time from the last interval's onset to its response_zero.
+/// The time from the last interval's onset to response zero, from which response times count.
 std::int64_t zero_after_onset_ns(const protocol::Protocol& protocol, const TrialSpec& spec) {
   const auto last = trial::interval_times(protocol, spec).back();
   switch (protocol.timing.response_zero) {
@@ -103,7 +102,8 @@ class Bench {
   std::optional<trial::Event> answer_;
 };
 
-/// The participant's action in a trial: an answer, or a setting and the time at which it is done.
+/// The participant's action in a trial: an answer, or a setting and the time at which the participant
+/// finished it.
 struct Doing {
   observer::Reply reply;
   std::optional<double> setting;
@@ -114,7 +114,7 @@ Doing done_by(const Rehearser& rehearser, const TrialSpec& spec, const protocol:
   if (!spec.slider) return {rehearser.answer(spec, trial::question_of(spec, protocol, seed)), {}};
   const auto set = rehearser.adjust(spec, trial::adjustment_of(spec, seed));
   trial::Slider slider(*spec.slider, spec.level.value_or(spec.slider->low));
-  // Ignore slider movements in silence: the participant could not feel their effect.
+  // Ignore slider movements after the tones have ended: the participant could not feel their effect.
   const double sounds_s = trial::interval_times(protocol, spec).back().length_s;
   for (const auto& move : set.moves)
     if (move.time_s < sounds_s) slider.move(move.value);

@@ -10,9 +10,10 @@
 
 namespace turnpoint::simulation {
 
-/// Returns the answer to a trial whose TrialSpec is complete. The reply's time counts from response_zero.
+/// Returns the observer's answer to a trial whose TrialSpec is complete. The time of the reply counts from
+/// response zero.
 using Answerer = std::function<observer::Reply(const trial::TrialSpec&, const observer::Question&)>;
-/// Returns how the slider is moved in an adjustment. Times count from the onset of its interval.
+/// Returns how the observer moves the slider in an adjustment. Times count from the onset of the interval.
 using Adjuster = std::function<observer::Setting(const trial::TrialSpec&, const observer::Adjustment&)>;
 
 /// The participant of a rehearsal. `adjust` is called only in adjustment tasks, `answer` in all other tasks.
@@ -24,7 +25,7 @@ struct Rehearser {
 /// A simulated session: the rows that `run` would have stored, except those of tones.
 struct Rehearsal {
   std::vector<records::BlockRecord> blocks;         ///< every attempt at every block, in order
-  std::vector<trial::ProcedureEstimate> estimates;  ///< at the end of each block
+  std::vector<trial::ProcedureEstimate> estimates;  ///< estimates of the procedures at the end of each block
   int trials = 0;
   double duration_s = 0;
 };

@@ -28,8 +28,8 @@ double trials_of(const Protocol& protocol, const Block& block) {
   return trials;
 }
 
-// Returns true if the first trials of this block differ on average from the rest. In a shuffled list, every
-// part has the same trials on average.
+// True if the first trials of this block differ on average from the later ones. They do not in a shuffled
+// list, every part of which has the same trials on average.
 bool begins_unlike_it_goes_on(const Protocol& protocol, const Block& block) {
   if (block.practice || !block.trials || *block.trials >= trials_of(protocol, block)) return false;
   bool unlike = block.procedures.size() > 1;
@@ -84,8 +84,8 @@ void TrialCensus::add(const Block& block, const procedure::Spec* spec, const std
     }
   };
   count(spec ? spec->level : block.level, levels, trials);
-  // Catch trials come in addition to the procedure's trials. Before each of them, catch trials are inserted
-  // as long as a random draw with probability `rate` succeeds.
+  // Catch trials are presented in addition to the procedure's trials. Before each of these, catch trials are
+  // inserted as long as a random draw with probability `rate` succeeds.
   if (const auto& caught = block.catch_trials; caught && spec)
     count(caught->factor, caught->levels, trials * caught->rate / (1 - caught->rate));
 }

@@ -11,9 +11,8 @@ namespace turnpoint::simulation {
 /// Answers a trial of a simulated session. Returns the index of a choice.
 using Answers = std::function<int(const trial::TrialSpec&)>;
 
-/// Counts the trials of a session by kind. Practice and warm-up are left out. Where only chance decides
-/// (drawn or balanced factors, catch trials), the exact probability is counted, and the draw of this session
-/// is ignored.
+/// Counts the trials of a session by kind. Practice and warm-up are left out. Where chance decides (drawn or
+/// balanced factors, catch trials), each kind gets its exact probability instead of the draw of this session.
 class TrialCensus {
  public:
   explicit TrialCensus(const protocol::Protocol& protocol);
@@ -39,17 +38,17 @@ class TrialCensus {
   std::map<protocol::Factors, double> cells_;
 };
 
-/// True if, outside practice, a procedure chooses levels by whether answers are right.
+/// True if, outside practice, a procedure chooses levels depending on whether answers are right.
 bool levels_follow_right_answers(const protocol::Protocol& protocol);
 
 /// Simulates one session in which the participant passes practice, and counts its trials.
 TrialCensus census_of_session(const protocol::Protocol& protocol, std::uint64_t seed, const Answers& answers);
 
-/// The average content of a session, computed exactly from the protocol. If a procedure follows the answers,
-/// each level that it can present counts equally often. One case is sampled instead of computed: a block that
-/// has fewer trials than its procedures provide, where the first trials differ from the rest (several
-/// procedures, no shuffling, or `max_run`). There, sessions with 40 000 trials in total are counted, which
-/// gives each share with a standard error of at most 0.25 %.
+/// The average content of a session, computed exactly from the protocol. If a procedure chooses levels from
+/// the answers, each level that it can present counts equally often. One case is sampled instead of computed:
+/// a block that has fewer trials than its procedures provide, and whose first trials differ from the rest
+/// (several procedures, no shuffling, or `max_run`). For such a block, sessions with 40 000 trials in total
+/// are counted. The standard error of each proportion is then at most 0.25 %.
 TrialCensus census_of(const protocol::Protocol& protocol);
 
 }  // namespace turnpoint::simulation
