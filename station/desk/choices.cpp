@@ -71,7 +71,7 @@ std::vector<ProtocolEntry> list_protocols(const std::string& folder) {
       if (bad.problems().size() > 1)
         entry.problem += fmt::format(" (and {} more)", bad.problems().size() - 1);
     } catch (const std::exception& error) {
-      // Catch the error of this file, so that the list still contains the others.
+      // Keep the error with this file and continue, so that the list contains the other files too.
       entry.problem = error.what();
     }
     list.push_back(std::move(entry));

@@ -22,9 +22,10 @@ std::vector<ProtocolEntry> list_protocols(const std::string& folder);
 /// Participant codes in the database, in alphabetical order; empty if there is no database yet.
 std::vector<std::string> known_participants(const std::string& database);
 
-/// The age of the last good backup, as recorded in the database.
+/// The age of the last good backup. It comes from the record that store::last_backup() reads beside the
+/// database.
 struct BackupNote {
-  /// ahead: the backup has a time in the future, because the clock has been set back
+  /// ahead: the backup's time is in the future, because the clock has been set back since
   enum class State { none, recent, old, ahead } state = State::none;
   int hours = 0;
   bool operator==(const BackupNote&) const = default;
@@ -40,12 +41,13 @@ struct InterruptedNote {
 };
 std::optional<InterruptedNote> interrupted_note(const std::string& database);
 
-/// The result of a check as texts for a page: a description of the session, and cues that give answers away.
+/// The result of a check as texts for a page: what the session consists of, and which cues could give answers
+/// away.
 struct CheckWords {
   std::vector<std::string> problems, warnings;
   std::vector<std::pair<std::string, std::string>> facts;  ///< pairs of a label and a value
-  /// A cue, the proportion correct of an observer who uses only this cue, and whether this is clearly above
-  /// chance.
+  /// A cue, the proportion correct of an observer who uses nothing but this cue, and whether that proportion
+  /// is clearly above chance.
   struct Cue {
     std::string name, says;
     bool leaks = false;

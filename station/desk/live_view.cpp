@@ -20,7 +20,7 @@ using Facts = std::vector<std::pair<std::string, std::string>>;
 /// Time over which the duty cycle is computed: the limit applies to any 60 s.
 constexpr double kWindow_s = 60;
 
-/// Each setting of a slider is displayed at least this long, so that it can be read.
+/// Each setting of a slider is displayed for at least this time, so that the operator can read it.
 constexpr std::chrono::milliseconds kSettingEvery{200};
 
 std::string percent(double share) { return number(std::round(1000 * share) / 10, 4) + " %"; }
@@ -55,8 +55,8 @@ plot::Figure alone(const char* title, const plot::Chart& panel) {
   return figure;
 }
 
-/// Returns for how long the stimulus was presented: its scheduled duration, or for an exploration, the time
-/// until the answer.
+/// Returns how long the stimulus was presented: its scheduled duration or, for an exploration, the time until
+/// the answer.
 double stimulus_s(const records::TrialRow& row, int rate_Hz) {
   double scheduled_s = 0;
   int intervals = 1;
@@ -223,7 +223,7 @@ void LiveView::push(News news) {
   {
     const std::lock_guard lock(mutex_);
     if (news.setting && !queue_.empty() && queue_.back().setting)
-      queue_.pop_back();  // only the newest setting matters
+      queue_.pop_back();  // a newer setting replaces one that was not shown yet
     queue_.push_back(std::move(news));
   }
   arrived_.notify_one();

@@ -24,7 +24,7 @@ struct LiveState {
   std::string heading;
   std::vector<std::pair<std::string, std::string>> scene, course, limits;  ///< pairs of a label and a value
   std::vector<Drawing> surfaces;  ///< one for each scene, in the order of presentation
-  /// figures of the profile of all scenes, of the levels, and of the response times; empty if there are no
+  /// figures: displacement profile of all scenes, levels, and response times; each is empty if there are no
   /// data
   Drawing profile, trace, times;
 };
@@ -38,13 +38,13 @@ struct LiveTrial {
   terms::Outcome outcome = terms::Outcome::answered;
   terms::TrialType type = terms::TrialType::experimental;
   double onset_s = 0, ended_s = 0;  ///< relative to the start of the session
-  double stimulus_s = 0;            ///< time for which the stimulus was presented
+  double stimulus_s = 0;            ///< how long the stimulus was presented
   int xruns = 0, extra_touches = 0;
   records::Proof proof = records::Proof::unproven;
   std::string measured;  ///< what the pick-up measured, in words
 };
 
-/// Describes the course of the session in words: accuracy, response times, lost frames. Pure.
+/// Describes the progress of the session in words: accuracy, response times, lost frames. Pure.
 std::vector<std::pair<std::string, std::string>> course_of(const std::vector<LiveTrial>& trials);
 
 /// Describes how much of the rig's limits is used up. It considers the stimuli of the last 60 s and the
@@ -58,9 +58,8 @@ std::vector<std::pair<std::string, std::string>> limits_used(const std::vector<L
 std::optional<plot::Figure> live_trace(const std::vector<LiveTrial>& trials, const std::string& label);
 std::optional<plot::Figure> live_times(const std::vector<LiveTrial>& trials);
 
-/// Follows a session on its own thread. It describes and draws the session's plans, and reports a new state
-/// whenever something changes. While the participant moves a slider, it shows the newest setting five times a
-/// second.
+/// Describes and draws a running session for the operator, on its own thread. It reports a new state whenever
+/// something changes. While the participant moves a slider, it shows the newest setting five times a second.
 class LiveView : public session::Monitor {
  public:
   /// Called on the view's own thread.
@@ -98,7 +97,7 @@ class LiveView : public session::Monitor {
   std::string level_;     ///< name of the level in the protocol
   std::string adjusted_;  ///< the factor that a slider sets; "" if there is none
   rig::Rig rig_;
-  // The following members are used by the worker thread only.
+  // The worker thread alone uses `planner_` to `state_`.
   scene::Planner planner_;
   Begun trial_;                    ///< the current trial; its scenes are those presented now
   std::optional<double> setting_;  ///< the slider's setting; empty until it has been moved

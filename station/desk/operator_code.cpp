@@ -30,7 +30,7 @@ constexpr const char* kStationGroup = "turnpoint";
   throw std::system_error(errno, std::generic_category(), what);
 }
 
-/// Compares two texts in a time that does not depend on where they differ.
+/// Compares two texts. The time that this takes does not reveal where they differ.
 bool equal(const std::string& a, const std::string& b) {
   if (a.size() != b.size()) return false;
   unsigned different = 0;

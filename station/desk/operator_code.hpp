@@ -4,8 +4,8 @@
 
 namespace turnpoint::desk {
 
-/// The code of digits that opens the operator's pages on the participant's screen. Only a salted hash of a
-/// stored code is kept (yescrypt, by libxcrypt).
+/// The code of digits that opens the operator's pages on the participant's screen. A stored code is kept as a
+/// salted hash only (yescrypt, by libxcrypt).
 class OperatorCode {
  public:
   /// The code of a station on which nobody has stored a code. It is printed in the manual, so it is not

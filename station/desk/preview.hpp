@@ -15,10 +15,11 @@ struct PreviewRequest {
   std::vector<std::string> set;      ///< values of factors, each written as "factor=value"
 };
 
-/// A factor on which a scene depends, for a control that lets somebody change it.
+/// A factor on which a scene depends, with the values that a slider for it can take.
 struct Knob {
   std::string name;
-  double low = 0, high = 0;    ///< limits of the factor's range, or lowest and highest of its levels
+  double low = 0, high = 0;    ///< limits of the factor's range; without a range, its lowest and highest
+                               ///< level
   std::vector<double> levels;  ///< possible values; empty if any value in the range is allowed
   /// value to begin with: the first level, or the middle of the range if there are no levels
   double value = 0;
@@ -28,7 +29,7 @@ struct Knob {
 struct SceneLook {
   std::string scene;
   protocol::Factors factors;
-  std::string problem;  ///< why this rig cannot present the scene; if set, all members below are empty
+  std::string problem;  ///< why this rig cannot present the scene; if not "", all members below are empty
   scene::DrivePlan plan;
   scene::Planner::Profile profile;  ///< kProfilePoints points, starting at the wide end
   /// (label, value) in reading order
@@ -49,12 +50,12 @@ class Preview {
   const rig::Rig& rig() const { return rig_; }
   /// Returns the scenes that the task presents, in the order of their names, and then the other scenes.
   std::vector<std::string> scenes() const;
-  /// Returns the numeric factors on which the scene depends, or the scene on which it is based. They come in
+  /// Returns the numeric factors on which the scene depends, directly or through its base scene. They come in
   /// the order of the protocol file.
   std::vector<Knob> knobs(const std::string& scene) const;
 
-  /// Plans the scene. If the rig cannot present the scene, the result's `problem` says why; no exception is
-  /// thrown for that. Designing a zone takes up to a second, everything else some milliseconds. Throws
+  /// Plans the scene. If the rig cannot present it, the result's `problem` gives the reason; no exception is
+  /// thrown. Designing a zone takes up to a second, everything else some milliseconds. Throws
   /// std::out_of_range for an unknown scene.
   SceneLook look(const std::string& scene, const protocol::Factors& factors);
 
@@ -64,9 +65,10 @@ class Preview {
   scene::Planner planner_;
 };
 
-/// Returns values for every factor. `set` contains "factor=value" texts. Other factors get their first level
-/// or the middle of their range, and are listed in `assumed`. Throws terms::UsageError for a text that does
-/// not have this form, an unknown factor, or a word where the factor needs a number.
+/// Returns values for every factor. `set` contains texts of the form "factor=value". Each factor that `set`
+/// does not name gets its first level or the middle of its range, and is listed in `assumed`. Throws
+/// terms::UsageError for a text of another form, an unknown factor, or a word where the factor needs a
+/// number.
 protocol::Factors factors_for(const protocol::Protocol& protocol, const std::vector<std::string>& set,
                               std::vector<std::string>& assumed);
 

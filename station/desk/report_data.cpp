@@ -11,7 +11,7 @@ namespace turnpoint::desk {
 
 namespace {
 
-/// Says how many frames the participant's screen was late in total, from the events in the log.
+/// Says by how many frames in total the participant's screen was late, according to the events in the log.
 std::string late_frames(const std::vector<records::EventRow>& events) {
   int frames = 0, trials = 0;
   for (const auto& event : events)
@@ -32,7 +32,7 @@ std::string boundary_errors(const std::vector<store::BlockRecord>& blocks) {
          (uncertainty_mm > 0 ? text::number(uncertainty_mm, 3) + " mm (SD)" : std::string("not known"));
 }
 
-/// Says how many trials the pick-ups have proven, and why others are not: "57 ok, 2 flagged (level)".
+/// Says how many trials the pick-ups have proven, and why others are flagged: "57 ok, 2 flagged (level)".
 std::string proofs(const std::vector<store::BlockRecord>& blocks) {
   std::map<records::Proof, int> counts;
   std::map<records::Proof, std::map<std::string, int>> causes;
@@ -73,7 +73,8 @@ void add_health(const store::StoredSession& stored, report::SessionData& data) {
       xruns += row.xruns;
       extra += row.extra_touches;
       if (row.response_time_s) ++quality[row.response_time_quality];
-      // answers by button have an offset of 0, so take the largest
+      // answers by button have an offset of 0, so the largest offset is that of touch answers, if there are
+      // any
       offset_s = std::max(offset_s, row.response_offset_s);
     }
   std::string qualities;

@@ -12,8 +12,8 @@ namespace turnpoint::desk {
 /// if this program can no longer read the protocol text.
 report::SessionData report_data(const std::string& database, const std::string& session_id);
 
-/// Returns the session to report: the named one, otherwise the newest session that matches the filter and has
-/// trials. Throws StoreError (missing) if there is none.
+/// Returns the session to report: the named one or, without a name, the newest session that matches the
+/// filter and has trials. Throws StoreError (missing) if there is none.
 std::string session_to_report(const std::string& database, const store::SessionFilter& filter);
 
 }  // namespace turnpoint::desk

@@ -41,8 +41,8 @@ std::optional<double> mark_of(const SceneLook& look) {
   return value ? std::optional(1e-3 * *value) : std::nullopt;
 }
 
-/// Where the strip is drawn on the page. x is the distance from the wide end, whether that is drawn left or
-/// right. A slim strip is drawn wider than to scale, to be visible.
+/// Where the strip is drawn on the page. x is the distance from the wide end, whether that end is drawn on
+/// the left or on the right. A slim strip is drawn wider than to scale, so that it can be seen.
 struct Place {
   double left, right, middle_y, across, length_m;
   bool wide_left;
@@ -87,7 +87,7 @@ void draw_heat(plot::Canvas& canvas, const SceneLook& look, const Place& at) {
     const double a = profile.x_m[i], b = profile.x_m[i + 1];
     const double value = 0.5 * (profile.displacement_m[i] + profile.displacement_m[i + 1]);
     const auto colour = plot::shade(top > 0 ? value / top : 0);
-    // Let each slice extend below the next one, so that no gap is visible between them.
+    // Let each slice extend a little under the next one, so that no gap is visible between them.
     const double under = std::min(at.length_m, b + (b - a));
     canvas.polygon({at.above(a), at.above(under), at.below(under), at.below(a)}, fill(colour));
   }
@@ -122,8 +122,8 @@ void draw_mark(plot::Canvas& canvas, const SceneLook& look, const Place& at) {
               to_left ? plot::Anchor::end : plot::Anchor::start, kInk);
 }
 
-/// Returns the y coordinate of the lower end of the boundary's name. If the name would overlap the mark or
-/// the mark's name, it is placed above them.
+/// Returns the y coordinate of the boundary's name. If the name would overlap the mark or the mark's name, it
+/// moves up above both.
 double boundary_name_y(const SceneLook& look, const Place& at, const std::string& name) {
   const double boundary = *look.plan.boundary_m, own = at.above(boundary).second;
   const auto mark = mark_of(look);
@@ -182,7 +182,7 @@ Drawing drawing_of(plot::Figure figure) {
 Drawing drawing_of_surface(const SceneLook& look, const rig::Rig& rig) {
   require_plan(look);
   return [look, rig](plot::Canvas& canvas, double width_px, double height_px) {
-    // Below this size there is no room for scale and labels, so draw larger and scale down.
+    // Scale and labels need at least 240 x 84 px. For a smaller size, draw larger and scale down.
     const double larger = std::max({1.0, 240 / width_px, 84 / height_px});
     draw_surface(canvas, look, rig, larger * width_px, larger * height_px);
   };
@@ -215,8 +215,8 @@ plot::Figure profile_figure(const std::vector<SceneLook>& looks) {
     friction.layers.push_back(line);
     for (std::size_t k = 0; k < line.y.size(); ++k) line.y[k] = 1e6 * look.profile.displacement_m[k];
     most_um = std::max(most_um, *std::max_element(line.y.begin(), line.y.end()));
-    // With a single scene, displacement and friction are in different panels but have the same series number.
-    // Give the friction curve another look.
+    // With a single scene, displacement and friction would get the same series number and look. Give the
+    // friction curve another number.
     if (!several) std::get<plot::Line>(friction.layers.back()).series = 1;
     displacement.layers.push_back(line);
   }

@@ -25,7 +25,7 @@ std::vector<std::vector<double>> rows_of(const std::string& path, const std::vec
   return rows;
 }
 
-/// The data of a figure: measured and fitted values, with their difference below.
+/// The data of a figure: measured values, fitted values, and their difference.
 struct Comparison {
   std::string title, x_label, y_label, residual_label;
   std::vector<double> x, measured, fit_x, fit_y, residuals;
@@ -63,7 +63,8 @@ void add_response(plot::Figure& figure, const Calibration::Transducer& transduce
     const double fit_dB = 20 * std::log10(points[k].m_per_full_scale * 1e6);
     const double measured_dB = 20 * std::log10(rows[k][1] / sweep.full_scale);
     const double fit_deg = degrees(points[k].phase_rad);
-    // The fit has a continuous phase. Shift the measured phase by whole turns to bring it nearest to the fit.
+    // The phase of the fit is continuous. Shift the measured phase by whole turns to the value nearest to the
+    // fit.
     const double measured_deg = rows[k][2] + 360 * std::round((fit_deg - rows[k][2]) / 360);
     for (auto* c : {&level, &phase}) c->x.push_back(rows[k][0] * 1e-3), c->fit_x.push_back(rows[k][0] * 1e-3);
     level.measured.push_back(measured_dB), level.fit_y.push_back(fit_dB);

@@ -28,8 +28,8 @@ namespace {
 
 using Status = lines::Finding::Status;
 
-// Measures the device's own clock. It plays silence for two and a half seconds, or longer if the device's
-// time stamps are coarse.
+// Measures the rate of the device's own clock. Plays silence for two and a half seconds, or longer if the
+// device's time stamps are coarse.
 lines::Finding measured_clock(drive::Stream& stream) {
   for (int k = 0; k < 220; ++k) {
     system::sleep_until_ns(system::monotonic_ns() + 100'000'000);
@@ -54,9 +54,9 @@ std::string card_of(std::string_view uri) {
   return std::string(uri.substr(0, uri.find(',')));
 }
 
-// A PCM512x mutes its analogue outputs after 1024 frames of zeros, which last 5 ms, and unmutes them at the
-// next onset (TI, PCM512x data sheet, zero data detection). A session's stream consists of zeros between
-// stimuli.
+// A PCM512x mutes its analogue outputs after 1024 frames of zeros (5 ms at 192 kHz), and unmutes them at the
+// next onset (TI, PCM512x data sheet, zero data detection). Between stimuli, a session plays nothing but
+// zeros.
 void converter_mute(const rig::Rig& rig, std::vector<lines::Finding>& checks) {
   const auto on = drive::card_switch(rig.output.uri, "Auto Mute Switch");
   if (!on) return;
@@ -128,7 +128,7 @@ lines::Finding pick_ups(const rig::Rig& rig) {
           "add [[pickup]] tables to the calibration file (deploy/rigs/README.md, Pick-ups)"};
 }
 
-// Warns about a simulated touch panel on a rig with a real converter. A new rig file has a simulated panel,
+// Warns if the touch panel is simulated although the converter is real. A new rig file has a simulated panel,
 // and people forget to replace it.
 lines::Finding touch(const rig::Rig& rig) {
   auto check = lines::check_touch("touch", *rig.touch_uri);
@@ -169,8 +169,8 @@ void display(std::vector<lines::Finding>& checks) {
                         : "connect a screen, or run sessions with --buttons-only or a simulated observer"});
 }
 
-// Without a desktop, whose display server passes touches on, the program must be able to read the input
-// devices itself.
+// On a desktop, the display server reads the input devices. Without a desktop, the program must be able to
+// read them itself.
 void input(std::vector<lines::Finding>& checks) {
   if (std::getenv("DISPLAY") || std::getenv("WAYLAND_DISPLAY")) return;
   const auto devices = lines::try_input_devices();

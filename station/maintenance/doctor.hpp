@@ -15,12 +15,12 @@ using lines::try_input_devices;
 /// stays off. `data_path` is the folder for databases.
 std::vector<lines::Finding> examine(const rig::Rig& rig, const std::string& data_path);
 
-/// Checks that the machine does not swap: reading a page back from a memory card takes longer than an audio
-/// buffer lasts. `swaps` is the kernel's list of swap areas.
+/// Checks that the machine does not swap. Reading a page of memory back from a memory card takes longer than
+/// an audio buffer lasts. `swaps` is the kernel's list of swap areas.
 lines::Finding check_swap(const std::string& swaps = "/proc/swaps");
 
-/// Checks that the hardware watchdog is in use, which resets the machine if the kernel hangs. `folder` is
-/// where the kernel lists watchdogs.
+/// Checks that the hardware watchdog is in use. It resets the machine if the kernel hangs. `folder` is where
+/// the kernel lists watchdogs.
 lines::Finding check_watchdog(const std::string& folder = "/sys/class/watchdog");
 
 /// True if no check failed. Warnings do not count.

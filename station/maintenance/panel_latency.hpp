@@ -45,9 +45,10 @@ class LatencyDevices {
   std::unique_ptr<lines::Buttons> buttons_;
 };
 
-/// Returns the calibration to which the latency of the panel is added: the newest one beside the rig file if
-/// it is still valid, otherwise a new one with nothing else in it. A latency that this calibration already
-/// has from the other reference (button or photodiode) is kept. The calibration gets today's date.
+/// Returns a calibration that includes this latency of the panel. It is based on the newest calibration
+/// beside the rig file, if that is still valid; otherwise it contains nothing else. If the older calibration
+/// has a latency measured with the other reference (button or photodiode), that value is kept. The
+/// calibration gets today's date.
 calibration::Calibration with_panel(const rig::Rig& rig, const calibration::PanelLatency& measured);
 
 /// Returns the panel's latency from the newest valid calibration beside the rig file.

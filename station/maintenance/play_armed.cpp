@@ -19,9 +19,11 @@ namespace turnpoint::maintenance {
 namespace {
 
 constexpr double kLead_s = 0.5, kMargin_s = 0.5;
-constexpr std::int64_t kHeard_ns = 2'000'000'000;  // longest wait for the report that all tones were played
+constexpr std::int64_t kHeard_ns = 2'000'000'000;  // longest time to wait, after the calculated end, until
+                                                   // the device has played all tones
 constexpr std::int64_t kPoll_ns = 5'000'000;
-constexpr std::int64_t kFirstBlocks_ns = 200'000'000;  // longest wait for the audio thread's first report
+constexpr std::int64_t kFirstBlocks_ns = 200'000'000;  // time to wait until the audio thread has sent its
+                                                       // first report
 
 /// Returns the reason why the tones were not played correctly; "" for normal events.
 std::string trouble_of(const drive::Event& event, const drive::OutputConfig& output) {
@@ -74,8 +76,8 @@ std::int64_t play(drive::Stream& stream, drive::Amplifier& amplifier,
   const auto margin = std::llround(kMargin_s * rate_Hz);
   auto first = bursts.at(0);
   first.start_frame = stream.earliest_frame() + std::llround(kLead_s * rate_Hz);
-  // Checking the first burst can take long, so it may start later than planned. The other bursts keep their
-  // distance to its actual start.
+  // Checking the first burst can take long, so it may start later than planned. The other bursts are delayed
+  // by the same time.
   const auto onset = stream.schedule_soon(first).start_frame;
   auto end = onset + first.length_frames;
   for (std::size_t k = 1; k < bursts.size(); ++k) {
