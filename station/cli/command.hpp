@@ -15,7 +15,7 @@ struct Context {
   std::ostream& out;  ///< the result: text for people, or one JSON document
   std::ostream& err;  ///< warnings, errors and progress
   bool json = false;
-  /// the exit status; a command sets it if it ends without an exception but must not return 0
+  /// the exit status; set by a command that ends without an exception but must not return 0
   int exit_code = 0;
   /// the command line as given; its last element is null, as execv() requires
   std::vector<char*> arguments;
@@ -24,8 +24,8 @@ struct Context {
 
 using terms::UsageError;
 
-/// Calls `work`, which passes numbers from the command line to the physics library unchecked. If the library
-/// refuses a number, throws a UsageError.
+/// Calls `work`, which passes numbers from the command line to the physics library without checking them. If
+/// the library refuses a number, throws a UsageError.
 template <class Work>
 auto with_users_numbers(Work work) {
   try {
@@ -70,8 +70,8 @@ void add_operator_code(CommandLine& app, Context& context);
 /// Adds `--json` to a sub-command.
 void add_json(Command& command, Context& context);
 
-/// Runs the work, explains any exception on `err` and returns the exit status: 0 done, 1 failed at run time,
-/// 2 bad input or usage, 70 a fault of the program itself.
+/// Runs `work` and explains any exception on `err`. Returns the exit status: 0 done, 1 failed at run time, 2
+/// bad input or usage, 70 an error in the program itself.
 int exit_status(std::ostream& err, const std::function<int()>& work);
 
 /// Parses the command line, runs the command and returns the exit status.

@@ -60,7 +60,7 @@ std::optional<int> CommandLine::parse(int argc, char** argv, std::ostream& out, 
     app_->parse(argc, argv);
     return std::nullopt;
   } catch (const CLI::ParseError& error) {
-    // CLI11 reports --help and --version by exceptions with code 0.
+    // CLI11 reports --help and --version by exceptions too; their code is 0.
     return app_->exit(error, out, err) == 0 ? 0 : 2;
   }
 }

@@ -41,9 +41,8 @@ class Option {
 };
 
 /// One sub-command: its options, the example below its help, and its action. An option writes into its
-/// target, which must outlive the parsing. Names without leading dashes are positional.
-/// CLI11 is compiled only once, in command_line.cpp. When every command included it, its inline code took ten
-/// seconds to compile for each of them.
+/// target, which must outlive the parsing. Names without leading dashes are positional. CLI11 is compiled
+/// only in command_line.cpp, because including it costs each file ten seconds of compile time.
 class Command {
  public:
   explicit Command(CLI::App* app) : app_(app) {}
@@ -72,9 +71,9 @@ class CommandLine {
   ~CommandLine();
   Command* add_subcommand(const std::string& name, const std::string& help);
 
-  /// Parses, then runs the callback of the sub-command; its exceptions pass through. Returns nothing if it
-  /// ran. Otherwise returns the exit status: 0 after --help or --version (printed on `out`), 2 after wrong
-  /// usage (explained on `err`).
+  /// Parses the command line and runs the callback of the sub-command; exceptions of the callback pass
+  /// through. Returns nothing if the callback ran. Otherwise returns the exit status: 0 after --help or
+  /// --version (printed on `out`), 2 after wrong usage (explained on `err`).
   std::optional<int> parse(int argc, char** argv, std::ostream& out, std::ostream& err);
 
  private:

@@ -43,8 +43,8 @@ class StopOnSignal {
 }  // namespace
 
 void run_without_screen(Context& context, const session::Setup& setup) {
-  // Ctrl-C also ends the program that reads our messages through a pipe. Without this line, our next message
-  // would then end the session.
+  // Ctrl-C also ends the program that reads our messages through a pipe. If SIGPIPE were not ignored, our
+  // next message would then end the session.
   ::signal(SIGPIPE, SIG_IGN);
   session::Inputs inputs;
   const StopOnSignal stop(inputs);

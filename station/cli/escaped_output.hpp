@@ -4,10 +4,10 @@
 
 namespace turnpoint::cli {
 
-/// A stream that passes text on to another one but shows control characters instead of sending them. Titles,
-/// keys and names come from files, and an escape sequence in one of them must not reach the terminal. All
-/// control characters but line ends and tabs are written like "\x1b"; those of Unicode (U+0080 to U+009F)
-/// like "\u009b". Flushing it flushes the other stream too.
+/// A stream that passes text on to another stream and makes control characters visible. Titles, keys and
+/// names come from files, and an escape sequence in one of them must not reach the terminal. Control
+/// characters other than line ends and tabs are written like "\x1b"; those of Unicode (U+0080 to U+009F) like
+/// "\u009b". Flushing this stream also flushes the target.
 class EscapedOutput : public std::ostream {
  public:
   explicit EscapedOutput(std::ostream& to) : std::ostream(nullptr), buffer_(*to.rdbuf()) { rdbuf(&buffer_); }
@@ -25,7 +25,8 @@ class EscapedOutput : public std::ostream {
     bool escape(const char* form, unsigned character);
 
     std::streambuf& to_;
-    bool lead_ = false;  ///< true while a byte C2 is held back, because it may begin a control character
+    bool lead_ = false;  ///< true while a byte C2 waits for the next byte, because the two may be one control
+                         ///< character
   };
   Buffer buffer_;
 };

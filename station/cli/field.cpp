@@ -38,8 +38,8 @@ Choice choose(const physics::Surface& surface, const std::vector<physics::Tone>&
   request.points = points;
   request.normalise = physics::parse_normalise(options.normalise);
   if (options.tolerance > 0) request.tolerance.amplitude = options.tolerance;
-  // Without a tolerance use the most accurate profile for one mode, because the cheapest model would be too
-  // inaccurate.
+  // Without a tolerance the cheapest model would be chosen, which is too inaccurate. Use the equation for one
+  // mode instead.
   if (options.tolerance <= 0)
     return {physics::Model::mode, "the one-mode equation, because no tolerance was given"};
   auto choice = physics::choose_model(surface, request);

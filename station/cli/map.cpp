@@ -89,9 +89,9 @@ void print(std::ostream& out, const std::optional<scene::FingerShift>& shift) {
                number(shift->most_m * 1e3, 3));
 }
 
-constexpr std::size_t most_lines = 6;  ///< that differ in colour and dash
+constexpr std::size_t most_lines = 6;  ///< more lines would repeat the colours and dashes
 
-/// The largest contributions at all boundaries that the rig can present.
+/// Plots the largest contributions to the uncertainty, for all boundaries that the rig can present.
 plot::Figure figure_of(const rig::Rig& rig, const physics::Surface& surface, const physics::BoundaryMap& map,
                        const std::vector<physics::MapAnswer>& answers) {
   constexpr int points = 60;

@@ -78,8 +78,8 @@ const Goal& ask(Context& context) {
   }
 }
 
-// Replaces the id of the shipped protocol by that of the study, and its version by 0.1.0, because nothing was
-// measured with this protocol yet.
+// Replaces the id of the shipped protocol by that of the study. Also replaces the version by 0.1.0, because
+// nothing has been measured with the new protocol yet.
 std::string own(std::string source, const std::string& shipped_id, const std::string& id) {
   const auto replace = [&source](const std::string& from, const std::string& to) {
     const auto at = source.find(from);

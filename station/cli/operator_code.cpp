@@ -13,8 +13,8 @@ namespace turnpoint::cli {
 
 namespace operator_code_command {
 
-/// While this object exists, typing on the terminal (if there is one) is invisible. Ctrl-C is an ordinary
-/// character meanwhile, so that it cannot leave the terminal without echo.
+/// While this object exists, what is typed on the terminal (if there is one) is invisible. Ctrl-C is read as
+/// an ordinary character: ending the program now would leave the terminal without echo.
 class NoEcho {
  public:
   NoEcho() {

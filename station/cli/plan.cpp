@@ -42,15 +42,15 @@ Json tones_json(const scene::DrivePlan& plan) {
   return tones;
 }
 
-/// The contrast in dB between the friction of a scene and that of its base scene: 20 log10(1 - friction /
-/// base).
+/// The contrast in dB between the friction of a scene and that of its base scene, 20 log10(1 - friction /
+/// base). Empty unless the friction is below that of the base.
 std::optional<double> contrast_dB(const std::optional<double>& base, const std::optional<double>& friction) {
   if (!base || !friction || *friction >= *base) return std::nullopt;
   return 20 * std::log10(1 - *friction / *base);
 }
 
-/// What a finger changes in a scene, and the contrast to the base scene, if there is one, without and with
-/// the finger.
+/// How a finger changes a scene and, if there is a base scene, the contrast to it without and with the
+/// finger.
 struct Touched {
   scene::UnderFinger under;
   std::optional<double> free_contrast_dB, contrast_dB;

@@ -86,7 +86,7 @@ void print(std::ostream& out, const simulation::Power& power) {
   fmt::print(out, line, "source", "number", "truth", "mean", "bias", "SD", "median", "quartiles", "width",
              "coverage", "sessions");
   for (const auto& r : power.recoveries) {
-    // Print only as many digits as the spread between the simulated sessions justifies.
+    // Print no more digits than the spread between the simulated sessions justifies.
     const double spread = r.upper_quartile - r.lower_quartile;
     const auto shown = [spread](const std::optional<double>& value) {
       return value ? text::estimated(*value, spread) : std::string("n/a");
@@ -115,8 +115,8 @@ void print(std::ostream& out, const std::vector<simulation::CueReport>& cues) {
                number(100 * cue.chance, 3), cue.above_chance() ? ", above chance" : "");
 }
 
-/// A function that shows the progress in one line, which it overwrites each time; empty if standard error is
-/// not a terminal.
+/// Returns a function that shows the progress in one line, which it overwrites each time. Returns an empty
+/// function if standard error is not a terminal.
 std::function<void(int, int)> progress() {
   if (::isatty(STDERR_FILENO) == 0) return {};
   return [](int done, int of) {

@@ -78,7 +78,8 @@ void print_summary(std::ostream& out, const session::Summary& s) {
   fmt::print(out, "  checksum {}\n", s.checksum);
 }
 
-/// A session without a trial cannot be resumed.
+/// Prints the command that continues the session. Prints nothing if the session has no trial, because it
+/// cannot be resumed then.
 void print_how_to_resume(std::ostream& out, const session::Summary& s, const std::string& options) {
   if (store::interrupted_session(s.database, s.session_id))
     fmt::print(out, "  to continue: turnpoint resume --db {} --session {}{}\n", s.database, s.session_id,

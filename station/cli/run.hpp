@@ -11,8 +11,8 @@ namespace turnpoint::cli {
 /// Adds the options of `turnpoint run` to a command. turnpoint-ui accepts the same options.
 std::shared_ptr<setup::RunRequest> add_run_options(Command& command);
 
-/// Adds the options of `turnpoint station`. amplifier-off accepts the same options, so that it can be called
-/// with the command line of the station.
+/// Adds the options of `turnpoint station`. amplifier-off accepts them too, so that it can be called with the
+/// command line of the station.
 std::shared_ptr<setup::StationRequest> add_station_options(Command& command);
 
 /// Replaces this process by the program turnpoint-ui in the same folder, with the same command line. Never

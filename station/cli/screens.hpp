@@ -12,8 +12,8 @@ namespace turnpoint::cli {
 /// Functions that need a screen, which only turnpoint-ui provides; turnpoint starts turnpoint-ui to call
 /// them. Each returns when its window is closed.
 struct Screens {
-  /// Runs a session. Asks on the screen for the language and the code of the participant if the request
-  /// leaves them open. To resume a session, pass its prepared setup; the request is then ignored.
+  /// Runs a session. If the request leaves the participant's language or code open, asks for it on the
+  /// screen. To resume a session, pass its prepared setup; the request is then ignored.
   std::function<session::Summary(setup::RunRequest, std::optional<session::Setup>)> session;
   /// Shows the operator's start page and runs the sessions started there, one after another.
   std::function<void(const setup::StationRequest&)> station;

@@ -42,7 +42,7 @@ std::vector<std::string> sign_files(const std::string& folder, const std::vector
   const auto list = (std::filesystem::path(folder) / "SHA256SUMS").string();
   const auto signature = list + ".sig";
   store::write_file(list, sums);
-  // Without this, ssh-keygen would ask whether to overwrite an existing signature.
+  // Remove an existing signature, because ssh-keygen would ask whether to overwrite it.
   std::filesystem::remove(signature);
   if (const int status = run_program({"ssh-keygen", "-q", "-Y", "sign", "-n", "turnpoint", "-f", key, list}))
     throw std::runtime_error(

@@ -42,7 +42,7 @@ Json to_json(const store::Withdrawal& gone, const Options& options) {
           {"remaining_copies", gone.remaining_copies}};
 }
 
-/// Prints what would be deleted, or was deleted.
+/// Prints the contents of a withdrawal. `verb` is "deleted" or "would be deleted".
 void print(std::ostream& out, const store::Withdrawal& gone, const std::string& verb) {
   for (const auto& s : gone.sessions)
     fmt::print(out, "{}: session {} of {} at {}, {} of {}, {} trials\n", verb, s.session_id,
@@ -61,7 +61,7 @@ void print_what_stays(std::ostream& out, const store::Withdrawal& gone, const Op
         "Earlier backups were not searched; use --backups FOLDER to do so. Remove exported files by hand.\n");
 }
 
-/// Lists what would be deleted and asks. Only the participant's code is accepted as agreement.
+/// Lists what would be deleted and asks for consent, which is given by typing the participant's code.
 bool agreed(const Options& options, Context& context) {
   const auto plan = store::plan_withdrawal(options.database, options.withdraw);
   print(context.err, plan, "would be deleted");
@@ -90,7 +90,7 @@ void withdraw(const Options& options, Context& context) {
     print(context.out, gone, options.dry_run ? "would be deleted" : "deleted");
     print_what_stays(context.out, gone, options);
   }
-  // The withdrawal is incomplete as long as a copy remains.
+  // As long as a copy remains, the withdrawal is incomplete, so report a failure.
   if (!options.dry_run && !gone.remaining_copies.empty()) context.exit_code = 1;
 }
 
