@@ -8,22 +8,22 @@
 
 namespace turnpoint::drive {
 
-/// disarmed: the line stays low until an operator arms the amplifier.
-/// armed: the line is low, and sound is allowed.
-/// enabled: the line is high.
+/// disarmed: the enable line stays low until an operator arms the amplifier.
+/// armed: the line is low until enable() sets it high.
+/// enabled: the line is high, so the amplifier is on.
 /// faulted: the line is low and stays low until an operator clears the fault.
 enum class AmplifierState { disarmed, armed, enabled, faulted };
 const char* name(AmplifierState state);
 
-/// The fault that latched the line low, and its time (CLOCK_MONOTONIC, ns).
+/// The fault that set the enable line low, and its time (CLOCK_MONOTONIC, ns).
 struct AmplifierFault : terms::Fault {
   std::int64_t time_ns = 0;
 };
 
-/// The power amplifier behind the converter. Only its own guard thread drives the enable line, so the line
-/// goes low within a millisecond of a fault, whatever the callers of these functions are doing. Call these
-/// functions from ordinary threads; audio_alive() is for the audio thread. They wait for the guard; the guard
-/// never waits for them.
+/// The power amplifier behind the converter. Its guard thread alone drives the enable line, so the line goes
+/// low within a millisecond of a fault, whatever other threads are doing. Call these functions from ordinary
+/// threads, except audio_alive(), which is for the audio thread. Callers wait for the guard; the guard never
+/// waits for callers.
 class Amplifier {
  public:
   virtual ~Amplifier() = default;
@@ -31,8 +31,8 @@ class Amplifier {
   /// The reason for a refusal; empty on success.
   using Refusal = std::optional<terms::Fault>;
 
-  /// Only an operator may call this. It is required after a start, a device loss or a cleared fault. Refused
-  /// while a fault is present or the emergency stop is pressed.
+  /// Allows enable(). Only an operator may request this. It is required after a start, a device loss or a
+  /// cleared fault. Refused while a fault is present or the emergency stop is pressed.
   [[nodiscard]] virtual Refusal arm() = 0;
   /// Sets the line low at once. This is not a fault.
   virtual void disarm() noexcept = 0;
@@ -40,24 +40,25 @@ class Amplifier {
   [[nodiscard]] virtual Refusal enable() = 0;
   /// Sets the line low but stays armed. Call this once the stream is silent.
   virtual void disable() noexcept = 0;
-  /// Latches the line low for a fault that the station detected itself. If there is a fault already, that one
-  /// is kept.
+  /// Sets the line low for a fault that the station detected itself, and keeps it low until clear(). If there
+  /// is a fault already, fault() continues to report the first one.
   virtual void trip(terms::FaultKind kind, std::string_view detail) noexcept = 0;
-  /// For the operator: clears a latched fault if its cause is gone. The amplifier is disarmed afterwards.
+  /// Clears a fault if its cause is gone; only an operator may request this. The amplifier is disarmed
+  /// afterwards.
   [[nodiscard]] virtual Refusal clear() = 0;
 
   /// Each of these reports that its caller is still running: the audio thread, the session, and the
-  /// participant's page from its first report on (a session without a screen has no page). The heartbeat line
-  /// toggles only while all of them report. These functions never block.
+  /// participant's page. The heartbeat line toggles only while all of them report. The page counts from its
+  /// first report on, because a session without a screen has no page. These functions never block.
   virtual void audio_alive() noexcept = 0;
   virtual void session_alive() noexcept = 0;
   virtual void page_alive(std::int64_t time_ns) noexcept = 0;
 
   virtual AmplifierState state() const noexcept = 0;
-  /// The latched fault; valid while the state is `faulted`.
+  /// The fault that set the line low; valid while the state is `faulted`.
   virtual AmplifierFault fault() const = 0;
-  /// Time from the kernel's time stamp of the last fault or stop signal until the enable line was low; -1 if
-  /// there was none yet.
+  /// Time from the last fault or stop signal, by the kernel's time stamp, until the enable line was low; -1
+  /// if there was none yet.
   virtual std::int64_t reaction_ns() const noexcept = 0;
 };
 

@@ -9,8 +9,8 @@ inline constexpr int max_tones = 32;
 inline constexpr int max_channels = 8;
 inline constexpr int max_changes = 4;
 
-/// One sinusoid `amplitude * sin(2 pi frequency t + phase)`, with t counted from the first frame of its
-/// burst. Amplitude 1 is full scale; the output channel counts from 0.
+/// One sinusoid `amplitude * sin(2 pi frequency t + phase)`, where t is 0 at the first frame of its burst.
+/// Amplitude 1 is full scale. Output channels are numbered from 0.
 struct Tone {
   double frequency_Hz = 0;
   double amplitude = 0;
@@ -30,10 +30,10 @@ struct Ramp {
   std::int64_t frames = 9600;  ///< 50 ms at 192 kHz
 };
 
-/// A change while the finger is on the surface. Starting at `at_frame` (counted from the burst's first
-/// frame), tone i glides to tone i of `to` within `frames`. Frequency changes linearly and without a jump of
-/// phase; amplitude follows the ramp's shape. A tone that only one of the two sets contains fades out, or
-/// fades in as if it had run silently since the onset.
+/// A change of tones within a burst. Starting at `at_frame` (counted from the burst's first frame), tone i
+/// glides to tone i of `to` within `frames`. Frequency changes linearly, and the phase does not jump;
+/// amplitude follows the ramp's shape. A tone that only the old set contains fades out. A tone that only the
+/// new set contains fades in, with the phase that it would have had if it had run silently since the onset.
 struct Change {
   std::int64_t at_frame = 0;
   std::int64_t frames = 9600;
@@ -59,7 +59,7 @@ struct MaskingNoise {
   std::uint64_t seed = 1;
 };
 
-/// A stimulus as data, in absolute frames of the stream. The length includes both ramps.
+/// A stimulus as data. `start_frame` counts from the opening of the stream. The length includes both ramps.
 struct Burst {
   std::int64_t start_frame = 0;
   std::int64_t length_frames = 0;

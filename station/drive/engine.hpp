@@ -18,22 +18,23 @@
 
 namespace turnpoint::drive {
 
-/// A rendered frame is heard later: a device receives each frame one buffer length before it plays it. A
-/// burst that has begun therefore ends twice: burst_ended when its last frame has been rendered, and
-/// burst_heard when that frame has been played and no frame of the burst was lost. If frames were lost, the
-/// underrun event names the burst and there is no burst_heard.
+/// A device receives each frame one buffer length before it plays the frame. Therefore the end of a burst is
+/// reported twice: by burst_ended when the last frame has been rendered, and by burst_heard when it has been
+/// played. If frames of the burst were lost, there is no burst_heard, and the underrun event names the burst.
 enum class EventKind : std::int32_t {
-  burst_started,  ///< frame: first frame of the burst, as scheduled
-  /// frame: the first silent frame after the burst, or the burst's first frame if it was stopped before it
-  /// began
+  burst_started,  ///< `frame`: first frame of the burst, as scheduled
+  /// `frame`: the first silent frame after the burst; if the burst was stopped before it began, its first
+  /// frame
   burst_ended,
-  /// frame: the first silent frame after the burst, which has been played completely and as scheduled
+  /// the burst was played completely and as scheduled; `frame`: the first silent frame after it
   burst_heard,
-  burst_missed,  ///< the command came after its first frame had been rendered: the burst is not played
+  burst_missed,  ///< the command arrived after the burst's first frame had been rendered: the burst is not
+                 ///< played
   underrun,      ///< frames [frame, frame + frames) were not played; sounding bursts continue with a ramp
   device_lost,   ///< nothing is played from `frame` on, until the device is back and the operator re-arms
   device_back,   ///< the device was reopened by name; frame numbers continue from `frame`
-  rate_wrong,    ///< the measured rate is more than 200 ppm off (`frames`: the rate in mHz): stop the session
+  rate_wrong,    ///< the measured rate is more than 200 ppm off, so the session must stop; `frames`: the rate
+                 ///< in mHz
 };
 
 struct Event {
@@ -42,15 +43,15 @@ struct Event {
   std::int64_t frame = 0;
   std::int64_t frames = 0;
   int error = 0;  ///< negative errno that the device reported; 0 if none
-  /// For an underrun: the device was restarted, so what follows is played at a different time than predicted.
-  /// A burst that had not been heard to its end by then has lost frames, even if none of them fell into the
-  /// gap.
+  /// For an underrun: true if the device was restarted, so later frames are played at other times than
+  /// predicted. Every burst that had not been heard to its end then counts as damaged, even if no frame of it
+  /// was lost.
   bool retimed = false;
 };
 
 struct Counters {
   std::int64_t frames = 0;  ///< number of frames rendered
-  /// number of frames known to have been played or lost; losses before this frame have been reported
+  /// number of frames known to have been played or lost; all losses before this frame have been reported
   std::int64_t heard = 0;
   std::int64_t bursts = 0;  ///< number of bursts that began
   std::int64_t missed = 0;
@@ -61,9 +62,9 @@ struct Counters {
   std::int64_t events_dropped = 0;  ///< events lost because nobody called poll()
 };
 
-/// What a synchronous stream to `null:` does. With `rendered` it computes the samples, so that they or their
-/// cost can be measured. With `passed` it computes none but reports the same events at the same frames, for
-/// sessions that nobody listens to.
+/// What a synchronous stream to `null:` does. With `rendered` it computes the samples, so that they or the
+/// time that they take can be measured. With `passed` it computes no samples but reports the same events at
+/// the same frames; this is for sessions to which nobody listens.
 enum class Samples : std::int32_t { rendered, passed };
 
 struct StreamConfig {
@@ -72,8 +73,8 @@ struct StreamConfig {
   SynthLimits limits;
   int fifo_priority = 70;
   double converter_delay_s = 0;  ///< group delay of the converter, added to predicted times
-  /// How far a synchronous stream renders ahead of what is heard, like the buffer of a device: commands take
-  /// effect this many frames later. Other streams use their device's buffer.
+  /// How many frames a synchronous stream renders ahead of playback, like the buffer of a device: commands
+  /// take effect this many frames later. Real-time streams use their device's buffer.
   std::int64_t virtual_lead_frames = 0;
   /// May be null. Its audio_alive() is called after each block that a device accepted. It must outlive the
   /// stream.
@@ -86,39 +87,40 @@ struct Scheduled {
   std::int64_t start_frame = 0;
 };
 
-/// A stream that plays silence and, at given frames, bursts. All functions are for one control thread; none
-/// of them waits for the audio thread. Frames are counted from 0 at the opening and keep counting through
-/// underruns and reopenings.
+/// A stream that plays silence and, at given frames, bursts. Call all functions from one control thread; none
+/// of them waits for the audio thread. Frames are counted from 0 when the stream is opened. The count
+/// continues through underruns and when the device is reopened.
 class Stream {
  public:
   virtual ~Stream() = default;
 
-  /// Checks and sends a burst. Returns its number (from 1). Throws BurstRefused: a limit is exceeded,
-  /// overlapping peaks add up to too much, the start frame is already past, or too many bursts are waiting.
+  /// Checks and sends a burst. Returns its number (from 1). Throws BurstRefused if a limit is exceeded, the
+  /// peaks of overlapping bursts add up to too much, the start frame is already past, or too many bursts are
+  /// waiting.
   virtual std::uint32_t schedule(const Burst& burst) = 0;
   /// Sends bursts that were already checked for this stream's format and limits, in the order of their start
-  /// frames. They start at these frames. If the first one is already too late, all of them are delayed by the
-  /// same number of frames, so that their distances stay exact. Takes microseconds. If it throws
-  /// BurstRefused, none of them is played.
+  /// frames. If the first one is too late, all of them are delayed by the same number of frames, so that the
+  /// intervals between them stay exact. Takes microseconds. If it throws BurstRefused, none of the bursts is
+  /// played.
   virtual std::vector<Scheduled> schedule_together(std::span<const PreparedBurst> bursts) = 0;
   /// Checks one burst, which can take longer than a buffer lasts (see prepare), and sends it like
   /// schedule_together.
   Scheduled schedule_soon(const Burst& burst);
   /// Changes a waiting or sounding burst; `at_frame` counts from its start. Throws BurstRefused.
   virtual void change(std::uint32_t burst, const Change& change) = 0;
-  /// Ramps one burst down (0: all of them) as soon as possible, or from an absolute frame. Throws
-  /// std::runtime_error if the audio thread does not accept commands.
+  /// Ramps one burst down (0: all of them), from the given frame of the stream or, without one, as soon as
+  /// possible. Throws std::runtime_error if the audio thread does not accept commands.
   virtual void stop(std::uint32_t burst, const Ramp& ramp, std::optional<std::int64_t> frame = {}) = 0;
 
-  /// The oldest event of the audio side not yet returned. Call this at least every few seconds: it also
-  /// collects the device's time stamps, of which the audio thread can keep 2048.
+  /// Returns the oldest event that was not returned yet; empty if there is none. Call this at least every few
+  /// seconds: it also collects the device's time stamps, of which the audio thread can keep 2048.
   virtual std::optional<Event> poll() = 0;
 
-  /// The earliest frame that a burst scheduled now is certain to reach.
+  /// The earliest start frame at which a burst that is scheduled now will certainly be played.
   virtual std::int64_t earliest_frame() const = 0;
-  /// Maps frames to CLOCK_MONOTONIC (for a synchronous stream: to virtual time). A fit with no pairs means
-  /// that the time is not known: before the device has reported its first position, while it is lost, and
-  /// just after a restart.
+  /// Maps frames to CLOCK_MONOTONIC (for a synchronous stream: to virtual time). The time is not known before
+  /// the device has reported its first position, while the device is lost, and just after a restart; the fit
+  /// then has no pairs.
   virtual ClockFit clock() = 0;
   /// Predicted time (ns) at which this frame leaves the converter, including the group delay; empty if not
   /// known.
@@ -141,7 +143,7 @@ class SynchronousStream : public Stream {
   virtual std::int64_t frame() const = 0;     ///< the next frame to render
   virtual std::int64_t now_ns() const = 0;    ///< virtual time of the next frame to render
   virtual double largest_sample() const = 0;  ///< largest sample written so far, relative to full scale
-  /// Calls `listener` with each block that is rendered, and the frame at which it begins.
+  /// Calls `listener` with each block that is rendered, and with the number of the block's first frame.
   virtual void listen(
       std::function<void(std::int64_t first_frame, std::span<const std::int32_t> interleaved)> listener) = 0;
   /// Completes the output (file headers). Throws std::system_error.
@@ -149,11 +151,11 @@ class SynchronousStream : public Stream {
 };
 
 /// Throws the errors of open_output. Also throws terms::UsageError for a format that cannot be synthesised,
-/// or when samples are passed over although the output needs them.
+/// and for Samples::passed with an output that needs samples.
 std::unique_ptr<SynchronousStream> open_synchronous(const StreamConfig& config, std::int64_t origin_ns = 0);
 
-/// Opens the output and starts the audio thread. ALSA sets the pace, or CLOCK_MONOTONIC for `null:` and
-/// `wav:`. The destructor ramps down what is sounding and joins the thread.
+/// Opens the output and starts the audio thread. The device sets the pace; for `null:` and `wav:`,
+/// CLOCK_MONOTONIC does. The destructor ramps down the bursts that are sounding and joins the thread.
 std::unique_ptr<Stream> open_realtime(const StreamConfig& config);
 
 /// The result of `play`.
@@ -168,8 +170,8 @@ struct PlayReport {
   std::int64_t onset_frame = 0;
 };
 
-/// Reports on a stream after playing. Fills everything except the burst's own values (peak, largest sample,
-/// onset).
+/// Reports on a stream after playing. Leaves out what only the caller knows about the burst: peak, largest
+/// sample, onset.
 PlayReport report_of(Stream& stream);
 
 /// Plays or renders one burst and the silence around it: in real time for `alsa:`, as fast as possible

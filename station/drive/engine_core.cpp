@@ -18,7 +18,7 @@ void EngineCore::send(const Command& command) {
   if (!commands_->push(command)) throw BurstRefused(not_taken);
 }
 
-// The peaks of overlapping bursts add up on each channel.
+// Where bursts overlap, their peaks add up on each channel.
 void EngineCore::check_room(const PreparedBurst& burst) const {
   std::array<double, max_channels> sum = burst.peak;
   std::size_t voices = 0;
@@ -108,7 +108,8 @@ EngineCore::Open* EngineCore::find(std::uint32_t burst) {
   return found == open_.end() ? nullptr : &*found;
 }
 
-// Marks the bursts that lost frames of [first_frame, end_frame). Returns the first of them, or 0.
+// Marks the bursts that lost any frame of [first_frame, end_frame). Returns the number of the first such
+// burst, or 0.
 std::uint32_t EngineCore::damage(std::int64_t first_frame, std::int64_t end_frame) {
   std::uint32_t first = 0;
   for (Open& open : open_) {
@@ -119,7 +120,7 @@ std::uint32_t EngineCore::damage(std::int64_t first_frame, std::int64_t end_fram
   return first;
 }
 
-// Updates the list of open bursts from an event of the audio side.
+// Updates the list of open bursts when the audio side reports an event.
 void EngineCore::follow(Event& event) {
   constexpr auto forever = std::numeric_limits<std::int64_t>::max();
   switch (event.kind) {
@@ -149,7 +150,7 @@ void EngineCore::follow(Event& event) {
 }
 
 void EngineCore::gather() {
-  // Read this position before the events, so that the events contain every loss before this frame.
+  // Read this position before the events. All losses before this frame are then among the events.
   const std::int64_t heard = atomics_.heard.load();
   Event event;
   while (events_->pop(event)) {
@@ -211,8 +212,8 @@ void EngineCore::report(const Event& event) noexcept {
 
 void EngineCore::lose(const Event& event, std::int64_t next_frame) noexcept {
   synth_.skip_to(next_frame);
-  // Store the frame before sending the event, so that nobody who has read the event schedules a burst into
-  // the gap.
+  // Store the frame before sending the event. Otherwise somebody who reads the event could schedule a burst
+  // into the gap.
   atomics_.frames.store(next_frame);
   report(event);
 }
@@ -225,7 +226,7 @@ void EngineCore::take_commands() noexcept {
           report({EventKind::burst_missed, incoming_->start.id, incoming_->start.start_frame});
         break;
       case CommandKind::change:
-        // Ignored if the burst has just ended; the end of the burst is reported.
+        // A change has no effect if the burst has just ended; an event reports the end.
         static_cast<void>(synth_.change(incoming_->burst, incoming_->change));
         break;
       case CommandKind::stop:

@@ -10,9 +10,9 @@
 
 namespace turnpoint::drive {
 
-/// The part that all streams share. Commands go in and events come out through rings; blocks are rendered in
-/// between. `process`, `pass`, `heard`, `lose` and `report` belong to the audio side, everything else to one
-/// control thread.
+/// The part that all streams share. The control thread sends commands through one ring and receives events
+/// through another; the audio side renders blocks. `process`, `pass`, `heard`, `lose` and `report` are for
+/// the audio side, everything else is for one control thread.
 class EngineCore {
  public:
   explicit EngineCore(const StreamConfig& config);
@@ -34,11 +34,10 @@ class EngineCore {
   void process(std::int64_t frame, std::span<std::int32_t> samples) noexcept;
   /// Like process(), but without computing samples: only handles commands and events.
   void pass(std::int64_t frame, std::int64_t frames) noexcept;
-  /// Records that every frame before `frame` has been played, except those that lose() reported before this
-  /// call.
+  /// Records that every frame before `frame` has been played, unless lose() has reported it as lost.
   void heard(std::int64_t frame) noexcept { atomics_.heard.store(frame); }
   /// Skips lost frames and sends the event that reports them. Rendering continues at `next_frame`, which must
-  /// not lie before the end of what has been rendered.
+  /// not be before the end of the frames already rendered.
   void lose(const Event& event, std::int64_t next_frame) noexcept;
   /// Sends an event of the output to the control thread and updates the counters.
   void report(const Event& event) noexcept;
@@ -56,7 +55,8 @@ class EngineCore {
   /// A burst that was sent but has not yet been heard or reported as damaged.
   struct Open {
     PreparedBurst burst;
-    std::int64_t end_frame = 0;  ///< end of the burst as scheduled; once rendered, its actual end
+    std::int64_t end_frame = 0;  ///< end of the burst as scheduled; once the end has been rendered, the
+                                 ///< actual end
     bool begun = false, rendered = false, damaged = false;
   };
   struct Atomics {

@@ -5,7 +5,8 @@
 
 namespace turnpoint::drive {
 
-/// The sample format of a device: 32 bits, or the upper 24 of them in three bytes; both little-endian.
+/// The sample format of a device, little-endian: all 32 bits of a sample, or its upper 24 bits in three
+/// bytes.
 enum class SampleFormat { s32_le, s24_3le };
 
 /// How a device arranges a frame in memory. A device may have more channels than the stream.
@@ -20,9 +21,9 @@ struct FrameLayout {
   int bits() const noexcept { return format == SampleFormat::s32_le ? 32 : 24; }
 };
 
-/// Packs whole frames of `channels` interleaved samples, left-aligned in 32 bits, into the device's layout.
-/// The device's additional channels carry zeros. `out` must be large enough, and `channels` must not exceed
-/// the layout's.
+/// Packs whole frames of `channels` interleaved samples into the device's layout. The samples are
+/// left-aligned in 32 bits. Additional channels of the device carry zeros. `out` must be large enough, and
+/// `channels` must not exceed the layout's.
 void pack(std::span<const std::int32_t> samples, int channels, const FrameLayout& layout,
           std::span<unsigned char> out) noexcept;
 

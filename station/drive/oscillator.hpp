@@ -8,18 +8,20 @@ namespace turnpoint::drive {
 struct Partial {
   std::uint64_t phase = 0;
   std::uint64_t increment = 0;
-  /// change of the increment per frame; a signed number in two's complement, 0 unless the frequency glides
+  /// change of the increment per frame, as a signed number in two's complement; 0 if the frequency does not
+  /// glide
   std::uint64_t curvature = 0;
   double amplitude = 0;
-  /// change of the amplitude over a glide; it is multiplied by the glide's shape, which rises from 0 to 1
+  /// change of the amplitude over a glide; the glide's shape, which rises from 0 to 1, multiplies it
   double amplitude_change = 0;
 };
 
-/// The same sinusoid, counted so that its frame 0 is frame number `frames` of `partial`.
+/// Returns the same sinusoid with frames counted from a later start: its frame 0 is frame `frames` of
+/// `partial`.
 inline Partial advanced(Partial partial, std::uint64_t frames) noexcept {
   partial.phase += partial.increment * frames;
-  // n (n - 1) / 2 modulo 2^64. Halve the even factor before multiplying, because the product may overflow and
-  // lose its highest bit.
+  // n (n - 1) / 2 modulo 2^64. Halve the even factor before multiplying: the product may overflow, and
+  // halving it afterwards would lose its highest bit.
   const std::uint64_t pairs = frames % 2 == 0 ? frames / 2 * (frames - 1) : (frames - 1) / 2 * frames;
   partial.phase += partial.curvature * pairs;
   partial.increment += partial.curvature * frames;

@@ -30,25 +30,26 @@ struct OutputConfig {
 Format format_of(const OutputConfig& config) noexcept;
 
 /// How a write ended.
-/// skipped: the device ran out of samples and played silence; those frames were skipped.
+/// skipped: the device ran out of samples and played silence instead of some frames.
 /// restarted: the device had to be restarted, so the relation between frames and time has changed.
-/// lost: the device is gone (reported by every write until it is back).
-/// reopened: the device takes frames again.
+/// lost: the device is gone (every write reports this until it is back).
+/// reopened: the device accepts frames again.
 enum class WriteStatus { ok, skipped, restarted, lost, reopened };
 
-/// Unless `status` is ok, the frames of the block after the first `taken` were not written. Do not write them
-/// again, because their time has passed. The next frame to write is the block's first plus `taken + passed`.
+/// Unless `status` is ok, only the first `taken` frames of the block were written. Do not write the remaining
+/// ones again, because their time has passed. The next frame to write is the block's first plus `taken +
+/// passed`.
 struct WriteResult {
   WriteStatus status = WriteStatus::ok;
   int error = 0;            ///< negative errno if the write failed
-  std::int64_t taken = 0;   ///< frames of this block that the device took
-  std::int64_t passed = 0;  ///< number of frames after the taken ones that were replaced by silence
-  /// Number of frames that the device received up to the last taken one but, as far as is known, never
+  std::int64_t taken = 0;   ///< number of frames of this block that the device accepted
+  std::int64_t passed = 0;  ///< number of frames after those that were replaced by silence
+  /// Number of frames, up to the last accepted one, that the device received but, as far as is known, never
   /// played.
   std::int64_t dropped = 0;
 };
 
-/// A frame and the time at which it was at the converter.
+/// A frame, and the time at which it reached the converter.
 struct Position {
   std::int64_t frame = 0;
   std::int64_t time_ns = 0;
@@ -59,13 +60,14 @@ class Output {
  public:
   virtual ~Output() = default;
   virtual const OutputConfig& config() const noexcept = 0;
-  /// Writes whole frames. Waits as long as the device does (files and null do not wait). If frames were lost,
-  /// it returns at once without writing the rest. Does not allocate or lock.
+  /// Writes whole frames. Waits for the device if its buffer is full (files and null do not wait). If frames
+  /// were lost, returns at once without writing the rest. Does not allocate or lock.
   virtual WriteResult write(std::span<const std::int32_t> interleaved) noexcept = 0;
-  /// The newest known position, if the device reports one. Frames are counted from the first one written.
+  /// The newest known position, if the device reports one. Frames are counted from the first one that was
+  /// written.
   virtual std::optional<Position> position() noexcept = 0;
-  /// Memory that write() and position() use, to be locked, and a textual note about further memory that is
-  /// not in the list. Empty for files and null.
+  /// memory() returns the memory that write() and position() use, so that it can be locked. memory_left_out()
+  /// names further memory that is not in that list. Both are empty for files and null.
   virtual std::vector<system::MemoryRange> memory() const { return {}; }
   virtual std::string memory_left_out() const { return ""; }
   /// Plays what is buffered, then closes. Throws std::system_error if a file cannot be completed. The

@@ -6,10 +6,10 @@
 namespace turnpoint::drive {
 
 /// An upper limit of the samples of each channel: the largest sum of amplitudes of any one tone set, plus the
-/// marker and the noise. During a glide between two sets, samples stay below the limit of the larger one.
+/// marker and the noise. During a glide between two sets, samples stay below the larger limit of the two.
 std::array<double, max_channels> peak_bound(const PreparedBurst& burst);
 
-/// The same limit, only for the time in which the burst plays the tones of `change`.
+/// Like the function above, but only for the time in which the burst plays the tones of `change`.
 std::array<double, max_channels> peak_bound(const PreparedBurst& burst, const PreparedChange& change);
 
 /// For each channel, the largest sample of the whole burst, found by rendering it (about 1 ns per tone and

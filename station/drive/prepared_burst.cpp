@@ -46,8 +46,8 @@ int checked_count(const ToneSet& set) {
   return set.count;
 }
 
-// Prepares a change of a burst. `before` holds the burst's tones before the change, of which the first
-// `before_count` are used.
+// Prepares a change of a burst. The first `before_count` elements of `before` are the burst's tones before
+// the change.
 PreparedChange prepare(const Change& change, const std::array<PreparedTone, max_tones>& before,
                        int before_count, const Format& format, const SynthLimits& limits) {
   PreparedChange out;

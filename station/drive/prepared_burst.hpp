@@ -20,13 +20,12 @@ struct Format {
 
 /// The limits that a burst must meet to be accepted.
 struct SynthLimits {
-  /// largest peak of each channel, relative to full scale; leaves room for dither
+  /// largest allowed peak of each channel, relative to full scale; it leaves room for dither
   double peak = 1.0 - 0x1p-20;
   double highest_relative_Hz = terms::kHighestShareOfRate;
   std::int64_t longest_frames = 192000LL * 3600;
   std::int64_t longest_rendered_frames =
-      /// for a burst longer than this, the check uses the sum of its amplitudes, because rendering it would
-      /// take too long
+      /// a longer burst is judged by the sum of its amplitudes, because rendering it would take too long
       192000LL * 60;
 };
 
@@ -50,7 +49,7 @@ struct PreparedChange {
   std::int64_t at_frame = 0;  ///< frame at which the change begins, counted from the burst's first frame
   std::int64_t frames = 1;
   std::int32_t count = 0;
-  /// true for a change that was sent while the burst plays. If it arrives late, it begins at once and is
+  /// true for a change that was sent while the burst plays; if it arrives late, it begins at once and is
   /// played in full
   bool live = false;
   std::array<PreparedTone, max_tones> to{};
@@ -88,23 +87,23 @@ struct PreparedBurst {
   PreparedMarker marker;
   PreparedNoise noise;
   std::array<double, max_channels>
-      peak{};  ///< largest sample of each channel (or a bound that meets the limit)
+      peak{};  ///< largest sample of each channel (or an upper limit of it, if that is allowed)
 };
 
 static_assert(std::is_trivially_copyable_v<PreparedBurst>);
 
 /// Checks a burst against the format and the limits, and converts it to integers. The peak of a channel is
-/// the sum of its amplitudes if that meets the limit; otherwise it is the largest sample of the whole burst,
-/// found by rendering. Throws BurstRefused for a tone at or above 0.45 of the rate, a channel that does not
+/// the sum of its amplitudes if that keeps the limit; otherwise the whole burst is rendered to find its
+/// largest sample. Throws BurstRefused for a tone at or above 0.45 of the rate, a channel that does not
 /// exist, a peak above the limit, ramps longer than the burst, changes that are out of order or extend beyond
 /// the end, and values that are not finite.
 PreparedBurst prepare(const Burst& burst, const Format& format, const SynthLimits& limits = {});
 
 /// Checks and converts a change for a burst that may already be sounding. `burst` is the control side's copy
-/// of it and is updated with the change's tones and the new peak. There is no time to render the burst, so
-/// the peak is a bound: all tones glide with the same weight, so no mixture during the glide exceeds the
-/// larger set. The bound is the largest amplitude sum among the burst's first tones, its own changes and all
-/// live changes so far.
+/// of that burst; it gets the tones of the change and the new peak. There is no time to render the burst, so
+/// the peak is an upper limit: the largest sum of amplitudes among the burst's first tones, its own changes
+/// and all live changes so far. That is enough, because all tones glide with the same weight and no mixture
+/// exceeds the larger set.
 PreparedChange prepare_change(const Change& change, PreparedBurst& burst, const Format& format,
                               const SynthLimits& limits = {});
 

@@ -5,8 +5,8 @@
 
 namespace turnpoint::drive {
 
-// The regression is of y on x. x is the time on the raw clock in seconds; y is how many frames more than the
-// nominal number were played. Using this difference keeps the sums small.
+// Linear regression of y on x. x is the time on the raw clock in seconds. y is the number of frames played
+// minus the number at the nominal rate; using this difference keeps the sums small.
 void RateCheck::add(std::int64_t frame, std::int64_t raw_ns) noexcept {
   if (count_ == 0 || frame < last_frame_ || raw_ns < last_ns_) {
     first_frame_ = frame;
@@ -37,8 +37,8 @@ std::optional<MeasuredRate> RateCheck::result() const noexcept {
   rate.deviation_ppm = slope / nominal_rate_Hz_ * 1e6;
   rate.standard_error_ppm = std::sqrt(variance / sxx) / nominal_rate_Hz_ * 1e6;
   rate.span_s = span;
-  // Coarse time stamps have correlated errors, and the standard error is then too small. So call a rate wrong
-  // only if it is far off or after a long time.
+  // Coarse time stamps have correlated errors, so the computed standard error is too small. Therefore call a
+  // rate wrong only if it is far off, or after 20 s.
   const double off = std::abs(rate.deviation_ppm);
   const bool clear = off <= tolerance_ppm || off > tolerance_ppm + 4 * rate.standard_error_ppm;
   if ((rate.standard_error_ppm > 40 || !clear) && span < 20) return std::nullopt;

@@ -12,9 +12,9 @@ struct MeasuredRate {
   double span_s = 0;
 };
 
-/// Checks that the device plays frames at the promised rate. This is the only check that detects a resampler
-/// inside a device or a wrong clock. It is a regression with running sums: constant memory, safe for the
-/// audio thread.
+/// Checks that the device plays frames at the nominal rate. No other check detects a resampler inside the
+/// device or a wrong clock. The rate comes from a regression with running sums, which needs constant memory
+/// and is safe on the audio thread.
 class RateCheck {
  public:
   static constexpr double tolerance_ppm = 200;
@@ -24,8 +24,9 @@ class RateCheck {
   void add(std::int64_t frame, std::int64_t raw_ns) noexcept;
   void restart() noexcept { count_ = 0; }
 
-  /// The rate, once the data span at least 2 s and the standard error is at most 40 ppm (or the data span 20
-  /// s).
+  /// The rate, once at least 16 time stamps span 2 s or more and the result is certain: a standard error of
+  /// at most 40 ppm, and a deviation clearly inside or outside the tolerance. After 20 s, the rate in any
+  /// case.
   std::optional<MeasuredRate> result() const noexcept;
 
  private:

@@ -41,9 +41,9 @@ RecoveryAction Recovery::acted(const DeviceReport& report) noexcept {
   if (report.disconnected || report.error == -ENODEV) return lose();
   if (state_ == State::resuming) {
     if (report.error == -EAGAIN && ++resumes_ < most_resumes) return RecoveryAction::wait;
-    // Many drivers cannot resume (ENOSYS). After a resume, the relation between frames and time has changed,
-    // and the buffer still holds the rest of a stimulus from before the sleep. So the device is restarted in
-    // this case as well.
+    // Restart the device in any case. Many drivers cannot resume (ENOSYS). If the driver did resume, the
+    // relation between frames and time has changed, and the buffer still holds the rest of a stimulus from
+    // before the sleep.
     state_ = State::restarting;
     return RecoveryAction::restart;
   }

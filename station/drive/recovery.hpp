@@ -20,18 +20,18 @@ enum class RecoveryAction {
   back,     ///< the device is open again: an operator has to re-arm
 };
 
-/// Decides what to do when a sound device fails. This is a state machine that receives what the device
-/// reported. Pure: it neither sleeps nor calls the device.
+/// Decides what to do when a sound device fails, from what the device reported. Pure: this state machine
+/// neither sleeps nor calls the device.
 class Recovery {
  public:
   /// Call this after a transfer or a wait.
   RecoveryAction transferred(const DeviceReport& report) noexcept;
   /// Call this after carrying out the action `restart` or `resume`.
   RecoveryAction acted(const DeviceReport& report) noexcept;
-  /// Call this once per period while the device is lost, with the time since the loss. It asks to reopen four
-  /// times a second.
+  /// Call this once per period while the device is lost, with the time since the loss. Four times a second it
+  /// answers `reopen`, otherwise `wait`.
   RecoveryAction absent(std::int64_t lost_for_ns) noexcept;
-  /// Call this after the action `reopen`, with 0 or the error.
+  /// Call this after carrying out the action `reopen`, with 0 or the error that occurred.
   RecoveryAction reopened(int error) noexcept;
 
   bool lost() const noexcept { return state_ == State::lost; }

@@ -23,7 +23,7 @@ class Ring {
     return true;
   }
 
-  /// Producer only. The number of values that are certain to fit.
+  /// Producer only. Returns how many values can certainly be pushed.
   std::size_t room() const noexcept {
     return Capacity - (head_.load(std::memory_order_relaxed) - tail_.load(std::memory_order_acquire));
   }

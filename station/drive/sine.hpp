@@ -5,7 +5,7 @@
 namespace turnpoint::drive {
 
 /// A phase is an integer in units of 2^-64 cycles, so it wraps around exactly. It is computed as increment
-/// times frame and not by adding increments, so no error builds up.
+/// times frame number. Adding up increments would accumulate errors.
 inline constexpr std::uint64_t quarter_cycle = std::uint64_t{1} << 62;
 
 /// Odd polynomial of degree 15 for sin(2 pi r), |r| <= 1/4. Its minimax error is 9e-17, so rounding dominates
@@ -26,8 +26,8 @@ inline double sine_of_quarter(double r) noexcept {
 
 /// sin(2 pi phase / 2^64), with the same bits on every machine.
 inline double sine_of_phase(std::uint64_t phase) noexcept {
-  // x is (phase + 1/4 cycle) modulo 1, minus 1/2, from 52 bits of the phase. The sine is then sin(2 pi (1/4 -
-  // |x|)).
+  // x is (phase + 1/4 cycle) modulo 1, minus 1/2, in cycles, from 52 bits of the phase. The sine is then
+  // sin(2 pi (1/4 - |x|)).
   const std::uint64_t shifted = phase + quarter_cycle;
   const double x = std::bit_cast<double>((shifted >> 12) | 0x3ff0000000000000u) - 1.5;
   const double folded = x < 0 ? -x : x;

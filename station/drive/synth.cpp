@@ -34,7 +34,7 @@ struct Synth::State {
     if (event_count < events.size()) events[event_count++] = {kind, burst, frame};
   }
 
-  // Frames between the last block and `frame` were lost. Sounding bursts continue with a ramp.
+  // Frames between the end of the last block and `frame` were lost. Sounding bursts continue with a ramp.
   void skip_to(std::int64_t frame) noexcept {
     for (Slot& slot : slots) {
       if (slot.phase == Phase::unused) continue;
@@ -58,8 +58,8 @@ struct Synth::State {
     step(frame, frames, [&](Voice& voice, std::int64_t at) { voice.add(at, mix, scratch, *kernels); });
   }
 
-  /// Calls `go(voice, at)` for every voice in use, where `at` is `frame` counted from the start of its burst.
-  /// Records which bursts began and ended within these frames.
+  /// Calls `go(voice, at)` for every voice in use, where `at` is `frame` counted from the start of the
+  /// voice's burst. Records which bursts began and ended within these frames.
   template <class Go>
   void step(std::int64_t frame, int frames, const Go& go) noexcept {
     if (frame != next_frame) skip_to(frame);
@@ -91,7 +91,7 @@ struct Synth::State {
         double value = mix.samples[c][n] * scale;
         if (mix.dithered[c][n])
           value += triangular(hashed((static_cast<std::uint64_t>(frame) + n) * max_channels + c));
-        // Adding 1.5 * 2^52 rounds to the nearest integer in the low bits, on every machine in the same way.
+        // Adding 1.5 * 2^52 makes every machine round to the nearest integer in the same way.
         const double rounded = (value + 0x1.8p52) - 0x1.8p52;
         const double held = std::clamp(rounded, -scale, scale - 1);
         saturated += held != rounded ? 1 : 0;

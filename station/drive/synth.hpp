@@ -15,7 +15,7 @@ enum class SynthEventKind : std::int32_t { started, ended, missed };
 struct SynthEvent {
   SynthEventKind kind = SynthEventKind::started;
   std::uint32_t burst = 0;
-  /// started: the first frame; ended: the first silent frame; missed: the requested frame, which was already
+  /// started: first frame of the burst; ended: first silent frame after it; missed: requested start, already
   /// past
   std::int64_t frame = 0;
 };
@@ -40,22 +40,23 @@ class Synth {
   [[nodiscard]] bool start(const PreparedBurst& burst) noexcept;
   /// Changes a waiting or sounding burst, in addition to the burst's own changes; `at_frame` counts from the
   /// burst's start. A change whose frame is already past begins with the next block. A newer change replaces
-  /// one that is still waiting, and takes over from a glide in progress. Returns false if the burst has
-  /// ended.
+  /// an older one that is still waiting, and takes over from a glide in progress. Returns false if the burst
+  /// has ended.
   [[nodiscard]] bool change(std::uint32_t burst, const PreparedChange& change) noexcept;
-  /// Ramps a burst (0: all) down from `frame`, or from the next block if that frame is past. A second stop
-  /// that ends sooner is multiplied with the ramp in progress, so that nothing jumps; one that ends later has
-  /// no effect. Bursts that have not begun by then never begin.
+  /// Ramps a burst (0: all) down from `frame`, or from the next block if `frame` is already past. If a second
+  /// stop ends sooner than the first, both ramps are multiplied, so that nothing jumps; if it ends later, it
+  /// has no effect. A burst that has not begun by then never begins.
   void stop(std::uint32_t burst, std::int64_t frame, const Ramp& ramp) noexcept;
 
   /// Writes frames [frame, frame + samples.size() / channels) left-aligned into interleaved `samples`. If
-  /// `frame` is not the one at which the last call ended, frames were lost: bursts continue where they would
-  /// have been, with a ramp.
+  /// `frame` is not the one at which the last call ended, frames were lost. Bursts then continue, with a
+  /// ramp, where they would have been without the loss.
   void render(std::int64_t frame, std::span<std::int32_t> samples) noexcept;
-  /// Like the other render(), but before dither and quantisation and as doubles, for measurements.
+  /// Like the other render(), but writes doubles, without dither and quantisation, for measurements.
   void render(std::int64_t frame, std::span<double> samples) noexcept;
-  /// Call this if the last block, or its end, was not played. The next block begins at `frame`, which is at
-  /// or after the end of what was rendered. Bursts that have begun by then continue with a ramp.
+  /// Call this if the last block, or the end of it, was not played. The next block begins at `frame`, which
+  /// must not be before the end of the frames already rendered. Bursts that have begun by then continue with
+  /// a ramp.
   void skip_to(std::int64_t frame) noexcept;
   /// Advances by this many frames without computing samples. Events and all later samples are the same as
   /// after rendering (except for masking noise).

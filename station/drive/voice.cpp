@@ -100,7 +100,7 @@ void Voice::end_glide(std::int64_t at) noexcept {
   glide_end_ = never;
 }
 
-// Begins and ends, in order, every change that is due at frame `at` or before.
+// Begins and ends, in order, all glides that are due at frame `at` or earlier.
 void Voice::enter(std::int64_t at) noexcept {
   for (;;) {
     std::int64_t change_at = never;
@@ -114,7 +114,8 @@ void Voice::enter(std::int64_t at) noexcept {
         ++next_change_;
       else
         live_waits_ = false;
-      // A live change that came late begins now, because the frames before have already been rendered.
+      // A live change that came late begins now, because the frames since its time have already been
+      // rendered.
       begin_glide(change.live ? at : change_at, change);
     } else {
       return;
@@ -144,8 +145,8 @@ void Voice::tones(std::int64_t at, int offset, int count, Scratch& scratch, cons
   }
 }
 
-// Computes the product of all ramps that overlap these frames. Returns false if there is none, so the gain is
-// 1.
+// Computes the product of all ramps that overlap these frames. Returns false if no ramp does: the gain is
+// then 1.
 bool Voice::gains(std::int64_t at, int count, Scratch& scratch) const noexcept {
   const std::int64_t last = at + count, ramp = burst_.ramp.frames, fall = burst_.length_frames - ramp;
   const bool rising = at<ramp, falling = last> fall, stopping = stop_count_ > 0,

@@ -10,8 +10,8 @@ namespace turnpoint::drive {
 
 inline constexpr std::int64_t never = std::numeric_limits<std::int64_t>::max();
 
-/// A block being mixed: one row per channel. `dithered` marks the frames of a channel that are not digital
-/// silence.
+/// A block during mixing: one row of samples per channel. `dithered` marks the frames of a channel that get
+/// dither because they are not digital silence.
 struct Mix {
   static constexpr int block = 512;
   int frames = 0;
@@ -26,15 +26,15 @@ struct Scratch {
   alignas(64) std::array<double, Mix::block> shape;
 };
 
-/// A burst in the stream: its state and the changes and stops requested so far. Frames are counted from the
-/// burst's start. No allocation; all functions are noexcept.
+/// A burst in the stream: its state, and the changes and stops requested so far. Frames are counted from the
+/// burst's start. No function allocates; all are noexcept.
 class Voice {
  public:
   void begin(const PreparedBurst& burst) noexcept;
-  /// Replaces any live change that is still waiting.
+  /// Replaces a live change that is still waiting, if there is one.
   void change(const PreparedChange& change) noexcept;
-  /// Adds a stop at which the burst ramps down. Ignored if the burst already ends no later than this, and
-  /// after eight stops.
+  /// Adds a stop, at which the burst ramps down. A stop has no effect if the burst already ends as early or
+  /// earlier, or if eight stops are in effect.
   void stop(std::int64_t at, const Ramp& ramp) noexcept;
   /// Call this if frames were lost: from `at` on the sound continues with a ramp.
   void resume(std::int64_t at) noexcept;
@@ -62,7 +62,7 @@ class Voice {
 
   PreparedBurst burst_;
   std::array<Partial, max_tones> partials_;
-  std::int64_t origin_ = 0;         ///< frame of the burst at which the partials in `partials_` have n = 0
+  std::int64_t origin_ = 0;         ///< frame of the burst that is frame n = 0 of `partials_`
   std::int64_t glide_end_ = never;  ///< frame at which the current glide ends
   std::int64_t glide_frames_ = 1;
   std::array<PreparedTone, max_tones> target_;

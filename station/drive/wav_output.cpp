@@ -49,7 +49,7 @@ std::array<char, header_bytes> header_of(const OutputConfig& config, std::uint32
   return h;
 }
 
-// Writes all of `bytes`, also when interrupted. Returns 0 or the errno.
+// Writes all of `bytes`, and continues after an interruption by a signal. Returns 0 or the errno.
 int write_all(int descriptor, const void* bytes, std::size_t size) noexcept {
   const char* at = static_cast<const char*>(bytes);
   while (size > 0) {
