@@ -20,8 +20,9 @@ Window {
     readonly property bool asking: start.stage === StartController.Language || start.stage === StartController.Consent
                                    || start.stage === StartController.Code
 
-    /// What to open once the code has been typed: "view" the running session, "arm" the amplifier, show the
-    /// "report", "leave" the participant's pages for the operator's page, or "unlock" the operator's page.
+    /// What to do once the code has been typed: open the "view" of the running session, let the operator
+    /// "arm" the amplifier, show the "report", "leave" the participant's pages for the operator's page, or
+    /// "unlock" the operator's page.
     property string wish
     function ask(what: string) {
         wish = what
@@ -34,8 +35,8 @@ Window {
         if (wish === "leave") start.close()
         if (wish === "unlock") locked = false
         if (wish !== "view") return
-        // The operator's view would cover a running trial, so pause the session first; the trial is repeated
-        // later.
+        // The operator's view would cover a running trial, so pause the session first. The trial is then
+        // repeated later.
         if (participant.inTrial) bridge.pause()
         liveView.wanted = true
     }
@@ -143,8 +144,8 @@ Window {
         }
     }
 
-    // Pages that are created when they are first needed, so that the station's first page does not wait for
-    // them.
+    // Each of these pages is created when it is first needed, so that the station's first page does not wait
+    // for it.
     Loader {
         id: liveView
         property bool wanted: false

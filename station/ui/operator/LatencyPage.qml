@@ -1,8 +1,8 @@
 import QtQuick
 import Turnpoint
 
-// Measures the touch panel's latency, for the operator: each tap on the dark field makes it flash. The texts
-// are in English, like those of the command line.
+// Measures the touch panel's latency, for the operator. The dark field flashes at each tap. The texts are in
+// English, like those of the command line.
 Rectangle {
     id: root
     required property LatencyController controller

@@ -1,9 +1,9 @@
 import QtQuick
 import Turnpoint
 
-// Shows a running session to the operator: what is being presented, the progress of the procedure, how much
-// the limits still allow, and the available actions. The texts are in English, like those of the command
-// line. The model delays updates while a stimulus runs; during an adjustment only the texts are updated.
+// Shows a running session to the operator: the current scenes, the progress of the procedure, how much of
+// each limit is used up, and the available actions. The texts are in English, like those of the command line.
+// The model delays updates while a stimulus runs; during an adjustment it updates only the texts.
 Rectangle {
     id: root
     required property LiveModel live
@@ -139,8 +139,8 @@ Rectangle {
     Item {
         id: pictures
         anchors { left: surfaces.left; right: surfaces.right; top: surfaces.bottom; bottom: parent.bottom; topMargin: 0.6 * look.unit; bottomMargin: frame.edge + look.unit }
-        // Show three figures if there is enough room for each; otherwise one, with buttons to choose it.
-        // the figures in the lower row have legends
+        // Show three figures if there is enough room for each. Otherwise show one, with buttons to choose it.
+        // The figures in the lower row need room for legends.
         readonly property real cell: 0.45 * (height - 0.6 * look.unit)
         readonly property bool single: cell < 12.5 * root.small
         readonly property real half: (width - 0.6 * look.unit) / 2

@@ -1,8 +1,8 @@
 import QtQuick
 import Turnpoint
 
-// Asks for the operator's code before the participant's screen shows the operator's pages. It opens after a
-// press that is too long to be made by accident; on a locked station it is the first page.
+// Asks for the operator's code before the participant's screen shows the operator's pages. On a locked
+// station this is the first page.
 Rectangle {
     id: root
     required property Theme theme
@@ -38,7 +38,7 @@ Rectangle {
         spacing: 1.2 * root.theme.unit
         PlainText {
             anchors.horizontalCenter: parent.horizontalCenter
-            // Shows one dot for each typed digit, which does not reveal the length of the correct code.
+            // Shows one dot for each typed digit, so that nobody learns the length of the correct code.
             text: root.lock.waitS > 0 ? "Wrong code. Wait " + root.lock.waitS + " s"
                 : root.lock.checking ? "…" : root.wrong ? "Wrong code"
                 : root.typed === "" ? "Operator's code" : "•".repeat(root.typed.length)

@@ -55,7 +55,7 @@ Rectangle {
         }
     }
 
-    // An interrupted session comes first, because that is what the operator most likely came for.
+    // An interrupted session is at the top, because the operator has most likely come to continue it.
     Rectangle {
         id: interrupted
         visible: root.operating.interrupted !== ""

@@ -1,8 +1,9 @@
 import QtQuick
 import Turnpoint
 
-// Shows any scene of a protocol without a session: sliders for its factors; figures of surface, profile,
-// friction and spectrum; model, error and cues. The texts are in English, like those of the command line.
+// Shows any scene of a protocol without a session: sliders for the scene's factors; figures of surface,
+// profile, friction and spectrum; and, in words, the model, its error and the cues. The texts are in English,
+// like those of the command line.
 Rectangle {
     id: root
     required property PreviewController controller

@@ -9,7 +9,8 @@ namespace turnpoint::ui {
 namespace {
 
 constexpr double kMargin = 6;
-constexpr double kDrawnText_px = 12;  // text size for which all figures are drawn, before they are scaled
+constexpr double kDrawnText_px = 12;  // text size that figures are laid out for; they are then scaled to the
+                                      // item's text size
 
 }  // namespace
 
@@ -26,7 +27,8 @@ void FigureView::set_picture(const QVariant& picture) {
 void FigureView::paint(QPainter* painter) {
   const QRectF card(0, 0, width(), height()), inside = card.adjusted(kMargin, kMargin, -kMargin, -kMargin);
   if (!picture_.draw || inside.width() < 1 || inside.height() < 1) return;
-  // Draws a card in the figures' white background, so that figures of other proportions still fill the item.
+  // Fills the item with a card in the figures' white background, because a figure may have other proportions
+  // than the item.
   painter->setPen(Qt::NoPen);
   painter->setBrush(Qt::white);
   painter->drawRoundedRect(card, kMargin, kMargin);

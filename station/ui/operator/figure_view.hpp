@@ -16,7 +16,7 @@ struct Picture {
 /// Converts a drawing to the value of a QML property.
 QVariant to_variant(const desk::Drawing& drawing);
 
-/// Shows one figure, laid out for the size of this item with text of `textPixels`. It draws each new picture
+/// Shows one figure, laid out for the size of this item with text of `textPixels`. Each new picture is drawn
 /// only once.
 class FigureView : public QQuickPaintedItem {
   Q_OBJECT
@@ -27,7 +27,7 @@ class FigureView : public QQuickPaintedItem {
  public:
   explicit FigureView(QQuickItem* parent = nullptr);
   QVariant picture() const { return QVariant::fromValue(picture_); }
-  void set_picture(const QVariant& picture);  // the name is that of a QML property's setter (NOLINT)
+  void set_picture(const QVariant& picture);  // the setter of a QML property must have this name (NOLINT)
   void paint(QPainter* painter) override;
 
  signals:

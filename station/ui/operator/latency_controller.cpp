@@ -5,8 +5,8 @@
 namespace turnpoint::ui {
 
 namespace {
-/// How long to wait for the kernel's time stamp of a tap. The touch reader, which provides it, may see the
-/// tap later than Qt.
+/// How long to wait for the kernel's time stamp of a tap. The time stamp comes from the touch reader, which
+/// may see the tap later than Qt.
 constexpr int kClaim_ms = 100;
 }  // namespace
 

@@ -12,8 +12,8 @@
 
 namespace turnpoint::ui {
 
-/// Measures a touch panel's latency. Each tap on the page makes it flash; a button under the finger, or a
-/// photodiode on the flashing square, provides the reference time. GUI thread only, except for edge().
+/// Measures a touch panel's latency. The page flashes at each tap. The reference time comes from a button
+/// under the finger, or from a photodiode on the flashing square. GUI thread only, except for edge().
 class LatencyController : public QObject {
   Q_OBJECT
   QML_ELEMENT
@@ -22,7 +22,7 @@ class LatencyController : public QObject {
   Q_PROPERTY(int taps READ taps NOTIFY changed)
   Q_PROPERTY(int edges READ edges NOTIFY changed)
   Q_PROPERTY(int pairs READ pairs NOTIFY changed)
-  /// smallest number of pairs with which a result may be accepted
+  /// smallest number of pairs (a tap and an edge of the reference line) for which a result may be accepted
   Q_PROPERTY(int wanted READ wanted CONSTANT)
   /// median and jitter in words; "" with fewer than two pairs
   Q_PROPERTY(QString result READ result NOTIFY changed)
@@ -33,7 +33,7 @@ class LatencyController : public QObject {
 
   explicit LatencyController(calibration::LatencyReference reference, QObject* parent = nullptr);
 
-  /// Uses the kernel's time stamps for taps from now on; a tap without one is ignored.
+  /// From now on, a tap counts at the kernel's time stamp; a tap without one is ignored.
   void set_kernel_time(KernelTime kernel_time) { kernel_time_ = std::move(kernel_time); }
 
   /// Adds an edge of the reference line. May be called on any thread.
@@ -47,10 +47,10 @@ class LatencyController : public QObject {
   QString result() const;
   QString quality() const { return kernel_time_ ? "kernel" : "toolkit"; }
 
-  /// Reports that a finger came down at (x, y), each from 0 to 1 of the window.
+  /// Reports that a finger came down at (x, y). Both run from 0 to 1 across the window.
   Q_INVOKABLE void tap(double x, double y);
   Q_INVOKABLE void again();
-  /// Accepts the current result, for the operator; does nothing with too few pairs.
+  /// Accepts the current result at the operator's request. Does nothing with fewer pairs than `wanted`.
   Q_INVOKABLE void keep();
   std::optional<calibration::PanelLatency> kept() const { return kept_; }
 

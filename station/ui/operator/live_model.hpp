@@ -9,9 +9,9 @@
 
 namespace turnpoint::ui {
 
-/// The operator's view of a running session, and the operator's actions. Updates are delayed while a stimulus
-/// runs or answers are open, so that drawing them can never delay the participant's screen. Only in an
-/// adjustment, which lasts many seconds, the texts follow the slider; figures wait there as well.
+/// The operator's view of a running session, and the operator's actions. Updates wait while a stimulus runs
+/// or answers are open, because drawing them could delay the participant's screen. An adjustment lasts many
+/// seconds, so there the texts follow the slider at once; the figures wait.
 class LiveModel : public QObject {
   Q_OBJECT
   QML_ELEMENT

@@ -14,11 +14,10 @@ namespace turnpoint::ui {
 
 namespace {
 
-/// Placeholder for the participant's code, which is typed only later, so that all other settings can be
-/// checked before.
+/// Placeholder for the participant's code. The code is typed last, and all other settings are checked before.
 constexpr const char* kCodeToCome = "keypad";
-/// Number of sessions to simulate for the trials and the duration that the start page shows. Five are fast,
-/// and the duration is right within some minutes.
+/// Number of sessions to simulate for the number of trials and the duration on the start page. Five are
+/// simulated quickly, and give the duration to within some minutes.
 constexpr int kSessions = 5;
 
 std::vector<std::string> lines_of(const std::exception& error) {
@@ -70,8 +69,8 @@ void OperatorController::look_at_backup() {
   emit changed();
 }
 
-/// Starts a job on the worker thread. The job returns a function, which then runs on the GUI thread, unless a
-/// newer job was started meanwhile. If the job throws, `failed` gets the messages.
+/// Starts a job on the worker thread. The job returns a function, which then runs on the GUI thread unless a
+/// newer job was started meanwhile. If the job throws, `failed` is called with the messages.
 void OperatorController::work(std::function<Then(const std::stop_token&)> job,
                               void (OperatorController::*failed)(std::vector<std::string>)) {
   worker_.start([this, failed, job = std::move(job)](const std::stop_token& stop) -> Then {
@@ -91,17 +90,17 @@ void OperatorController::fail(std::vector<std::string> problems) {
   emit changed();
 }
 
-/// Shows why no session can begin with the current settings. Other settings for the same protocol may still
-/// be possible.
+/// Shows why no session can begin with the current settings. With other settings, the protocol may still be
+/// usable.
 void OperatorController::refuse(std::vector<std::string> reasons) {
   refused_ = std::move(reasons);
   stay();
 }
 
-/// Ends the preparation of a session, because no session begins.
+/// Returns to the page after preparing a session that does not begin.
 void OperatorController::stay() {
   preparing_ = false;
-  if (checking_) check_selected();  // the check was stopped when the session began
+  if (checking_) check_selected();  // preparing the session had stopped the check, so start it again
   emit changed();
 }
 

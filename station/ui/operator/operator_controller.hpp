@@ -20,14 +20,14 @@ namespace turnpoint::ui {
 /// A session that an operator has chosen and that has passed every check.
 struct ChosenSession {
   session::Setup setup;
-  /// whether the participant is asked for the language and the code on the screen
+  /// true if the language or the code is to be asked for on the participant's screen
   bool ask_language = false, ask_code = false;
   bool arm = false;  ///< arm the amplifier as soon as the session has opened it
 };
 
 /// The operator's start page: protocols with their check, participant, language, run mode, arming, and the
-/// interrupted session. Files are read and checked on a separate thread, so that the page never waits;
-/// choosing another protocol abandons the running check. Everything else is GUI thread only.
+/// interrupted session. Files are read and checked on a separate thread, so that the page never waits.
+/// Choosing another protocol abandons the running check. Everything else is for the GUI thread only.
 class OperatorController : public QObject {
   Q_OBJECT
   QML_ELEMENT
@@ -41,7 +41,7 @@ class OperatorController : public QObject {
   Q_PROPERTY(QStringList problems READ problems NOTIFY changed)
   Q_PROPERTY(QStringList warnings READ warnings NOTIFY changed)
   Q_PROPERTY(QStringList languages READ languages NOTIFY changed)
-  /// index of the chosen language; -1 if the participant is asked on the screen
+  /// index of the chosen language; -1 if the participant chooses it on the screen
   Q_PROPERTY(int language READ language NOTIFY changed)
   Q_PROPERTY(QString participant READ participant NOTIFY changed)
   Q_PROPERTY(bool participantKnown READ participant_known NOTIFY changed)
@@ -119,7 +119,7 @@ class OperatorController : public QObject {
   QStringList participants_;
   std::optional<desk::InterruptedNote> interrupted_;
   desk::BackupNote backup_;
-  QTimer minutes_;  ///< updates the ages on the page, because the page may be open for days
+  QTimer minutes_;  ///< updates the ages shown on the page, which may be open for days
   desk::CheckWords words_;
   std::vector<std::string> refused_;  ///< why the last chosen session did not begin
   int selected_ = -1, language_ = -1;

@@ -11,8 +11,8 @@
 namespace turnpoint::ui {
 
 /// Protects the operator's pages on the participant's screen. A code is compared on a separate thread,
-/// because hashing takes as long as several frames. After a wrong code it accepts none for a while; the log
-/// says how many were wrong in a row. GUI thread only.
+/// because hashing takes as long as several frames. After wrong codes it refuses every code for a while
+/// (desk/code_back_off.hpp). The log says how many codes were wrong in a row. GUI thread only.
 class OperatorLock : public QObject {
   Q_OBJECT
   QML_ELEMENT

@@ -19,7 +19,7 @@ QPolygonF points_of(const std::vector<plot::Point>& points) {
   return polygon;
 }
 
-/// Figures give the length of dashes in px, whereas a QPen counts them in widths of the pen.
+/// Converts dash lengths from px, as figures give them, to widths of the pen, as a QPen needs them.
 QList<qreal> dashes_of(const plot::Paint& paint) {
   QList<qreal> dashes;
   for (const auto& part : QString::fromStdString(paint.dash).split(' ', Qt::SkipEmptyParts))
@@ -79,7 +79,7 @@ void PainterCanvas::circle(plot::Point centre, double radius, const plot::Paint&
 
 void PainterCanvas::text(plot::Point at, const std::string& text, double size, plot::Anchor anchor,
                          const std::string& colour, int weight, double degrees) {
-  // Figures use half pixels as font sizes, but a QFont has whole pixels. So use a font of ten times the size
+  // Figures use font sizes in half pixels, but a QFont has whole pixels. So use a font of ten times the size
   // and scale it down.
   constexpr int fine = 10;
   QFont font(QGuiApplication::font().families().value(0));

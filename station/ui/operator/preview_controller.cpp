@@ -84,7 +84,7 @@ void PreviewController::work(const std::stop_token& stop) {
   }
 }
 
-/// Runs on the worker thread. Once that thread runs, only this function uses the planner.
+/// Runs on the worker thread. Once that thread has started, no other function may use the planner.
 PreviewController::Drawn PreviewController::draw(const Wanted& wanted) {
   Drawn drawn;
   try {

@@ -14,8 +14,8 @@
 
 namespace turnpoint::ui {
 
-/// Scenes of a protocol with a slider for each of their factors. Plans are made on a separate thread, always
-/// for the newest request; everything else is GUI thread only.
+/// Scenes of a protocol, with a slider for each of their factors. Plans are made on a separate thread, always
+/// for the newest request. Everything else is for the GUI thread only.
 class PreviewController : public QObject {
   Q_OBJECT
   QML_ELEMENT

@@ -1,9 +1,9 @@
 import QtQuick
 import Turnpoint
 
-// Adjustment task: a slider with steps, and Done. It shows neither a number nor the boundary, because the
-// participant should judge only by touch. The slider's length has no relation to the drawing of the surface
-// above it.
+// Page of an adjustment task: a slider with steps, and a Done button. It shows neither a number nor the
+// boundary, because the participant should judge by touch alone. The slider's length has no relation to the
+// drawing of the surface above it.
 Item {
     id: root
     required property Theme theme

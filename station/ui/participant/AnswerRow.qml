@@ -1,8 +1,8 @@
 import QtQuick
 import Turnpoint
 
-// Two or three answers of the same size, letter size and colour, at the same distance from the middle, so
-// that nothing favours a side. It only draws; a TouchField over the page judges the touches.
+// Two or three answers of equal size, letter size and colour, at equal distances from the middle, so that
+// nothing favours a side. This item only draws; a TouchField over the page judges the touches.
 Item {
     id: root
     required property Theme theme
@@ -11,7 +11,7 @@ Item {
     readonly property real gap: theme.targetGap
     readonly property int count: answers.length
     readonly property real buttonWidth: (width - (count - 1) * gap) / Math.max(1, count)
-    /// The largest letters with which each answer fits its button without breaking a word.
+    /// The largest text size at which each answer fits its button without breaking a word.
     readonly property real letters: {
         let least = theme.textTitle
         for (let i = 0; i < count; ++i) least = Math.min(least, fits.itemAt(i)?.fontInfo.pixelSize ?? least)
@@ -35,7 +35,7 @@ Item {
     }
 
     Repeater {
-        // Make the largest possible number of buttons once, so that a trial need not create them.
+        // Create as many buttons as any trial can need once, so that no trial has to create one.
         model: 6
         Rectangle {
             id: button

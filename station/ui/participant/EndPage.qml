@@ -1,9 +1,9 @@
 import QtQuick
 import Turnpoint
 
-// Thanks the participant, and shows nothing else. A button and the operator's code lead to the session's
-// numbers, which are for the operator. Like all of the operator's pages they are in English, with the same
-// names as in the report and in the files.
+// Thanks the participant, and shows nothing else. The session's numbers are for the operator, who reaches
+// them by a button and the operator's code. Like all of the operator's pages they are in English, with the
+// names that the report and the files use.
 Item {
     id: root
     required property Theme theme

@@ -1,8 +1,8 @@
 import QtQuick
 import Turnpoint
 
-// Says "right", "not right", the message after a late answer, or (if no answer is right) that the answer was
-// noted: one symbol and one word, but no score.
+// Feedback after an answer: "right", "not right", the message after a late answer or, if no answer is right,
+// that the answer was noted. It shows one symbol and one word, and never a score.
 Column {
     id: root
     required property Theme theme

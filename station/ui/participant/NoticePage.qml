@@ -83,8 +83,8 @@ Item {
         }
     }
 
-    // Symbol, heading and text side by side, so that each of them is found at a glance. A heading is never
-    // broken into two lines.
+    // Symbol, heading and text side by side, so that each can be found at a glance. A heading is never broken
+    // into two lines.
     component Line: Row {
         id: line
         property string glyph

@@ -10,11 +10,12 @@ Rectangle {
     property bool leftHanded: false
     /// True if the end page can open the report of the finished session.
     property bool hasReport: false
-    /// True if the end page shows the session's numbers, which it can do while there is no report.
+    /// True if the end page shows the session's numbers. It can show them as long as there is no report.
     property alias counting: endPage.counting
     signal closed()
     signal reportWanted()
-    /// Emitted when somebody has held the progress bar for a long time, as only an operator does.
+    /// Emitted when somebody has held the progress bar for a long time, which operators do and participants
+    /// do not.
     signal operatorWanted()
     /// Emitted when an operator wants to arm the amplifier; `armable` means that the code has been entered.
     signal armingWanted()
@@ -40,7 +41,7 @@ Rectangle {
         id: texts
         language: root.page.language
     }
-    // Ignores taps for a short time after a page change, because they were meant for the previous page.
+    // Ignore taps for a short time after a page change: they were meant for the previous page.
     Timer {
         id: arming
         interval: 350

@@ -1,8 +1,8 @@
 import QtQuick
 import Turnpoint
 
-// Shows nothing in a live session. In all others it draws a band across the top and a frame around
-// everything, so that no page, and no photograph of one, can be mistaken for a live session.
+// Shows nothing in a live session. In any other session it draws a band across the top and a frame around the
+// page, so that nobody takes the page, or a photograph of it, for a live session.
 Item {
     id: root
     required property Theme theme

@@ -2,8 +2,8 @@ import QtQuick
 import Turnpoint
 
 // Everything that a trial shows, in a single layout: the surface at the top, the question in the middle, the
-// answers below. Phases only fill or empty these places; nothing is animated, so nothing moves while a
-// stimulus runs.
+// answers below. The phases of a trial fill or empty these three places. Nothing is animated, so nothing
+// moves while a stimulus runs.
 Item {
     id: root
     required property Theme theme
@@ -35,7 +35,7 @@ Item {
         accent: root.theme.action
     }
 
-    // One dot for each interval, with the current one filled.
+    // One dot for each interval; the dot of the current interval is filled.
     Row {
         visible: root.counted && !root.feedback && root.page.kind !== PageModel.Interval
         anchors { horizontalCenter: parent.horizontalCenter; verticalCenter: surface.verticalCenter }

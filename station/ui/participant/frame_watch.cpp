@@ -27,7 +27,7 @@ void FrameWatch::follow(QQuickWindow* window, double refresh_Hz) {
   window_ = window;
   refresh_Hz_ = refresh_Hz > 0 ? refresh_Hz : 60;
   timer_.setInterval(std::max(1, static_cast<int>(1e3 / refresh_Hz_)));
-  // Qt calls this on its rendering thread, which may or may not be this thread, so it only reads the clock.
+  // Qt calls this on its rendering thread, which may be another thread, so it only reads the clock.
   connect(
       window, &QQuickWindow::frameSwapped, this, [this] { swapped(); }, Qt::DirectConnection);
 }
@@ -40,7 +40,8 @@ void FrameWatch::asked() {
 
 int FrameWatch::end() {
   if (!timer_.isActive()) return 0;
-  beat();  // if the event loop stood still, this call comes before that of the timer
+  beat();  // count the time since the last beat; after a blocked event loop, the timer's own call would come
+           // too late
   timer_.stop();
   const std::scoped_lock lock(mutex_);
   return late_.count();

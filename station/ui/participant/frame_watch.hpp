@@ -9,14 +9,14 @@
 
 namespace turnpoint::ui {
 
-/// Counts late frames from the time spans that are reported to it. If these spans overlap, no frame is
-/// counted twice. Times are CLOCK_MONOTONIC, but it reads no clock itself.
+/// Counts late frames from reported time spans. Where spans overlap, each frame is counted once. Times are
+/// CLOCK_MONOTONIC; the caller reads the clock.
 class LateFrames {
  public:
   /// `refresh_Hz` at or below 0 counts as 60.
   explicit LateFrames(double refresh_Hz) : refresh_Hz_(refresh_Hz > 0 ? refresh_Hz : 60) {}
 
-  /// Reports a time span in which nothing new could be shown.
+  /// Reports a time span in which the screen could show nothing new.
   void waited(std::int64_t from_ns, std::int64_t to_ns);
   int count() const { return count_; }
 
@@ -30,9 +30,8 @@ class LateFrames {
 };
 
 /// Counts the frames by which a window was late during a trial. A new page or a pressed answer should be
-/// visible within one refresh. The event loop should also run once per refresh, because otherwise it can
-/// neither show a page nor take a touch. Each refresh beyond the first counts as a late frame. GUI thread
-/// only.
+/// visible within one refresh. The event loop should also run once per refresh, because it shows pages and
+/// takes touches. Each refresh beyond the first counts as a late frame. GUI thread only.
 class FrameWatch : public QObject {
   Q_OBJECT
 
@@ -43,8 +42,8 @@ class FrameWatch : public QObject {
   /// Follows this window; `refresh_Hz` at or below 0 counts as 60.
   void follow(QQuickWindow* window, double refresh_Hz);
 
-  /// Call this when something new has to be shown. A frame is then drawn even if it looks the same, so that
-  /// the next frame is always the one that shows it. The first call begins the count.
+  /// Call this when something new has to be shown. It requests a frame even if the window would look the
+  /// same, so that the next frame always shows the new content. The first call begins the count.
   void asked();
 
   /// Ends the count and returns the number of late frames; 0 if no count had begun.

@@ -9,8 +9,9 @@
 
 namespace turnpoint::ui {
 
-/// The page that the session wants to show, as QML reads it. GUI thread only. All properties change together,
-/// with one `changed`, so that a page is never drawn half old and half new. Lengths in mm, times in seconds.
+/// The page that the session wants to show, as properties for QML. All properties change together, with one
+/// `changed`, so that a page is never drawn half old and half new. Lengths are in mm, times in seconds. GUI
+/// thread only.
 class PageModel : public QObject {
   Q_OBJECT
   QML_ELEMENT
@@ -64,7 +65,7 @@ class PageModel : public QObject {
     Failed
   };
   Q_ENUM(Kind)
-  /// What a feedback page says; Message shows only the page's own text (after a late answer).
+  /// What a feedback page says. With Message it shows only the page's own text (after a late answer).
   enum class Verdict { Message, Right, Wrong };
   Q_ENUM(Verdict)
 

@@ -92,7 +92,7 @@ void SessionBridge::annotate(const QString& text) {
 
 void SessionBridge::frames_lost(int frames) {
   if (frames <= 0) return;
-  // do not use push(): it forgets waiting touches, but nobody has pressed anything here
+  // do not use push(): it clears the pending touches, as if somebody had pressed a button
   session::Input input;
   input.time_ns = clock_();
   input.kind = session::InputKind::frames_lost;
@@ -101,7 +101,8 @@ void SessionBridge::frames_lost(int frames) {
 }
 
 void SessionBridge::push(session::InputKind kind, int value, double number) {
-  pending_.clear();  // the tap that pressed this button must not arrive as a stray touch in the next trial
+  pending_.clear();  // forget the tap that pressed this button; otherwise it would count as a stray touch in
+                     // the next trial
   session::Input input;
   input.time_ns = clock_();
   input.kind = kind;
