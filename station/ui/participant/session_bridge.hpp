@@ -30,31 +30,31 @@ class SessionBridge : public QObject, public session::Display {
 
   using Clock = std::function<std::int64_t()>;
   using Sink = std::function<void(session::Input)>;
-  /// A function that returns the kernel's time of a touch at (x, y), each from 0 to 1 in the window, that
-  /// arrived at `seen_ns`; empty if unknown.
+  /// A function that returns the kernel's time of a touch at (x, y) (each from 0 to 1 across the window) that
+  /// Qt delivered at `seen_ns`. Its result is empty if that time is unknown.
   using KernelTime = std::function<std::optional<std::int64_t>(double x, double y, std::int64_t seen_ns)>;
 
   SessionBridge(Clock clock, Sink sink, QObject* parent = nullptr);
 
-  /// Uses `kernel_time` for the times of touches from now on. A touch that it knows gets the quality
+  /// From now on, `kernel_time` gives the times of touches. A touch whose time it knows gets the quality
   /// `kernel`. The window must fill the panel.
   void set_kernel_time(KernelTime kernel_time) { kernel_time_ = std::move(kernel_time); }
 
   /// Shows a page. May be called on any thread; returns at once. Pages appear in the order of the calls.
   void show(const session::Page& page) override;
 
-  /// Stamps each touch and mouse press on the window, whatever it hits. Those that do not become an answer
-  /// within a moment are reported as `touch_down`.
+  /// Stamps each touch and mouse press anywhere on the window with the time. A touch that does not become an
+  /// answer within a moment is reported as `touch_down`.
   Q_INVOKABLE void watch(QObject* window);
 
   PageModel* page() { return &page_; }
   std::int64_t now_ns() const { return clock_(); }
 
-  /// The time at which the touch with this id began, as stamped by watch(); the current time if it was not
-  /// seen.
+  /// The time at which the touch with this id began, as stamped by watch(). The current time if watch() did
+  /// not see it.
   std::int64_t began_ns(int touch_id) const;
 
-  /// Reports that a touch has just pressed an answer's button; the next frame must show that.
+  /// Reports that a touch has just pressed an answer's button. The next frame must show the pressed button.
   void pressed() { emit acknowledged(); }
 
   /// Reports an answer that the touch field accepted: the touch that began at `time_ns` chose the answer
@@ -65,16 +65,16 @@ class SessionBridge : public QObject, public session::Display {
   Q_INVOKABLE void moveSlider(double value);
   Q_INVOKABLE void pause();
   Q_INVOKABLE void stop();
-  /// These are for the operator: void the current trial and present it again; arm the amplifier; store a
-  /// note.
+  /// For the operator: repeat() makes the current trial void and presents it again, arm() arms the amplifier,
+  /// annotate() stores a note.
   Q_INVOKABLE void repeat();
   Q_INVOKABLE void arm();
   Q_INVOKABLE void annotate(const QString& text);
-  /// Reports the number of frames that the screen lost during the finished trial; 0 is not logged.
+  /// Reports by how many frames the screen was late during the finished trial; 0 is not reported.
   void frames_lost(int frames);
 
  signals:
-  /// Emitted when a page has been applied (even if it equals the previous one).
+  /// Emitted when a page has been applied, even if nothing changed.
   void shown();
   void acknowledged();
 

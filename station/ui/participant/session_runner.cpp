@@ -12,7 +12,7 @@ namespace turnpoint::ui {
 namespace {
 
 /// Interval between the reports that the page is alive. The amplifier guard switches off after two seconds
-/// without a report.
+/// without one.
 constexpr int kLife_ms = 250;
 
 /// True for pages on which a late frame would matter, so that late frames are counted.
@@ -35,8 +35,8 @@ SessionRunner::SessionRunner(QObject* parent)
     const auto kind = bridge_.page()->kind();
     if (is_trial(kind)) return frames_.asked();
     const int lost = frames_.end();
-    // Late frames are reported when a trial's last interval ends. A trial that a fault or a pause interrupted
-    // is repeated and not counted.
+    // Late frames are reported on the page between trials. If a fault or a pause interrupts a trial, another
+    // page follows and the frames are not reported, because the trial is repeated.
     if (kind == PageModel::Kind::Interval) bridge_.frames_lost(lost);
   });
   connect(&bridge_, &SessionBridge::acknowledged, this, [this] {
@@ -91,7 +91,7 @@ void SessionRunner::run() {
   emit over();
 }
 
-/// Opens the source of kernel times for touches, if the rig names its panel.
+/// Opens the reader for the kernel's time stamps of touches, if the rig names its panel.
 void SessionRunner::open_touch() {
   touch_ = setup::open_touch(setup_.rig, [this](touch::TouchPanelState state) {
     if (state == touch::TouchPanelState::back) return;

@@ -20,8 +20,9 @@ class TouchReader;
 
 namespace turnpoint::ui {
 
-/// Runs sessions behind the pages, one at a time, each on its own thread: pages and inputs, kernel times of
-/// touches, the operator's live view, and the report at the end. GUI thread only.
+/// Runs sessions behind the pages, one at a time, each on its own thread. Connects a session with the pages
+/// and inputs, the kernel's times of touches, the operator's live view, and the report at the end. GUI thread
+/// only.
 class SessionRunner : public QObject {
   Q_OBJECT
 
@@ -33,7 +34,8 @@ class SessionRunner : public QObject {
   LiveModel& live() { return live_; }
   ReportModel& report() { return report_; }
 
-  /// The window that shows the pages: its touches are stamped, and its late frames counted.
+  /// Sets the window that shows the pages. Its touches are stamped with the time, and its late frames are
+  /// counted.
   void watch(QQuickWindow* window);
 
   /// Begins a session, after the previous one has ended. Throws the errors of touch::TouchReader if the rig's

@@ -31,7 +31,7 @@ StartController::Stage StartController::stage() const {
 QStringList StartController::language_names() const {
   QStringList names;
   for (const auto& code : questions_.languages) {
-    // Offer a language under its own name; variants of English simply as "English".
+    // Offer each language under its own name. For a variant of English, the name is "English".
     const QString own = code == "en" ? "English" : QLocale(code).nativeLanguageName();
     names += own.isEmpty() ? code : own;
   }

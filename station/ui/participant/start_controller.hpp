@@ -7,8 +7,8 @@
 namespace turnpoint::ui {
 
 /// Asks on the screen for what is missing before a session can begin: the language, if the protocol has
-/// several and none was given; consent, if a version of the form was given; the participant's code, if none
-/// was given. If there is an operator's page, it comes first. GUI thread only.
+/// several and none was given; consent, if the study has a consent form; the participant's code, if none was
+/// given. If there is an operator's page, it comes first. GUI thread only.
 class StartController : public QObject {
   Q_OBJECT
   QML_ELEMENT
@@ -26,11 +26,12 @@ class StartController : public QObject {
   /// Returns true for a participant code that is already in the database.
   using Known = std::function<bool(const QString& code)>;
 
-  /// What to ask: language and participant if they are "", consent if its version is not "".
+  /// What to ask. The language and the participant are asked for if they are "", consent if its version is
+  /// not "".
   struct Questions {
     QStringList languages;
     QString language, participant, consent_version;
-    QString run_mode;  ///< live | pilot | simulated: shown on these pages too
+    QString run_mode;  ///< live | pilot | simulated; these pages show it, like those of the session
   };
 
   explicit StartController(Known known, QObject* parent = nullptr);
@@ -42,7 +43,7 @@ class StartController : public QObject {
 
   Stage stage() const;
   QStringList language_names() const;
-  /// The chosen language; until then the protocol's first.
+  /// The chosen language. Until one is chosen, the first language of the protocol.
   QString language() const;
   QString participant() const { return questions_.participant; }
   QString consent_version() const { return questions_.consent_version; }

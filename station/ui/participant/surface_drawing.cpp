@@ -38,7 +38,7 @@ struct SurfaceDrawing::Layout {
   double px_per_mm = 1;        ///< scale along the strip
   double wide_half = 0, narrow_half = 0;
   double scale_text = 0, flag_text = 0, flag_height = 0;
-  /// 1/20 of the height: strokes and gaps are multiples of it, so that they follow the item's size
+  /// 1/20 of the height; strokes and gaps are multiples of it, so that they grow with the item
   double unit = 1;
   double length_mm = 1;
   bool wide_left = true;
@@ -60,7 +60,8 @@ SurfaceDrawing::Layout SurfaceDrawing::layout() const {
   at.scale_text = std::max(text_pixels_, 1.8 * at.unit);
   at.flag_text = std::max(text_pixels_, 2.3 * at.unit);
   at.flag_height = std::max(3.6 * at.unit, 1.4 * at.flag_text);
-  // Half of the last number of the scale is beyond the end of the strip, so the margin must have room for it.
+  // The last number of the scale is centred on the end of the strip, so the margin must have room for half of
+  // it.
   const double last =
       QFontMetricsF(font_of(at.scale_text)).horizontalAdvance(QString::number(length_mm_, 'f', 0));
   const double driver = 3.2 * at.unit, margin = std::max(1.8 * at.unit, 0.5 * last + 2);
@@ -92,7 +93,7 @@ void SurfaceDrawing::paint_strip(QPainter& painter, const Layout& at) const {
   const double x0 = at.x(0), x1 = at.x(length_mm_);
   const double toward = at.wide_left ? 1 : -1;
 
-  // The transducer: a block with its bolt, so that nobody confuses the two ends.
+  // The transducer: a block with its bolt. It shows which end of the strip is which.
   const double block = 2.6 * at.unit, block_half = at.wide_half + 0.7 * at.unit;
   const QRectF driver =
       QRectF(x0 - toward * block, at.axis_y - block_half, toward * block, 2 * block_half).normalized();
@@ -108,7 +109,8 @@ void SurfaceDrawing::paint_strip(QPainter& painter, const Layout& at) const {
   strip.lineTo(x1, at.axis_y + at.narrow_half);
   strip.lineTo(x0, at.axis_y + at.wide_half);
   strip.closeSubpath();
-  // Deliberately uniform along its length: shading must not suggest where the smooth part ends.
+  // The strip has uniform shading along its length, because a change would suggest where the smooth part
+  // ends.
   QLinearGradient metal(0, at.axis_y - at.wide_half, 0, at.axis_y + at.wide_half);
   metal.setColorAt(0, mixed(paper_, ink_, 0.10));
   metal.setColorAt(0.45, mixed(paper_, ink_, 0.16));
@@ -138,14 +140,15 @@ void SurfaceDrawing::paint_scale(QPainter& painter, const Layout& at) const {
   }
 }
 
-/// True if the finger covers part of this number of the scale, which must then be left out: half a number
-/// would be misread.
+/// True if the finger covers part of this number of the scale. The number is then left out, because half a
+/// number would be misread.
 bool SurfaceDrawing::behind_finger(const Layout& at, double mm, double width_px) const {
   if (!show_finger_) return false;
   return std::abs(at.x(mm) - finger_x(at)) < 0.5 * (width_px + kFinger * at.unit) + 0.4 * at.unit;
 }
 
-/// The finger is below the mark and symmetric to it, because its position must not favour an answer.
+/// The finger is drawn exactly below the mark, because a position to its left or right could favour an
+/// answer.
 double SurfaceDrawing::finger_x(const Layout& at) const {
   return at.x(has_mark_ ? mark_mm_ : 0.5 * length_mm_);
 }
@@ -155,7 +158,7 @@ void SurfaceDrawing::paint_mark(QPainter& painter, const Layout& at) const {
   painter.setPen(QPen(ink_, std::max(2.0, 0.28 * u), Qt::SolidLine, Qt::FlatCap));
   painter.drawLine(QPointF(x, at.axis_y - half), QPointF(x, at.axis_y + half));
 
-  // The pointer ends at the strip's edge; the number matches the scale printed on the surface.
+  // The pointer ends at the strip's edge. The number is the one printed on the surface's own scale.
   const double tip_y = at.axis_y - half - 0.25 * u;
   const double flag_y = 0.2 * u, flag_height = at.flag_height;
   QPainterPath pointer;

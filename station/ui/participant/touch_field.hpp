@@ -8,8 +8,8 @@
 namespace turnpoint::ui {
 
 /// Takes every touch (and mouse press) on its area and lets a TouchJudge find the answer. `row` is the item
-/// that the answer buttons fill in `count` equal columns, `gap` pixels apart; it must be inside the field.
-/// The judge opens when `open` becomes true and closes when it becomes false.
+/// that contains the answer buttons: `count` equal columns, `gap` pixels apart. It must be inside the field.
+/// The judge is open while `open` is true.
 class TouchField : public QQuickItem {
   Q_OBJECT
   QML_ELEMENT
@@ -25,7 +25,7 @@ class TouchField : public QQuickItem {
   explicit TouchField(QQuickItem* parent = nullptr);
 
   bool is_open() const { return judge_.is_open(); }
-  void set_open(bool open);  // the name is that of a QML property's setter (NOLINT)
+  void set_open(bool open);  // the setter of a QML property must have this name (NOLINT)
   int pressed() const { return pressed_; }
 
  signals:

@@ -13,17 +13,20 @@ struct Touch {
   double diameter_mm = 0;  ///< diameter of the contact; 0 if the panel does not report it
 };
 
-/// Decides which touch is an answer, so that no slip ever becomes one. Pure: no clock, no toolkit.
+/// Decides which touch is an answer, so that an accidental touch never becomes one. Pure: no clock, no
+/// toolkit.
 /// Only a single finger can answer. A touch counts if it began after the answers opened, lies on a target, is
 /// not a palm, and no other touch begins within `settle_ns` before or after it. If several fingers land at
-/// once, none of them answers, and the question stays open. Hands that have rested on the panel for longer do
-/// not block. After one answer all others (a double tap) are ignored until the answers open again. The answer
-/// has the time at which the touch began, and is returned `settle_ns` later.
+/// once, none of them answers, and the question stays open. Hands that have rested on the panel for longer
+/// than that do not matter. After an answer, all further touches (such as a double tap) are ignored until the
+/// answers open again. The time of an answer is the time at which its touch began; decide() returns the
+/// answer `settle_ns` later.
 class TouchJudge {
  public:
   struct Rules {
     std::int64_t settle_ns = terms::kOneTouch_ns;
-    /// larger contacts are palms: a thumb pressed flat makes about 18 mm, a palm 30 or more
+    /// a larger contact is a palm: a thumb pressed flat makes a contact of about 18 mm, a palm one of 30 mm
+    /// or more
     double palm_mm = 24;
   };
   struct Answer {
@@ -38,17 +41,18 @@ class TouchJudge {
   void close();  ///< Closes the answers.
   bool is_open() const { return open_; }
 
-  /// Reports that a finger came down. Lifting it does not matter: a quick tap is over before it has settled,
-  /// and lifting does not withdraw an answer.
+  /// Reports that a finger came down. There is no call for lifting a finger, because lifting does not
+  /// withdraw an answer: a quick tap is over before it has settled.
   void down(const Touch& touch);
   /// Reports that Qt has cancelled all touches (because of a system gesture or a lost device).
   void cancel();
 
-  /// The answer, if one has settled by now. Each answer is returned only once.
+  /// Returns the answer, if one has settled by now. Each answer is returned only once.
   std::optional<Answer> decide(std::int64_t now_ns);
   /// The time at which to call decide() next, if a touch is settling.
   std::optional<std::int64_t> due_ns() const;
-  /// Index of the target to show as pressed, because a touch on it is settling or was accepted; -1 if none.
+  /// Index of the answer button to draw as pressed: a touch on it is settling or was accepted. -1 if there is
+  /// none.
   int pressed() const;
 
  private:

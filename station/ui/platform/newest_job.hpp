@@ -9,13 +9,13 @@
 
 namespace turnpoint::ui {
 
-/// Runs slow jobs for a page on its own thread. Only the newest job counts: starting another asks the running
-/// one to stop, and drops one that has not begun. The GUI thread never waits for a job, except in the
+/// Runs slow jobs for a page on its own thread. Only the newest job counts: starting a job asks the running
+/// one to stop, and drops any that has not begun. The GUI thread never waits for a job, except in the
 /// destructor.
 class NewestJob {
  public:
-  /// A job runs on the worker thread. The function that it returns runs on the owner's thread, unless another
-  /// job was started meanwhile. Must not throw.
+  /// A job runs on the worker thread and returns a function. That function runs on the owner's thread, unless
+  /// another job was started meanwhile. The job must not throw.
   using Job = std::function<std::function<void()>(const std::stop_token&)>;
 
   /// The owner must outlive this object.

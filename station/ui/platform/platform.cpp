@@ -18,8 +18,8 @@ namespace turnpoint::ui {
 
 namespace {
 
-/// eglfs uses the first graphics card, which may have no connector. This writes a configuration file that
-/// names a card with a connector. Returns nothing if the user has already chosen a configuration.
+/// Writes a configuration file that makes eglfs use a graphics card with a connector. (By itself, eglfs uses
+/// the first card, which may have none.) Returns nothing if the user has already chosen a configuration.
 std::unique_ptr<QTemporaryFile> eglfs_config(const std::string& card) {
   if (qEnvironmentVariableIsSet("QT_QPA_EGLFS_KMS_CONFIG")) return nullptr;
   auto file = std::make_unique<QTemporaryFile>();
@@ -31,15 +31,15 @@ std::unique_ptr<QTemporaryFile> eglfs_config(const std::string& card) {
   return file;
 }
 
-/// Hides the mouse pointer, which would be out of place on a participant's page, unless the environment
-/// variable is already set (0 shows the pointer).
+/// Hides the mouse pointer, which has no place on a participant's page. Does nothing if the user has set the
+/// environment variable (0 shows the pointer).
 void hide_pointer() {
   for (const char* variable : {"QT_QPA_EGLFS_HIDECURSOR", "QT_QPA_FB_HIDECURSOR"})
     if (!qEnvironmentVariableIsSet(variable)) qputenv(variable, "1");
 }
 
-/// Chooses Qt's platform plug-in. Returns a configuration file that must exist while the plug-in starts; may
-/// be null.
+/// Chooses Qt's platform plug-in. Returns a configuration file that must exist until the plug-in has started;
+/// may be null.
 std::unique_ptr<QTemporaryFile> choose_platform() {
   const auto wanted = qgetenv("QT_QPA_PLATFORM");
   const bool desktop = qEnvironmentVariableIsSet("DISPLAY") || qEnvironmentVariableIsSet("WAYLAND_DISPLAY");
@@ -48,7 +48,7 @@ std::unique_ptr<QTemporaryFile> choose_platform() {
     if (wanted.isEmpty()) qputenv("QT_QPA_PLATFORM", "eglfs");
     return eglfs_config(card);
   }
-  if (!wanted.isEmpty()) return nullptr;  // other kinds of eglfs find their screen by themselves
+  if (!wanted.isEmpty()) return nullptr;  // other plug-ins of eglfs find their screen by themselves
   if (!std::filesystem::exists("/dev/fb0"))
     throw terms::UsageError(
         "no screen: no DISPLAY, no WAYLAND_DISPLAY, no graphics card with a connector and no /dev/fb0; use "
@@ -58,7 +58,7 @@ std::unique_ptr<QTemporaryFile> choose_platform() {
   return nullptr;
 }
 
-/// Qt does not report an input device that it cannot open, so this function does.
+/// Reports the input devices that Qt cannot open, because Qt does not report them.
 void tell_refused_input() {
   const QString platform = QGuiApplication::platformName();
   if (platform != "eglfs" && platform != "linuxfb") return;

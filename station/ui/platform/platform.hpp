@@ -11,9 +11,9 @@ namespace turnpoint::ui {
 /// Size of the window if the program runs on a desktop.
 constexpr QSize kWindow{1280, 800};
 
-/// The application object with a suitable Qt platform plug-in: the one in QT_QPA_PLATFORM, or a desktop's, or
-/// eglfs, or else linuxfb, which needs only a frame buffer. Qt kills the process if it finds no screen; this
-/// class throws terms::UsageError before that.
+/// The application object, with a suitable Qt platform plug-in: the one in QT_QPA_PLATFORM, or a desktop's,
+/// or eglfs, or else linuxfb, which needs nothing but a frame buffer. If there is no screen, Qt would kill
+/// the process; before that, this class throws terms::UsageError.
 class Application {
  public:
   Application();
@@ -21,7 +21,8 @@ class Application {
   QScreen& screen() const;
   /// A second screen for the operator's view; null if there is none.
   QScreen* second_screen() const;
-  /// True for the station's own panel, or one too small for several windows: windows then fill it.
+  /// True if windows fill the screen: on the station's own panel, and on one that is too small for several
+  /// windows.
   bool is_bare_panel() const;
   QSize window_size() const;
   /// Handles the signals that ask the process to end.

@@ -15,16 +15,16 @@ namespace turnpoint::ui {
 
 namespace {
 
-/// Placeholder for the participant's code, which is typed only later, so that all other settings can be
-/// checked before a window opens.
+/// Placeholder for the participant's code. The code is typed last, and all other settings are checked before
+/// a window opens.
 constexpr const char* kCodeToCome = "keypad";
 
 StationWindow::Place place_on(const Application& application) {
   return {pixels_per_mm(application.screen()), application.window_size(), application.is_bare_panel()};
 }
 
-/// Lets a stop signal end the event loop as soon as the first page is shown. Before that, the signal kills
-/// the process.
+/// From the moment at which the window shows its first page, a stop signal ends the event loop. Before that,
+/// the signal kills the process.
 void stop_in_order(const Application& application, const QQuickWindow& window) {
   auto& stop = application.stop_signals();
   QObject::connect(
@@ -32,8 +32,8 @@ void stop_in_order(const Application& application, const QQuickWindow& window) {
       static_cast<Qt::ConnectionType>(Qt::AutoConnection | Qt::SingleShotConnection));
 }
 
-/// Like the other stop_in_order(), but also from the beginning of a session, which may come before the first
-/// page.
+/// Like the function above. In addition, a stop signal ends the event loop from the beginning of a session,
+/// which may come before the first page.
 void stop_in_order(const Application& application, StationWindow& window) {
   stop_in_order(application, window.window());
   QObject::connect(&window, &StationWindow::beginning, &application.stop_signals(), &StopSignals::take_over);
@@ -64,7 +64,7 @@ session::Summary run_on_screen(setup::RunRequest request, std::optional<session:
   if (chosen.ask_code) request.participant = kCodeToCome;
   chosen.setup = prepared ? std::move(*prepared) : setup::prepare(request);
   chosen.ask_language = !prepared && request.language.empty() && chosen.setup.protocol.languages.size() > 1;
-  chosen.arm = true;  // the operator has asked for arming on the command line
+  chosen.arm = true;  // starting a session from the command line is the operator's request to arm
   const Application application;
   StationWindow window(place_on(application), {nullptr, desk::operator_code()}, chosen.setup.database);
   use_second_screen(application, window);
@@ -86,8 +86,7 @@ void run_station(const setup::StationRequest& request) {
   try {
     window.run();
   } catch (const std::exception&) {
-    // The screen has already shown why a session failed. The station itself has not failed, so do not report
-    // it again.
+    // The screen has already shown why the session failed, so do not report the failure again.
   }
 }
 

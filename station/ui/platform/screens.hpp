@@ -12,10 +12,10 @@ namespace turnpoint::ui {
 // The commands that need a screen. Each makes the application object, so a process can call only one of them.
 // Each returns when its window is closed, and throws terms::UsageError if there is no screen.
 
-/// Runs one session: asks for what the request leaves open (language, consent, participant's code), shows the
-/// session's pages and takes its inputs. The session runs on its own thread; an exception is shown as a fault
-/// page and thrown again from here. Throws text::BadInput for files that do not fit. `prepared` is a resumed
-/// session: then nothing is asked, and `request` is ignored.
+/// Runs one session. Asks for what the request leaves open (language, consent, participant's code), shows the
+/// session's pages and takes its inputs. The session runs on its own thread. If it throws, the exception is
+/// shown as a fault page and thrown again from here. Throws text::BadInput for files that do not fit. If
+/// `prepared` contains a resumed session, nothing is asked and `request` is ignored.
 session::Summary run_on_screen(setup::RunRequest request, std::optional<session::Setup> prepared);
 
 /// Shows the operator's start page, and runs the sessions started from it.
@@ -24,8 +24,8 @@ void run_station(const setup::StationRequest& request);
 /// Shows the scenes of a protocol with sliders for their factors.
 void show_preview(const desk::PreviewRequest& request);
 
-/// Measures taps on the panel against the rig's reference line. Returns the result that the operator accepts;
-/// empty if the page was left.
+/// Measures the latency of the touch panel from taps, against the rig's reference line. Returns the result
+/// that the operator accepts; empty if the operator leaves the page.
 std::optional<calibration::PanelLatency> measure_latency(const maintenance::LatencyRequest& request);
 
 }  // namespace turnpoint::ui

@@ -19,7 +19,7 @@ namespace turnpoint::ui {
 
 namespace {
 
-/// Logging of how long the first page took, which `QT_LOGGING_RULES=turnpoint.startup=true` switches on.
+/// Logs how long the first page took to appear, if QT_LOGGING_RULES is `turnpoint.startup=true`.
 Q_LOGGING_CATEGORY(startup, "turnpoint.startup", QtWarningMsg)
 
 /// Milliseconds since the kernel started this process, with a resolution of 10 ms.

@@ -5,7 +5,7 @@
 namespace turnpoint::ui {
 
 StopSignals::StopSignals() : woken_(signals_.descriptor(), QSocketNotifier::Read) {
-  // Do not use quit(): it asks the windows first, and one of them might object.
+  // Do not use quit(), because any window could refuse it.
   connect(&woken_, &QSocketNotifier::activated, this, [this] {
     woken_.setEnabled(false);
     QCoreApplication::exit(0);

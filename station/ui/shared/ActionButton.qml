@@ -12,7 +12,7 @@ Rectangle {
     property bool armed: true
     property bool primary: true
     property bool quiet: false
-    /// If above 0, the button must be held for this many milliseconds, and fills up meanwhile.
+    /// If above 0, the button must be held for this number of milliseconds. It fills up in that time.
     property int holdMs: 0
     signal activated()
 

@@ -1,7 +1,7 @@
 import QtQuick
 
-// The only text item of these pages: it shows what a file or a person wrote literally. By default Qt would
-// interpret a title with tags as rich text and open the images that it names.
+// The only text item that these pages use. It shows a text from a file or a person literally. A standard text
+// item would interpret tags in it as rich text, and open the images that the tags name.
 Text {
     textFormat: Text.PlainText
 }

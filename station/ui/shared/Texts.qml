@@ -1,17 +1,17 @@
 import QtQuick
 import Turnpoint
 
-// The station's own texts from the catalogue of this language; texts of the protocol come from its file. An
-// unsupported language falls back to English.
+// The station's own texts, from the catalogue of the chosen language. (Texts of the protocol come from its
+// file.) An unsupported language falls back to English.
 QtObject {
     required property string language
 
     function text(key: string) : string { return phrased(Catalogue.text(key, language)) }
 
-    /// Prepares a text of this language for display. Japanese may break a line between almost any two
-    /// characters, even inside a word. Inserted word joiners (U+2060) leave only the breaks after
-    /// punctuation, and those between hiragana, which end a phrase, and a character that begins one. A phrase
-    /// longer than a line still breaks anywhere.
+    /// Prepares a text for display. By default, a line may break between almost any two Japanese characters,
+    /// even inside a word. This function inserts word joiners (U+2060), so that lines break only after
+    /// punctuation, or after hiragana (the end of a phrase) if the next character begins a phrase. A phrase
+    /// that is longer than a line still breaks anywhere.
     function phrased(text: string) : string {
         if (!language.startsWith("ja")) return text
         const japanese = /[\u3001-\u30ff\u3400-\u9fff\uff01-\uff9f]/

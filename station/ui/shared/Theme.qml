@@ -1,13 +1,14 @@
 import QtQuick
 
-// Sizes and colours of all pages. Sizes grow with the panel and never fall below what a finger or an eye
-// needs (in millimetres, by the panel's own density). Text and its background have a contrast of 7:1 or more.
+// Sizes and colours of all pages. Sizes grow with the panel, but a control is never smaller than a finger
+// needs, nor a text smaller than an eye needs (in millimetres, from the panel's own density). Text and its
+// background have a contrast of 7:1 or more.
 QtObject {
     required property real width
     required property real height
     required property real pixelsPerMm
-    /// True for the operator's pages: more content per page, read from a shorter distance by somebody who
-    /// knows these pages.
+    /// True for the operator's pages. They show more per page, because the operator knows them and is close
+    /// to the screen.
     property bool dense: false
 
     readonly property real unit: Math.min(width / 80, height / 48)

@@ -10,7 +10,8 @@ namespace turnpoint::ui {
 
 namespace {
 
-constexpr double kUnits = 24;  // side of the square in which the coordinates of the strokes are given
+constexpr double kUnits = 24;  // the strokes are described by coordinates in a square with sides of this
+                               // length
 
 using Stroke = std::initializer_list<QPointF>;
 
@@ -37,7 +38,7 @@ QPainterPath shield() {
   return path;
 }
 
-/// The outline of a symbol. A dot is drawn as a stroke so short that only its round ends are seen.
+/// Returns the outline of a symbol. A dot is a very short stroke, of which only the round ends are seen.
 QPainterPath outline(const QString& name) {
   static const QHash<QString, QPainterPath> outlines{
       {"tick", lines({{{4, 13}, {10, 19}, {20, 6}}})},
