@@ -39,7 +39,7 @@ std::optional<Bias> choice_bias(const std::vector<TrialRecord>& trials);
 struct Proportion {
   int right = 0, trials = 0;
   double value = 0;
-  Interval interval;  ///< Clopper-Pearson interval
+  Interval interval;  ///< Clopper-Pearson interval of right / trials
 };
 /// Returns the proportion of catch trials answered correctly. Timeouts and anticipations do not count as
 /// answers. Empty if no catch trial was answered.
@@ -54,8 +54,8 @@ struct Fatigue {
   std::optional<Trend> response_time_s, proportion_correct;
   std::vector<Statement> statements;
 };
-/// Computes the trends of response time and accuracy over the experimental trials. To control for level and
-/// instruction, each value is taken relative to the mean of the trials with the same level and instruction.
+/// Computes the trends of response time and accuracy over the experimental trials. Level and instruction are
+/// controlled for: from each value, the mean of the trials with the same level and instruction is subtracted.
 /// Empty with fewer than 20 answered trials.
 Fatigue fatigue(const std::vector<TrialRecord>& trials);
 

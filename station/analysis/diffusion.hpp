@@ -23,8 +23,8 @@ struct EzDiffusion {
 };
 
 struct EzResult {
-  std::optional<EzDiffusion> parameters;  ///< empty if they cannot be determined; a statement then gives the
-                                          ///< reason
+  /// empty if they cannot be determined; a statement then gives the reason
+  std::optional<EzDiffusion> parameters;
   std::vector<Statement> statements;
 };
 
@@ -41,7 +41,7 @@ struct SharedEz {
   /// taken from the model. That of a sample is far too low, so intervals from a bootstrap over trials would
   /// be too short.
   double log_boundary_sd = 0;
-  std::vector<double> drift;  ///< in the order of the moments
+  std::vector<double> drift;  ///< one drift rate per difficulty, in the order of the moments passed in
 };
 struct SharedEzResult {
   std::optional<SharedEz> parameters;

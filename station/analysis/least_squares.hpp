@@ -6,8 +6,8 @@ namespace turnpoint::analysis {
 /// A linear fit with few parameters.
 struct LeastSquares {
   std::vector<double> value;
-  std::vector<double> sd;        ///< standard errors estimated from the residuals; 0 if there are as many
-                                 ///< points as parameters
+  /// standard errors estimated from the residuals; 0 if there are as many points as parameters
+  std::vector<double> sd;
   std::vector<double> known_sd;  ///< standard errors if the weights are 1 / variance
 };
 

@@ -163,8 +163,8 @@ void add_band(PsychometricIntervals& result, const Replicator& base, const std::
   }
 }
 
-/// The replicates of one fit: their parameters, the number of replicates whose deviance is at least that of
-/// the fit, and for each quantity the likelihood ratio of the fitted value.
+/// The replicates of one fit: their parameters; how many of them have a deviance of at least that of the fit;
+/// and, for each quantity, the likelihood ratio of the fitted value in each replicate.
 struct Replicates {
   std::vector<Theta> thetas;
   std::vector<std::vector<double>> ratios;

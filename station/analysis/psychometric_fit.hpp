@@ -66,14 +66,13 @@ struct ParameterInterval {
   bool touches_low = false, touches_high = false;
 };
 
-/// The prior of threshold and slope. The threshold lies between low and high, in the unit of the level; its
-/// density is defined on the function's axis. The density of the slope is defined on the logarithm of the
-/// slope. Both densities are flat in the middle and fall linearly to 0 over `falling_share` of the range at
-/// either end.
+/// The prior of threshold and slope. The range of the threshold, from low to high, is in the unit of the
+/// level; its density is defined on the function's axis. The density of the slope is defined on the logarithm
+/// of the slope. Both densities are flat in the middle and fall linearly to 0 at both ends of the range.
 struct Prior {
   double threshold_low = 0, threshold_high = 1;
   double slope_low = 0, slope_high = 1;
-  double falling_share = 0;  ///< from 0 to 0.5
+  double falling_share = 0;  ///< fraction of the range, at either end, in which the density falls; 0 to 0.5
 };
 
 enum class IntervalMethod { none, bootstrap, posterior };
@@ -84,13 +83,13 @@ enum class IntervalMethod { none, bootstrap, posterior };
 struct PsychometricIntervals {
   IntervalMethod method = IntervalMethod::none;
   int replicates = 0;          ///< number of resamples; set for a bootstrap only
-  std::optional<Prior> prior;  ///< set for a posterior only
+  std::optional<Prior> prior;  ///< prior of the posterior; empty for a bootstrap
   double confidence = 0.95;
   std::optional<ParameterInterval> threshold, slope, lapse, guess;
   /// level at which the fitted probability is 0.75, if there is one
   std::optional<double> level_75;
   std::optional<ParameterInterval> interval_75;  ///< interval of level_75
-  /// share of bootstrap replicates with at least the fit's deviance
+  /// proportion of bootstrap replicates whose deviance is at least that of the fit
   std::optional<double> deviance_p;
   /// band of the fitted probability: its lower and upper end at each `band_level`
   std::vector<double> band_level, band_low, band_high;

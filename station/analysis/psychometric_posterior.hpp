@@ -10,16 +10,19 @@ namespace turnpoint::analysis {
 /// Lowest and highest value of a quantity, in its unit.
 using Range = std::pair<double, double>;
 
-/// Returns the prior for a design that can present a range of levels.
+/// Returns the prior for a design that can present the given range of levels.
 /// - Threshold: the density is flat within the range of levels.
-/// - Slope: the density of the logarithm is flat between two functions: the flattest needs two thirds of the
-///   range of levels for a change of z by one, the steepest a 24th (Weibull in dB over 30 dB: slopes of 0.43
-///   to 7). If the protocol allows further `slopes`, the flat part includes them.
-/// - Beyond either end of the flat part, the density falls to 0 over a quarter of the flat width, on the axis
-///   for the threshold and in the logarithm for the slope.
-/// The prior is wider than plausible values, because central intervals miss more often near an end of their
-/// prior. It falls to 0 at the ends because otherwise a few shallow answers would draw the estimates far
-/// outside. Throws std::invalid_argument unless low < high and, on a log10 scale, low > 0.
+/// - Slope: the density of the logarithm of the slope is flat between two slopes. With the shallower one, the
+///   standard variable z changes by one over two thirds of the range of levels; with the steeper one, over a
+///   24th (Weibull in dB over 30 dB: slopes of 0.43 to 7). If the protocol allows further `slopes`, the flat
+///   part includes them.
+/// - Beyond either end of the flat part, the density falls to 0 over a quarter of the flat width. The width
+/// is
+///   measured on the axis for the threshold, and in the logarithm for the slope.
+/// The prior is wider than plausible values, because central intervals miss the true value more often near an
+/// end of their prior. It falls to 0 at the ends because otherwise a few answers with a shallow slope would
+/// draw the estimates far outside. Throws std::invalid_argument unless low < high and, on a log10 scale, low
+/// > 0.
 Prior prior_around(Function function, Scale scale, const Range& levels, const std::optional<Range>& slopes);
 
 /// Returns the flat part of a prior, without the falling ends.

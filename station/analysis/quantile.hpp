@@ -20,7 +20,8 @@ Interval percentile_interval(std::vector<double> replicates, double confidence =
 /// estimate plus and minus this many standard errors is a 95 % interval.
 double student_t_975(int degrees);
 
-double mean(const std::vector<double>& values);      ///< needs at least one value
-double variance(const std::vector<double>& values);  ///< divisor n - 1; needs at least two values
+double mean(const std::vector<double>& values);  ///< arithmetic mean of at least one value
+double variance(
+    const std::vector<double>& values);  ///< sample variance (divisor n - 1) of at least two values
 
 }  // namespace turnpoint::analysis

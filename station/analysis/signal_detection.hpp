@@ -22,7 +22,7 @@ struct YesNoCounts {
 /// c is positive if "yes" is avoided.
 struct YesNo {
   double d_prime = 0, criterion = 0;
-  double hit_rate = 0, false_alarm_rate = 0;  ///< with the log-linear correction
+  double hit_rate = 0, false_alarm_rate = 0;  ///< both rates with the log-linear correction
 };
 
 /// Computes sensitivity and criterion. The log-linear correction (Hautus 1995) is always applied: it adds 0.5
@@ -33,7 +33,8 @@ std::optional<YesNo> yes_no(const YesNoCounts& counts);
 /// Which trials count as signal and which as noise, when one answer is counted as "yes".
 enum class Detecting {
   presence,  ///< yes/no: trials without a signal are the noise, for every level
-  sides,     ///< left/right: at each |level|, one side is the signal and the other is the noise
+  sides,     ///< left/right: for each absolute value of the level, one side is the signal and the other side
+             ///< is the noise
   /// like `sides`, for a choice between places or intervals; d' is divided by sqrt(2) (Macmillan & Creelman
   /// 2005)
   forced_choice,

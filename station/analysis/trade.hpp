@@ -15,7 +15,7 @@ struct DifficultyCell {
   double difficulty = 0;
   int answered = 0, correct = 0;
   double proportion_correct = 0;
-  Interval accuracy;                     ///< Wilson interval
+  Interval accuracy;                     ///< Wilson interval of `proportion_correct`
   std::optional<double> mean_correct_s;  ///< empty if no answer was correct
   std::optional<double> drift;           ///< drift rate from the diffusion fit of all difficulties together
 };
@@ -30,7 +30,7 @@ struct InstructionResult {
   std::optional<ResponseTimes> times, correct_times;
   std::vector<double> times_s;  ///< times of the included trials, in order of presentation
   std::vector<CafBin> caf;
-  std::vector<DifficultyCell> cells;  ///< in order of increasing difficulty
+  std::vector<DifficultyCell> cells;  ///< one cell per difficulty, ascending by DifficultyCell::difficulty
   std::optional<Estimate> median_s, boundary, nondecision_s, lisas_s, inverse_efficiency_s, balanced;
   std::vector<Statement> statements;
 };

@@ -8,7 +8,7 @@
 
 namespace turnpoint::cli {
 
-struct Screens;  // see screens.hpp
+struct Screens;  // defined in screens.hpp
 
 /// What every sub-command gets: the streams for its result and its messages, and the common options.
 struct Context {

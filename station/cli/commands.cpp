@@ -18,7 +18,7 @@ constexpr Add kCommands[] = {
     add_annotate,      add_check,     add_new,     add_protocols, add_report,  add_power,        add_doctor,
     add_amplifier_off, add_calibrate, add_figures, add_preview,   add_station, add_operator_code};
 
-/// EX_SOFTWARE of sysexits.h.
+/// Exit status for an error in the program itself (EX_SOFTWARE of sysexits.h).
 constexpr int kSoftwareFault = 70;
 
 int report(std::ostream& err, const std::exception& error, int code) {

@@ -25,8 +25,8 @@ class EscapedOutput : public std::ostream {
     bool escape(const char* form, unsigned character);
 
     std::streambuf& to_;
-    bool lead_ = false;  ///< true while a byte C2 waits for the next byte, because the two may be one control
-                         ///< character
+    /// true while a byte C2 waits for the next byte, because the two may be one control character
+    bool lead_ = false;
   };
   Buffer buffer_;
 };

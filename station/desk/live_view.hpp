@@ -38,7 +38,7 @@ struct LiveTrial {
   terms::Outcome outcome = terms::Outcome::answered;
   terms::TrialType type = terms::TrialType::experimental;
   double onset_s = 0, ended_s = 0;  ///< relative to the start of the session
-  double stimulus_s = 0;            ///< how long the stimulus was presented
+  double stimulus_s = 0;            ///< duration for which the stimulus was presented
   int xruns = 0, extra_touches = 0;
   records::Proof proof = records::Proof::unproven;
   std::string measured;  ///< what the pick-up measured, in words

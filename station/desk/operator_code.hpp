@@ -22,7 +22,7 @@ class OperatorCode {
   static OperatorCode of_hash(const std::string& hash);
 
   bool is_built_in() const { return hash_.empty(); }
-  const std::string& hash() const { return hash_; }  ///< "" for the built-in code
+  const std::string& hash() const { return hash_; }  ///< hash of a stored code; "" for the built-in code
   /// True for the right code. The check takes equally long for every text. Thread-safe.
   bool opens(const std::string& typed) const;
 

@@ -18,8 +18,8 @@ struct PreviewRequest {
 /// A factor on which a scene depends, with the values that a slider for it can take.
 struct Knob {
   std::string name;
-  double low = 0, high = 0;    ///< limits of the factor's range; without a range, its lowest and highest
-                               ///< level
+  /// limits of the factor's range; without a range, its lowest and highest level
+  double low = 0, high = 0;
   std::vector<double> levels;  ///< possible values; empty if any value in the range is allowed
   /// value to begin with: the first level, or the middle of the range if there are no levels
   double value = 0;

@@ -27,7 +27,7 @@ struct ToneSet {
 /// The shape in which amplitude rises and falls: a raised cosine (Hann), which has a continuous slope. A ramp
 /// of 0 frames switches abruptly, which can be felt, so use it only on purpose.
 struct Ramp {
-  std::int64_t frames = 9600;  ///< 50 ms at 192 kHz
+  std::int64_t frames = 9600;  ///< length of the ramp; the default is 50 ms at 192 kHz
 };
 
 /// A change of tones within a burst. Starting at `at_frame` (counted from the burst's first frame), tone i
@@ -40,7 +40,8 @@ struct Change {
   ToneSet to;
 };
 
-/// A signal for recording equipment at the onset and at each change, on a channel that drives no transducer.
+/// A signal for recording equipment. It is played at the onset and at each change, on a channel that drives
+/// no transducer.
 enum class MarkerKind : std::int32_t { none, pulse, tone };
 struct Marker {
   MarkerKind kind = MarkerKind::none;

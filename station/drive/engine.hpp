@@ -28,13 +28,13 @@ enum class EventKind : std::int32_t {
   burst_ended,
   /// the burst was played completely and as scheduled; `frame`: the first silent frame after it
   burst_heard,
-  burst_missed,  ///< the command arrived after the burst's first frame had been rendered: the burst is not
-                 ///< played
-  underrun,      ///< frames [frame, frame + frames) were not played; sounding bursts continue with a ramp
-  device_lost,   ///< nothing is played from `frame` on, until the device is back and the operator re-arms
-  device_back,   ///< the device was reopened by name; frame numbers continue from `frame`
-  rate_wrong,    ///< the measured rate is more than 200 ppm off, so the session must stop; `frames`: the rate
-                 ///< in mHz
+  /// the command arrived after the burst's first frame had been rendered: the burst is not played
+  burst_missed,
+  underrun,     ///< frames [frame, frame + frames) were not played; sounding bursts continue with a ramp
+  device_lost,  ///< nothing is played from `frame` on, until the device is back and the operator re-arms
+  device_back,  ///< the device was reopened by name; frame numbers continue from `frame`
+  /// the measured rate is more than 200 ppm off, so the session must stop; `frames`: the rate in mHz
+  rate_wrong,
 };
 
 struct Event {

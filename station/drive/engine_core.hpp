@@ -55,8 +55,8 @@ class EngineCore {
   /// A burst that was sent but has not yet been heard or reported as damaged.
   struct Open {
     PreparedBurst burst;
-    std::int64_t end_frame = 0;  ///< end of the burst as scheduled; once the end has been rendered, the
-                                 ///< actual end
+    /// end of the burst as scheduled; once the end has been rendered, the actual end
+    std::int64_t end_frame = 0;
     bool begun = false, rendered = false, damaged = false;
   };
   struct Atomics {

@@ -70,8 +70,8 @@ void Voice::begin_glide(std::int64_t at, const PreparedChange& change) noexcept 
   for (int i = 0; i < count; ++i) {
     const auto k = static_cast<std::size_t>(i);
     target_[k] = change.to[k];
-    // a tone that only the change contains starts with the phase that it would have had if it had run
-    // silently from the onset
+    // A tone that is new in this change gets the phase that it would have if it had run silently since the
+    // onset.
     if (i >= burst_.tone_count) {
       burst_.tones[k] = change.to[k];
       const std::uint64_t gone = target_[k].increment * static_cast<std::uint64_t>(origin_);

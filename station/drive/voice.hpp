@@ -78,7 +78,7 @@ class Voice {
   std::array<Stop, 8> stops_;
   std::size_t stop_count_ = 0;
   std::int64_t resume_at_ = -never;
-  double high_[2] = {}, low_[2] = {};  ///< filter states of the noise
+  double high_[2] = {}, low_[2] = {};  ///< states of the noise's high-pass and low-pass filter
 };
 
 }  // namespace turnpoint::drive

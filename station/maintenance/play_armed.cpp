@@ -19,11 +19,11 @@ namespace turnpoint::maintenance {
 namespace {
 
 constexpr double kLead_s = 0.5, kMargin_s = 0.5;
-constexpr std::int64_t kHeard_ns = 2'000'000'000;  // longest time to wait, after the calculated end, until
-                                                   // the device has played all tones
+// longest time to wait, after the calculated end, until the device has played all tones
+constexpr std::int64_t kHeard_ns = 2'000'000'000;
 constexpr std::int64_t kPoll_ns = 5'000'000;
-constexpr std::int64_t kFirstBlocks_ns = 200'000'000;  // time to wait until the audio thread has sent its
-                                                       // first report
+// time to wait until the audio thread has sent its first report
+constexpr std::int64_t kFirstBlocks_ns = 200'000'000;
 
 /// Returns the reason why the tones were not played correctly; "" for normal events.
 std::string trouble_of(const drive::Event& event, const drive::OutputConfig& output) {

@@ -8,7 +8,7 @@ enum class AxisScale { linear, log10 };
 
 /// What one axis of a chart shows.
 struct Axis {
-  std::string label;  ///< with the unit: "Friction contrast (dB)"
+  std::string label;  ///< quantity and unit: "Friction contrast (dB)"
   double low = 0, high = 1;
   AxisScale scale = AxisScale::linear;
 };

@@ -67,7 +67,7 @@ using Layer = std::variant<Band, Histogram, HeatMap, Rule, Line, Points>;
 struct Chart {
   std::string title;
   Axis x, y;
-  std::vector<Layer> layers;  ///< drawn in this order
+  std::vector<Layer> layers;  ///< drawn one over another, the first at the bottom
 };
 
 /// A figure of one or more charts, arranged in rows of `columns` charts.

@@ -15,8 +15,8 @@ namespace {
 /// kFewestOfCell are left out of the figure. If there are more cells than kMostJoined, no line joins them.
 constexpr int kFewestOfCell = 5;
 constexpr std::size_t kMostJoined = 8;
-constexpr double kLowestLevel_dB = -40;  // a level below this, from a surface that hardly moves, is drawn at
-                                         // this level
+// a level below this, from a surface that hardly moves, is drawn at this level
+constexpr double kLowestLevel_dB = -40;
 
 plot::Points observed(const NamedFit& named, int series, const std::string& name) {
   plot::Points points;
@@ -188,8 +188,8 @@ std::optional<plot::Figure> vibration_figure(const Summary& summary) {
   plot::Chart chart;
   chart.x = plot::fitted("Trial (number)", points.x, 0.03);
   auto levels = points.y;
-  levels.insert(levels.end(), {-0.6, 0.6});  // the axis always includes 0.6 dB below and above the plan,
-                                             // beyond the 0.5 dB of ProofLimits::level_dB
+  // the axis always includes 0.6 dB below and above the plan, beyond the 0.5 dB of ProofLimits::level_dB
+  levels.insert(levels.end(), {-0.6, 0.6});
   chart.y = plot::fitted("Measured against plan (dB)", levels, 0.1);
   chart.layers.push_back(plot::Rule{plot::Rule::Direction::horizontal, 0, "as planned"});
   chart.layers.push_back(points);

@@ -29,7 +29,7 @@ inline bool has_noise(Design design) { return design == Design::yes_no || design
 /// "reversals 5 to 12 of 12".
 struct StaircaseResult {
   std::string block, procedure;
-  double mean = 0;           ///< in the unit of the level
+  double mean = 0;           ///< the estimate, in the unit of the level
   std::optional<double> sd;  ///< standard deviation of the averaged reversals
   std::string basis;
 };
@@ -68,7 +68,7 @@ struct SessionData {
   std::optional<std::vector<std::string>> show;
   std::vector<StaircaseResult> staircases;
   std::vector<analysis::TrialRecord> trials;
-  std::vector<MeasuredTrial> measured;  ///< empty without a pick-up
+  std::vector<MeasuredTrial> measured;  ///< empty if no pick-up measured the surface
   /// Set if the answers determined the levels: the intervals then come from the posterior under this prior.
   /// Empty if the levels were fixed before the session: the intervals then come from bootstraps.
   std::optional<analysis::Prior> prior;

@@ -41,7 +41,7 @@ std::string screen_card(const std::string& drm) {
   std::vector<std::tuple<bool, std::size_t, std::string>> cards;
   std::error_code ignored;
   for (const auto& entry : fs::directory_iterator(drm, ignored)) {
-    const auto connector = entry.path().filename().string();  // for example card1-HDMI-A-1
+    const auto connector = entry.path().filename().string();  // a name such as card1-HDMI-A-1
     const auto dash = connector.find('-');
     if (dash == std::string::npos || !connector.starts_with("card")) continue;
     std::string status;

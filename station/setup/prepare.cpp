@@ -64,7 +64,8 @@ std::string unmeasured_sound(const session::Setup& setup, const protocol::Sight&
 }
 
 /// Checks what only a live session requires: a measured friction table, a rig that is not the reproduction of
-/// a historical one, a calibration, and a known sound level of every scene.
+/// a historical one, a calibration and, for every scene, airborne sound that was measured or whose
+/// computed bound is within the recommended limit.
 void check_live(const session::Setup& setup, const protocol::Survey& survey, std::vector<Problem>& problems) {
   const auto& rig = setup.rig;
   const auto add = [&](const std::string& what, const std::string& allowed) {

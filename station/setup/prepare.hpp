@@ -12,14 +12,14 @@ namespace turnpoint::setup {
 /// The options of `turnpoint run`, as typed.
 struct RunRequest {
   std::string protocol, rig, participant, database;
-  std::string mode = "pilot";  ///< live | pilot
+  std::string mode = "pilot";  ///< run mode: live or pilot
   std::string language;        ///< "" uses the protocol's first language
   std::string observer;        ///< the simulated observer, such as "sim"; "" if a person answers
   std::optional<std::uint64_t> seed;
   std::string consent_version;  ///< version of the consent form; "" if the study needs none
   bool headless = false, buttons_only = false;
-  std::string calibration;  ///< path of the calibration file; "" uses the newest one beside the rig file, if
-                            ///< there is one
+  /// path of the calibration file; "" uses the newest one beside the rig file, if there is one
+  std::string calibration;
 };
 
 /// Loads and checks everything that a session needs, and applies the calibration to the rig. Throws

@@ -50,8 +50,8 @@ struct Check {
 struct CheckOptions {
   /// number of sessions to simulate, to estimate the number of trials and the duration; 0: none
   int sessions = 21;
-  bool sound = false;  ///< also compute the upper limit of the airborne sound level, which takes about 10 ms
-                       ///< per tone
+  /// also compute the upper limit of the airborne sound level, which takes about 10 ms per tone
+  bool sound = false;
   /// also compute the fraction of the displacement that remains under a finger, for the lowest and the
   /// highest tone
   bool finger = false;

@@ -10,7 +10,7 @@
 namespace turnpoint::simulation {
 
 struct Reached {
-  double accuracy = 0;  ///< proportion correct
+  double accuracy = 0;  ///< proportion correct of the observer
   /// the proportion correct that an observer reaches in the same trials without the cue, by guessing or by
   /// always pressing the same key
   double chance = 0;
@@ -25,10 +25,10 @@ struct CueReport {
   std::string cue;           ///< "pitch", "loudness", "amplitude at the wide end", ...
   double low = 0, high = 0;  ///< lowest and highest value of the cue in the main trials, in `unit`
   std::string unit;
-  double accuracy = 0, chance = 0.5, error = 0;  ///< see Reached
-  /// The result of simulated sessions in which this observer's answers set the levels; set only if a
-  /// procedure follows right answers. `accuracy`, `chance` and `error` above then hold this result or the one
-  /// with all levels equally often, whichever has the larger gain over chance.
+  double accuracy = 0, chance = 0.5, error = 0;  ///< defined as in Reached
+  /// The result of simulated sessions in which this observer's answers set the levels; empty unless a
+  /// procedure follows right answers. `accuracy`, `chance` and `error` above are taken either from this
+  /// result or from presenting all levels equally often, whichever gives the larger gain over chance.
   std::optional<Reached> whole_sessions = {};
 
   /// True if the cue helps: about 20 trials would be enough to detect this gain over chance.

@@ -16,12 +16,13 @@ struct Look {
 
 /// How an observer derives an answer from the values of one cue.
 enum class Statistic {
-  value,   ///< one interval: the observer gives one answer if the cue lies inside a band, and the other
-           ///< answer otherwise
+  /// one interval: the observer gives one answer if the cue lies inside a band, and the other answer
+  /// otherwise
+  value,
   change,  ///< same or different: like `value`, applied to the difference between the two intervals
   most,    ///< which interval: the observer chooses the interval with the largest cue
   least,   ///< which interval: the observer chooses the interval with the smallest cue
-  /// which interval: the observer chooses the interval that differs most from the other intervals; with two
+  /// which interval: the observer chooses the interval that differs most from the other intervals; of two
   /// intervals, the one that differs most from `usual`
   odd,
   even,  ///< which interval: the observer chooses the interval that differs least (see `odd`)

@@ -38,10 +38,10 @@ struct Recovery {
   std::string parameter;  ///< "threshold", "PSE", "spread", "75 % point", "proportion correct", ...
   std::string unit;       ///< "" if the protocol's level has no unit
   std::optional<double> truth;
-  std::vector<double> estimates;  ///< the estimates, in the order of the sessions; sessions without an
-                                  ///< estimate are left out
-  int sessions = 0;               ///< number of sessions analysed, with or without an estimate
-  bool heavy_tailed = false;      ///< true for slopes and spreads: use median and quartiles, not mean and SD
+  /// the estimates, in the order of the sessions; sessions without an estimate are left out
+  std::vector<double> estimates;
+  int sessions = 0;           ///< number of sessions analysed, with or without an estimate
+  bool heavy_tailed = false;  ///< true for slopes and spreads: use median and quartiles, not mean and SD
   double mean = 0, sd = 0;
   double median = 0, lower_quartile = 0, upper_quartile = 0;
   std::optional<double> bias;                    ///< mean - truth; if heavy-tailed, median - truth

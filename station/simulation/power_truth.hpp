@@ -42,7 +42,7 @@ class GeneratingValues {
 
  private:
   struct Condition {
-    observer::Question question;  ///< question of the first trial
+    observer::Question question;  ///< question that the first trial asks the observer
     bool one_deadline = true;
     int trials = 0;
     double correct = 0;

@@ -9,7 +9,7 @@ namespace turnpoint::store {
 enum class ExportFormat { csv, bids };
 
 struct ExportOptions {
-  std::string session_id, participant, protocol_id;  ///< an empty member selects all
+  std::string session_id, participant, protocol_id;  ///< which sessions to export; "" selects all
   ExportFormat format = ExportFormat::csv;
   char separator = ',';
   char decimal = '.';

@@ -29,7 +29,7 @@ struct MergeReport {
 };
 
 /// Adds the sessions of `source` (another station's database, or a backup) to `database`: all of them or
-/// none. Merging again changes nothing. Rows with the same key must be equal; if not, nothing is merged, and
+/// none. Merging again changes nothing. Rows with equal keys must be equal; otherwise nothing is merged, and
 /// the error (conflict) names table, key and column. Sessions that were withdrawn from `database` stay out.
 /// `source` is opened for reading only. Throws StoreError.
 MergeReport merge(const std::string& database, const std::string& source);

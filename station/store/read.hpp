@@ -47,10 +47,10 @@ struct Interrupted {
   double age_s = 0;
 };
 
-/// Returns the interrupted session with this id, or the newest one if the id is "". The newest session is the
-/// one whose trials were stored last, whatever the clock says; sessions of this database come before merged
-/// sessions. Empty if there is none. Sessions without a trial are ignored: they are closed as abandoned when
-/// the database is next opened for writing.
+/// Returns the interrupted session with this id or, if the id is "", the newest one: the one whose trials
+/// were stored last, whatever the clock says. Sessions of this database come before merged sessions. Empty if
+/// there is none. Sessions without a trial are ignored; they are closed as abandoned when the database is
+/// next opened for writing.
 std::optional<Interrupted> interrupted_session(const std::string& database,
                                                const std::string& session_id = "");
 

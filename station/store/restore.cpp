@@ -88,7 +88,7 @@ void refuse_unread(const StoredBackup& backup) {
 }
 
 struct Candidates {
-  std::vector<StoredBackup> backups;    ///< newest first
+  std::vector<StoredBackup> backups;    ///< backups of the lost database, newest first
   std::vector<std::string> unreadable;  ///< unreadable files with this database's name
 };
 

@@ -11,7 +11,7 @@ namespace turnpoint::store {
 /// What a database knows about a session. Needed to resume the session and to report on it.
 struct SessionRecord {
   std::string session_id;  ///< UUID
-  int session_index = 0;   ///< from 1, per participant and protocol
+  int session_index = 0;   ///< number of the session, from 1, for this participant and protocol
   int sequence_index = 0;  ///< the participant's number in the protocol's counterbalancing, from 0
   SessionStatus status = SessionStatus::running;
   std::string status_reason;
@@ -31,8 +31,8 @@ struct SessionRecord {
 
 /// Writes one session. It has the station's only connection for writing (WAL, synchronous FULL, foreign keys)
 /// and holds a lock against a second station. Not thread-safe; it belongs to the session thread. When a
-/// function returns, its rows are durable. Throws StoreError: the message says what was tried, on which file,
-/// what SQLite reported, and what to do.
+/// function other than event() returns, its rows are durable. Throws StoreError: the message says what was
+/// tried, on which file, what SQLite reported, and what to do.
 class SessionLog {
  public:
   /// Opens or creates the database, migrates an older schema, and begins a session. A new participant gets
@@ -40,8 +40,8 @@ class SessionLog {
   static SessionLog begin(const std::string& database, const SessionStart& start,
                           const SegmentStart& segment);
 
-  /// Opens a new segment of an interrupted session. If a trial was presented but never ended, an event
-  /// `aborted` is added, and the session presents the trial again.
+  /// Opens a new segment of an interrupted session. If a trial was presented but never ended, adds an event
+  /// `aborted`; the session then presents that trial again.
   static SessionLog resume(const std::string& database, const std::string& session_id,
                            const SegmentStart& segment);
 
@@ -50,7 +50,7 @@ class SessionLog {
   ~SessionLog();
 
   const SessionRecord& session() const;  ///< includes the checksum of the last commit
-  /// blocks already in the log of a resumed session; empty for a new session
+  /// blocks that were in the log when the session was resumed; empty for a new session
   const std::vector<BlockRecord>& stored_blocks() const;
 
   /// Begins a block. If the log already has a block with this index and attempt, continues that block; its

@@ -59,7 +59,7 @@ class Statement {
   bool is_text(int column) const;
   std::int64_t integer(int column) const;
   double real(int column) const;
-  std::string text(int column) const;  ///< returns "" for NULL
+  std::string text(int column) const;  ///< text of a column; "" for NULL
   std::optional<std::int64_t> maybe_integer(int column) const;
   std::optional<double> maybe_real(int column) const;
   std::optional<std::string> maybe_text(int column) const;

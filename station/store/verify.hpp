@@ -19,9 +19,9 @@ struct Verification {
 };
 
 /// Checks the pages and references of a database and the checksum chain of every session. With `against`,
-/// each session of the export must also exist, and one of its links must have the exported checksum. (A
-/// session that was continued after the export has more links, but still the old ones.) Reads only. Throws
-/// StoreError if the database or the export cannot be read.
+/// each session of the export must also exist, and one of its links must have the exported checksum. (It need
+/// not be the last link: the session may have been continued after the export.) Reads only. Throws StoreError
+/// if the database or the export cannot be read.
 Verification verify(const std::string& database, const VerifyOptions& options = {});
 
 }  // namespace turnpoint::store

@@ -9,8 +9,8 @@ namespace turnpoint::ui {
 namespace {
 
 constexpr double kMargin = 6;
-constexpr double kDrawnText_px = 12;  // text size that figures are laid out for; they are then scaled to the
-                                      // item's text size
+// text size that figures are laid out for; they are then scaled to the item's text size
+constexpr double kDrawnText_px = 12;
 
 }  // namespace
 

@@ -22,7 +22,7 @@ class OperatorLock : public QObject {
   Q_PROPERTY(int waitS READ wait_s NOTIFY changed)  ///< number of seconds until the next code is accepted
 
  public:
-  using Clock = std::function<double()>;  ///< a monotonic clock, in seconds
+  using Clock = std::function<double()>;  ///< returns the time of a monotonic clock in s
 
   explicit OperatorLock(desk::OperatorCode code, QObject* parent = nullptr);
   OperatorLock(desk::OperatorCode code, Clock clock, QObject* parent = nullptr);

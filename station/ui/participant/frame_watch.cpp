@@ -40,8 +40,8 @@ void FrameWatch::asked() {
 
 int FrameWatch::end() {
   if (!timer_.isActive()) return 0;
-  beat();  // count the time since the last beat; after a blocked event loop, the timer's own call would come
-           // too late
+  // count the time since the last beat; after a blocked event loop, the timer's own call would come too late
+  beat();
   timer_.stop();
   const std::scoped_lock lock(mutex_);
   return late_.count();

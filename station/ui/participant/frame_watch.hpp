@@ -63,7 +63,7 @@ class FrameWatch : public QObject {
   /// time at which something new was requested; 0 if nothing is waiting
   std::atomic<std::int64_t> asked_ns_{0};
   std::mutex mutex_;
-  LateFrames late_{60};  ///< guarded by the mutex
+  LateFrames late_{60};  ///< guarded by mutex_
 };
 
 }  // namespace turnpoint::ui

@@ -101,8 +101,8 @@ void SessionBridge::frames_lost(int frames) {
 }
 
 void SessionBridge::push(session::InputKind kind, int value, double number) {
-  pending_.clear();  // forget the tap that pressed this button; otherwise it would count as a stray touch in
-                     // the next trial
+  // forget the tap that pressed this button; otherwise it would count as a stray touch in the next trial
+  pending_.clear();
   session::Input input;
   input.time_ns = clock_();
   input.kind = kind;

@@ -85,7 +85,7 @@ class SessionBridge : public QObject, public session::Display {
   /// A touch that may still become an answer.
   struct Pending {
     int id = 0;
-    std::int64_t time_ns = 0;  ///< time stamp by Qt
+    std::int64_t time_ns = 0;  ///< when Qt delivered the touch
     double x = 0, y = 0;       ///< position from 0 to 1 in the window
   };
 

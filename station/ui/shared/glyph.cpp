@@ -10,8 +10,8 @@ namespace turnpoint::ui {
 
 namespace {
 
-constexpr double kUnits = 24;  // the strokes are described by coordinates in a square with sides of this
-                               // length
+// the strokes are described by coordinates in a square with sides of this length
+constexpr double kUnits = 24;
 
 using Stroke = std::initializer_list<QPointF>;
 
