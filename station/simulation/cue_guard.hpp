@@ -31,7 +31,7 @@ struct CueReport {
   /// result or from presenting all levels equally often, whichever gives the larger gain over chance.
   std::optional<Reached> whole_sessions = {};
 
-  /// True if the cue helps: about 20 trials would be enough to detect this gain over chance.
+  /// True if the cue clearly helps. A gain of 0.1 over a chance of 0.5 is two standard errors in 100 trials.
   bool above_chance() const { return accuracy > chance + 0.1; }
 };
 
