@@ -16,8 +16,8 @@ using Range = std::pair<double, double>;
 ///   standard variable z changes by one over two thirds of the range of levels; with the steeper one, over a
 ///   24th (Weibull in dB over 30 dB: slopes of 0.43 to 7). If the protocol allows further `slopes`, the flat
 ///   part includes them.
-/// - Beyond either end of the flat part, the density falls to 0 over a quarter of the flat width. The width is
-///   that on the axis for the threshold, and that in the logarithm for the slope.
+/// - Beyond either end of the flat part, the density falls to 0 over a quarter of the flat width. For the
+///   threshold, the width is that on the axis; for the slope, that in the logarithm.
 /// The prior is wider than plausible values, because central intervals miss the true value more often near an
 /// end of their prior. It falls to 0 at the ends because otherwise a few answers with a shallow slope would
 /// draw the estimates far outside. Throws std::invalid_argument unless low < high and, on a log10 scale, low
