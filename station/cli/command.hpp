@@ -67,7 +67,6 @@ void add_preview(CommandLine& app, Context& context);
 void add_station(CommandLine& app, Context& context);
 void add_operator_code(CommandLine& app, Context& context);
 
-/// Adds `--json` to a sub-command.
 void add_json(Command& command, Context& context);
 
 /// Runs `work` and explains any exception on `err`. Returns the exit status: 0 done, 1 failed at run time, 2

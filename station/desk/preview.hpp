@@ -36,7 +36,6 @@ struct SceneLook {
   std::vector<std::pair<std::string, std::string>> facts, cues;
 };
 
-/// Number of points in a profile.
 constexpr int kProfilePoints = 401;
 
 /// Plans the scenes of a protocol on a rig, without a session. Not thread-safe.

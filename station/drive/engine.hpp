@@ -158,7 +158,6 @@ std::unique_ptr<SynchronousStream> open_synchronous(const StreamConfig& config, 
 /// CLOCK_MONOTONIC does. The destructor ramps down the bursts that are sounding and joins the thread.
 std::unique_ptr<Stream> open_realtime(const StreamConfig& config);
 
-/// The result of `play`.
 struct PlayReport {
   Counters counters;
   system::Rights rights;

@@ -26,7 +26,6 @@ bool is_shown(const Rule& rule, const Frame& frame);
 /// most 1.3 radii plus the outline's width from its centre.
 std::vector<double> marker_radii_px(const Points& dots);
 
-/// Text size of a rule's label.
 constexpr double kLabelText_px = 11;
 
 struct Box {

@@ -24,7 +24,6 @@ class Svg : public Canvas {
   void begin_clip(Point corner, double width, double height) override;
   void end_clip() override;
 
-  /// Returns the finished document.
   std::string finish() const;
 
  private:

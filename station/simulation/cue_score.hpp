@@ -22,7 +22,6 @@ struct Score {
   double one_key() const { return trials > 0 ? keys[best_key()] / trials : 0; }
 };
 
-/// Adds up the scores of whole sessions.
 Score sum_of(const std::vector<Score>& sessions);
 
 /// Computes two standard errors from the scores of several sessions: of the proportion correct, and of its

@@ -27,8 +27,8 @@ std::string joined(const std::set<std::string>& texts) {
 }
 
 struct Labels {
-  std::map<std::string, std::string> participants;  ///< label of each person
-  std::map<std::string, std::string> sessions;      ///< label of each session, by session_id
+  std::map<std::string, std::string> participants;
+  std::map<std::string, std::string> sessions;  ///< label of each session, by session_id
 };
 
 /// Makes labels of letters and digits only, as BIDS requires. Labels differ even if case is ignored, because

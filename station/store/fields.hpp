@@ -20,7 +20,7 @@ namespace turnpoint::store {
 /// changes. A test compares that SQL with these descriptions.
 template <class Record>
 struct Field {
-  const char* name;         ///< name of the column in the database
+  const char* name;
   const char* csv;          ///< column in the exports; "" if the column is not exported
   const char* description;  ///< text for the codebook
   const char* unit;         ///< "" if the column has no unit

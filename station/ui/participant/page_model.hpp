@@ -70,7 +70,6 @@ class PageModel : public QObject {
   Q_ENUM(Verdict)
 
   using QObject::QObject;
-  /// Replaces the whole page at once.
   void set(session::Page page);
   const session::Page& page() const { return page_; }
 
