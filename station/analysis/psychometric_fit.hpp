@@ -47,7 +47,8 @@ struct PsychometricFit {
   std::optional<Psychometric> parameters;
   AtBound at_bound;
   double negative_log_likelihood = 0;  ///< of the individual answers, in nats; without binomial coefficients
-  double deviance = 0;                 ///< relative to the saturated model (one proportion per level)
+  /// deviance from the saturated model, which has one proportion per level
+  double deviance = 0;
   int free_parameters = 0;
   std::vector<Statement> statements;
 };

@@ -48,7 +48,7 @@ Box box_of(const FitOptions& options, const Prior& prior) {
   return box;
 }
 
-/// Reads estimates, intervals and statements from the posterior grid of one fit.
+/// Computes estimates, intervals and statements from the posterior grid of one fit.
 class Reading {
  public:
   Reading(PosteriorFit& into, const Prior& prior)

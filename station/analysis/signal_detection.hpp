@@ -33,8 +33,8 @@ std::optional<YesNo> yes_no(const YesNoCounts& counts);
 /// Which trials count as signal and which as noise, when one answer is counted as "yes".
 enum class Detecting {
   presence,  ///< yes/no: trials without a signal are the noise, for every level
-  sides,     ///< left/right: for each absolute value of the level, one side is the signal and the other side
-             ///< is the noise
+  /// left/right: for each absolute value of the level, one side is the signal and the other side is the noise
+  sides,
   /// like `sides`, for a choice between places or intervals; d' is divided by sqrt(2) (Macmillan & Creelman
   /// 2005)
   forced_choice,
@@ -63,7 +63,8 @@ struct RocPoint {
 
 /// A receiver operating characteristic from ratings.
 struct Roc {
-  std::vector<RocPoint> points;  ///< from (0, 0) to (1, 1), beginning with the strictest criterion
+  /// points of the curve from (0, 0) to (1, 1), beginning with the strictest criterion
+  std::vector<RocPoint> points;
   /// area under straight lines between the points; 95 % interval by Hanley & McNeil (1982)
   Estimate area;
 };

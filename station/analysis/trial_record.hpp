@@ -29,7 +29,8 @@ struct TrialRecord {
   std::optional<double> response_time_s;
   /// the condition by which the analysis groups trials; "" if there is only one
   std::string instruction;
-  std::optional<double> difficulty;  ///< the same number for trials of equal difficulty, usually |level|
+  /// equal for trials of equal difficulty; usually the absolute value of the level
+  std::optional<double> difficulty;
 };
 
 /// Returns the conditions of the experimental trials: first those in `order`, then the others in the order in

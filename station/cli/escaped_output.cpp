@@ -6,7 +6,7 @@ namespace turnpoint::cli {
 
 namespace {
 
-constexpr char kLead = '\xc2';  // first UTF-8 byte of U+0080 to U+00BF
+constexpr char kLead = '\xc2';  // first of the two UTF-8 bytes of the characters U+0080 to U+00BF
 
 }  // namespace
 

@@ -23,7 +23,8 @@ struct LiveState {
   /// number and level of the current trial
   std::string heading;
   std::vector<std::pair<std::string, std::string>> scene, course, limits;  ///< pairs of a label and a value
-  std::vector<Drawing> surfaces;  ///< one for each scene, in the order of presentation
+  /// drawings of the surface, one for each scene, in the order of presentation
+  std::vector<Drawing> surfaces;
   /// figures: displacement profile of all scenes, levels, and response times; each is empty if there are no
   /// data
   Drawing profile, trace, times;
@@ -97,7 +98,7 @@ class LiveView : public session::Monitor {
   std::string level_;     ///< name of the level in the protocol
   std::string adjusted_;  ///< the factor that a slider sets; "" if there is none
   rig::Rig rig_;
-  // The worker thread alone uses `planner_` to `state_`.
+  // The worker thread alone uses the members from `planner_` to `state_`.
   scene::Planner planner_;
   Begun trial_;                    ///< the current trial; its scenes are those presented now
   std::optional<double> setting_;  ///< the slider's setting; empty until it has been moved

@@ -10,7 +10,7 @@
 
 namespace turnpoint::drive {
 
-/// An event of a burst, in frames of the stream.
+/// An event of a burst. Its time is given as a frame of the stream.
 enum class SynthEventKind : std::int32_t { started, ended, missed };
 struct SynthEvent {
   SynthEventKind kind = SynthEventKind::started;

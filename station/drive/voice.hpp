@@ -33,8 +33,8 @@ class Voice {
   void begin(const PreparedBurst& burst) noexcept;
   /// Replaces a live change that is still waiting, if there is one.
   void change(const PreparedChange& change) noexcept;
-  /// Adds a stop, at which the burst ramps down. A stop has no effect if the burst already ends as early or
-  /// earlier, or if eight stops are in effect.
+  /// Adds a stop, at which the burst ramps down. Ignored if the burst would not end earlier because of it, or
+  /// if there are eight stops already.
   void stop(std::int64_t at, const Ramp& ramp) noexcept;
   /// Call this if frames were lost: from `at` on the sound continues with a ramp.
   void resume(std::int64_t at) noexcept;

@@ -9,7 +9,8 @@ namespace turnpoint::setup {
 
 /// The options of `turnpoint resume`.
 struct ResumeRequest {
-  std::string database, session_id;  ///< session_id "" continues the newest interrupted session
+  /// `session_id` is the session to continue; "" continues the newest interrupted one
+  std::string database, session_id;
   std::string
       policy;  ///< resume | restart | block; "" uses the protocol's policy, and "ask" then means resume
   bool headless = false;

@@ -5,7 +5,7 @@ namespace turnpoint::setup {
 
 /// The options of `turnpoint station`, with defaults filled in.
 struct StationRequest {
-  std::string protocols;  ///< the folder with the protocols
+  std::string protocols;  ///< path of the folder with the protocols
   std::string rig, database;
   bool locked = false;  ///< true if the operator's code must be entered before the start page
 };

@@ -89,7 +89,7 @@ Rule best_band(std::vector<Weighed> values, Statistic statistic, const Grain& gr
   return best;
 }
 
-// The mean cue in the intervals that are wrong answers.
+// Returns the mean value of the cue over those intervals that are wrong answers.
 double usual_of(const std::vector<Look>& looks) {
   double sum = 0, weight = 0;
   for (const auto& look : looks) {

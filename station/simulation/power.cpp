@@ -30,7 +30,8 @@ struct Finding {
 struct Outcome {
   std::vector<Finding> findings;
   GeneratingValues generating;
-  std::vector<std::pair<std::string, analysis::FitOptions>> fits;  ///< condition and options of each fit
+  /// condition and options of each psychometric fit
+  std::vector<std::pair<std::string, analysis::FitOptions>> fits;
   report::Design design = report::Design::forced_choice;
   int presented = 0, scored = 0, right = 0;
   double duration_s = 0;

@@ -24,8 +24,8 @@ class TrialCensus {
            double trials);
   void add(const TrialCensus& other);
 
-  /// The number of trials of each kind. The key holds the factors that the block, procedure or catch trial
-  /// sets.
+  /// The number of trials of each kind (cell). A cell is identified by the factors that the block, procedure
+  /// or catch trial sets.
   const std::map<protocol::Factors, double>& cells() const { return cells_; }
   /// All combinations of factors that the trials of one cell (one kind of trial) can have. Each is equally
   /// likely.

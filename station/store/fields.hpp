@@ -25,7 +25,7 @@ struct Field {
   const char* description;  ///< text for the codebook
   const char* unit;         ///< "" if the column has no unit
   const char* values;       ///< the words that may occur; "" if there is no fixed list
-  const char* type;         ///< SQLite type: INTEGER, REAL or TEXT
+  const char* type;         ///< type of the column in SQLite: INTEGER, REAL or TEXT
   bool nullable;
   void (*bind)(Statement&, int index, const Record&);
   void (*read)(const Statement&, int column, Record&);

@@ -16,8 +16,8 @@ namespace turnpoint::store {
 
 namespace {
 
-/// Throws unless the database is lost or known to be damaged. A database that only cannot be opened or read
-/// at the moment may be intact, and must not be replaced.
+/// Throws unless the database is lost or known to be damaged. A database that cannot be opened or read at the
+/// moment may still be intact, and must not be replaced.
 void require_lost(const std::string& path) {
   try {
     auto database = open_reader(path);

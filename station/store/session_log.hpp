@@ -49,7 +49,7 @@ class SessionLog {
   SessionLog& operator=(SessionLog&&) noexcept;
   ~SessionLog();
 
-  const SessionRecord& session() const;  ///< includes the checksum of the last commit
+  const SessionRecord& session() const;  ///< the session's record; its checksum is that of the last commit
   /// blocks that were in the log when the session was resumed; empty for a new session
   const std::vector<BlockRecord>& stored_blocks() const;
 

@@ -10,7 +10,7 @@
 namespace turnpoint::ui {
 
 /// Runs slow jobs for a page on its own thread. Only the newest job counts: starting a job asks the running
-/// one to stop, and drops any that has not begun. The GUI thread never waits for a job, except in the
+/// job to stop, and discards a job that has not begun. The GUI thread never waits for a job, except in the
 /// destructor.
 class NewestJob {
  public:
