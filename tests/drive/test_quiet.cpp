@@ -4,6 +4,7 @@
 #include <mutex>
 #include <vector>
 
+#include "station/drive/alsa_capture.hpp"
 #include "station/drive/engine_core.hpp"
 #include "tests/drive/bursts.hpp"
 #include "tests/drive/watch.hpp"
@@ -76,4 +77,19 @@ TEST_CASE("writing through alsa-lib allocates, locks and logs nothing", "[drive]
           }
         }) == 0);
   CHECK(result.status == WriteStatus::ok);
+}
+
+TEST_CASE("capturing through alsa-lib allocates, locks and logs nothing, even if nobody takes the frames",
+          "[drive][realtime][alsa][capture]") {
+  ::setenv("ALSA_CONFIG_PATH", TURNPOINT_SOURCE_DIR "/tests/drive/asound.conf", 1);
+  ::setenv("LIBASOUND_THREAD_SAFE", "0", 1);
+  OutputConfig config;
+  config.uri = "alsa:straight";
+  config.allow_plugin = {"null"};
+  DeviceCapture capture(config);
+  CHECK(violations_in([&] {
+          for (int k = 0; k < 2000; ++k) capture.step();
+        }) == 0);
+  CHECK(capture.counters().frames == 2000 * 384);
+  CHECK(capture.counters().lost_frames > 0);
 }
