@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <set>
 
-#include "station/text/number.hpp"
-
 namespace turnpoint::rig {
 
 using text::TableReader;
