@@ -54,14 +54,14 @@ TEST_CASE("what is captured does not depend on the size of the blocks", "[plant]
   const auto reference = record(setup, 48000);
   for (const std::int64_t block : {1, 7, 192, 1000, 4096}) {
     CAPTURE(block);
-    CHECK(record(setup, block).samples == reference.samples);
+    CHECK((record(setup, block).samples == reference.samples));
   }
 }
 
 TEST_CASE("the seed decides all noise", "[plant]") {
   auto setup = whole_laboratory();
   const auto first = record(setup, 960, 9600);
-  CHECK(record(setup, 960, 9600).samples == first.samples);
+  CHECK((record(setup, 960, 9600).samples == first.samples));
   setup.seed = 2;
   const auto second = record(setup, 960, 9600);
   for (const int channel : {kReference, kBridgeA, kBridgeB, kLateral, kPickup, kPickup + 1}) {

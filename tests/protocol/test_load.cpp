@@ -189,7 +189,7 @@ TEST_CASE("the defaults that stood in are named", "[protocol]") {
   CHECK_FALSE(has("scene.edge.rove_dB = 2"));
 }
 
-TEST_CASE("a protocol file that is not there is a system error", "[protocol]") {
+TEST_CASE("a protocol file that is not there is bad input", "[protocol]") {
   CHECK_THROWS_AS(protocol::load("no/such/protocol.toml"), text::BadInput);
 }
 

@@ -95,6 +95,7 @@ void ScriptedSession::take(const session::Input& input) {
     case InputKind::contact:
     case InputKind::xrun:
     case InputKind::heard:
+    case InputKind::measured:
     case InputKind::fault:
     case InputKind::failure:
     case InputKind::glitch:
