@@ -115,6 +115,7 @@ void add_faults(std::vector<Exhibit>& all, const Words& words) {
       {FaultKind::disarmed, ""},
       {FaultKind::limits, "1.8 s of stimulus would exceed the session's time"},
       {FaultKind::stimulus_missed, "384 frames lost"},
+      {FaultKind::vibration, "the surface does not move; level -62.1 dB; residual -21 dB"},
       {FaultKind::other, "panel: 3 edges of line 0 were lost"},
   };
   for (const auto& [kind, detail] : faults) {
@@ -129,7 +130,8 @@ void add_faults(std::vector<Exhibit>& all, const Words& words) {
     if (kind == FaultKind::disarmed) page.amplifier = "disarmed";
     // The amplifier stays armed during these faults.
     const auto armed = {FaultKind::disarmed,  FaultKind::limits,          FaultKind::touch_gone,
-                        FaultKind::disk_full, FaultKind::stimulus_missed, FaultKind::other};
+                        FaultKind::disk_full, FaultKind::stimulus_missed, FaultKind::vibration,
+                        FaultKind::other};
     if (std::find(armed.begin(), armed.end(), kind) == armed.end()) page.amplifier = "faulted";
     all.push_back({std::string("fault-") + terms::name(kind), page});
   }
