@@ -48,12 +48,13 @@ struct SharedEzResult {
   std::vector<Statement> statements;
 };
 
-/// Solves EZ's equations with a shared boundary and Ter. With L = logit(Pc), the variance of the decision
-/// time in one condition is (a / s)^4 h(L), so each condition gives an estimate of (a / s)^4. The result is
-/// the mean of these estimates, weighted by the inverse of their relative variance (delta method). Averaging
-/// their logarithms instead would give a value that is too low by half of that variance. Ter follows from the
-/// mean times in the same way. Conditions with fewer than 10 correct answers are left out. With one condition
-/// the result equals ez_diffusion().
+/// Solves EZ's equations with a shared boundary and Ter. With L = logit(Pc), EZ gives the variance of the
+/// decision time in one condition as (a / s)^4 h(L), where h is a known function. Each condition thus gives
+/// an estimate of (a / s)^4. The result is the mean of these estimates, each weighted by the inverse of its
+/// relative variance (delta method). The mean of their logarithms would be too low, by about half the
+/// relative variance of one estimate. Ter is the weighted mean, over the conditions, of the mean time minus
+/// the predicted decision time. Conditions with fewer than 10 correct answers are left out. With one
+/// condition the result equals ez_diffusion().
 SharedEzResult shared_ez_diffusion(const std::vector<EzMoments>& conditions);
 
 }  // namespace turnpoint::analysis

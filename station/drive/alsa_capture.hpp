@@ -32,9 +32,9 @@ struct CapturedBlock {
 struct CaptureCounters {
   std::int64_t frames = 0;        ///< frames captured or lost so far
   std::int64_t overruns = 0;      ///< losses of frames whose number is known
-  std::int64_t lost_frames = 0;   ///< in these overruns
+  std::int64_t lost_frames = 0;   ///< frames lost in `overruns`
   std::int64_t unknown_gaps = 0;  ///< losses of an unknown number of frames: the device was restarted or lost
-  std::uint32_t numbering = 0;    ///< of the newest frame, see CapturedBlock
+  std::uint32_t numbering = 0;    ///< that of the newest frame (see CapturedBlock)
   bool present = true;            ///< false while the device is lost
 };
 

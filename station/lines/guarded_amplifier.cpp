@@ -266,7 +266,7 @@ class GuardedAmplifier final : public drive::Amplifier {
     return details_[static_cast<std::size_t>(kind)];
   }
 
-  mutable std::mutex details_mutex_;  ///< used only by ordinary threads
+  mutable std::mutex details_mutex_;  ///< never locked by the guard thread
   /// details of faults that ordinary threads reported
   std::array<std::string, terms::fault_kinds.size()> details_;
   GuardThread guard_;

@@ -23,8 +23,8 @@ struct GuardLines {
 
 struct GuardOptions {
   Guard::Config config;
-  /// Called on the caller's thread (never the guard's) between the steps of each call. A test can stall the
-  /// caller there.
+  /// For tests: called between the steps in which a command (arm, enable, trip, ...) is passed to the guard,
+  /// on the thread that gives the command. A test can stall that thread there.
   std::function<void()> scheduler_point;
 };
 

@@ -24,10 +24,10 @@ std::size_t crossed(const Levels& factors) {
   return cells;
 }
 
-/// Returns the levels of the balanced factors in one repeat of a value. After any number of repeats, the
-/// counts of any two combinations differ by at most one, and so do the counts of any two levels of a factor.
-/// To achieve this, all factors step to their next level with every repeat. When a factor would repeat a
-/// level with the same combination of the earlier factors, it skips one level.
+/// Returns the level of each balanced factor for the repeat with this number (from 0) of a value. After any
+/// number of repeats, the counts of any two combinations differ by at most one, and so do the counts of any
+/// two levels of a factor. Every factor advances by one level with each repeat. Before a factor and the
+/// factors before it would go through the same combinations again, that factor advances by one more level.
 std::vector<std::size_t> combination(const Levels& factors, std::size_t repeat) {
   std::vector<std::size_t> result;
   std::size_t before = 1;

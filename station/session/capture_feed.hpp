@@ -60,7 +60,7 @@ class CaptureFeed {
   std::unique_ptr<sensing::PilotListener> listener_;  ///< null: no pilot is awaited
   Pilot pilot_ = Pilot::missing;
   std::int64_t shift_ = 0;       ///< from captured frames to playback frames; while listening, a first guess
-  std::uint32_t numbering_ = 0;  ///< for which the shift holds
+  std::uint32_t numbering_ = 0;  ///< the capture's `numbering` for which shift_ holds
   bool aligned_ = false;
   std::int64_t end_frame_ = 0;
   // The last member, so that the thread is joined before the objects that it uses are destroyed.

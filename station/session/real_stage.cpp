@@ -346,7 +346,7 @@ class RealStage : public Stage {
   std::int64_t quiet_ns_ = 0;   ///< time at which the surface will be silent
   std::int64_t opened_ns_ = 0;  ///< time at which the amplifier was enabled
   bool closing_ = false, fault_told_ = false;
-  std::uint32_t numbering_ = 0;  ///< of the capture, when its gaps were reported last
+  std::uint32_t numbering_ = 0;  ///< the capture's `numbering` when its gaps were last reported
   std::int64_t saturated_ = 0;   ///< number of samples clipped so far
   /// set if the converter runs at the wrong rate, until the device has been reopened
   Refusal wrong_rate_;

@@ -85,7 +85,7 @@ bool holds_link(Database& database, const std::string& session_id, const std::st
 std::string last_checksum(Database& database, const std::string& session_id);
 
 /// Returns the SHA-256 over all rows of a session, with annotations and without the status. Two databases
-/// give the same value exactly if they contain the same session.
+/// give the same value if and only if their copies of the session are equal apart from the status.
 std::string session_checksum(Database& database, const std::string& schema, const std::string& session_id);
 
 }  // namespace turnpoint::store

@@ -130,7 +130,7 @@ Field<typename MemberOf<decltype(First)>::Record> field(const About& about) {
           [](const Record& r) { return cell_of(member<First, Rest...>(r)); }};
 }
 
-/// Makes a column that the checksum covers only from the given encoding on.
+/// Marks a column that the checksum covers since this version of its rule (kEncoding in checksum.hpp).
 template <class Record>
 Field<Record> since(int encoding, Field<Record> field) {
   field.since = encoding;

@@ -135,7 +135,8 @@ FileDescriptor open_lock(const std::string& path) {
   if (!S_ISREG(status.st_mode) || status.st_nlink > 1)
     throw StoreError(
         ErrorKind::io,
-        "lock file " + path + ": the file has a second name (a hard link) and was not used; remove the file");
+        "lock file " + path +
+            ": not used, because it is not a regular file, or has a second name (a hard link); remove it");
   give_to_owner_of_folder(lock.get(), path);
   return lock;
 }

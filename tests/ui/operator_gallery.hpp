@@ -12,7 +12,7 @@ desk::LiveState live_exhibit(const std::string& protocol, int trials);
 /// The report of a whole simulated session of that protocol.
 desk::ReportPages report_exhibit(const std::string& protocol);
 
-/// A database in a separate folder that contains an interrupted session of participant P03.
+/// Creates a database in `folder` with an interrupted session of participant P03. Returns its path.
 std::string interrupted_exhibit(const std::string& folder);
 
 }  // namespace turnpoint::ui

@@ -69,8 +69,8 @@ Item {
 
             tryVerify(() => page.kind !== PageModel.Adjust, 5000)
 
-            // Wait until the surface is silent before moving the second slider, so that the move cannot be
-            // felt.
+            // Move the second slider down while the surface vibrates. A click on it after the vibration has ended
+            // must have no effect, because its effect could not be felt.
             slider = adjusting()
             fuzzyCompare(page.slider, -20, 1e-9)
             tap("stepDown")

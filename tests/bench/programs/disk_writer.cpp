@@ -1,5 +1,6 @@
 // disk_writer DATABASE FULL|NORMAL COUNT DEVICE: writes COUNT one-row transactions in WAL mode. After each
-// commit it writes a mark such as "FULL 17" to the disk's record: from then on the row must survive.
+// commit it writes a mark such as "FULL 17" to DEVICE (see disk_marker.hpp). With FULL, a marked row must
+// survive a power cut. With NORMAL most cuts lose some rows, which shows that the test can fail.
 #include <sqlite3.h>
 
 #include <algorithm>
