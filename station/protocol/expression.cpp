@@ -233,7 +233,7 @@ std::optional<Linear> linear_from(const text::Value& value, const std::string& k
   } else {
     findings.add(
         value.place, "\"" + key + "\" is " + describe(value),
-        "write a number, or a text with linear arithmetic with factors, such as \"mark_mm + offset_mm\"");
+        "write a number, or a linear expression of factors in quotes, such as \"mark_mm + offset_mm\"");
     return std::nullopt;
   }
   const auto broken = [&](const auto& term) { return is_broken(*find_factor(factors, term.first)); };
