@@ -115,6 +115,7 @@ void add_faults(std::vector<Exhibit>& all, const Words& words) {
       {FaultKind::disarmed, ""},
       {FaultKind::limits, "1.8 s of stimulus would exceed the session's time"},
       {FaultKind::stimulus_missed, "384 frames lost"},
+      {FaultKind::capture, "the pilot on output channel 2 is not heard on captured channel 0"},
       {FaultKind::vibration, "the surface does not move; level -62.1 dB; residual -21 dB"},
       {FaultKind::other, "panel: 3 edges of line 0 were lost"},
   };
