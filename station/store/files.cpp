@@ -133,10 +133,9 @@ FileDescriptor open_lock(const std::string& path) {
                 "the folder of the database must exist and be writable");
   const auto status = status_of(lock.get(), path);
   if (!S_ISREG(status.st_mode) || status.st_nlink > 1)
-    throw StoreError(
-        ErrorKind::io,
-        "lock file " + path +
-            ": not used, because it is not a regular file, or has a second name (a hard link); remove it");
+    throw StoreError(ErrorKind::io, "lock file " + path +
+                                        ": the file is not a regular file, or has a second name (a hard "
+                                        "link), and was not used; remove the file");
   give_to_owner_of_folder(lock.get(), path);
   return lock;
 }
