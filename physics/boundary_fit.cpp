@@ -104,10 +104,15 @@ Solution solve(const Problem& problem) {
   return s;
 }
 
+// `named` boundaries are outliers; without the `taken` ones, no deviation exceeds the limit.
+struct Outliers {
+  std::vector<bool> named, taken;
+};
+
 // Finds outliers. Repeatedly removes the boundary that deviates most from what the remaining boundaries
 // predict, until no deviation exceeds the limit. Marks this boundary, and all others that deviate almost as
 // much, as outliers.
-std::vector<bool> find_outliers(const Solution& s) {
+Outliers find_outliers(const Solution& s) {
   constexpr double limit = 3, as_bad = 0.9;
   const Eigen::Index m = s.jacobian.rows(), n = s.jacobian.cols();
   // To first order: the deviations of the boundaries if the parameters were not changed.
@@ -137,7 +142,7 @@ std::vector<bool> find_outliers(const Solution& s) {
       if (deviation(i) > std::max(limit, as_bad * most)) named[static_cast<std::size_t>(i)] = true;
     taken[static_cast<std::size_t>(worst)] = true;
   }
-  return named;
+  return {named, taken};
 }
 
 }  // namespace
@@ -149,8 +154,22 @@ BoundaryFit fit_boundaries(const Surface& surface, const MapOptions& options,
   for (const Parameter p : parameters(surface))
     if (standard_deviation(surface, p) > 0) problem.unknown.push_back(p);
   check(options, measured, problem);
-  const Solution s = solve(problem);
+  Solution s = solve(problem);
   BoundaryFit fit;
+  const Outliers outliers = find_outliers(s);
+  fit.outliers = outliers.named;
+  const bool any = std::find(fit.outliers.begin(), fit.outliers.end(), true) != fit.outliers.end();
+  fit.left_out = any && outliers.named == outliers.taken;
+  if (fit.left_out) {
+    std::vector<MeasuredBoundary> kept;
+    for (std::size_t i = 0; i < measured.size(); ++i)
+      if (!fit.outliers[i]) kept.push_back(measured[i]);
+    Problem without = problem;
+    without.measured = kept;
+    s = solve(without);
+    s.misses = problem.misses(s.u);
+    s.jacobian = problem.jacobian(s.u, s.misses);
+  }
   for (std::size_t j = 0; j < problem.unknown.size(); ++j) {
     const Parameter p = problem.unknown[j];
     if (p == Parameter::temperature) continue;
@@ -169,9 +188,9 @@ BoundaryFit fit_boundaries(const Surface& surface, const MapOptions& options,
     const auto at = static_cast<Eigen::Index>(i);
     const double leverage = s.jacobian.row(at).dot(s.covariance * s.jacobian.row(at).transpose());
     fit.residuals_m.push_back(s.misses(at) * measured[i].sd_m);
-    fit.deviations.push_back(s.misses(at) / std::sqrt(std::max(1e-12, 1 - leverage)));
+    const bool out = fit.left_out && fit.outliers[i];
+    fit.deviations.push_back(s.misses(at) / std::sqrt(std::max(1e-12, out ? 1 + leverage : 1 - leverage)));
   }
-  fit.outliers = find_outliers(s);
   return fit;
 }
 

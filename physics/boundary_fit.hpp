@@ -29,6 +29,9 @@ struct BoundaryFit {
   // Distance of each boundary from the position that the other boundaries predict, in standard deviations.
   std::vector<double> deviations;
   std::vector<bool> outliers;
+  // Whether the outliers are left out of the fit. They are if the other boundaries agree with one another and
+  // so tell which ones are wrong. Where boundaries contradict each other equally, all of them stay in.
+  bool left_out = false;
 };
 
 // Fits the parameters of the surface to one or more measured boundaries. The prior of each parameter is a

@@ -14,7 +14,7 @@ namespace turnpoint::physics {
 namespace {
 
 using Piece = EdgeTable::Piece;
-constexpr int degree = EdgeTable::degree;
+constexpr std::size_t most_terms = EdgeTable::degree + 1;
 // How often a range of frequencies may be halved. The number is lower where computing a position takes long:
 // for friction edges, and on a taper with many points, where the solution needs a step for every point.
 int deepest(const Surface& surface, const MapOptions& options) {
@@ -37,7 +37,7 @@ double tolerance_m(const Surface& surface, const MapOptions& options) {
 double clenshaw(const Piece& piece, double ln_f) noexcept {
   const double t = (2 * ln_f - piece.low - piece.high) / (piece.high - piece.low);
   double b1 = 0, b2 = 0;
-  for (std::size_t k = degree; k > 0; --k) {
+  for (std::size_t k = most_terms - 1; k > 0; --k) {
     const double b0 = 2 * t * b1 - b2 + piece.coefficient[k];
     b2 = b1;
     b1 = b0;
@@ -48,7 +48,11 @@ double clenshaw(const Piece& piece, double ln_f) noexcept {
 class Builder {
  public:
   Builder(const Surface& surface, const MapOptions& options, Model model)
-      : surface_(surface), options_(options), model_(model), taper_(surface), dispersion_(surface) {}
+      : surface_(surface), options_(options), model_(model), taper_(surface), dispersion_(surface) {
+    // A thick plate's solution takes a hundred times as long as a thin plate's, and its table needs fewer
+    // digits.
+    if (thick()) terms_ = 7;
+  }
 
   std::optional<double> position(double f) const {
     try {
@@ -88,9 +92,8 @@ class Builder {
   double limit(double with, double without) const {
     // On plates and tabulated tapers a solution takes long, so a rough limit must do. It is safe, because the
     // returned frequency is one at which the edge exists.
-    const bool thick = dispersion_.theory != PlateTheory::kirchhoff;
     const bool dear = dispersion_.clamped_bending() || std::holds_alternative<TabulatedTaper>(surface_.taper);
-    const double enough = thick ? 1e-6 : dear ? 1e-9 : 1e-14;
+    const double enough = thick() ? 1e-4 : dear ? 1e-9 : 1e-14;
     return bisect(
                {with, without}, [this](double f) { return ratio(f).has_value(); },
                [enough](const Bracket& b) { return b.width() <= enough * b.above; }, 60)
@@ -99,12 +102,14 @@ class Builder {
 
   void fill(EdgeTable& table, double low, double high, int depth) const {
     Piece piece{low, high, {}};
-    std::array<double, degree + 1> value{};
+    std::array<double, most_terms> value{};
     const bool complete = sample(piece, value);
     double worst = std::numeric_limits<double>::infinity();
     if (complete) worst = miss(piece);
     if (worst > tolerance_m(surface_, options_) && depth < deepest(surface_, options_)) {
-      const double middle = 0.5 * (low + high);
+      // Near the lowest frequency the edge is close to the drive edge, and its position is least smooth.
+      const double middle =
+          low + (thick() && piece.low == std::log(table.low_Hz) ? 0.25 : 0.5) * (high - low);
       fill(table, low, middle, depth + 1);
       fill(table, middle, high, depth + 1);
       return;
@@ -115,17 +120,19 @@ class Builder {
   }
 
  private:
-  bool sample(Piece& piece, std::array<double, degree + 1>& value) const {
-    constexpr double n = degree + 1;
-    for (std::size_t j = 0; j <= degree; ++j) {
+  bool thick() const { return dispersion_.theory != PlateTheory::kirchhoff; }
+
+  bool sample(Piece& piece, std::array<double, most_terms>& value) const {
+    const auto n = static_cast<double>(terms_);
+    for (std::size_t j = 0; j < terms_; ++j) {
       const double t = std::cos(std::numbers::pi * (static_cast<double>(j) + 0.5) / n);
       const auto r = ratio(std::exp(0.5 * (piece.low + piece.high + t * (piece.high - piece.low))));
       if (!r) return false;
       value[j] = *r;
     }
-    for (std::size_t k = 0; k <= degree; ++k) {
+    for (std::size_t k = 0; k < terms_; ++k) {
       double sum = 0;
-      for (std::size_t j = 0; j <= degree; ++j) {
+      for (std::size_t j = 0; j < terms_; ++j) {
         sum += value[j] *
                std::cos(std::numbers::pi * static_cast<double>(k) * (static_cast<double>(j) + 0.5) / n);
       }
@@ -155,6 +162,7 @@ class Builder {
   Model model_;
   Taper taper_;
   Dispersion dispersion_;
+  std::size_t terms_ = most_terms;  // terms of the series for one piece
 };
 
 // True if each edge has a fixed k s (wavenumber times distance from the apex) at all frequencies, whatever
@@ -204,17 +212,13 @@ EdgeTable make_edge_table(const Surface& surface, const MapOptions& options, Mod
   }
   table.closed = false;
   const std::vector<double> survey = builder.survey();
-  int first = -1, last = -1;
-  for (int i = 0; i < static_cast<int>(survey.size()); ++i) {
-    if (!builder.ratio(survey[static_cast<std::size_t>(i)])) continue;
-    if (first < 0) first = i;
-    last = i;
-  }
-  if (first < 0) throw std::domain_error("edge " + format(options.edge) + " does not exist on this surface");
-  const auto at = [&](int i) { return survey[static_cast<std::size_t>(i)]; };
-  table.low_Hz = first == 0 ? at(0) : builder.limit(at(first), at(first - 1));
-  const bool ends = last + 1 < static_cast<int>(survey.size());
-  table.high_Hz = ends ? builder.limit(at(last), at(last + 1)) : at(last);
+  const auto exists = [&](double f) { return builder.ratio(f).has_value(); };
+  const auto lowest = std::find_if(survey.begin(), survey.end(), exists);
+  const auto highest = std::find_if(survey.rbegin(), survey.rend(), exists);
+  if (lowest == survey.end())
+    throw std::domain_error("edge " + format(options.edge) + " does not exist on this surface");
+  table.low_Hz = lowest == survey.begin() ? *lowest : builder.limit(*lowest, *(lowest - 1));
+  table.high_Hz = highest == survey.rbegin() ? *highest : builder.limit(*highest, *(highest - 1));
   builder.fill(table, std::log(table.low_Hz), std::log(table.high_Hz), 0);
   if (table.pieces.empty()) {
     throw std::domain_error("edge " + format(options.edge) + " could not be tabulated on this surface");

@@ -142,9 +142,8 @@ Scaled ModalLine::beyond(double x, int derivative) const {
 
 std::unique_ptr<CentreLine> make_modal_line(const Surface& surface, double f, Losses losses,
                                             const ModalResolution& resolution) {
-  if (resolution.degree < 4 || resolution.degree > largest_degree) {
-    throw std::invalid_argument("degree is " + std::to_string(resolution.degree) + "; allowed: 4 to 12");
-  }
+  if (resolution.degree && (*resolution.degree < 4 || *resolution.degree > largest_degree))
+    throw std::invalid_argument("degree is " + std::to_string(*resolution.degree) + "; allowed: 4 to 12");
   return std::make_unique<ModalLine>(surface, f, losses, resolution);
 }
 

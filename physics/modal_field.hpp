@@ -3,6 +3,7 @@
 // functions times finite elements along x.
 #include <functional>
 #include <memory>
+#include <optional>
 
 #include "physics/centre_line.hpp"
 
@@ -11,7 +12,9 @@ namespace turnpoint::physics {
 // The resolution of the field. With the default values, the field agrees with the exact two-dimensional field
 // to 1e-5 or better.
 struct ModalResolution {
-  int degree = 7;           // degree of the polynomials along x
+  // Degree of the polynomials along x; if empty, 7, or 5 for a thick plate, whose solution takes long and
+  // which then agrees with a finer one to 1e-4.
+  std::optional<int> degree;
   double radians = 2.5;     // phase (wavenumber times length, in radians) that one element spans
   int spare_functions = 3;  // number of transverse functions beyond those that can propagate
   // Displacement of the drive edge as a function of eta = y/W in [0, 1]. If empty, the surface's `drive` is

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "physics/condensed.hpp"
 #include "physics/dispersion.hpp"
 #include "physics/field.hpp"
 #include "physics/modal_setup.hpp"
@@ -49,8 +50,7 @@ class Chain {
  private:
   struct Link {
     Eigen::Index left, right;
-    Eigen::PartialPivLU<Matrix> bubbles;
-    Matrix follow;                                // gives bubbles = -follow (left, right)
+    Condensed element;
     Eigen::PartialPivLU<Matrix> right_stiffness;  // stiffness of the right vertex and everything beyond it
     Matrix pull;                                  // gives right vertex = -pull (left vertex)
   };
@@ -64,16 +64,8 @@ Chain::Chain(const Strip& strip) {
     Link& link = links_[i];
     const Sizes size(strip.elements[i], strip.setup.along.per_vertex);
     link.left = size.left, link.right = size.right;
-    const Matrix& k = strip.matrices[i];
-    const Eigen::Index ends = link.left + link.right, inner = k.rows() - ends;
-    Matrix coupling(inner, ends), outer(ends, ends);
-    coupling << k.block(link.left, 0, inner, link.left),
-        k.block(link.left, link.left + inner, inner, link.right);
-    outer << k.topLeftCorner(link.left, link.left), k.topRightCorner(link.left, link.right),
-        k.bottomLeftCorner(link.right, link.left), k.bottomRightCorner(link.right, link.right);
-    link.bubbles.compute(k.block(link.left, link.left, inner, inner));
-    link.follow = link.bubbles.solve(coupling);
-    outer -= coupling.transpose() * link.follow;
+    link.element = Condensed(strip.matrices[i].real(), strip.matrices[i].imag(), link.left, link.right);
+    const Matrix& outer = link.element.ends();
     Matrix left = outer.topLeftCorner(link.left, link.left);
     if (link.right > 0) {
       link.right_stiffness.compute(outer.bottomRightCorner(link.right, link.right) + tail);
@@ -93,11 +85,12 @@ std::complex<double> Chain::quadratic(std::size_t first, const std::vector<Vecto
     if (vertex.size() > 0) right = vertex;
     if (i >= first) {
       const Vector& load = loads[i - first];
-      const Vector bubbles = load.segment(link.left, load.size() - link.left - link.right);
-      sum += (bubbles.transpose() * link.bubbles.solve(bubbles))(0, 0);
-      const Vector ends = link.follow.transpose() * bubbles;
-      left = load.head(link.left) - ends.head(link.left);
-      right += load.tail(link.right) - ends.tail(link.right);
+      const Vector bubbles =
+          link.element.reduce(load.segment(link.left, load.size() - link.left - link.right));
+      sum += link.element.quadratic(bubbles);
+      const Vector ends = link.element.load_on_ends(bubbles);
+      left = load.head(link.left) + ends.head(link.left);
+      right += load.tail(link.right) + ends.tail(link.right);
     }
     if (link.right > 0) {
       sum += (right.transpose() * link.right_stiffness.solve(right))(0, 0);
@@ -115,8 +108,8 @@ std::vector<Vector> Chain::driven(const Eigen::VectorXd& drive) const {
     Vector ends(link.left + link.right);
     ends.head(link.left) = left;
     if (link.right > 0) ends.tail(link.right) = -(link.pull * left);
-    Vector& u = all.emplace_back(ends.size() + link.follow.rows());
-    u << left, -(link.follow * ends), ends.tail(link.right);
+    Vector& u = all.emplace_back(ends.size() + link.element.bubbles());
+    u << left, link.element.follow(ends), ends.tail(link.right);
     left = ends.tail(link.right);
   }
   return all;
@@ -136,7 +129,8 @@ Strip thick_strip(const Surface& surface, double f, Parity parity) {
   std::vector<Matrix> matrices;
   for (ModalElement& e : elements) {
     e.left = e.right = static_cast<int>(section.count());
-    matrices.push_back(section_element_matrix(section, setup, omega2, e));
+    const SectionElement one = section_element(section, setup, e);
+    matrices.push_back(one.stiffness - omega2 * one.mass);
   }
   elements.back().right = 0;
   const Eigen::Index kept = matrices.back().rows() - section.count();

@@ -48,6 +48,7 @@ ModalSetup make_modal_setup(const Surface& surface, double f, Losses losses,
   const std::complex<double> lossy =
       k * std::complex<double>(1, losses == Losses::kept ? -0.5 / surface.quality_factor : 0);
   const bool plate = dispersion.clamped_bending();
+  const bool thick = plate && surface.theory != PlateTheory::kirchhoff;
   ModalEquation equation;
   equation.inertia = lossy * lossy;
   if (plate) {  // the equation of a plate is divided by D
@@ -58,7 +59,7 @@ ModalSetup make_modal_setup(const Surface& surface, double f, Losses losses,
   return {Taper(surface),
           k,
           make_across(surface, f, resolution),
-          ElementBasis{resolution.degree, plate && surface.theory == PlateTheory::kirchhoff ? 2 : 1},
+          ElementBasis{resolution.degree.value_or(thick ? 5 : 7), plate && !thick ? 2 : 1},
           equation,
           turning_point_m(surface, f)
               .value_or(f < dispersion.cut_off_frequency_Hz(half_width_m(surface, 0)) ? 0 : surface.length_m),

@@ -82,9 +82,11 @@ double plate_step_Hz(const Surface& surface, double f) {
 // response is roughly a cosine of frequency with amplitude 1 and many periods, so the relative error of the
 // frequency is smaller than the magnitude of the response.
 double plate_zero(const Surface& surface, const Chord& chord) {
+  // A thick plate's solution takes long, and a millionth is far less than the width of a resonance.
+  const double enough = surface.theory == PlateTheory::kirchhoff ? 1e-9 : 1e-6;
   return false_position(
-      chord, [&](double f) { return plate_response(surface, f).value_or(chord.f_left); }, {8, true}, 1e-9,
-      [](const Chord& c) { return c.width() <= 1e-9 * c.right; });
+      chord, [&](double f) { return plate_response(surface, f).value_or(chord.f_left); }, {8, true}, enough,
+      [enough](const Chord& c) { return c.width() <= enough * c.right; });
 }
 
 // Walks along the frequency axis in steps and reports each resonance that it passes.

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "physics/dispersion.hpp"
+#include "physics/root.hpp"
 #include "physics/section_elements.hpp"
 #include "physics/transverse_basis.hpp"
 
@@ -21,9 +22,10 @@ SectionMatrix weighted_gram(const Components& a, const SectionMatrix& law, const
                             const Eigen::VectorXd& weight) {
   SectionMatrix sum = SectionMatrix::Zero(a.front().rows(), b.front().rows());
   for (std::size_t i = 0; i < a.size(); ++i) {
+    if (a[i].isZero(0)) continue;
     for (std::size_t j = 0; j < b.size(); ++j) {
       const double part = law(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j));
-      if (part != 0) sum += part * a[i] * weight.asDiagonal() * b[j].transpose();
+      if (part != 0 && !b[j].isZero(0)) sum += part * a[i] * weight.asDiagonal() * b[j].transpose();
     }
   }
   return sum;
@@ -135,14 +137,12 @@ SectionPencil mindlin_pencil(const SectionBasis& b, double half_width, Eigen::In
   return p;
 }
 
-// The model `mode` uses the cut-off shapes of strips with these three half-widths. The first is that of the
+// The model `mode` uses the cut-off shapes of strips with these two half-widths. The first is that of the
 // drive edge, whose shape drives the strip. The second is that of the tone's turning point, where the shapes
-// are exact. The third is narrower. Deflection, rotation and thickening change differently as the strip
-// narrows; three half-widths let the solution follow them.
-std::array<double, 3> shape_widths(const Surface& surface, double f) {
+// are exact.
+std::array<double, 2> shape_widths(const Surface& surface, double f) {
   const double drive = half_width_m(surface, 0);
-  const double turning = std::min(Dispersion(surface).cut_off_half_width_m(f), 0.85 * drive);
-  return {drive, turning, 0.75 * turning};
+  return {drive, std::min(Dispersion(surface).cut_off_half_width_m(f), 0.85 * drive)};
 }
 
 // Returns k_x^2 of the first mode's travelling wave at the drive edge, by Mindlin's theory. It is the largest
@@ -151,12 +151,15 @@ double travelling2(const Surface& surface, double f) {
   const MindlinPlate plate(surface);
   const double w = half_width_m(surface, 0), highest = plate.waves(f).bending;
   constexpr int steps = 200;
-  double above = plate.characteristic(f, w, highest * (1 - 0.5 / steps));
+  const auto at = [&](double along2) { return plate.characteristic(f, w, along2); };
+  Chord step{0, 0, highest * (1 - 0.5 / steps), 0};
+  step.f_right = at(step.right);
   for (int i = 1; i < steps; ++i) {
-    const double along2 = highest * (1 - (i + 0.5) / steps);
-    const double value = plate.characteristic(f, w, along2);
-    if ((value > 0) != (above > 0)) return along2 + 0.5 * highest / steps;
-    above = value;
+    step.left = highest * (1 - (i + 0.5) / steps);
+    step.f_left = at(step.left);
+    if ((step.f_left > 0) != (step.f_right > 0))
+      return false_position(step, at, {4}, 0, [](const Chord& c) { return c.width() <= 1e-9 * c.right; });
+    step.right = step.left, step.f_right = step.f_left;
   }
   return 0;
 }
@@ -179,18 +182,14 @@ SectionMatrix mindlin_columns(const SectionBasis& full, double half_width, Eigen
 }
 
 SectionBasis mindlin_shapes(const Surface& surface, double f) {
-  constexpr int each = 12;
+  constexpr int each = 8;
   const SectionBasis full = mindlin_section(MindlinPlate(surface), each);
-  SectionMatrix shapes(full.count(), 12);
-  Eigen::Index at = 0;
-  for (const double w : shape_widths(surface, f)) {
-    shapes.middleCols(at, 3) = mindlin_columns(full, w, each);
-    at += 3;
-  }
-  const double drive = half_width_m(surface, 0);
-  const SectionShapes wave =
-      section_shapes_of(mindlin_pencil(full, drive, each), 2 * std::numbers::pi * f, travelling2(surface, f));
-  shapes.middleCols(at, 3) = columns(wave, wave.cross.dot(full.centre.tail(full.count() - each)));
+  const auto widths = shape_widths(surface, f);
+  const SectionShapes wave = section_shapes_of(mindlin_pencil(full, widths[0], each),
+                                               2 * std::numbers::pi * f, travelling2(surface, f));
+  SectionMatrix shapes(full.count(), 9);
+  shapes << mindlin_columns(full, widths[0], each), mindlin_columns(full, widths[1], each),
+      columns(wave, wave.cross.dot(full.centre.tail(full.count() - each)));
   SectionBasis basis;
   for (std::size_t i = 0; i < 4; ++i) {
     for (std::size_t j = 0; j < 4; ++j) basis.stiff[i][j] = shapes.transpose() * full.stiff[i][j] * shapes;

@@ -30,7 +30,7 @@ struct SectionBasis {
 // full two-dimensional field. The parity is that of the deflection. Odd fields have no drive.
 SectionBasis mindlin_polynomials(const Surface& surface, int each, Parity parity = Parity::even);
 
-// Makes functions by Kantorovich's method from four shapes: the cut-off shapes at three half-widths, and the
+// Makes functions by Kantorovich's method from three shapes: the cut-off shapes at two half-widths, and the
 // shape of the travelling wave at the drive edge. Each shape gives one function for the motion in the
 // cross-section and two for the motion along x. Together they describe the propagating and the evanescent
 // wave of the strip. At the turning point they are exact to first order in k_x^2.

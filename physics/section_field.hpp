@@ -16,9 +16,12 @@ void solve_section_elements(const Surface& surface, double frequency_Hz, Losses 
                             const ModalResolution& resolution, const ModalSetup& setup,
                             std::vector<ModalElement>& elements);
 
-// The symmetric matrix of an element for the squared angular frequency `omega2`. Unknowns are ordered by
+// The symmetric matrices of an element. The field obeys stiffness - omega^2 mass. Unknowns are ordered by
 // basis function along x, then by function of the section.
-Eigen::MatrixXcd section_element_matrix(const SectionBasis& section, const ModalSetup& setup,
-                                        std::complex<double> omega2, const ModalElement& element);
+struct SectionElement {
+  Eigen::MatrixXd stiffness, mass;
+};
+SectionElement section_element(const SectionBasis& section, const ModalSetup& setup,
+                               const ModalElement& element);
 
 }  // namespace turnpoint::physics

@@ -159,8 +159,7 @@ double wave_speed_m_s(const Surface& surface);
 bool bending_modelled(const Surface& surface);
 
 // Reference surfaces for tests and examples: the 1998 paper's brass membrane (30 mm half-width, slope 0.1,
-// 5.12 GPa; no loss), and the aluminium plate of the simulated rig (clamped, 14 mm, slope 0.03, 2 mm thick, Q
-// = 60).
+// 5.12 GPa; no loss), and an aluminium plate (clamped, 14 mm, slope 0.03, 2 mm thick, Q = 60).
 Surface seed_brass();
 Surface aluminium_plate();
 

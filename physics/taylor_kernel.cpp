@@ -4,13 +4,7 @@
 #include <cmath>
 #include <cstdint>
 
-// Compiles a function for several instruction sets, if compiler and C library support this.
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__) && \
-    !defined(__SANITIZE_THREAD__)
-#define TURNPOINT_CLONES __attribute__((target_clones("avx512f", "avx2", "default")))
-#else
-#define TURNPOINT_CLONES
-#endif
+#include "physics/instruction_sets.hpp"
 
 namespace turnpoint::physics {
 namespace {

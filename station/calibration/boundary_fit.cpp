@@ -37,6 +37,7 @@ BoundaryFit fit_boundaries(const rig::Rig& rig, const std::string& edge, std::ve
       points[i].residual_m = fit.residuals_m[i];
       points[i].deviation = fit.deviations[i];
       points[i].outlier = fit.outliers[i];
+      points[i].left_out = fit.left_out && fit.outliers[i];
     }
     return {physics::format(options.edge), std::move(points), surface_fit(fit)};
   } catch (const std::domain_error& error) {

@@ -40,6 +40,7 @@ std::string boundary_toml(const BoundaryFit& fit) {
   out += numbers("residual_mm", fit.points, [](const auto& p) { return p.residual_m * 1e3; });
   out += numbers("deviation", fit.points, [](const auto& p) { return p.deviation; });
   out += numbers("outlier", fit.points, [](const auto& p) { return p.outlier ? 1.0 : 0.0; });
+  out += numbers("left_out", fit.points, [](const auto& p) { return p.left_out ? 1.0 : 0.0; });
   for (const auto& p : fit.surface.parameters) {
     out += fmt::format("\n[[boundary.parameter]]\nname = {}\nchange = {}\nsd = {}\nstated_sd = {}\n",
                        quoted(p.name), exact(p.change), exact(p.sd), exact(p.stated_sd));
@@ -184,13 +185,16 @@ std::optional<BoundaryFit> read_boundary(const text::Value& table, text::Finding
              deviation = reader.numbers("deviation", {-large, large}),
              outlier = reader.numbers("outlier", {0, 1});
   const auto n = frequency.size();
+  // calibrations of earlier releases used every boundary
+  const auto left_out = reader.has("left_out") ? reader.numbers("left_out", {0, 1}) : std::vector<double>(n);
   if (same_length(reader, "boundary_mm", boundary.size(), n) && same_length(reader, "sd_mm", sd.size(), n) &&
       same_length(reader, "residual_mm", residual.size(), n) &&
       same_length(reader, "deviation", deviation.size(), n) &&
-      same_length(reader, "outlier", outlier.size(), n))
+      same_length(reader, "outlier", outlier.size(), n) &&
+      same_length(reader, "left_out", left_out.size(), n))
     for (std::size_t k = 0; k < n; ++k)
-      fit.points.push_back(
-          {frequency[k], boundary[k] * 1e-3, sd[k] * 1e-3, residual[k] * 1e-3, deviation[k], outlier[k] > 0});
+      fit.points.push_back({frequency[k], boundary[k] * 1e-3, sd[k] * 1e-3, residual[k] * 1e-3, deviation[k],
+                            outlier[k] > 0, left_out[k] > 0});
   for (const text::Value* parameter : reader.tables("parameter"))
     fit.surface.parameters.push_back(read_parameter(*parameter, fit.surface.parameters.size(), findings));
   reader.finish();

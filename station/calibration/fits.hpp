@@ -20,6 +20,7 @@ struct BoundaryPoint {
   /// distance from the position that the other boundaries predict, in standard deviations
   double deviation = 0;
   bool outlier = false;
+  bool left_out = false;  ///< an outlier that the fit does not use
 };
 
 /// The result of fitting the rig's surface to measured boundaries.

@@ -85,9 +85,6 @@ void describe(SceneLook& look) {
 
 }  // namespace
 
-Preview::Preview(const std::string& protocol_path, const std::string& rig_path)
-    : Preview(protocol::load(protocol_path), rig::load(rig_path)) {}
-
 Preview::Preview(protocol::Protocol protocol, rig::Rig rig)
     : protocol_(std::move(protocol)), rig_(std::move(rig)), planner_(rig_) {}
 
@@ -166,6 +163,7 @@ SceneLook look_at(scene::DrivePlan planned, protocol::Factors factors, scene::Pl
   look.factors = std::move(factors);
   look.plan = std::move(planned);
   look.profile = planner.profile(look.plan, kProfilePoints);
+  look.under = planner.under_finger(look.plan);
   describe(look);
   return look;
 }

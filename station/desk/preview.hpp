@@ -31,7 +31,9 @@ struct SceneLook {
   protocol::Factors factors;
   std::string problem;  ///< why this rig cannot present the scene; if not "", all members below are empty
   scene::DrivePlan plan;
-  scene::Planner::Profile profile;  ///< kProfilePoints points, starting at the wide end
+  /// the surface without a finger, at kProfilePoints points, starting at the wide end
+  scene::Planner::Profile profile;
+  scene::UnderFinger under;
   /// (label, value) in reading order
   std::vector<std::pair<std::string, std::string>> facts, cues;
 };
@@ -41,8 +43,6 @@ constexpr int kProfilePoints = 401;
 /// Plans the scenes of a protocol on a rig, without a session. Not thread-safe.
 class Preview {
  public:
-  /// Throws text::BadInput with all problems of both files, or std::system_error if a file cannot be read.
-  Preview(const std::string& protocol_path, const std::string& rig_path);
   Preview(protocol::Protocol protocol, rig::Rig rig);
 
   const protocol::Protocol& protocol() const { return protocol_; }

@@ -199,7 +199,7 @@ plot::Figure profile_figure(const std::vector<SceneLook>& looks) {
   if (looks.empty()) throw std::invalid_argument("there is no scene to draw");
   plot::Figure figure;
   figure.title = "Displacement and friction";
-  plot::Chart displacement{"Displacement", {}, {"Displacement (\u00b5m)", 0, 1}, {}};
+  plot::Chart displacement{"Displacement without a finger", {}, {"Displacement (\u00b5m)", 0, 1}, {}};
   plot::Chart friction{"Friction under a fingertip", {}, {"Friction, relative", 0, 1.2}, {}};
   const bool several = looks.size() > 1;
   double most_um = 0;
@@ -210,14 +210,16 @@ plot::Figure profile_figure(const std::vector<SceneLook>& looks) {
     plot::Line line;
     line.series = static_cast<int>(i);
     line.name = several ? std::to_string(i + 1) + " " + look.scene : "";
+    plot::Line felt = line;
+    for (const double x : look.under.profile_x_m) felt.x.push_back(1e3 * x);
+    felt.y = look.under.profile_friction;
     for (const double x : look.profile.x_m) line.x.push_back(1e3 * x);
-    line.y = look.profile.friction;
-    friction.layers.push_back(line);
-    for (std::size_t k = 0; k < line.y.size(); ++k) line.y[k] = 1e6 * look.profile.displacement_m[k];
+    for (const double a : look.profile.displacement_m) line.y.push_back(1e6 * a);
     most_um = std::max(most_um, *std::max_element(line.y.begin(), line.y.end()));
     // With a single scene, displacement and friction would get the same series number and look. Give the
     // friction curve another number.
-    if (!several) std::get<plot::Line>(friction.layers.back()).series = 1;
+    if (!several) felt.series = 1;
+    friction.layers.push_back(felt);
     displacement.layers.push_back(line);
   }
   if (most_um > 0) displacement.y.high = 1.15 * most_um;

@@ -28,6 +28,15 @@ FingerModel::FingerModel(const Finger& finger, const physics::FrictionMap& map, 
   state_.finger_m = state_.contact_m = finger.from_m;
 }
 
+void FingerModel::touch(const Touch& touch) {
+  finger_.touches = {touch};
+  touch_ = 0;
+}
+
+void FingerModel::lift(std::int64_t frame) {
+  for (auto& touch : finger_.touches) touch.to_frame = std::min(touch.to_frame, frame);
+}
+
 bool FingerModel::scheduled(std::int64_t frame) {
   const auto& touches = finger_.touches;
   while (touch_ < touches.size() && frame >= touches[touch_].to_frame) ++touch_;

@@ -29,6 +29,10 @@ class FingerModel {
   FingerModel(const Finger& finger, const physics::FrictionMap& map, double step_s, int frames_per_step,
               std::uint64_t seed);
 
+  /// Replaces all touches by this one. Its frames are those of step().
+  void touch(const Touch& touch);
+  /// No touch lasts beyond this frame.
+  void lift(std::int64_t frame);
   /// Position at which the finger touches before the next step. step() needs the amplitude at this position.
   double contact_m() const { return state_.contact_m; }
   /// Advances to the step that begins at frame `frame` of the laboratory. `amplitude_m` is the surface's

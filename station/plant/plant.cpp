@@ -54,6 +54,10 @@ void Plant::add(const Fault& fault) {
   next_change_ = captured_;
 }
 
+void Plant::touch(std::int64_t frames) { finger_.touch({world_, world_ + frames}); }
+
+void Plant::lift(std::int64_t frames) { finger_.lift(world_ + frames); }
+
 void Plant::repair() {
   for (auto& fault : faults_) fault.to_frame = std::min(fault.to_frame, captured_);
   std::erase_if(faults_, [](const Fault& fault) { return fault.to_frame <= fault.from_frame; });

@@ -52,6 +52,11 @@ class Plant {
   void add(const Fault& fault);
   /// Ends all faults with the next captured frame.
   void repair();
+  /// The finger touches the surface from the next captured frame on, for this many frames, and begins a new
+  /// sequence of strokes. Earlier touches are forgotten.
+  void touch(std::int64_t frames);
+  /// The finger leaves the surface this many frames from now, or earlier if touch() says so.
+  void lift(std::int64_t frames);
   /// Replaces the load on the surface from the next frame on. An empty load removes it.
   void set_load(const Load& load) { load_ = load; }
 

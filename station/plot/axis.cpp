@@ -36,10 +36,11 @@ std::string label(double value) {
 std::vector<Tick> linear_ticks(const Axis& axis, int wanted) {
   const double rough = (axis.high - axis.low) / std::max(wanted, 2);
   const double decade = std::pow(10.0, std::floor(std::log10(rough)));
-  const double step = rough / decade < 1.5   ? decade
-                      : rough / decade < 3.5 ? 2 * decade
-                      : rough / decade < 7.5 ? 5 * decade
-                                             : 10 * decade;
+  const double round = rough / decade < 1.5   ? decade
+                       : rough / decade < 3.5 ? 2 * decade
+                       : rough / decade < 7.5 ? 5 * decade
+                                              : 10 * decade;
+  const double step = axis.counts ? std::max(1.0, round) : round;
   std::vector<Tick> result;
   const double slack = 1e-9 * (axis.high - axis.low);
   for (double n = std::ceil((axis.low - slack) / step); n * step <= axis.high + slack; ++n)

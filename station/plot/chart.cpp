@@ -288,9 +288,18 @@ Division divided_with_room(const Chart& chart, const Place& place, VerticalLabel
   return d;
 }
 
+/// Draws a chart's title above its data. A long title begins further left, and shrinks if that is not enough.
+void draw_title(Canvas& canvas, const std::string& title, const Place& place, double left) {
+  const double right = place.left + place.width - kPad;
+  const double width = text_width(title, kTitle);
+  const double begin = std::max(place.left + kPad, std::min(left, right - width));
+  const double size = width > right - begin ? kTitle * (right - begin) / width : kTitle;
+  canvas.text({begin, place.top + kPad + 14}, title, size, Anchor::start, kInk, 600);
+}
+
 void draw_chart(Canvas& canvas, const Chart& chart, const Place& place, const Division& d) {
   const auto& frame = d.labelled.frame;
-  canvas.text({d.left, place.top + kPad + 14}, chart.title, kTitle, Anchor::start, kInk, 600);
+  draw_title(canvas, chart.title, place, d.left);
   draw_legend(&canvas, d.entries, d.left, d.legend_top, d.width);
   draw_axes(canvas, frame, ticks_with_room(chart.x, frame.width), d.up);
   canvas.text({place.left + kPad + 10, frame.y + frame.height / 2}, chart.y.label, kText, Anchor::middle,

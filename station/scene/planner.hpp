@@ -89,6 +89,8 @@ struct UnderFinger {
   std::optional<double> zone_friction, residual;
   /// how far the edge of the highest tone is shifted for a moving finger
   std::optional<double> boundary_shift_m;
+  /// friction under a finger at each of these places
+  std::vector<double> profile_x_m, profile_friction;
 };
 
 /// Turns scenes into drive plans for one rig. The result of plan() depends only on the scene and the rig; the

@@ -152,6 +152,7 @@ UnderFinger finger_figures(const physics::Surface& surface, const physics::Frict
   under.free_friction = nearest(loaded.x_m, free, under.finger_m);
   under.friction = nearest(loaded.x_m, pressed, under.finger_m);
   under.lowest_friction = *std::min_element(pressed.begin(), pressed.end());
+  under.profile_x_m = loaded.x_m, under.profile_friction = pressed;
   if (const auto zone = zone_of(plan.scene, loaded.x_m, pressed)) {
     under.zone_friction = zone->mean;
     under.residual = zone->rms;

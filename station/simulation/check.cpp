@@ -6,7 +6,9 @@
 #include <optional>
 
 #include "station/observer/observer.hpp"
+#include "station/protocol/answers.hpp"
 #include "station/protocol/design_advice.hpp"
+#include "station/protocol/triggers.hpp"
 #include "station/simulation/parallel.hpp"
 #include "station/simulation/rehearsal.hpp"
 
@@ -26,6 +28,8 @@ struct Estimate {
   double duration_s = 0;
   std::vector<CheckedBlock> blocks;
   std::vector<double> trials;
+
+  double sum() const { return std::accumulate(trials.begin(), trials.end(), 0.0); }
 };
 
 double longest_s(const Protocol& protocol) {
@@ -49,7 +53,8 @@ Rehearser person(const Protocol& protocol) {
 /// choose when to answer.
 double exploring_s(const Protocol& protocol) {
   const auto& task = protocol.task;
-  const bool free = task.kind == protocol::TaskKind::single_interval && !task.foreperiod_s;
+  const bool free =
+      task.kind == protocol::TaskKind::single_interval && protocol::explored(task) && !task.foreperiod_s;
   return free ? explored_share * longest_s(protocol) : 0;
 }
 
@@ -80,15 +85,6 @@ Estimate simulate(const Protocol& protocol, std::uint64_t seed) {
   return estimate;
 }
 
-Spread spread_of(std::vector<double> values) {
-  if (values.empty()) return {};
-  std::sort(values.begin(), values.end());
-  const auto at = [&](double share) {
-    return values[static_cast<std::size_t>(std::lround(share * static_cast<double>(values.size() - 1)))];
-  };
-  return {at(0.05), at(0.5), at(0.95)};
-}
-
 void estimate(const Protocol& protocol, int sessions, const std::stop_token& stop, Check& check) {
   std::vector<double> durations, trials;
   std::vector<Estimate> estimates(static_cast<std::size_t>(sessions));
@@ -102,7 +98,7 @@ void estimate(const Protocol& protocol, int sessions, const std::stop_token& sto
     for (std::size_t b = 0; b < std::min(by_block.size(), estimate.trials.size()); ++b)
       by_block[b].push_back(estimate.trials[b]);
     durations.push_back(estimate.duration_s);
-    trials.push_back(std::accumulate(estimate.trials.begin(), estimate.trials.end(), 0.0));
+    trials.push_back(estimate.sum());
   }
   for (std::size_t b = 0; b < check.blocks.size(); ++b) check.blocks[b].trials = spread_of(by_block[b]);
   check.trials = spread_of(trials);
@@ -138,6 +134,35 @@ std::optional<scene::FingerShares> shares(const protocol::Survey& survey, const 
 
 }  // namespace
 
+Spread spread_of(std::vector<double> values) {
+  if (values.empty()) return {};
+  std::sort(values.begin(), values.end());
+  // Of n sorted values, the share k / (n + 1) of all sessions is expected below the k-th.
+  const auto last = static_cast<long>(values.size()) - 1;
+  const auto at = [&](double share) {
+    const auto k = std::lround(share * static_cast<double>(last + 2)) - 1;
+    return values[static_cast<std::size_t>(std::clamp(k, 0L, last))];
+  };
+  return {at(0.05), at(0.5), at(0.95)};
+}
+
+SessionLength session_length(const Protocol& protocol, std::uint64_t seed) {
+  const auto estimate = simulate(protocol, seed);
+  return {estimate.sum(), estimate.duration_s};
+}
+
+int usual_sessions(const Protocol& protocol) {
+  double most = 0;  // combinations that a procedure evaluates in each trial
+  for (const auto& spec : protocol.procedures) {
+    double combinations = static_cast<double>(spec.stimuli.values.size());
+    for (const auto* grid : {&spec.threshold, &spec.slope, &spec.guess, &spec.lapse})
+      combinations *= static_cast<double>(std::max<std::size_t>(1, grid->values.size()));
+    most = std::max(most, combinations);
+  }
+  constexpr double quick = 4e4;  // about half a millisecond
+  return most > quick ? 200 : 1000;
+}
+
 Check check(const std::string& protocol_path, const std::string& rig_path, const CheckOptions& options,
             const std::stop_token& stop) {
   Check check;
@@ -151,7 +176,7 @@ Check check(const std::string& protocol_path, const std::string& rig_path, const
     }
   };
   gather([&] { protocol = protocol::load(protocol_path); });
-  gather([&] { rig = rig::load(rig_path); });
+  gather([&] { rig = options.load_rig(rig_path); });
   if (!check.problems.empty()) return check;
   check.id = protocol->id, check.title = protocol->title, check.rig_name = rig->name;
   check.protocol_defaults = protocol->defaults_used;
@@ -160,8 +185,9 @@ Check check(const std::string& protocol_path, const std::string& rig_path, const
   check.problems = check.survey.problems;
   check.warnings = check.survey.warnings;
   check.notes = protocol::notes(*protocol);
+  if (rig::largest_trigger_code(*rig) > 0) check.triggers = protocol::trigger_codes(*protocol);
   try {
-    estimate(*protocol, options.sessions, stop, check);
+    estimate(*protocol, options.sessions.value_or(usual_sessions(*protocol)), stop, check);
     if (stop.stop_requested()) throw protocol::Abandoned();
     if (options.sound && check.problems.empty()) check.sound = loudest(check.survey, *rig, stop);
     if (options.finger && check.problems.empty()) check.finger = shares(check.survey, *rig);

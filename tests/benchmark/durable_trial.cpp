@@ -81,6 +81,7 @@ struct Bare {
     database.execute(std::string("PRAGMA journal_mode = WAL; PRAGMA synchronous = ") + synchronous);
     create_bare(trial_table());
     create_bare(tone_table());
+    create_bare(signal_table());
     create_bare(event_table());
     rows = std::make_unique<RowWriter>(database);
     begin = std::make_unique<Statement>(database, "BEGIN IMMEDIATE");

@@ -10,6 +10,7 @@
 #include "station/system/write_file.hpp"
 #include "tests/benchmark/intervals.hpp"
 #include "tests/benchmark/physics.hpp"
+#include "tests/benchmark/planning.hpp"
 #include "tests/benchmark/procedures.hpp"
 #include "tests/benchmark/sensing.hpp"
 #include "tests/benchmark/store.hpp"
@@ -29,10 +30,12 @@ struct Options {
   bool json = false;
 };
 
-const std::vector<std::string> kAll{"physics", "synth", "procedures", "intervals", "sensing", "store"};
+const std::vector<std::string> kAll{"physics",   "planning", "synth", "procedures",
+                                    "intervals", "sensing",  "store"};
 
 Report measure(const std::string& what, const Options& options) {
   if (what == "physics") return bench_physics(options.seconds);
+  if (what == "planning") return bench_planning();
   if (what == "synth") return bench_synth();
   if (what == "procedures") return bench_procedures();
   if (what == "intervals") return bench_intervals();
@@ -95,7 +98,7 @@ int main(int argc, char** argv) {
   Options options;
   CLI::App app{"Speed against accuracy on this machine, as tables and plots"};
   app.add_option("what", options.what,
-                 "physics | synth | procedures | intervals | sensing | store; otherwise all")
+                 "physics | planning | synth | procedures | intervals | sensing | store; otherwise all")
       ->check(CLI::IsMember(kAll));
   app.add_option("--out", options.out, "Folder for CSV tables and SVG plots");
   app.add_option("--seconds", options.seconds, "About how long physics may measure")

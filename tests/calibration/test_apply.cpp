@@ -24,7 +24,7 @@ Calibration measured() {
   return calibration;
 }
 
-rig::Rig plate() { return rig::load(std::string(TURNPOINT_SOURCE_DIR) + "/deploy/rigs/simulated.toml"); }
+rig::Rig plate() { return rig::load(std::string(TURNPOINT_SOURCE_DIR) + "/tests/support/thin_plate.toml"); }
 
 }  // namespace
 

@@ -41,7 +41,7 @@ Measurements measurements() {
   return files;
 }
 
-rig::Rig plate() { return rig::load(std::string(TURNPOINT_SOURCE_DIR) + "/deploy/rigs/simulated.toml"); }
+rig::Rig plate() { return rig::load(std::string(TURNPOINT_SOURCE_DIR) + "/tests/support/thin_plate.toml"); }
 
 // A plate that is held 0.25 mm behind the clamp's edge and is 2 % too thin.
 physics::Surface other_plate() {
@@ -122,7 +122,17 @@ TEST_CASE("the map of a rig with measured boundaries is that of the plate on whi
 TEST_CASE("boundaries that cannot be used are refused, wrong ones are named", "[calibration]") {
   auto points = points_on(map_of(other_plate()));
   points[1].boundary_m += 10e-3;
-  CHECK(fit_boundaries(plate(), "p50", points).points[1].outlier);
+  Calibration calibration;
+  calibration.boundary = fit_boundaries(plate(), "p50", points);
+  CHECK(calibration.boundary->points[1].outlier);
+  CHECK(calibration.boundary->points[1].left_out);
+  CHECK_FALSE(calibration.boundary->points[0].left_out);
+  calibration.rig_name = "r", calibration.rig_sha256 = "abc", calibration.made_on = "2026-02-27";
+  auto text = to_toml(calibration);
+  CHECK(parse(text, "a.toml").boundary->points[1].left_out);
+  const auto line = text.find("left_out");
+  text.erase(line, text.find('\n', line) - line);
+  CHECK_FALSE(parse(text, "a.toml").boundary->points[1].left_out);
   points[1].sd_m = 0;
   CHECK_THROWS_AS(fit_boundaries(plate(), "p50", points), terms::UsageError);
   CHECK_THROWS_AS(fit_boundaries(plate(), "friction=0.7", points), terms::UsageError);

@@ -170,6 +170,37 @@ TEST_CASE("a boundary that was read wrongly is named", "[physics]") {
   CHECK(names() == std::vector<bool>{true, true});
 }
 
+TEST_CASE(
+    "a boundary that was read wrongly does not change the fit, and those that contradict each other stay",
+    "[physics]") {
+  std::mt19937_64 random(7);
+  const Surface nominal = plate(), truth = random_surface(nominal, random);
+  auto points = measured(nominal, truth, 6, 0.2e-3, random);
+  auto others = points;
+  others.erase(others.begin() + 3);
+  points[3].boundary_m += 3e-3;
+  const BoundaryFit fit = fit_boundaries(nominal, edge(), points),
+                    clean = fit_boundaries(nominal, edge(), others);
+  CHECK(fit.left_out);
+  REQUIRE(fit.parameters.size() == clean.parameters.size());
+  for (std::size_t j = 0; j < fit.parameters.size(); ++j) {
+    CHECK(fit.parameters[j].change ==
+          Approx(clean.parameters[j].change).margin(1e-9 * fit.parameters[j].prior_sd));
+    CHECK(fit.parameters[j].sd == Approx(clean.parameters[j].sd));
+  }
+  CHECK(fit.residuals_m[3] == Approx(3e-3).margin(0.7e-3));
+  CHECK(std::abs(fit.deviations[3]) > 8);
+  CHECK_FALSE(clean.left_out);
+
+  points.resize(2);
+  points[1] = points[0];
+  points[1].boundary_m += 10e-3;
+  const BoundaryFit torn = fit_boundaries(nominal, edge(), points);
+  CHECK(torn.outliers == std::vector<bool>{true, true});
+  CHECK_FALSE(torn.left_out);
+  CHECK(torn.residuals_m[0] == Approx(-torn.residuals_m[1]).epsilon(0.1));
+}
+
 TEST_CASE("a fit refuses what it cannot use", "[physics]") {
   const MeasuredBoundary good{30e3, 0.15, 1e-3}, vague{30e3, 0.15, 0}, below{5e3, 0.15, 1e-3};
   CHECK_THROWS_AS(fit_boundaries(plate(), edge(), {}), std::invalid_argument);

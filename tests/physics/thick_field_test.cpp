@@ -1,3 +1,4 @@
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -58,6 +59,36 @@ TEST_CASE("the models mode and modes of a Mindlin taper match two-dimensional fi
   }
   CHECK(compared == 6);
   CHECK(thin > 0.01);  // negative control: the thin plate's boundary is more than 10 mm away
+}
+
+TEST_CASE("the elastic plate stops moving where three-dimensional finite elements of the whole plate do",
+          "[physics]") {
+  Surface s = plate_of(PlateTheory::elastic, 60);
+  s.thickness_m = 3e-3;
+  s.taper = LinearTaper{15.1e-3, 0.03};
+  int compared = 0;
+  for (const auto& row : oracle("elastic_taper.csv")) {
+    const double f = std::stod(row[0]);
+    const auto edges = [&](PlateTheory theory) {
+      s.theory = theory;
+      const auto line = make_centre_line(s, f, Model::mode);
+      return std::array{line->last_peak_m().value(), line->level_m(0.5).value(), line->level_m(0.1).value()};
+    };
+    const auto elastic = edges(PlateTheory::elastic), mindlin = edges(PlateTheory::mindlin),
+               kirchhoff = edges(PlateTheory::kirchhoff);
+    for (std::size_t i = 0; i < elastic.size(); ++i) {
+      const double fine = std::stod(row[1 + i]), coarse = std::stod(row[4 + i]);
+      // what the mesh still leaves open is about half of the change from the coarse to the fine mesh
+      const double limit = fine + 0.5 * (fine - coarse);
+      CAPTURE(f, i, 1e3 * (elastic[i] - fine), 1e3 * (elastic[i] - limit));
+      CHECK(std::abs(fine - coarse) < 0.1e-3);
+      CHECK(std::abs(elastic[i] - limit) < 0.06e-3);
+      CHECK(std::abs(mindlin[i] - limit) < 0.5e-3);
+      CHECK(std::abs(kirchhoff[i] - limit) > 15e-3);  // negative control
+    }
+    ++compared;
+  }
+  CHECK(compared == 3);
 }
 
 TEST_CASE("for a thin plate, the fields of the thick-plate theories become Kirchhoff's", "[physics]") {

@@ -1,5 +1,6 @@
 #include <cmath>
 #include <set>
+#include <utility>
 
 #include "station/plot/chart.hpp"
 #include "station/plot/palette.hpp"
@@ -44,6 +45,42 @@ TEST_CASE("Ticks are 1, 2 or 5 times a power of ten, inside the axis, with a tru
       CHECK(list.front().value == 0);
       CHECK(list.back().value <= high * (1 + 1e-9));
     }
+}
+
+TEST_CASE("An axis of counts has ticks at whole numbers only", "[plot]") {
+  for (const double high : {1.1, 1.9, 4.5, 12.0})
+    for (const auto& tick : ticks({"", 0, high, AxisScale::linear, true}, 8))
+      CHECK(tick.value == std::round(tick.value));
+  CHECK(ticks({"", 0, 1.1, AxisScale::linear}, 8)[1].value < 1);  // other axes have finer ticks
+}
+
+TEST_CASE("A chart's title stays within the chart, whatever its length", "[plot]") {
+  struct Titles : Canvas {
+    const std::string wanted;
+    double left = 0, right = 0;
+    explicit Titles(std::string title) : wanted(std::move(title)) {}
+    void begin(double, double, const std::string&) override {}
+    void line(Point, Point, const Paint&) override {}
+    void polyline(const std::vector<Point>&, const Paint&) override {}
+    void polygon(const std::vector<Point>&, const Paint&) override {}
+    void rectangle(Point, double, double, const Paint&) override {}
+    void circle(Point, double, const Paint&) override {}
+    void begin_clip(Point, double, double) override {}
+    void end_clip() override {}
+    void text(Point at, const std::string& text, double size, Anchor, const std::string&, int,
+              double) override {
+      if (text == wanted) left = at.first, right = at.first + text_width(text, size);
+    }
+  };
+  for (const int letters : {5, 30, 60, 200}) {
+    auto figure = example();
+    figure.charts[0].title = std::string(static_cast<std::size_t>(letters), 'x');
+    Titles titles(figure.charts[0].title);
+    draw(titles, figure);
+    CHECK(titles.left > 0);
+    CHECK(titles.right > titles.left);
+    CHECK(titles.right <= figure.chart_width_px + 1e-6);
+  }
 }
 
 TEST_CASE("A log axis has ticks in each decade and equal ratios equal lengths", "[plot]") {

@@ -12,7 +12,7 @@ using namespace turnpoint::scene;
 
 namespace {
 
-rig::Rig simulated() { return rig::load(std::string(TURNPOINT_SOURCE_DIR) + "/deploy/rigs/simulated.toml"); }
+rig::Rig simulated() { return rig::load(std::string(TURNPOINT_SOURCE_DIR) + "/tests/support/thin_plate.toml"); }
 
 /// The scene "edge" of protocols/demo.toml, with its boundary at `boundary_m` and without roving.
 Scene edge_at(double boundary_m, const char* edge) {

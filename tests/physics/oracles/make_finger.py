@@ -7,7 +7,7 @@ Needs python3-numpy, python3-scipy and scikit-fem. The finger is a uniform press
 velocity is the mean velocity of the surface over the disc. The mesh covers half of the strip; a disc beside the centre
 line is the sum of an even and an odd load. There are three surfaces, all with Q = 60 (an imaginary part of the stiffness):
   brass      the 1998 paper's membrane (quadrilaterals of degree 4)
-  kirchhoff  the simulated rig's plate as a thin plate (Argyris triangles)
+  kirchhoff  the plate of aluminium_plate() as a thin plate (Argyris triangles)
   mindlin    the same plate with shear and rotary inertia (degree 4, as in make_mindlin_taper.py)
 
 Columns: surface; frequency (Hz); x and y of the disc's centre (m); unloaded motion (real, imaginary), which is the mean

@@ -3,7 +3,7 @@
 
     python3 make_mindlin_taper.py > mindlin_taper.csv
 
-Needs python3-numpy, python3-scipy and scikit-fem. The mesh covers half of the simulated rig's plate (2 mm aluminium,
+Needs python3-numpy, python3-scipy and scikit-fem. The mesh covers half of the plate of aluminium_plate() (2 mm aluminium,
 14 mm half-width, slope 0.03, length 0.3 m). The elements are quadrilaterals of degree 4 for w, beta_x and beta_y; at
 this degree no reduced integration is needed. The drive edge moves in the shape of the first cut-off at its own width:
 w and beta_y are known in closed form, and beta_x is 0. Columns: frequency (Hz), Q (0 means no loss), positions of the

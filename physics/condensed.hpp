@@ -1,0 +1,46 @@
+#pragma once
+// Eliminates the inner unknowns of a finite element. Needs Eigen.
+#include <Eigen/Dense>
+
+namespace turnpoint::physics {
+
+// The matrix of an element after its inner unknowns (its bubbles) are expressed by those of its two ends. The
+// matrix is complex and symmetric, K - omega^2 M. An element is shorter than half a wavelength, so the real
+// part of the block that belongs to the bubbles is positive definite, and elimination needs no pivoting.
+class Condensed {
+ public:
+  using Matrix = Eigen::MatrixXcd;
+  using Vector = Eigen::VectorXcd;
+
+  Condensed() = default;
+  // The unknowns of the matrix real + i imaginary are ordered: `left` ones of the left end, bubbles, `right`
+  // ones of the right end.
+  Condensed(const Eigen::MatrixXd& real, const Eigen::MatrixXd& imaginary, Eigen::Index left,
+            Eigen::Index right);
+
+  Eigen::Index bubbles() const { return pivots_.size(); }
+  // The matrix that remains for the ends: left, then right.
+  const Matrix& ends() const { return ends_; }
+  // The bubbles that belong to these values at the ends, without a load on the bubbles.
+  Vector follow(const Vector& ends) const;
+  // The load that `reduced` bubbles exert on the ends, and load^T matrix^-1 load for a load on the bubbles
+  // alone. `reduce` turns a load on the bubbles into the form that both need.
+  Vector reduce(const Vector& load) const;
+  Vector load_on_ends(const Vector& reduced) const { return -(rows_ * reduced); }
+  std::complex<double> quadratic(const Vector& reduced) const {
+    return reduced.cwiseProduct(reduced).cwiseQuotient(pivots_).sum();
+  }
+
+ private:
+  Matrix lower_;   // unit lower triangle L of the bubbles' block L D L^T
+  Matrix rows_;    // the same elimination's rows for the ends
+  Vector pivots_;  // D
+  Matrix ends_;
+};
+
+// Eliminates the first `count` unknowns of a symmetric matrix of this size. Real and imaginary part are
+// stored by columns, and only the lower triangle is used. On return, the first columns hold the pivots and
+// the factors below them, the others what is left of the matrix.
+void eliminate_first(double* re, double* im, int size, int count);
+
+}  // namespace turnpoint::physics
