@@ -42,13 +42,16 @@ struct Change {
 
 /// A signal for recording equipment. It is played at the onset and at each change, on a channel that drives
 /// no transducer.
-enum class MarkerKind : std::int32_t { none, pulse, tone };
+/// A `code` differs from event to event, so a recorder can tell them apart (trigger_code.hpp).
+enum class MarkerKind : std::int32_t { none, pulse, tone, code };
 struct Marker {
   MarkerKind kind = MarkerKind::none;
   std::int32_t channel = 1;
   double amplitude = 0.5;
   double frequency_Hz = 1000;  ///< frequency if the marker is a tone
-  std::int64_t frames = 192;
+  std::int64_t frames = 192;   ///< length of the pulse or tone, or of one bit of a code
+  /// codes of the onset and of each change, 1 to 255; 0: none for this event
+  std::array<std::uint8_t, max_changes + 1> codes{};
 };
 
 /// Band-limited noise that masks audible sound, gated by the burst's ramp. rms 0 means no noise.

@@ -67,6 +67,14 @@ struct Counters {
 /// the same frames; this is for sessions to which nobody listens.
 enum class Samples : std::int32_t { rendered, passed };
 
+/// A tone that sounds as long as the stream is open, for example to excite the bridges of force sensors. Its
+/// phase is 0 at frame 0 of the stream, whatever happens later.
+struct Carrier {
+  double frequency_Hz = 0;
+  double amplitude = 0;
+  std::int32_t channel = 0;
+};
+
 struct StreamConfig {
   OutputConfig output;
   Samples samples = Samples::rendered;
@@ -76,6 +84,7 @@ struct StreamConfig {
   /// How many frames a synchronous stream renders ahead of playback, like the buffer of a device: commands
   /// take effect this many frames later. Real-time streams use their device's buffer.
   std::int64_t virtual_lead_frames = 0;
+  std::optional<Carrier> carrier;
   /// May be null. Its audio_alive() is called after each block that a device accepted. It must outlive the
   /// stream.
   Amplifier* amplifier = nullptr;

@@ -5,6 +5,9 @@
 #include <algorithm>
 #include <limits>
 
+#include "station/drive/sine.hpp"
+#include "station/terms/usage_error.hpp"
+
 namespace turnpoint::drive {
 namespace {
 
@@ -12,7 +15,21 @@ constexpr const char* not_taken = "burst refused: the audio thread has not proce
 
 }  // namespace
 
-EngineCore::EngineCore(const StreamConfig& config) : config_(config), synth_(format_of(config.output)) {}
+EngineCore::EngineCore(const StreamConfig& config) : config_(config), synth_(format_of(config.output)) {
+  if (!config.carrier) return;
+  const auto& carrier = *config.carrier;
+  const auto& output = config.output;
+  if (!(carrier.frequency_Hz > 0 &&
+        carrier.frequency_Hz < config.limits.highest_relative_Hz * output.rate_Hz) ||
+      carrier.channel < 0 || carrier.channel >= output.channels ||
+      !(carrier.amplitude > 0 && carrier.amplitude <= config.limits.peak))
+    throw terms::UsageError(fmt::format(
+        "carrier of {} Hz and {} of full scale on channel {}: not possible at "
+        "{} Hz with {} channels",
+        carrier.frequency_Hz, carrier.amplitude, carrier.channel, output.rate_Hz, output.channels));
+  synth_.set_carrier(
+      {0, phase_increment(carrier.frequency_Hz, output.rate_Hz), carrier.amplitude, carrier.channel});
+}
 
 void EngineCore::send(const Command& command) {
   if (!commands_->push(command)) throw BurstRefused(not_taken);
@@ -21,6 +38,7 @@ void EngineCore::send(const Command& command) {
 // Where bursts overlap, their peaks add up on each channel.
 void EngineCore::check_room(const PreparedBurst& burst) const {
   std::array<double, max_channels> sum = burst.peak;
+  if (config_.carrier) sum[static_cast<std::size_t>(config_.carrier->channel)] += config_.carrier->amplitude;
   std::size_t voices = 0;
   for (const Open& other : open_) {
     if (other.rendered || other.burst.id == burst.id) continue;

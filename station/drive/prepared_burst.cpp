@@ -7,6 +7,7 @@
 
 #include "station/drive/peak.hpp"
 #include "station/drive/sine.hpp"
+#include "station/drive/trigger_code.hpp"
 
 namespace turnpoint::drive {
 namespace {
@@ -99,6 +100,27 @@ void prepare_changes(const Burst& burst, const Format& format, const SynthLimits
   out.change_count = burst.change_count;
 }
 
+// Each code must end, and be followed by its silent bits, before the next one begins.
+void prepare_codes(const Marker& marker, const Burst& burst, PreparedMarker& out) {
+  const std::int64_t code = trigger_bits * marker.frames, quiet = trigger_quiet_bits * marker.frames;
+  if (marker.frames % 2 != 0)
+    refuse("a bit of a trigger code has {} frames; use an even number", marker.frames);
+  std::int64_t free_from = 0;
+  for (std::size_t mark = 0; mark <= static_cast<std::size_t>(burst.change_count); ++mark) {
+    out.patterns[mark] = trigger_pattern(marker.codes[mark]);
+    if (out.patterns[mark] == 0) continue;
+    const std::int64_t begin = mark == 0 ? 0 : burst.changes[mark - 1].at_frame;
+    if (begin < free_from || begin + code > burst.length_frames)
+      refuse(
+          "a trigger code at frame {} of {} has no room; a code lasts {} frames, and {} frames must be "
+          "silent "
+          "between two codes",
+          begin, burst.length_frames, code, quiet);
+    free_from = begin + code + quiet;
+  }
+  out.frames = marker.frames / 2;
+}
+
 PreparedMarker prepare(const Marker& marker, const Burst& burst, const Format& format,
                        const SynthLimits& limits) {
   PreparedMarker out;
@@ -110,7 +132,8 @@ PreparedMarker prepare(const Marker& marker, const Burst& burst, const Format& f
         "marker with amplitude {} and length {} frames; allowed are amplitudes from -1 to 1 and lengths from "
         "1 to {} frames",
         marker.amplitude, marker.frames, burst.length_frames);
-  out = {marker.kind, marker.channel, marker.amplitude, 0, marker.frames};
+  out = {marker.kind, marker.channel, marker.amplitude, 0, marker.frames, {}};
+  if (marker.kind == MarkerKind::code) prepare_codes(marker, burst, out);
   if (marker.kind == MarkerKind::tone) out.increment = phase_increment(marker.frequency_Hz, format.rate_Hz);
   return out;
 }

@@ -24,6 +24,7 @@ struct Synth::State {
   const Kernels* kernels;
   std::array<Slot, max_voices> slots;
   std::int64_t next_frame = 0;
+  PreparedTone carrier;  ///< amplitude 0: there is none
   Mix mix;
   Scratch scratch;
   std::array<SynthEvent, 8 * max_voices> events;
@@ -45,8 +46,9 @@ struct Synth::State {
   }
 
   bool active() const noexcept {
-    return std::any_of(slots.begin(), slots.end(),
-                       [](const Slot& slot) { return slot.phase != Phase::unused; });
+    return carrier.amplitude != 0 || std::any_of(slots.begin(), slots.end(), [](const Slot& slot) {
+             return slot.phase != Phase::unused;
+           });
   }
 
   void mix_block(std::int64_t frame, int frames) noexcept {
@@ -54,6 +56,13 @@ struct Synth::State {
     for (std::size_t c = 0; c < static_cast<std::size_t>(format.channels); ++c) {
       std::fill_n(mix.samples[c].begin(), frames, 0.0);
       std::fill_n(mix.dithered[c].begin(), frames, std::uint8_t{0});
+    }
+    if (carrier.amplitude != 0) {
+      const auto c = static_cast<std::size_t>(carrier.channel);
+      kernels->steady(mix.samples[c].data(), frames,
+                      {carrier.phase + carrier.increment * static_cast<std::uint64_t>(frame),
+                       carrier.increment, 0, carrier.amplitude, 0});
+      std::fill_n(mix.dithered[c].begin(), frames, std::uint8_t{1});
     }
     step(frame, frames, [&](Voice& voice, std::int64_t at) { voice.add(at, mix, scratch, *kernels); });
   }
@@ -114,6 +123,8 @@ Synth::Synth(const Format& format, const Kernels& kernels) : state_(new State) {
 }
 
 Synth::~Synth() = default;
+
+void Synth::set_carrier(const PreparedTone& carrier) noexcept { state_->carrier = carrier; }
 
 bool Synth::start(const PreparedBurst& burst) noexcept {
   if (burst.start_frame < state_->next_frame) {

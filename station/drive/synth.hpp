@@ -36,6 +36,8 @@ class Synth {
   Synth(const Synth&) = delete;
   Synth& operator=(const Synth&) = delete;
 
+  /// Adds a tone without end, whose phase is 0 at frame 0. Call this before the first render().
+  void set_carrier(const PreparedTone& carrier) noexcept;
   /// Accepts a burst. Returns false if all voices are in use.
   [[nodiscard]] bool start(const PreparedBurst& burst) noexcept;
   /// Changes a waiting or sounding burst, in addition to the burst's own changes; `at_frame` counts from the
@@ -69,7 +71,7 @@ class Synth {
   /// All memory that render() uses beside this object.
   system::MemoryRange memory() const noexcept;
 
-  bool active() const noexcept;  ///< true while a burst waits or sounds
+  bool active() const noexcept;  ///< true while anything waits or sounds
   /// number of samples that exceeded the range: 0 unless limits were lifted
   std::uint64_t saturated() const noexcept;
 

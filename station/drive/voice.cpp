@@ -4,6 +4,7 @@
 
 #include "station/drive/noise.hpp"
 #include "station/drive/ramp.hpp"
+#include "station/drive/trigger_code.hpp"
 
 namespace turnpoint::drive {
 namespace {
@@ -171,11 +172,19 @@ void Voice::markers(std::int64_t at, int first, int last, Mix& mix) const noexce
   const auto channel = static_cast<std::size_t>(marker.channel);
   for (int mark = -1; mark < burst_.change_count; ++mark) {
     const std::int64_t begin = mark < 0 ? 0 : burst_.changes[static_cast<std::size_t>(mark)].at_frame;
+    const std::uint32_t pattern = marker.patterns[static_cast<std::size_t>(mark + 1)];
+    const std::int64_t length = marker.kind != MarkerKind::code ? marker.frames
+                                : pattern == 0                  ? 0
+                                                                : trigger_half_bits * marker.frames;
     const int from = static_cast<int>(std::clamp<std::int64_t>(begin - at, first, last));
-    const int to = static_cast<int>(std::clamp<std::int64_t>(begin + marker.frames - at, first, last));
+    const int to = static_cast<int>(std::clamp<std::int64_t>(begin + length - at, first, last));
     for (int n = from; n < to; ++n) {
-      const auto since = static_cast<std::uint64_t>(at + n - begin);
-      const double wave = marker.kind == MarkerKind::pulse ? 1 : sine_of_phase(marker.increment * since);
+      const std::int64_t since = at + n - begin;
+      double wave = 1;
+      if (marker.kind == MarkerKind::tone)
+        wave = sine_of_phase(marker.increment * static_cast<std::uint64_t>(since));
+      else if (marker.kind == MarkerKind::code)
+        wave = trigger_wave(pattern, static_cast<int>(since / marker.frames));
       mix.samples[channel][static_cast<std::size_t>(n)] += marker.amplitude * wave;
     }
   }

@@ -164,24 +164,6 @@ class RigButtons final : public Buttons {
   }
 };
 
-bool take_low(Uri& uri) {
-  const std::string active = uri.take("active", "high");
-  if (active != "low" && active != "high")
-    throw terms::UsageError("'" + uri.text + "': active=" + active + "; allowed are low and high");
-  return active == "low";
-}
-
-std::int64_t take_ms(Uri& uri, const std::string& key, std::int64_t otherwise_ns, double highest_ms) {
-  const std::string text = uri.take(key, "");
-  if (text.empty()) return otherwise_ns;
-  char* end = nullptr;
-  const double ms = std::strtod(text.c_str(), &end);
-  if (*end != '\0' || !(ms >= 0 && ms <= highest_ms))
-    throw terms::UsageError("'" + uri.text + "': " + key + "=" + text + "; allowed 0 to " +
-                            std::to_string(static_cast<int>(highest_ms)));
-  return static_cast<std::int64_t>(ms * 1e6);
-}
-
 EdgeFilter::Rules take_rules(Uri& uri) {
   EdgeFilter::Rules rules;
   rules.hold_ns = take_ms(uri, "hold_ms", rules.hold_ns, 10);

@@ -122,7 +122,42 @@ class GpioLines final : public Lines {
   std::vector<Last> last_;
 };
 
+class GpioOutputs final : public Outputs {
+ public:
+  GpioOutputs(const std::vector<std::string>& names, const std::string& consumer) {
+    Found first = find(names.front());
+    if (!first.line) throw_line_error(ENOENT, names.front(), "no GPIO chip has a line with this name");
+    chip_ = std::move(first.chip);
+    gpiod_line_bulk_init(&lines_);
+    for (const std::string& name : names) {
+      gpiod_line* line = gpiod_chip_find_line(chip_.get(), name.c_str());
+      if (!line)
+        throw_line_error(ENOENT, name, "the chip of " + names.front() + " has no line with this name");
+      gpiod_line_bulk_add(&lines_, line);
+    }
+    values_.resize(names.size());
+    if (gpiod_line_request_bulk_output(&lines_, consumer.c_str(), values_.data()) != 0)
+      throw_line_error(errno, names.front(), "request, together with the lines named with it");
+  }
+
+  void drive(std::uint32_t levels) override {
+    for (std::size_t k = 0; k < values_.size(); ++k) values_[k] = static_cast<int>(levels >> k & 1);
+    if (gpiod_line_set_value_bulk(&lines_, values_.data()) != 0)
+      throw std::system_error(errno, std::generic_category(), "gpio lines: driving several lines");
+  }
+
+ private:
+  Chip chip_;
+  gpiod_line_bulk lines_{};
+  std::vector<int> values_;
+};
+
 }  // namespace
+
+std::unique_ptr<Outputs> open_gpio_outputs(const std::vector<std::string>& names,
+                                           const std::string& consumer) {
+  return std::make_unique<GpioOutputs>(names, consumer);
+}
 
 std::unique_ptr<Lines> open_gpio_lines(const std::vector<LineRequest>& requests) {
   return std::make_unique<GpioLines>(requests);

@@ -147,7 +147,49 @@ class GpioLines final : public Lines {
   std::vector<int> inputs_;  ///< index of the line that each descriptor belongs to
 };
 
+class GpioOutputs final : public Outputs {
+ public:
+  GpioOutputs(const std::vector<std::string>& names, const std::string& consumer) {
+    const Found first = find(names.front());
+    if (!first.chip) throw_line_error(ENOENT, names.front(), "no GPIO chip has a line with this name");
+    const auto settings = made(Settings(gpiod_line_settings_new()), names.front());
+    const auto lines = made(LineConfig(gpiod_line_config_new()), names.front());
+    const auto config = made(RequestConfig(gpiod_request_config_new()), names.front());
+    gpiod_line_settings_set_direction(settings.get(), GPIOD_LINE_DIRECTION_OUTPUT);
+    gpiod_line_settings_set_output_value(settings.get(), GPIOD_LINE_VALUE_INACTIVE);
+    gpiod_request_config_set_consumer(config.get(), consumer.c_str());
+    std::vector<unsigned> offsets;
+    for (const std::string& name : names) {
+      const int offset = gpiod_chip_get_line_offset_from_name(first.chip.get(), name.c_str());
+      if (offset < 0)
+        throw_line_error(ENOENT, name, "the chip of " + names.front() + " has no line with this name");
+      offsets.push_back(static_cast<unsigned>(offset));
+    }
+    if (gpiod_line_config_add_line_settings(lines.get(), offsets.data(), offsets.size(), settings.get()) != 0)
+      throw_line_error(errno, names.front(), "request");
+    request_ = Request(gpiod_chip_request_lines(first.chip.get(), config.get(), lines.get()));
+    if (!request_) throw_line_error(errno, names.front(), "request, together with the lines named with it");
+    values_.resize(names.size());
+  }
+
+  void drive(std::uint32_t levels) override {
+    for (std::size_t k = 0; k < values_.size(); ++k)
+      values_[k] = (levels >> k & 1) != 0 ? GPIOD_LINE_VALUE_ACTIVE : GPIOD_LINE_VALUE_INACTIVE;
+    if (gpiod_line_request_set_values(request_.get(), values_.data()) != 0)
+      throw std::system_error(errno, std::generic_category(), "gpio lines: driving several lines");
+  }
+
+ private:
+  Request request_;
+  std::vector<gpiod_line_value> values_;
+};
+
 }  // namespace
+
+std::unique_ptr<Outputs> open_gpio_outputs(const std::vector<std::string>& names,
+                                           const std::string& consumer) {
+  return std::make_unique<GpioOutputs>(names, consumer);
+}
 
 std::unique_ptr<Lines> open_gpio_lines(const std::vector<LineRequest>& requests) {
   return std::make_unique<GpioLines>(requests);

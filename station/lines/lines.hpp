@@ -62,6 +62,19 @@ using OpenLines = std::function<std::unique_ptr<Lines>()>;
 /// Requests kernel lines by name (libgpiod 1 or 2, as built). Throws LineError naming the line.
 std::unique_ptr<Lines> open_gpio_lines(const std::vector<LineRequest>& requests);
 
+/// Output lines that change together, in one request to the kernel. They start low. Use an object from one
+/// thread only.
+class Outputs {
+ public:
+  virtual ~Outputs() = default;
+  /// Sets all lines: bit k of `levels` is the level of line k. Throws std::system_error.
+  virtual void drive(std::uint32_t levels) = 0;
+};
+
+/// Requests output lines by name, all of them on one chip. Throws LineError naming the line.
+std::unique_ptr<Outputs> open_gpio_outputs(const std::vector<std::string>& names,
+                                           const std::string& consumer);
+
 /// Name and version of the library that this build uses, such as "libgpiod 1.6.3".
 std::string gpio_library();
 

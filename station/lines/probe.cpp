@@ -21,7 +21,7 @@ using Status = Finding::Status;
 // True if the value of this key of a URI is the name of a line; false for keys with settings.
 bool names_line(const std::string& key) {
   return key != "active" && key != "fault_active" && key != "stop_active" && key != "read_back" &&
-         key != "hold_ms" && key != "refractory_ms" && key != "axis";
+         key != "hold_ms" && key != "refractory_ms" && key != "pulse_ms" && key != "axis";
 }
 
 Finding check_line(const std::string& device, const std::string& role, const std::string& line) {

@@ -1,6 +1,7 @@
 #include "station/lines/uri.hpp"
 
 #include <algorithm>
+#include <cstdlib>
 #include <sstream>
 
 #include "station/terms/usage_error.hpp"
@@ -41,6 +42,24 @@ Uri parse_uri(const std::string& text) {
     uri.values.emplace_back(part.substr(0, equals), part.substr(equals + 1));
   }
   return uri;
+}
+
+bool take_low(Uri& uri) {
+  const std::string active = uri.take("active", "high");
+  if (active != "low" && active != "high")
+    throw terms::UsageError("'" + uri.text + "': active=" + active + "; allowed are low and high");
+  return active == "low";
+}
+
+std::int64_t take_ms(Uri& uri, const std::string& key, std::int64_t otherwise_ns, double highest_ms) {
+  const std::string text = uri.take(key, "");
+  if (text.empty()) return otherwise_ns;
+  char* end = nullptr;
+  const double ms = std::strtod(text.c_str(), &end);
+  if (*end != '\0' || !(ms >= 0 && ms <= highest_ms))
+    throw terms::UsageError("'" + uri.text + "': " + key + "=" + text + "; allowed 0 to " +
+                            std::to_string(static_cast<int>(highest_ms)));
+  return static_cast<std::int64_t>(ms * 1e6);
 }
 
 }  // namespace turnpoint::lines

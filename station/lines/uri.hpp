@@ -20,6 +20,12 @@ struct Uri {
   std::string text;  ///< the URI as written in the file
 };
 
+/// Removes the key `active` and returns true if it is `low`, the default being `high`.
+bool take_low(Uri& uri);
+/// Removes a key with a time in ms and returns it in ns. Throws terms::UsageError unless it is from 0 to
+/// `highest_ms`.
+std::int64_t take_ms(Uri& uri, const std::string& key, std::int64_t otherwise_ns, double highest_ms);
+
 /// Throws terms::UsageError for text without a scheme or with an empty key or value.
 Uri parse_uri(const std::string& text);
 

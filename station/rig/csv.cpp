@@ -1,5 +1,6 @@
 #include "station/rig/csv.hpp"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <sstream>
@@ -9,18 +10,30 @@ namespace turnpoint::rig {
 
 namespace {
 
-std::vector<std::string> split(const std::string& line) {
+/// The separator of a table: the one that its first line contains. A semicolon comes first, because programs
+/// that write decimal commas use it.
+char separator_of(const std::string& line) {
+  for (const char separator : {';', '\t'})
+    if (line.find(separator) != std::string::npos) return separator;
+  return ',';
+}
+
+std::vector<std::string> split(const std::string& line, char separator) {
   std::vector<std::string> cells{""};
   for (const char c : line) {
-    if (c == ',')
+    if (c == separator)
       cells.emplace_back();
-    else if (c != ' ' && c != '\t' && c != '\r')
+    else if (c != ' ' && c != '\t' && c != '\r' && c != '"')
       cells.back().push_back(c);
   }
   return cells;
 }
 
-bool parse_number(const std::string& cell, double& value) {
+bool parse_number(std::string cell, char decimal, double& value) {
+  if (decimal == ',') {
+    if (cell.find('.') != std::string::npos) return false;  // 1.234 would be ambiguous
+    std::replace(cell.begin(), cell.end(), ',', '.');
+  }
   const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), value);
   return error == std::errc() && end == cell.data() + cell.size() && std::isfinite(value);
 }
@@ -29,6 +42,22 @@ std::string joined(const std::vector<std::string>& columns) {
   std::string all;
   for (const auto& column : columns) all += (all.empty() ? "" : ",") + column;
   return all;
+}
+
+struct Line {
+  int number = 0;  ///< in the file, from 1
+  std::string text;
+};
+
+/// The lines of a table, without comments and empty lines. A line with separators only counts as empty.
+std::vector<Line> lines_of(const std::string& bytes) {
+  std::istringstream in{std::string(text::without_byte_order_mark(bytes))};
+  std::vector<Line> lines;
+  std::string line;
+  for (int number = 1; std::getline(in, line); ++number)
+    if (line[0] != '#' && line.find_first_not_of(" \t\r,;") != std::string::npos)
+      lines.push_back({number, line});
+  return lines;
 }
 
 }  // namespace
@@ -43,28 +72,27 @@ std::vector<std::vector<double>> read_table(const std::string& path, const std::
                  "write a path relative to the rig file");
     return {};
   }
-  std::istringstream lines(bytes);
-  std::string line;
+  const auto lines = lines_of(bytes);
+  const char separator = lines.empty() ? ',' : separator_of(lines.front().text);
+  const bool comma = separator != ',' && std::any_of(lines.begin(), lines.end(), [](const Line& line) {
+                       return line.text.find(',') != std::string::npos;
+                     });
+  if (!lines.empty() && split(lines.front().text, separator) != columns)
+    findings.add({path, lines.front().number, 1}, "the first line is \"" + lines.front().text + "\"",
+                 "the column names must be: " + joined(columns));
   std::vector<std::vector<double>> rows;
-  bool header_seen = false;
-  for (int number = 1; std::getline(lines, line); ++number) {
-    const auto cells = split(line);
-    if ((cells.size() == 1 && cells[0].empty()) || line[0] == '#') continue;
-    if (!header_seen) {
-      header_seen = true;
-      if (cells != columns)
-        findings.add({path, number, 1}, "the first line is \"" + line + "\"",
-                     "the column names must be: " + joined(columns));
-      continue;
-    }
+  for (std::size_t n = 1; n < lines.size(); ++n) {
+    const auto cells = split(lines[n].text, separator);
     std::vector<double> row(columns.size());
     bool good = cells.size() == columns.size();
-    for (std::size_t i = 0; good && i < row.size(); ++i) good = parse_number(cells[i], row[i]);
+    for (std::size_t i = 0; good && i < row.size(); ++i)
+      good = parse_number(cells[i], comma ? ',' : '.', row[i]);
     if (good)
       rows.push_back(std::move(row));
     else
-      findings.add({path, number, 1}, "\"" + line + "\" is not a row of numbers",
-                   std::to_string(columns.size()) + " numbers are needed in each row: " + joined(columns));
+      findings.add({path, lines[n].number, 1}, "\"" + lines[n].text + "\" is not a row of numbers",
+                   std::to_string(columns.size()) + " numbers are needed in each row: " + joined(columns) +
+                       (comma ? "; this file has decimal commas, so its numbers may not have points" : ""));
   }
   if (rows.size() < 2)
     findings.add({path, 0, 0}, "the file has fewer than two rows of numbers", "at least two rows are needed");

@@ -20,10 +20,6 @@ std::string read_uri(TableReader& reader, const std::vector<std::string>& scheme
   return uri;
 }
 
-namespace {
-
-// Checks a URI gpio:name=LINE,name=LINE. It must contain all names in `needed`, may contain those in
-// `optional`, and must contain no others.
 void check_gpio(TableReader& reader, const std::string& uri, const std::vector<std::string>& needed,
                 const std::vector<std::string>& optional) {
   if (uri.rfind("gpio:", 0) != 0) return;
@@ -47,6 +43,8 @@ void check_gpio(TableReader& reader, const std::string& uri, const std::vector<s
       return reader.problem("uri", "\"" + uri + "\" has no line \"" + name + "\"",
                             "needed: " + text::quoted_list(needed));
 }
+
+namespace {
 
 std::optional<std::string> read_device(TableReader& file, const std::string& key,
                                        const std::vector<std::string>& schemes, const std::string& allowed,
@@ -76,6 +74,9 @@ void read_devices(TableReader& file, Rig& rig) {
   rig.contact_uri = read_device(file, "contact", {"sim:", "gpio:*", "evdev:*"},
                                 "\"sim:\", \"gpio:line=LINE\" or \"evdev:DEVICE\"", {"line"},
                                 {"active", "hold_ms", "refractory_ms"});
+  rig.trigger_lines_uri = read_device(
+      file, "trigger_lines", {"sim:", "gpio:*"}, "\"sim:\" or \"gpio:bit0=LINE,bit1=LINE,strobe=LINE\"",
+      {"bit0"}, {"bit1", "bit2", "bit3", "bit4", "bit5", "bit6", "bit7", "strobe", "pulse_ms"});
   rig.touch_uri =
       read_device(file, "touch", {"sim:", "qt:", "evdev:*"}, "\"sim:\", \"qt:\" or \"evdev:DEVICE\"", {});
 }

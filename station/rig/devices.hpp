@@ -12,7 +12,12 @@ namespace turnpoint::rig {
 std::string read_uri(text::TableReader& reader, const std::vector<std::string>& schemes,
                      const std::string& allowed);
 
-/// Reads [amplifier], [buttons], [contact] and [touch] of the file.
+/// Checks a URI `gpio:name=LINE,name=LINE`; other schemes are accepted. It must contain all names in
+/// `needed`, may contain those in `optional`, and must contain no others.
+void check_gpio(text::TableReader& reader, const std::string& uri, const std::vector<std::string>& needed,
+                const std::vector<std::string>& optional);
+
+/// Reads [amplifier], [buttons], [contact], [trigger_lines] and [touch] of the file.
 void read_devices(text::TableReader& file, Rig& rig);
 
 }  // namespace turnpoint::rig

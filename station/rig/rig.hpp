@@ -92,14 +92,24 @@ struct Output {
   std::vector<std::string> allow_plugin;
 };
 
-/// A signal for recording equipment at each onset and change, on a channel that drives no transducer.
+/// A signal for recording equipment at each onset and change, on a channel that drives no transducer. A code
+/// tells which event it is (drive/trigger_code.hpp).
 struct Marker {
-  enum class Kind { pulse, tone };
+  enum class Kind { pulse, tone, code };
   int channel = 1;
   Kind kind = Kind::pulse;
-  double amplitude = 0.5;  ///< amplitude of the marker; 1 is full scale
-  double duration_s = 1e-3;
+  double amplitude = 0.5;      ///< amplitude of the marker; 1 is full scale
+  double duration_s = 1e-3;    ///< of the pulse or tone, or of one bit of a code
   double frequency_Hz = 1000;  ///< frequency, if the marker is a tone
+};
+
+/// Bits that a trigger code takes on the marker channel, with the silence that it needs before the next.
+inline constexpr int trigger_code_bits = 15;
+
+/// Where pulses of another device come in, such as those of a scanner.
+struct Sync {
+  std::string uri;             ///< `sim:`, `gpio:line=NAME` or `capture:`
+  std::optional<int> channel;  ///< captured channel, for `capture:`
 };
 
 /// What a pick-up captures per unit of drive on one output channel; part of the calibration.
@@ -124,6 +134,11 @@ struct Capture {
   /// output channel of the pilot, which finds the delay of the loop; set for `alsa:`
   std::optional<int> excitation_channel;
   std::vector<PickUpResponse> responses;  ///< empty without a calibration of the pick-ups
+  /// captured channel that is wired to the output of a marker with codes, which are read back from it
+  std::optional<int> marker_channel = {};
+  /// captured channels of the force cells: two below the surface (the first nearer to the wide edge) and the
+  /// lateral one; empty without force cells
+  std::vector<int> bridges = {};
 };
 
 /// Headphones that mask the audible part of a stimulus, for protocols that require it.
@@ -171,6 +186,8 @@ struct Rig {
   Output output;
   std::string amplifier_uri;
   std::optional<std::string> buttons_uri, contact_uri, touch_uri;
+  std::optional<std::string> trigger_lines_uri;  ///< lines that give out trigger codes in parallel
+  std::optional<Sync> sync;
   std::optional<Capture> capture;
   std::optional<Marker> marker;
   std::optional<MaskingNoise> noise;
@@ -183,6 +200,9 @@ struct Rig {
 /// Names of the transducers whose vibration cannot be proven although the rig captures with a card, because
 /// the calibration has no response of a pick-up to them.
 std::vector<std::string> unproven_transducers(const Rig& rig);
+
+/// The largest trigger code that all of the rig's outputs for codes can give; 0 if it has no such output.
+int largest_trigger_code(const Rig& rig);
 
 /// Reads and checks a rig file (format "friction-rig/1"). Throws text::BadInput with all problems at once, or
 /// std::system_error if the file cannot be read.

@@ -33,10 +33,18 @@ Marker read_marker(const text::Value& table, const Rig& rig, text::Findings& fin
   Marker marker;
   marker.channel = reader.integer("channel", 0, kLastChannel);
   check_spare(reader, "channel", marker.channel, rig);
-  const auto kind = reader.word("kind", {"pulse", "tone"});
-  marker.kind = kind == "tone" ? Marker::Kind::tone : Marker::Kind::pulse;
-  marker.amplitude = reader.number("amplitude", {0, 1, Range::Ends::open_low}, 0.5);
-  marker.duration_s = 1e-3 * reader.number("duration_ms", {0, 1000, Range::Ends::open_low, "ms"}, 1);
+  const auto kind = reader.word("kind", {"pulse", "tone", "code"});
+  marker.kind = kind == "tone"   ? Marker::Kind::tone
+                : kind == "code" ? Marker::Kind::code
+                                 : Marker::Kind::pulse;
+  // The code of an answer may come while an interval is played, and the drive adds the largest amplitudes of
+  // both.
+  const double most = kind == "code" ? 0.49 : 1;
+  marker.amplitude =
+      reader.number("amplitude", {0, most, Range::Ends::open_low}, kind == "code" ? 0.45 : 0.5);
+  const Range length = kind == "code" ? Range{0.2, 20, Range::Ends::closed, "ms"}
+                                      : Range{0, 1000, Range::Ends::open_low, "ms"};
+  marker.duration_s = 1e-3 * reader.number("duration_ms", length, 1);
   if (kind == "tone")
     marker.frequency_Hz = reader.number("frequency_Hz", {0, highest_Hz(rig), Range::Ends::open_low, "Hz"});
   reader.finish();
@@ -70,6 +78,65 @@ void read_loop(TableReader& reader, const Rig& rig, Capture& capture) {
   check_spare(reader, "excitation_channel", *capture.excitation_channel, rig);
 }
 
+/// A captured channel that nothing else uses.
+void check_captured(TableReader& reader, const std::string& key, int channel, const Capture& capture) {
+  const auto& pick_ups = capture.pick_ups;
+  const auto what = "channel " + std::to_string(channel);
+  if (channel >= capture.channels)
+    reader.problem(key, what + " is not captured",
+                   "a whole number from 0 to " + std::to_string(capture.channels - 1));
+  else if (std::find(pick_ups.begin(), pick_ups.end(), channel) != pick_ups.end() ||
+           (capture.excitation_channel && capture.reference == channel) ||
+           std::find(capture.bridges.begin(), capture.bridges.end(), channel) != capture.bridges.end())
+    reader.problem(key, what + " is also captured for something else", "use a channel of its own");
+}
+
+void read_bridges(TableReader& reader, Capture& capture) {
+  const auto channels = reader.numbers("bridges", {0, 31, Range::Ends::closed});
+  for (const double number : channels) {
+    const int channel = static_cast<int>(number);
+    const auto same = std::count(channels.begin(), channels.end(), number);
+    if (channels.size() != 3 || number != channel || same > 1) {
+      reader.problem("bridges", "needs the channels of three cells",
+                     "three different whole numbers: two cells below the surface, and the lateral cell");
+      return;
+    }
+    check_captured(reader, "bridges", channel, capture);
+    capture.bridges.push_back(channel);
+  }
+  if (!capture.uri.starts_with("sim:"))
+    reader.problem("bridges", "force cells have no calibration yet",
+                   "use them with uri = \"sim:\", or leave \"bridges\" out");
+}
+
+void read_marker_channel(TableReader& reader, const Rig& rig, Capture& capture) {
+  if (!reader.has("marker_channel")) {
+    reader.take("marker_channel");
+    return;
+  }
+  capture.marker_channel = reader.integer("marker_channel", 0, 31);
+  check_captured(reader, "marker_channel", *capture.marker_channel, capture);
+  if (!rig.marker || rig.marker->kind != Marker::Kind::code)
+    reader.problem("marker_channel", "the rig has no marker with codes",
+                   "add [marker] with kind = \"code\", or leave this out");
+}
+
+Sync read_sync(const text::Value& table, const Rig& rig, text::Findings& findings) {
+  TableReader reader(table, "sync", findings);
+  Sync sync;
+  sync.uri = read_uri(reader, {"sim:", "gpio:*", "capture:"}, "\"sim:\", \"gpio:line=LINE\" or \"capture:\"");
+  check_gpio(reader, sync.uri, {"line"}, {"active"});
+  if (sync.uri == "capture:") {
+    sync.channel = reader.integer("channel", 0, 31);
+    if (!rig.capture)
+      reader.problem("uri", "the rig captures nothing", "add [capture], or use \"gpio:line=LINE\"");
+    else
+      check_captured(reader, "channel", *sync.channel, *rig.capture);
+  }
+  reader.finish();
+  return sync;
+}
+
 Capture read_capture(const text::Value& table, const Rig& rig, text::Findings& findings) {
   TableReader reader(table, "capture", findings);
   Capture capture;
@@ -82,7 +149,13 @@ Capture read_capture(const text::Value& table, const Rig& rig, text::Findings& f
                      "different whole numbers from 0 to " + std::to_string(capture.channels - 1));
     capture.pick_ups.push_back(static_cast<int>(channel));
   }
-  if (capture.uri.starts_with("alsa:")) read_loop(reader, rig, capture);
+  const bool has_bridges = reader.has("bridges");
+  if (has_bridges || capture.uri.starts_with("alsa:")) read_loop(reader, rig, capture);
+  if (has_bridges)
+    read_bridges(reader, capture);
+  else
+    reader.take("bridges");
+  read_marker_channel(reader, rig, capture);
   reader.finish();
   return capture;
 }
@@ -94,6 +167,16 @@ void read_spare_channels(TableReader& file, Rig& rig) {
   if (const auto* table = file.maybe_table("noise")) rig.noise = read_noise(*table, rig, file.findings());
   if (const auto* table = file.maybe_table("capture"))
     rig.capture = read_capture(*table, rig, file.findings());
+  if (const auto* table = file.maybe_table("sync")) rig.sync = read_sync(*table, rig, file.findings());
+}
+
+int largest_trigger_code(const Rig& rig) {
+  const bool marked = rig.marker && rig.marker->kind == Marker::Kind::code;
+  if (!rig.trigger_lines_uri) return marked ? 255 : 0;
+  int bits = rig.trigger_lines_uri->starts_with("gpio:") ? 0 : 8;
+  while (bits < 8 && rig.trigger_lines_uri->find("bit" + std::to_string(bits) + "=") != std::string::npos)
+    ++bits;
+  return (1 << bits) - 1;
 }
 
 int channels(const Rig& rig) {

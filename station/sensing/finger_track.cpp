@@ -9,7 +9,7 @@
 namespace turnpoint::sensing {
 namespace {
 
-constexpr double contact_N = 0.05, release_N = 0.03, contact_s = 0.02, half_amplitude_Hz = 20;
+constexpr double release_N = 0.03, half_amplitude_Hz = 20;
 
 }  // namespace
 
@@ -52,17 +52,19 @@ std::optional<FingerPoint> FingerTracker::push(const ForcePoint& point) {
   finger.contact = middle.contact;
   finger.position_mm = finger.speed_mm_s = std::numeric_limits<double>::quiet_NaN();
   double normal = 0;
+  bool contact = true;  // at all points of the window
   // Sums of w N^2 t^i and w N M t^i: weight w, normal force N, moment M, time t.
   double square = 0, square_t = 0, square_tt = 0, product = 0, product_t = 0;
   for (std::int64_t k = -half; k <= half; ++k) {
     const Force& force = at(half - k).point.force;
+    contact = contact && at(half - k).contact;
     const double weight = weights_[static_cast<std::size_t>(std::abs(k))], t = static_cast<double>(k);
     const double w = weight * force.normal_N, nn = w * force.normal_N, nm = w * force.moment_Nmm;
     normal += w;
     square += nn, square_t += nn * t, square_tt += nn * t * t;
     product += nm, product_t += nm * t;
   }
-  if (!finger.contact || !(normal >= least_normal_N)) return finger;
+  if (!contact || !(normal >= least_normal_N)) return finger;
   const double determinant = square * square_tt - square_t * square_t;
   finger.position_mm = (square_tt * product - square_t * product_t) / determinant;
   finger.speed_mm_s = rate_Hz_ * (square * product_t - square_t * product) / determinant;

@@ -9,13 +9,16 @@ namespace turnpoint::sensing {
 
 /// With a smaller normal force, position and speed are not determined (NaN).
 inline constexpr double least_normal_N = 0.1;
+/// Contact begins with this normal force, if it lasts this long.
+inline constexpr double contact_N = 0.05, contact_s = 0.02;
 
 /// The finger at one point in time; `index` is that of the ForcePoint.
 struct FingerPoint {
   std::int64_t index = 0;
   double normal_N = 0, lateral_N = 0;  ///< the measured forces, without further filtering
-  /// Position counts from the wide edge, and speed is positive towards larger positions. Both are NaN without
-  /// contact, if the normal force is below least_normal_N, and within 38 ms of missing points.
+  /// Position counts from the wide edge, and speed is positive towards larger positions. Both are NaN if the
+  /// normal force is below least_normal_N, and within 38 ms of missing points and of points without contact:
+  /// the cells still ring when a finger has just landed or left.
   double position_mm = 0, speed_mm_s = 0;
   bool contact = false;
 };

@@ -81,6 +81,27 @@ struct Place {
   double frame = 0, likeness = 0;
 };
 
+/// Subtracts the sinusoid of this frequency that fits best.
+void remove_tone(std::vector<double>& samples, double frequency_Hz, int rate_Hz) {
+  const double turn = 2 * M_PI * frequency_Hz / rate_Hz;
+  const auto at = [&](std::size_t n) {
+    return std::polar(1.0, std::fmod(turn * static_cast<double>(n), 2 * M_PI));
+  };
+  // Normal equations of cosine and sine.
+  double cc = 0, cs = 0, ss = 0, xc = 0, xs = 0;
+  for (std::size_t n = 0; n < samples.size(); ++n) {
+    const Complex z = at(n);
+    cc += z.real() * z.real(), cs += z.real() * z.imag(), ss += z.imag() * z.imag();
+    xc += samples[n] * z.real(), xs += samples[n] * z.imag();
+  }
+  const double determinant = cc * ss - cs * cs;
+  const double c = (ss * xc - cs * xs) / determinant, s = (cc * xs - cs * xc) / determinant;
+  for (std::size_t n = 0; n < samples.size(); ++n) {
+    const Complex z = at(n);
+    samples[n] -= c * z.real() + s * z.imag();
+  }
+}
+
 std::optional<Place> coarse_place(const Pilot& pilot, const std::vector<double>& samples) {
   const auto factor = std::max<std::int64_t>(
       1, static_cast<std::int64_t>(pilot.rate_Hz / (1.3 * (pilot.high_Hz - pilot.low_Hz))));
@@ -174,18 +195,20 @@ void PilotListener::push(const CaptureBlock& block) {
 
 std::optional<PilotEcho> PilotListener::find() const {
   if (lost_ || samples_.size() < wanted_) return std::nullopt;
-  const auto coarse = coarse_place(pilot_, samples_);
+  auto samples = samples_;
+  if (pilot_.carrier_Hz > 0) remove_tone(samples, pilot_.carrier_Hz, pilot_.rate_Hz);
+  const auto coarse = coarse_place(pilot_, samples);
   if (!coarse) return std::nullopt;
-  double place = envelope_place(pilot_, samples_, coarse->frame);
+  double place = envelope_place(pilot_, samples, coarse->frame);
   // `turn` is the change of the correlation's phase if the start is wrong by one frame: the pilot's mean
   // frequency.
   const double turn = M_PI * (pilot_.low_Hz + pilot_.high_Hz) / pilot_.rate_Hz;
-  if (std::fabs(carrier_phase(correlation_at(pilot_, samples_, place))) > kLargestTurn) return std::nullopt;
-  for (int k = 0; k < 4; ++k) place -= carrier_phase(correlation_at(pilot_, samples_, place)) / turn;
+  if (std::fabs(carrier_phase(correlation_at(pilot_, samples, place))) > kLargestTurn) return std::nullopt;
+  for (int k = 0; k < 4; ++k) place -= carrier_phase(correlation_at(pilot_, samples, place)) / turn;
   double shape = 0;
   for (std::int64_t n = 0; n < pilot_.frames; ++n)
     shape += std::norm(pilot_at(pilot_, static_cast<double>(n)));
-  const double amplitude = 2 * std::abs(correlation_at(pilot_, samples_, place)) / shape;
+  const double amplitude = 2 * std::abs(correlation_at(pilot_, samples, place)) / shape;
   return PilotEcho{place - static_cast<double>(kMargin_frames), 20 * std::log10(amplitude / pilot_.amplitude),
                    coarse->likeness};
 }

@@ -17,6 +17,7 @@ struct Pilot {
   std::int64_t frames = 1920;  ///< 10 ms at 192 kHz; an even number
   double amplitude = 0.25;     ///< as a fraction of full scale
   std::int32_t channel = 0;    ///< output channel
+  double carrier_Hz = 0;       ///< a tone that is on the channel all the time; 0: none
 };
 
 /// The pilot as a burst that any stream can play.
@@ -34,7 +35,8 @@ struct PilotEcho {
 /// Collects the reference channel after a pilot and finds the pilot in it. Recognises either polarity. The
 /// envelope of the correlation shows in which period of the carrier the delay lies, and the carrier's phase
 /// gives the exact delay. The path to the reference may turn the phase by up to 60 degrees; such a turn
-/// counts as delay. For an ordinary thread. Allocates only in its constructor and in find().
+/// counts as delay. A carrier on the channel is removed first. For an ordinary thread. Allocates only in its
+/// constructor and in find().
 class PilotListener {
  public:
   /// `start_frame` is the first playback frame of the pilot's burst. Captured frames have the same numbering.

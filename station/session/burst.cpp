@@ -41,14 +41,21 @@ drive::Burst burst_of(const std::vector<scene::DrivePlan>& scenes, const std::ve
   return burst;
 }
 
-void mark(drive::Burst& burst, const rig::Marker& marker, int rate_Hz) {
-  burst.marker.kind =
-      marker.kind == rig::Marker::Kind::tone ? drive::MarkerKind::tone : drive::MarkerKind::pulse;
-  burst.marker.channel = marker.channel;
-  burst.marker.amplitude = marker.amplitude;
-  burst.marker.frequency_Hz = marker.frequency_Hz;
-  burst.marker.frames =
-      std::clamp<std::int64_t>(std::llround(marker.duration_s * rate_Hz), 1, burst.length_frames);
+void mark(drive::Burst& burst, const rig::Marker& marker, int rate_Hz, const MarkerCodes& codes) {
+  using Kind = rig::Marker::Kind;
+  auto& made = burst.marker;
+  made.channel = marker.channel;
+  made.amplitude = marker.amplitude;
+  made.frequency_Hz = marker.frequency_Hz;
+  if (marker.kind == Kind::code) {
+    made.kind = drive::MarkerKind::code;
+    made.frames = 2 * std::llround(marker.duration_s * rate_Hz / 2);
+    made.codes.fill(static_cast<std::uint8_t>(codes.change));
+    made.codes.front() = static_cast<std::uint8_t>(codes.onset);
+    return;
+  }
+  made.kind = marker.kind == Kind::tone ? drive::MarkerKind::tone : drive::MarkerKind::pulse;
+  made.frames = std::clamp<std::int64_t>(std::llround(marker.duration_s * rate_Hz), 1, burst.length_frames);
 }
 
 void mask(drive::Burst& burst, const rig::MaskingNoise& noise, std::uint64_t seed) {

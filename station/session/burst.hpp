@@ -17,9 +17,12 @@ drive::ToneSet tones_of(const scene::DrivePlan& plan);
 drive::Burst burst_of(const std::vector<scene::DrivePlan>& scenes, const std::vector<double>& starts_s,
                       double transition_s, double length_s, int rate_Hz);
 
-/// Adds the rig's marker at the onset and at each change of scene. A marker never lasts longer than the
-/// burst.
-void mark(drive::Burst& burst, const rig::Marker& marker, int rate_Hz);
+/// Adds the rig's marker at the onset and at each change of scene. A pulse or tone never lasts longer than
+/// the burst. If the marker carries codes, these are the codes of the onset and of each change; 0 is none.
+struct MarkerCodes {
+  int onset = 0, change = 0;
+};
+void mark(drive::Burst& burst, const rig::Marker& marker, int rate_Hz, const MarkerCodes& codes = {});
 
 /// Adds the rig's masking noise. A different `seed` for each interval gives each interval different noise.
 void mask(drive::Burst& burst, const rig::MaskingNoise& noise, std::uint64_t seed);

@@ -56,6 +56,7 @@ std::optional<CardCapture> card_capture_of(const rig::Rig& rig) {
   plan.setup.pick_ups = pick_ups_of(*rig.capture);
   plan.pilot = pilot_of(rig);
   plan.reference = rig.capture->reference;
+  plan.triggers = trigger_setup_of(rig);
   return plan;
 }
 
@@ -65,6 +66,7 @@ CaptureFeed::CaptureFeed(std::unique_ptr<drive::Capture> capture, const CardCapt
       // A pilot is scheduled a buffer before it is played, and captured up to a buffer before it is taken.
       longest_wait_s_(0.5 + 2.0 * plan.device.periods * plan.device.period_frames / plan.device.rate_Hz),
       watch_(plan.setup),
+      triggers_(plan.triggers, 0),
       thread_([this](const std::stop_token& stop) { run(stop); }) {}
 
 bool CaptureFeed::aligned() const {
@@ -130,6 +132,7 @@ bool CaptureFeed::take(const drive::CapturedBlock& captured) {
   }
   if (!aligned_) return false;
   watch_.push(block);
+  triggers_.push(block);
   end_frame_ = block.first_frame + block.frames();
   return false;
 }

@@ -8,6 +8,7 @@
 #include "station/drive/alsa_capture.hpp"
 #include "station/rig/rig.hpp"
 #include "station/sensing/pilot.hpp"
+#include "station/session/triggers.hpp"
 #include "station/session/vibration_watch.hpp"
 
 namespace turnpoint::session {
@@ -18,6 +19,7 @@ struct CardCapture {
   CaptureSetup setup;
   sensing::Pilot pilot;
   int reference = 0;  ///< captured channel on which the pilot comes back
+  TriggerSetup triggers;
 };
 
 /// None unless the rig's [capture] is `alsa:`.
@@ -31,6 +33,7 @@ class CaptureFeed {
   CaptureFeed(std::unique_ptr<drive::Capture> capture, const CardCapture& plan);
 
   VibrationWatch& watch() { return watch_; }
+  TriggerCapture& triggers() { return triggers_; }
 
   bool aligned() const;
   /// The playback was restarted, so a pilot is needed.
@@ -56,6 +59,7 @@ class CaptureFeed {
   const CardCapture plan_;
   const double longest_wait_s_;
   VibrationWatch watch_;
+  TriggerCapture triggers_;
   mutable std::mutex mutex_;
   std::unique_ptr<sensing::PilotListener> listener_;  ///< null: no pilot is awaited
   Pilot pilot_ = Pilot::missing;

@@ -57,6 +57,17 @@ lines::ButtonsHandlers handlers_for(Inputs& inputs) {
 Devices open_devices(const rig::Rig& rig, Inputs& inputs) {
   Devices devices;
   devices.amplifier = lines::open_amplifier(rig.amplifier_uri);
+  if (rig.trigger_lines_uri) devices.triggers = lines::open_trigger_lines(*rig.trigger_lines_uri);
+  if (rig.sync && !rig.sync->channel) {
+    const auto pulse = [&inputs](std::int64_t time_ns) {
+      Input input;
+      input.time_ns = time_ns;
+      input.kind = InputKind::sync;
+      input.quality = TimeQuality::kernel;
+      inputs.push(std::move(input));
+    };
+    devices.sync = lines::open_sync_line(rig.sync->uri, pulse, handlers_for(inputs));
+  }
   if (!rig.buttons_uri && !rig.contact_uri) return devices;
   std::optional<lines::ButtonsConfig> buttons;
   std::optional<lines::ContactConfig> contact;

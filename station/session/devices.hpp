@@ -6,6 +6,8 @@
 #include "station/drive/amplifier.hpp"
 #include "station/drive/engine.hpp"
 #include "station/lines/buttons.hpp"
+#include "station/lines/sync_line.hpp"
+#include "station/lines/trigger_lines.hpp"
 #include "station/rig/rig.hpp"
 #include "station/session/inputs.hpp"
 #include "station/system/clock_watch.hpp"
@@ -17,6 +19,8 @@ namespace turnpoint::session {
 struct Devices {
   std::unique_ptr<drive::Amplifier> amplifier;
   std::unique_ptr<lines::Buttons> buttons;
+  std::unique_ptr<lines::TriggerLines> triggers;  ///< null if the rig has no lines for codes
+  std::unique_ptr<lines::SyncLine> sync;          ///< null if the rig has no line for pulses
   std::function<std::unique_ptr<drive::Stream>(const drive::StreamConfig&)> open_stream =
       drive::open_realtime;
   std::function<std::unique_ptr<drive::Capture>(const drive::OutputConfig&)> open_capture =

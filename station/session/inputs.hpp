@@ -9,6 +9,7 @@
 #include <string>
 
 #include "station/sensing/interval_result.hpp"
+#include "station/sensing/trial_finger.hpp"
 #include "station/terms/fault.hpp"
 #include "station/trial/machine.hpp"
 
@@ -19,6 +20,7 @@ using terms::FaultKind;
 
 enum class InputKind {
   answer,      ///< value = index of the chosen answer
+  value,       ///< number = the number that was typed, or marked on a line, as the answer
   next,        ///< Continue or Done on a page
   slider,      ///< number = the slider's value
   touch_down,  ///< any touch on the panel, on an answer or beside it; only logged
@@ -29,15 +31,17 @@ enum class InputKind {
   /// the participant, the operator, or the program named in `text` wants to stop the session; completed
   /// trials are kept
   stop,
-  pause,  ///< the operator wants a pause
+  pause,  ///< the participant or the operator wants a pause
   xrun,   ///< the drive lost frames; value 1: frames of the last stimulus, 0: frames of silence
   heard,  ///< value = index of an interval that has been played completely; never logged
-  /// what the pick-ups measured of interval `value`, in `measured`; comes before `heard` of the interval
+  /// what the pick-ups measured of interval `value`, in `measured`; comes before `heard` of the interval.
+  /// With the last interval, `forces` says what the force cells measured in the trial. Either may be null.
   measured,
   /// drive, amplifier or panel has a fault: `fault` is its kind, `text` the detail; the trial is void
   fault,
   failure,      ///< the session cannot continue; `text` says what happened
   glitch,       ///< interference on the button or contact line named in `text`; only logged
+  sync,         ///< a pulse of another device; `text` names its frame; only logged
   notice,       ///< `text` says what happened; only logged
   arm,          ///< the operator clears a latched fault of the amplifier and arms it
   disarm,       ///< the operator switches the amplifier off; it stays off until it is armed again
@@ -59,6 +63,7 @@ struct Input {
   FaultKind fault = FaultKind::other;
   TimeQuality quality = TimeQuality::toolkit;
   std::shared_ptr<const sensing::IntervalResult> measured;
+  std::shared_ptr<const sensing::TrialForces> forces;
 };
 
 /// Converts the input to an event of the trial machine; empty if the machine does not need it.

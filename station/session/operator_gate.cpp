@@ -164,48 +164,70 @@ Flow OperatorGate::end_at_limit(const std::string& what) {
 }
 
 void OperatorGate::show(const Page& page) {
+  ++shows_;
   if (display_ != nullptr) display_->show(page);
 }
 
 Flow OperatorGate::show_and_wait(Page page, double at_least_s) {
-  const auto earliest = stage_.now_ns() + static_cast<std::int64_t>(at_least_s * 1e9);
+  if (page.kind == PageKind::paused) pause_asked_ = false;
+  auto shown_ns = stage_.now_ns();
+  const auto earliest = shown_ns + static_cast<std::int64_t>(at_least_s * 1e9);
   show(page);
   while (stage_.now_ns() < earliest)
     if (auto waited = stage_.wait_until(earliest)) {
-      const auto input = received(std::move(*waited));
-      if (handle_on_page(input) == Flow::stop) return Flow::stop;
-      if (input.kind != InputKind::fault && input.kind != InputKind::disarm) continue;
+      const int shows = shows_;
+      if (interrupt(page, received(std::move(*waited))) == Flow::stop) return Flow::stop;
+      if (shows_ == shows) continue;
       page.remaining_s = std::max(0.0, 1e-9 * static_cast<double>(earliest - stage_.now_ns()));
       show(page);
     }
   if (at_least_s > 0) {
     page.remaining_s = 0;
+    shown_ns = stage_.now_ns();
     show(page);
   }
+  const bool holds = page.kind == PageKind::fault || page.kind == PageKind::paused;
   const bool buttons_turn = page.kind == PageKind::instructions || page.kind == PageKind::rest;
-  const auto read_ns = stage_.now_ns() + kReading_ns;
   while (auto waited = stage_.wait_until(kForever)) {
+    const int shows = shows_;
     const auto input = received(std::move(*waited));
-    if (handle_on_page(input) == Flow::stop) return Flow::stop;
-    if (input.kind == InputKind::next) return Flow::go_on;
-    if (buttons_turn && input.kind == InputKind::answer && input.time_ns >= read_ns) return Flow::go_on;
-    if (input.kind != InputKind::fault && input.kind != InputKind::disarm) continue;
-    // The operator has now repaired the fault. That also ends an earlier fault or pause page, so do not show
-    // it again.
-    if (page.kind == PageKind::fault || page.kind == PageKind::paused) return Flow::go_on;
-    show(page);
+    if (interrupt(page, input) == Flow::stop) return Flow::stop;
+    if (shows_ != shows) {
+      // The operator has now repaired the fault. That also ends an earlier fault or pause page, so do not
+      // show it again.
+      if (holds) return Flow::go_on;
+      shown_ns = stage_.now_ns();
+      show(page);
+      continue;
+    }
+    // A press from before this page was meant for the previous one.
+    if (input.kind == InputKind::next && input.time_ns >= shown_ns) return Flow::go_on;
+    if (buttons_turn && input.kind == InputKind::answer && input.time_ns >= shown_ns + kReading_ns)
+      return Flow::go_on;
   }
   return Flow::go_on;
 }
 
-Flow OperatorGate::handle_on_page(const Input& input) {
+Flow OperatorGate::handle_on_page(const Page& page, const Input& input) {
+  const int shows = shows_;
+  if (interrupt(page, input) == Flow::stop) return Flow::stop;
+  if (shows_ != shows) show(page);
+  return Flow::go_on;
+}
+
+/// Lets a stop, a pause or a fault interrupt the page that is shown.
+Flow OperatorGate::interrupt(const Page& page, const Input& input) {
+  const bool paused = page.kind == PageKind::paused;
   note(input);
   if (stop_asked_) return Flow::stop;
-  return fault_ ? recover() : Flow::go_on;
+  if (paused) pause_asked_ = fault_.has_value();  // a fault does not end a pause
+  if (fault_) return recover();
+  return page.kind == PageKind::fault ? Flow::go_on : pause_if_asked();
 }
 
 Flow OperatorGate::until_clear() {
   while (!stop_asked_) {
+    if (pause_if_asked() == Flow::stop) return Flow::stop;
     if (!fault_ && armed()) break;
     if (!fault_) fault_ = Fault{FaultKind::disarmed, ""};
     if (recover() == Flow::stop) return Flow::stop;
@@ -218,7 +240,11 @@ void OperatorGate::stop(const std::string& reason) {
   stop_reason_ = reason;
 }
 
-bool OperatorGate::take_pause() { return std::exchange(pause_asked_, false); }
+Flow OperatorGate::pause_if_asked() {
+  while (pause_asked_)
+    if (show_and_wait(pages_.paused(director_), 0) == Flow::stop) return Flow::stop;
+  return Flow::go_on;
+}
 
 void OperatorGate::log(const Input& input) {
   if (input.kind != InputKind::heard) log_.event(event_row(input, log_.session().trials));

@@ -32,9 +32,10 @@ class OperatorGate {
   void show(const Page& page);
   /// Shows a page until somebody leaves it. The page cannot be left before `at_least_s` have passed.
   Flow show_and_wait(Page page, double at_least_s);
-  /// Handles inputs that matter on every page: somebody stops the session, or a fault occurs that the
-  /// operator has to repair.
-  Flow handle_on_page(const Input& input);
+  /// Handles an input that comes while `page` is shown and no trial runs: somebody stops or pauses the
+  /// session, or a fault occurs that the operator has to repair. Then shows `page` again if another page has
+  /// covered it.
+  Flow handle_on_page(const Page& page, const Input& input);
 
   /// Calls `write` until its rows are on the disk; only then does the session continue. If the disk is full,
   /// the screen says so and the surface stays silent. The same rows are written again when somebody has freed
@@ -43,7 +44,8 @@ class OperatorGate {
 
   /// Waits until the operator has armed the amplifier. Until then the surface stays silent.
   Flow until_armed(const Fault& why);
-  /// Call this before each trial. Waits until all faults are repaired and the amplifier is armed.
+  /// Call this before each trial. Waits until all faults are repaired, the amplifier is armed, and every
+  /// pause that somebody has asked for is over.
   Flow until_clear();
   /// After a fault: the screen says what happened, and the operator repairs the fault, clears it and arms the
   /// amplifier. Then the session continues. If the operator presses Continue too early, the page says what is
@@ -57,13 +59,14 @@ class OperatorGate {
   void stop(const std::string& reason);
   bool stop_asked() const { return stop_asked_; }
   const std::string& stop_reason() const { return stop_reason_; }
-  /// Returns true if the operator has requested a pause, and forgets the request.
-  bool take_pause();
+  /// If somebody has asked for a pause, shows its page until somebody presses Continue.
+  Flow pause_if_asked();
   /// The latest fault, if nobody has dealt with it yet.
   const std::optional<Fault>& fault() const { return fault_; }
   void set_fault(const std::optional<Fault>& fault) { fault_ = fault; }
 
  private:
+  Flow interrupt(const Page& page, const Input& input);
   void log(const Input& input);
   bool space_again(const std::string& detail);
   bool armed() const;
@@ -74,6 +77,7 @@ class OperatorGate {
   Stage& stage_;
   store::SessionLog& log_;
   Display* display_;
+  int shows_ = 0;  ///< number of pages shown
   bool stop_asked_ = false, pause_asked_ = false;
   std::string stop_reason_;
   std::optional<Fault> fault_;

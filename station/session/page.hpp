@@ -21,7 +21,11 @@ enum class PageKind {
   feedback,  ///< shows whether the answer was right (`correct`), or the message after a late answer (`text`)
   interval,  ///< pause between trials; empty except for the progress
   rest,      ///< a break of `remaining_s`; Continue appears once it is over
-  adjust,    ///< a slider moves the boundary in steps; Done ends the adjustment
+  /// the surface is silent; after the answer, the participant says how sure it was
+  confidence,
+  line,    ///< a rating on a line: nothing is marked until the first touch; Done confirms the mark
+  number,  ///< a number is typed; Done confirms it
+  adjust,  ///< a slider moves the boundary in steps; Done ends the adjustment
   /// says what happened, what is safe and what to do; Continue appears after the operator has repaired the
   /// fault
   fault,
@@ -32,6 +36,17 @@ enum class PageKind {
 
 struct AnswerButton {
   std::string id, label;
+  std::string caption = {};  ///< a smaller text below the label; may be ""
+};
+
+/// What a page needs to take a number as the answer.
+struct ValueEntry {
+  double low = 0, high = 1;
+  int decimals = 0;
+  /// along a line: where the texts are (0 to 1), and the texts
+  std::vector<double> places;
+  std::vector<std::string> texts;
+  std::string first;  ///< on a number pad: the number of the standard, as a sentence; may be ""
 };
 
 /// A line of the operator's summary at the end of a session.
@@ -60,12 +75,14 @@ struct Page {
   double remaining_s = 0;  ///< remaining time of a break
   /// for an adjustment: position, limits and step of the slider
   double slider = 0, slider_min = 0, slider_max = 1, slider_step = 0;
+  ValueEntry value;  ///< for a line or a number pad
   std::string language;
   /// "disarmed" or "faulted" while the operator has to act (on a fault page); otherwise "armed", "enabled",
   /// or ""
   std::string amplifier;
   /// live | pilot | simulated; shown on every page of pilot and simulated sessions
   std::string run_mode;
+  bool resumable = false;            ///< on the end page: the session can be continued later
   std::vector<SummaryLine> summary;  ///< on the end page: summary of the session for the operator
   FaultKind fault = FaultKind::other;
   std::string safe, to_do;  ///< on a fault page: what is safe and what to do; `text` says what happened

@@ -1,5 +1,6 @@
 #include "station/session/pages.hpp"
 
+#include "station/protocol/answers.hpp"
 #include "station/scene/planner.hpp"
 #include "station/text/number.hpp"
 #include "station/texts/texts.hpp"
@@ -35,6 +36,8 @@ PageKind kind_of(Phase phase) {
       return PageKind::pause;
     case Phase::response:
       return PageKind::response;
+    case Phase::confidence:
+      return PageKind::confidence;
     case Phase::feedback:
     case Phase::late:
       return PageKind::feedback;
@@ -87,14 +90,25 @@ void Pages::add_mark(Page& page, const trial::TrialSpec& first) const { page.mar
 Page Pages::of_phase(Phase phase, int interval, const trial::TrialSpec& spec, const protocol::Block& block,
                      const trial::Result& result, const trial::Director& director) const {
   auto page = blank(kind_of(phase), &block, &director);
-  const bool explored = setup_.protocol.task.kind == protocol::TaskKind::single_interval;
+  const auto& task = setup_.protocol.task;
+  const bool explored = task.kind == protocol::TaskKind::single_interval && protocol::explored(task);
   page.mark_mm = mark_of(spec);
   page.interval = interval + 1;
   page.intervals = static_cast<int>(spec.intervals.size());
   page.text = text(setup_.protocol.task.question);
   page.answers_open = phase == Phase::response || (phase == Phase::stimulus && explored);
-  for (const auto& choice : setup_.protocol.task.choices)
-    page.answers.push_back({choice.id, text(choice.label)});
+  for (const auto& choice : task.choices)
+    page.answers.push_back({choice.id, task.rating ? choice.id : text(choice.label)});
+  for (const auto& anchor : task.anchors)
+    page.answers.at(static_cast<std::size_t>(anchor.at) - 1).caption = text(anchor.text);
+  if (task.value && page.answers_open) add_value(page, task);
+  if (phase == Phase::confidence) {
+    page.text = text(task.confidence->question);
+    page.answers_open = true;
+    page.answers.clear();
+    for (const auto& label : task.confidence->labels)
+      page.answers.push_back({std::to_string(page.answers.size() + 1), text(label)});
+  }
   if (phase == Phase::feedback) {
     page.correct = result.correct;
     page.text = result.correct ? texts::text(*result.correct ? "right" : "wrong", setup_.language) : "";
@@ -109,12 +123,30 @@ Page Pages::of_phase(Phase phase, int interval, const trial::TrialSpec& spec, co
   return page;
 }
 
+void Pages::add_value(Page& page, const protocol::Task& task) const {
+  const auto& value = *task.value;
+  page.kind = value.typed ? PageKind::number : PageKind::line;
+  page.answers.clear();
+  page.value = {value.low, value.high, value.decimals, {}, {}, ""};
+  for (const auto& anchor : value.anchors) {
+    page.value.places.push_back((anchor.at - value.low) / (value.high - value.low));
+    page.value.texts.push_back(text(anchor.text));
+  }
+  if (!task.modulus) return;
+  page.value.first = texts::text("first_is", setup_.language);
+  page.value.first.replace(page.value.first.find("%1"), 2, turnpoint::text::number(*task.modulus));
+}
+
 void Pages::add_slider(Page& page, const trial::SliderSpan& span, double setting) const {
   page.kind = PageKind::adjust;
   page.answers.clear();
   page.slider = setting;
   page.slider_min = span.shown_low, page.slider_max = span.shown_high;
   page.slider_step = span.step;
+}
+
+Page Pages::between_trials(const protocol::Block& block, const trial::Director& director) const {
+  return blank(PageKind::interval, &block, &director);
 }
 
 Page Pages::rest(const protocol::Block& block, double min_s, const trial::Director& director) const {
@@ -153,6 +185,7 @@ Page Pages::end(const Summary& summary, const trial::Director& director) const {
   auto page = blank(PageKind::end, nullptr, &director);
   const bool whole = summary.status == records::SessionStatus::completed;
   page.title = texts::text(whole ? "thanks" : "thanks_early", setup_.language);
+  page.resumable = summary.status == records::SessionStatus::interrupted;
   // at the end the exact total is known; with adaptive procedures it was an estimate before
   if (whole) page.trials_total = page.trials_done;
   page.summary = {{"Trials", std::to_string(summary.trials)},

@@ -24,6 +24,8 @@ class Pages {
                 const trial::Result& result, const trial::Director& director) const;
   /// Adds the slider of an adjustment to the page of a phase.
   void add_slider(Page& page, const trial::SliderSpan& span, double setting) const;
+  /// The page between two trials, with the progress only.
+  Page between_trials(const protocol::Block& block, const trial::Director& director) const;
   Page rest(const protocol::Block& block, double min_s, const trial::Director& director) const;
   Page practice_again(const protocol::Block& block, const trial::Director& director) const;
   /// Makes the page for a fault that stops the session until somebody has repaired it. `detail` is what the
@@ -35,6 +37,7 @@ class Pages {
  private:
   Page blank(PageKind kind, const protocol::Block* block, const trial::Director* director) const;
   std::string text(const protocol::Localised& localised) const;
+  void add_value(Page& page, const protocol::Task& task) const;
 
   const Setup& setup_;
 };

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "station/protocol/resolve.hpp"
+#include "station/protocol/triggers.hpp"
 #include "station/random/draws.hpp"
 #include "station/session/burst.hpp"
 #include "station/session/stage.hpp"
@@ -105,12 +106,14 @@ std::vector<drive::PreparedBurst> PlanAhead::bursts_of(const trial::TrialSpec& t
   const auto& task = protocol_.task;
   random::Draws noise(
       {seed_, random::Stream::masking_noise, trial.block_index, trial.attempt, trial.trial_in_block});
+  const MarkerCodes codes{protocol::trigger_code(protocol_, protocol::TriggerEvent::onset, trial.factors),
+                          protocol::trigger_code(protocol_, protocol::TriggerEvent::change, trial.factors)};
   std::vector<drive::PreparedBurst> bursts;
   std::int64_t start_frame = 0;
   for (std::size_t i = 0; i < plans.size(); ++i) {
     auto burst = burst_of(plans[i], times[i].starts_s, task.transition_ms.value_or(50) * 1e-3,
                           times[i].length_s, rate_Hz);
-    if (rig_.marker) mark(burst, *rig_.marker, rate_Hz);
+    if (rig_.marker) mark(burst, *rig_.marker, rate_Hz, codes);
     if (rig_.noise && task.sound == protocol::Sound::masking_noise) mask(burst, *rig_.noise, noise.bits());
     burst.start_frame = start_frame;
     start_frame += burst.length_frames + std::llround(task.gap_s.value_or(0) * rate_Hz);

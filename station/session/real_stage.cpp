@@ -33,10 +33,11 @@ constexpr std::int64_t kTail_ns = 20'000'000;
 class RealStage : public Stage {
  public:
   RealStage(drive::StreamConfig config, Devices devices, Inputs& inputs,
-            const std::optional<CardCapture>& capture)
+            const std::optional<CardCapture>& capture, const TriggerSetup& triggers)
       : devices_(std::move(devices)), inputs_(inputs), clocks_(devices_.clocks()) {
     config.amplifier = devices_.amplifier.get();
     stream_ = devices_.open_stream(config);
+    triggers_.emplace(triggers, *stream_, devices_.triggers.get());
     if (!capture) return;
     pilot_ = capture->pilot;
     reference_ = capture->reference;
@@ -50,7 +51,7 @@ class RealStage : public Stage {
       attend();
       const auto now = now_ns();
       const auto until = std::min(deadline_ns, now + kPoll_ns);
-      if (auto input = inputs_.wait_until(until)) return input;
+      if (auto input = inputs_.wait_until(until)) return with_frame(std::move(*input));
       if (until == deadline_ns) return std::nullopt;
     }
   }
@@ -62,8 +63,9 @@ class RealStage : public Stage {
     unheard_ = 0;
     unmeasured_.clear();
     lost_ns_.reset();
-    const auto gathered = inputs_.drain();
-    return {gathered.begin(), gathered.end()};
+    std::vector<Input> gathered;
+    for (auto& input : inputs_.drain()) gathered.push_back(with_frame(std::move(input)));
+    return gathered;
   }
 
   void wait_for(const std::function<bool()>& ready) override {
@@ -81,8 +83,11 @@ class RealStage : public Stage {
     wait_for([&] { return stream_->clock().pairs > 0 || now_ns() > until_ns; });
     earliest_ns = std::max(earliest_ns, opened_ns_ + kSettle_ns);
     if (feed_) earliest_ns = std::max(earliest_ns, now_ns() + kExpected_ns);
+    if (triggers_->active())
+      earliest_ns = std::max(earliest_ns, stream_->time_of(triggers_->free_from()).value_or(earliest_ns));
     auto onsets = schedule(*stream_, intervals, earliest_ns, presented_);
-    if (feed_ && !onsets.empty()) feed_->watch().expect(scheduled(intervals, presented_));
+    if (feed_ && !onsets.empty())
+      feed_->watch().expect(scheduled(intervals, presented_), stream_->frame_at(now_ns()).value_or(0));
     if (onsets.empty())
       push_fault(now_ns(), FaultKind::stimulus_missed,
                  "the converter does not report which frame it is playing");
@@ -106,6 +111,7 @@ class RealStage : public Stage {
     if (!presented_.empty() && presented_.back().start_frame >= from) unheard_ = 0;
     if (feed_) feed_->watch().cut(stream_->counters().frames);
     const auto silent_ns = ramp_down(*stream_, presented_, now_ns());
+    triggers_->cut(from, stream_->frame_at(silent_ns).value_or(from), now_ns());
     return quiet_ns_ = lost_ns_.value_or(silent_ns);
   }
 
@@ -136,6 +142,11 @@ class RealStage : public Stage {
     return amplifier_().enable();
   }
   void close_amplifier() override { closing_ = true; }
+
+  Triggers& triggers() override {
+    if (feed_) take_captured();
+    return *triggers_;
+  }
 
   const std::vector<std::string>& buttons() const override {
     return devices_.buttons ? devices_.buttons->names() : no_buttons_;
@@ -185,7 +196,9 @@ class RealStage : public Stage {
       input.time_ns = now;
       input.kind = InputKind::measured;
       input.value = interval;
-      if ((input.measured = watch.result(index))) inputs_.push(std::move(input));
+      input.measured = watch.result(index);
+      input.forces = watch.forces(index);
+      if (input.measured || input.forces) inputs_.push(std::move(input));
       push(InputKind::heard, now, "", interval);
     }
   }
@@ -206,6 +219,7 @@ class RealStage : public Stage {
     }
     while (const auto event = stream_->poll()) hear(*event, now);
     measure(now);
+    if (feed_) take_captured();
     look_at_samples();
     look_at_capture(now);
     if (unheard_ > 0 && now > quiet_ns_ + kHeard_ns) {
@@ -216,6 +230,23 @@ class RealStage : public Stage {
     if (amplifier() == drive::AmplifierState::faulted && !std::exchange(fault_told_, true))
       tell_amplifier_fault();
     if (now >= clocks_due_ns_) look_at_clocks(now);
+  }
+
+  /// Takes the codes that were read back, and reports the pulses that were captured.
+  void take_captured() {
+    const auto news = feed_->triggers().take();
+    triggers_->captured(news);
+    for (const auto frame : news.edges) {
+      const auto time_ns = stream_->time_of(frame);
+      if (time_ns) push(InputKind::sync, *time_ns, fmt::format("frame {}", frame));
+    }
+  }
+
+  /// A pulse that came on a line gets the frame at that time.
+  Input with_frame(Input input) {
+    if (input.kind == InputKind::sync && input.text.empty())
+      if (const auto frame = stream_->frame_at(input.time_ns)) input.text = fmt::format("frame {}", *frame);
+    return input;
   }
 
   void tell_amplifier_fault() {
@@ -263,6 +294,7 @@ class RealStage : public Stage {
                "more than three underruns within a minute; run `turnpoint doctor`, then resume the session");
         return;
       case drive::EventKind::burst_missed:
+        if (triggers_->owns(event.burst)) return triggers_->missed(event.burst);
         return push_fault(now, FaultKind::stimulus_missed, "a stimulus came too late to be played");
       case drive::EventKind::device_lost:
         if (feed_) feed_->misalign();
@@ -326,6 +358,7 @@ class RealStage : public Stage {
   Devices devices_;
   Inputs& inputs_;
   std::unique_ptr<drive::Stream> stream_;
+  std::optional<Triggers> triggers_;
   std::unique_ptr<CaptureFeed> feed_;  ///< null: nothing is captured
   sensing::Pilot pilot_;
   int reference_ = 0;
@@ -362,8 +395,8 @@ std::string describe(const system::Rights& rights) {
 }
 
 std::unique_ptr<Stage> real_stage(const drive::StreamConfig& stream, Devices devices, Inputs& inputs,
-                                  const std::optional<CardCapture>& capture) {
-  return std::make_unique<RealStage>(stream, std::move(devices), inputs, capture);
+                                  const std::optional<CardCapture>& capture, const TriggerSetup& triggers) {
+  return std::make_unique<RealStage>(stream, std::move(devices), inputs, capture, triggers);
 }
 
 }  // namespace turnpoint::session

@@ -2,11 +2,11 @@
 
 #include <fmt/format.h>
 
-#include <charconv>
 #include <cmath>
 #include <stdexcept>
 #include <string>
 
+#include "station/text/number.hpp"
 #include "station/trial/question.hpp"
 #include "station/trial/rows.hpp"
 
@@ -54,13 +54,11 @@ void replay(trial::Director& director, const records::TrialRow& trial, const pro
   if (trial.response)
     for (std::size_t i = 0; i < protocol.task.choices.size(); ++i)
       if (protocol.task.choices[i].id == *trial.response) end.response = static_cast<int>(i);
-  if (spec->slider && trial.response) {
-    double setting = 0;
-    const auto* last = trial.response->data() + trial.response->size();
-    const auto read = std::from_chars(trial.response->data(), last, setting);
-    if (read.ec != std::errc{} || read.ptr != last)
-      mismatch("\"" + *trial.response + "\" is not a setting of the slider");
-    end.response = 0, end.setting = setting;
+  if ((spec->slider || protocol.task.value) && trial.response) {
+    const auto value = text::read_number(*trial.response);
+    if (!value) mismatch("\"" + *trial.response + "\" is not a number");
+    end.response = 0;
+    if (spec->slider) end.setting = value;
   }
   director.record(end);
   if (director.state_hash() != trial.state_hash) mismatch("the state of the procedures differs afterwards");
@@ -76,7 +74,10 @@ void check_observer(const Setup& setup, const store::StoredSession& stored, cons
   const observer::Observer observer(observer::parse(setup.observer));
   const auto reply = observer.answer(trial::question_of(spec, setup.protocol, stored.session.start.seed));
   const auto& choices = setup.protocol.task.choices;
-  if (reply.choice && choices[static_cast<std::size_t>(*reply.choice)].id == trial.response &&
+  const auto answer = reply.value    ? std::optional(text::exact(*reply.value))
+                      : reply.choice ? std::optional(choices[static_cast<std::size_t>(*reply.choice)].id)
+                                     : std::nullopt;
+  if (answer == trial.response && reply.confidence == trial.confidence &&
       std::fabs(reply.response_time_s - *trial.response_time_s) < tolerance_s)
     return;
   throw std::runtime_error(

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "station/store/signal_code.hpp"
 #include "station/text/number.hpp"
 
 namespace turnpoint::session {
@@ -15,6 +16,8 @@ const char* kind_of(InputKind kind) {
   switch (kind) {
     case InputKind::answer:
       return "answer";
+    case InputKind::value:
+      return "value";
     case InputKind::next:
       return "next";
     case InputKind::slider:
@@ -43,6 +46,8 @@ const char* kind_of(InputKind kind) {
       return "failure";
     case InputKind::glitch:
       return "glitch";
+    case InputKind::sync:
+      return "sync";
     case InputKind::notice:
       return "notice";
     case InputKind::arm:
@@ -63,7 +68,7 @@ std::string value_of(const Input& input) {
   if (input.kind == InputKind::measured)
     return fmt::format("{} {} {}", input.value, name(input.measured->verdict), name(input.measured->cause));
   if (!input.text.empty()) return input.text;
-  if (input.kind == InputKind::slider) return text::exact(input.number);
+  if (input.kind == InputKind::slider || input.kind == InputKind::value) return text::exact(input.number);
   if (input.kind == InputKind::contact && input.number >= 0)
     return fmt::format("{} {}", input.value, text::number(input.number, 4));
   return std::to_string(input.value);
@@ -147,6 +152,46 @@ void add_measured(records::TrialRow& row, const sensing::IntervalResult& measure
   const auto all = first ? now : sensing::concluded({{row.proof_cause, row.proof}, now});
   row.proof = all.verdict;
   row.proof_cause = all.cause;
+}
+
+void add_forces(records::TrialRow& row, const sensing::TrialForces& forces, int rate_Hz,
+                const FrameTime& at) {
+  const auto known = [](double value) { return std::isfinite(value) ? std::optional(value) : std::nullopt; };
+  auto& finger = row.finger;
+  finger.sensing = sensing::name(forces.state);
+  if (forces.state == sensing::ForcesState::ok) {
+    const auto& summary = forces.summary;
+    finger.contact_s = summary.contact_s;
+    finger.strokes = summary.strokes;
+    finger.normal_N = known(summary.normal_N);
+    finger.normal_sd_N = known(summary.normal_sd_N);
+    finger.normal_in_window = known(summary.normal_in_window);
+    finger.speed_mm_s = known(summary.speed_mm_s);
+    finger.speed_in_window = known(summary.speed_in_window);
+    finger.mu_low = known(summary.mu_low);
+    finger.mu_high = known(summary.mu_high);
+    finger.boundary_felt_mm = known(summary.boundary_felt_mm);
+    finger.boundary_se_mm = known(summary.boundary_se_mm);
+    finger.lag_mm = known(summary.lag_mm);
+  }
+  finger.tare_mN = 1e3 * forces.tare_moved_N;
+  if (forces.track.empty()) return;
+  records::SignalRow signal;
+  signal.stream = "finger";
+  signal.start_frame = forces.track.front().index * forces.frames_per_point;
+  signal.start_s = at.time_s + static_cast<double>(signal.start_frame - at.frame) / rate_Hz;
+  signal.rate_Hz = static_cast<double>(rate_Hz) / static_cast<double>(forces.frames_per_point);
+  signal.channels = {
+      {"normal", "N", 1e-4}, {"lateral", "N", 1e-4}, {"position", "mm", 0.01}, {"speed", "mm/s", 0.1}};
+  std::vector<std::vector<double>> values(signal.channels.size());
+  for (const auto& point : forces.track) {
+    values[0].push_back(point.normal_N);
+    values[1].push_back(point.lateral_N);
+    values[2].push_back(point.position_mm);
+    values[3].push_back(point.speed_mm_s);
+  }
+  store::encode(signal, values);
+  row.signal_rows.push_back(std::move(signal));
 }
 
 std::string describe_proof(const records::TrialRow& row) {

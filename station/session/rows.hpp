@@ -28,6 +28,14 @@ void set_scene(records::TrialRow& row, const scene::DrivePlan& scene, std::int64
 /// trial, for which the worst interval counts. `first`: no interval of this trial has been added yet.
 void add_measured(records::TrialRow& row, const sensing::IntervalResult& measured, int interval, bool first);
 
+/// A playback frame and its time from the start of the segment.
+struct FrameTime {
+  std::int64_t frame = 0;
+  double time_s = 0;
+};
+/// Adds what the force cells measured in a trial: the summary, and the signal of the finger.
+void add_forces(records::TrialRow& row, const sensing::TrialForces& forces, int rate_Hz, const FrameTime& at);
+
 /// Says what a pick-up found wrong with a trial, with figures: "the surface does not move (-62.1 dB)".
 std::string describe_proof(const records::TrialRow& row);
 

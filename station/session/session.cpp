@@ -124,12 +124,20 @@ drive::StreamConfig stream_of(const rig::Rig& rig) {
 
 namespace {
 
+/// Like stream_of(), with the carrier that excites the bridges of force cells.
+drive::StreamConfig session_stream(const rig::Rig& rig) {
+  auto config = stream_of(rig);
+  if (rig.capture && !rig.capture->bridges.empty())
+    config.carrier = {sensing::carriers_Hz.front(), kCarrier, *rig.capture->excitation_channel};
+  return config;
+}
+
 bool simulates_capture(const rig::Rig& rig) { return rig.capture && rig.capture->uri == "sim:"; }
 
 /// Returns the configuration of a simulated session's stream. It uses no hardware: if the rig's output is a
 /// converter, samples are discarded. Output to files and to plug-ins that the rig allows is kept.
 drive::StreamConfig simulated_stream(const rig::Rig& rig) {
-  auto config = stream_of(rig);
+  auto config = session_stream(rig);
   config.virtual_lead_frames = std::int64_t{config.output.periods} * config.output.period_frames;
   const bool hardware = config.output.uri.starts_with("alsa:") && config.output.allow_plugin.empty();
   if (hardware) config.output.uri = "null:";
@@ -195,13 +203,16 @@ Summary run(const Setup& setup, Display* display, Inputs& inputs, Monitor* monit
 Summary run(const Setup& setup, Display* display, Inputs& inputs, std::unique_ptr<SimulatedRoom> room,
             Monitor* monitor) {
   const observer::Observer observer(observer::parse(setup.observer));
-  return run_on(setup, display, virtual_stage(simulated_stream(setup.rig), observer, inputs, std::move(room)),
+  return run_on(setup, display,
+                virtual_stage(simulated_stream(setup.rig), observer, inputs, std::move(room),
+                              trigger_setup_of(setup.rig)),
                 monitor);
 }
 
 Summary run(const Setup& setup, Display* display, Inputs& inputs, Devices devices, Monitor* monitor) {
   return run_on(setup, display,
-                real_stage(stream_of(setup.rig), std::move(devices), inputs, card_capture_of(setup.rig)),
+                real_stage(session_stream(setup.rig), std::move(devices), inputs, card_capture_of(setup.rig),
+                           trigger_setup_of(setup.rig)),
                 monitor);
 }
 

@@ -56,6 +56,9 @@ struct Summary {
   std::optional<double> accuracy;  ///< proportion correct of scored, answered, experimental trials
   double duration_s = 0;           ///< measured on the session's clock
   int xruns = 0;
+  /// trigger codes that were given out, those of them that were captured but not found, and codes that were
+  /// found but not given out
+  int triggers = 0, triggers_missed = 0, triggers_extra = 0;
   /// time by which pauses between trials were extended to keep the limits on exposure
   double stretched_s = 0;
   std::string realtime_rights;  ///< rights that the operating system granted to the audio thread

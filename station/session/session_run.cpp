@@ -80,6 +80,7 @@ Flow SessionRun::rest_if_due(int trials) {
 void SessionRun::finish(records::SessionStatus status, const std::string& reason) {
   summary_.status = status;
   summary_.reason = reason;
+  finish_triggers();
   summary_.duration_s = static_cast<double>(stage_->now_ns() - started_ns_) * 1e-9;
   if (scored_ > 0) summary_.accuracy = static_cast<double>(right_) / scored_;
   gate_.keep([&] { log_.finish(status, reason); });

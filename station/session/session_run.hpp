@@ -33,6 +33,7 @@ class SessionRun {
     trial::Machine machine;
     records::TrialRow row;
     std::optional<trial::Slider> slider;  ///< the slider of an adjustment
+    std::optional<double> value;          ///< the answer, if it is a number
     std::vector<Onset> onsets;            ///< onsets of all intervals; set once the intervals are scheduled
     std::size_t begun = 0;                ///< number of intervals whose presentation has begun
     std::size_t measured = 0;             ///< number of intervals that pick-ups have measured
@@ -69,9 +70,15 @@ class SessionRun {
   void leave_surface();
   void count(const trial::TrialSpec& spec, const records::TrialRow& row);
 
+  // These functions give out trigger codes (session_run_triggers.cpp).
+  void trigger(protocol::TriggerEvent event, const Running& trial);
+  void trigger_intervals(const Running& trial);
+  void log_triggers();
+  void finish_triggers();
+
   // These functions are for adjustments (session_run_adjustment.cpp).
   void show_phase(trial::Phase phase, const Running& trial);
-  std::optional<trial::Event> event_in_trial(const Input& input, Running& trial);
+  std::optional<trial::Event> event_in_trial(const Input& input, Running& trial, bool by_button);
   void glide(Running& trial);
 
   const Setup& setup_;

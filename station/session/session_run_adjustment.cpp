@@ -1,3 +1,4 @@
+#include "station/protocol/answers.hpp"
 #include "station/session/burst.hpp"
 #include "station/session/rows.hpp"
 #include "station/session/session_run.hpp"
@@ -15,7 +16,18 @@ void SessionRun::show_phase(trial::Phase phase, const Running& trial) {
   gate_.show(page);
 }
 
-std::optional<trial::Event> SessionRun::event_in_trial(const Input& input, Running& trial) {
+std::optional<trial::Event> SessionRun::event_in_trial(const Input& input, Running& trial, bool by_button) {
+  const trial::Event touch{input.time_ns, trial::EventKind::touch, 0};
+  const bool confiding = trial.machine.phase() == trial::Phase::confidence;
+  const auto& answer = setup_.protocol.task.value;
+  if (input.kind == InputKind::value) {
+    const auto value = answer ? protocol::accepted(*answer, input.number) : std::nullopt;
+    if (!value || confiding) return touch;
+    if (!trial.machine.result().response) trial.value = value;
+    return trial::Event{input.time_ns, trial::EventKind::answer, 0};
+  }
+  // Neither a button nor a touch beside the number pad can give a number; a button cannot give a confidence.
+  if (input.kind == InputKind::answer && (confiding ? by_button : answer.has_value())) return touch;
   if (!trial.slider) return event_of(input);
   // Ignore slider movements in silence: the participant could not feel their effect.
   if (input.kind == InputKind::slider && trial.machine.phase() == trial::Phase::stimulus)

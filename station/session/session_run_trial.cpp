@@ -38,6 +38,7 @@ Flow SessionRun::run_trial(const trial::TrialSpec& spec) {
                 trial::Machine(trial::timing_of(setup_.protocol, *director_.block(), spec)),
                 trial::row_of(spec, setup_.protocol, trial_index()),
                 {},
+                {},
                 {}};
   if (spec.slider) trial.slider.emplace(*spec.slider, spec.level.value_or(spec.slider->low));
   if (monitor_ != nullptr) monitor_->trial_begins(spec, *director_.block(), plans_.take(spec).plans);
@@ -48,6 +49,7 @@ Flow SessionRun::run_trial(const trial::TrialSpec& spec) {
   stage_->close_amplifier();
   if (!trial.decided) decide(trial);
   leave_surface();
+  log_triggers();
   finish_row(trial);
   gate_.keep([&] { log_.append(trial.row); });
   count(spec, trial.row);
@@ -90,9 +92,11 @@ Flow SessionRun::keep_limits(const trial::TrialSpec& spec) {
   const double stretch_s = static_cast<double>(begin - now) * 1e-9;
   summary_.stretched_s += stretch_s;
   log_.event(event(now, "interval_stretched", stretch_s, trial_index()));
+  const auto page = pages_.between_trials(*director_.block(), director_);
+  gate_.show(page);
   while (stage_->now_ns() < begin)
     if (auto input = stage_->wait_until(begin))
-      if (gate_.handle_on_page(gate_.received(std::move(*input))) == Flow::stop) return Flow::stop;
+      if (gate_.handle_on_page(page, gate_.received(std::move(*input))) == Flow::stop) return Flow::stop;
   return Flow::go_on;
 }
 
@@ -113,7 +117,6 @@ void SessionRun::check_plans(const trial::TrialSpec& spec) {
 
 Flow SessionRun::after_trial(const records::TrialRow& row) {
   if (gate_.stop_asked()) return Flow::stop;
-  const bool paused = gate_.take_pause();
   const bool is_void = row.outcome == terms::Outcome::fault;
   // One refused stimulus can be a coincidence and is presented again; two in a row are not.
   const bool refused = row.proof == terms::Proof::refused || row.proof == terms::Proof::stopped;
@@ -126,12 +129,13 @@ Flow SessionRun::after_trial(const records::TrialRow& row) {
                (gate_.fault() ? "; the last: " + terms::describe(*gate_.fault()) : ""));
     return Flow::stop;
   }
-  if (gate_.fault()) return gate_.recover();
-  return paused ? gate_.show_and_wait(pages_.paused(director_), 0) : Flow::go_on;
+  if (gate_.fault() && gate_.recover() == Flow::stop) return Flow::stop;
+  return gate_.pause_if_asked();
 }
 
 void SessionRun::drive_trial(Running& trial, std::optional<trial::EventKind> cut_by) {
   auto& machine = trial.machine;
+  if (!cut_by) trigger(protocol::TriggerEvent::trial, trial);
   perform(machine.start(stage_->now_ns()), trial);
   if (cut_by) perform(machine.handle({stage_->now_ns(), *cut_by, 0}), trial);
   while (!machine.done()) {
@@ -152,14 +156,22 @@ void SessionRun::handle_in_trial(Input raw, Running& trial) {
   const bool by_button = raw.kind == InputKind::button;
   const auto input = gate_.received(std::move(raw));
   gate_.note(input);
-  if (input.kind == InputKind::measured)
-    add_measured(trial.row, *input.measured, input.value, trial.measured++ == 0);
-  const bool answers = input.kind == InputKind::answer || (trial.slider && input.kind == InputKind::next);
+  if (input.measured) add_measured(trial.row, *input.measured, input.value, trial.measured++ == 0);
+  if (input.forces && !trial.onsets.empty()) {
+    const auto& onset = trial.onsets.front();
+    add_forces(trial.row, *input.forces, setup_.rig.output.rate_Hz,
+               {onset.frame, 1e-9 * static_cast<double>(onset.time_ns - started_ns_)});
+  }
+  const bool answers = input.kind == InputKind::answer || input.kind == InputKind::value ||
+                       (trial.slider && input.kind == InputKind::next);
   if (answers && !trial.machine.result().response) {
     trial.row.response_time_quality = name(input.quality);
     trial.by_button = by_button;
   }
-  if (const auto event = event_in_trial(input, trial)) perform(trial.machine.handle(*event), trial);
+  const bool answered = trial.machine.result().response.has_value();
+  if (const auto event = event_in_trial(input, trial, by_button))
+    perform(trial.machine.handle(*event), trial);
+  if (!answered && trial.machine.result().response) trigger(protocol::TriggerEvent::response, trial);
 }
 
 void SessionRun::perform(const std::vector<trial::Action>& actions, Running& trial) {
@@ -167,7 +179,8 @@ void SessionRun::perform(const std::vector<trial::Action>& actions, Running& tri
     switch (action.kind) {
       case trial::ActionKind::enter: {
         const auto phase = static_cast<trial::Phase>(action.value);
-        if (phase == trial::Phase::response || is_over(phase)) stage_->close_amplifier();
+        if (phase == trial::Phase::response || phase == trial::Phase::confidence || is_over(phase))
+          stage_->close_amplifier();
         if (phase == trial::Phase::done) break;
         if (phase == trial::Phase::stimulus) interval_begins(trial);
         if (trial.machine.decided() && !trial.decided) decide(trial);
@@ -198,6 +211,7 @@ void SessionRun::present(std::int64_t earliest_ns, Running& trial) {
     surface_.push_back({on_ns, on_ns + static_cast<std::int64_t>(times[i].length_s * 1e9)});
     perform(trial.machine.handle({on_ns, trial::EventKind::onset, static_cast<int>(i)}), trial);
   }
+  trigger_intervals(trial);
   ask_observer(trial, trial.onsets.back().time_ns);
 }
 
@@ -227,9 +241,10 @@ void SessionRun::ask_observer(const Running& trial, std::int64_t onset_ns) {
 void SessionRun::decide(Running& trial) {
   trial.decided = true;
   auto& row = trial.row;
-  trial::fill_result(row, trial.machine.result(), trial.spec, setup_.protocol, started_ns_);
+  if (trial.slider) trial.value = trial.slider->felt();
+  trial::fill_result(row, trial.machine.result(), trial.spec, setup_.protocol, started_ns_, trial.value);
   trial::TrialEnd end{row.outcome, trial.machine.result().response, row.correct, {}};
-  if (trial.slider && end.response) end.setting = trial.slider->felt();
+  if (trial.slider && end.response) end.setting = trial.value;
   director_.record(end);
   row.state_hash = director_.state_hash();
   if (const auto threshold = director_.threshold()) {
@@ -251,10 +266,9 @@ void SessionRun::leave_surface() {
 
 void SessionRun::finish_row(Running& trial) {
   auto& row = trial.row;
-  trial::fill_result(row, trial.machine.result(), trial.spec, setup_.protocol, started_ns_);
+  trial::fill_result(row, trial.machine.result(), trial.spec, setup_.protocol, started_ns_, trial.value);
   const bool good = row.proof == terms::Proof::ok || row.proof == terms::Proof::flagged;
   if (good && trial.measured < trial.begun) row.proof = terms::Proof::unproven;
-  if (trial.slider && row.response) row.response = text::exact(trial.slider->felt());
   const auto& found_for = setup_.response_offset_quality;
   const bool applies = !trial.by_button && (found_for.empty() || found_for == row.response_time_quality);
   row.response_offset_s = applies ? setup_.response_offset_s : 0;

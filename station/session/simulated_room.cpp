@@ -13,6 +13,8 @@ namespace {
 
 // A workshop glues the first patch 3 mm from the drive edge, and each further one 6 mm beyond.
 constexpr double kFirst_m = 3e-3, kNext_m = 6e-3;
+// The simulated participant strokes this part of the surface, at this mean speed.
+constexpr double kStrokeFrom = 0.25, kStrokeTo = 0.75, kStroke_m_s = 0.09, kPause_s = 0.05;
 constexpr double kStep_Hz = 20;  // between two points of a pick-up's response
 
 plant::Setup room_of(const rig::Rig& rig) {
@@ -27,16 +29,68 @@ plant::Setup room_of(const rig::Rig& rig) {
     room.band_low_Hz = std::min(room.band_low_Hz, t.low_Hz);
     room.band_high_Hz = std::max(room.band_high_Hz, t.high_Hz);
   }
-  room.wires.carrier_channel.reset();
   room.capture.count = rig.capture->channels;
-  room.capture.reference = room.capture.bridge_a = room.capture.bridge_b = room.capture.lateral =
-      room.capture.marker = std::nullopt;
+  room.capture.marker = std::nullopt;
+  room.wires.carrier_channel = rig.capture->excitation_channel;
+  if (const auto& bridges = rig.capture->bridges; !bridges.empty()) {
+    room.capture.reference = rig.capture->reference;
+    room.capture.bridge_a = bridges[0], room.capture.bridge_b = bridges[1], room.capture.lateral = bridges[2];
+    room.cells.span_m = rig.surface.length_m;
+    room.finger.from_m = kStrokeFrom * rig.surface.length_m;
+    room.finger.to_m = kStrokeTo * rig.surface.length_m;
+    room.finger.stroke_s = (room.finger.to_m - room.finger.from_m) / kStroke_m_s;
+    room.finger.pause_s = kPause_s;
+  } else {
+    room.capture.reference = room.capture.bridge_a = room.capture.bridge_b = room.capture.lateral =
+        std::nullopt;
+  }
+  if (rig.capture->marker_channel) {
+    room.capture.marker = rig.capture->marker_channel;
+    room.marker_channel = rig.marker.value().channel;
+  }
   room.pickups.clear();
   for (const int pick_up : rig.capture->pick_ups)
     room.pickups.push_back({pick_up, kFirst_m + kNext_m * static_cast<double>(room.pickups.size())});
   room.surface = scene::surface_of(rig);
   room.friction = scene::friction_of(rig);
   return room;
+}
+
+/// The ratio of bridge to reference for a force on a cell.
+double ratio_per_N(const plant::Setup& room) {
+  const auto& wires = room.wires;
+  return room.cells.volt_per_volt_N * wires.gain * wires.reference_V_at_full_scale / wires.full_scale_V;
+}
+
+/// The calibration that exact weights would give.
+sensing::ForceCalibration calibrated(const plant::Setup& room) {
+  std::vector<sensing::DeadWeight> weights;
+  for (const double share : {0.2, 0.5, 0.8})
+    for (const double pull_N : {-0.5, 0.0, 0.5}) {
+      const double x_m = share * room.cells.span_m;
+      const auto forces = plant::forces_on(room.cells, {1, pull_N, x_m});
+      auto& weight = weights.emplace_back(sensing::DeadWeight{1, pull_N, 1e3 * x_m, {}});
+      for (std::size_t c = 0; c < forces.size(); ++c)
+        for (std::size_t k = 0; k < forces.size(); ++k)
+          weight.readings[c] += ratio_per_N(room) * room.cells.crosstalk[c][k] * forces[k];
+    }
+  return sensing::fit_weights(weights).calibration;
+}
+
+sensing::FingerSetup finger_of(const plant::Setup& room) {
+  sensing::FingerSetup finger;
+  auto& bridges = finger.bridges;
+  bridges.rate_Hz = room.rate_Hz;
+  bridges.carrier_Hz = sensing::carriers_Hz.front();
+  bridges.channels = room.capture.count;
+  bridges.reference = *room.capture.reference;
+  bridges.bridges = {*room.capture.bridge_a, *room.capture.bridge_b, *room.capture.lateral};
+  bridges.reference_amplitude =
+      kCarrier * room.wires.excitation_V_per_full_scale / room.wires.reference_V_at_full_scale;
+  bridges.full_scale.fill(kRated_N * ratio_per_N(room));
+  finger.calibration = calibrated(room);
+  finger.length_mm = 1e3 * room.cells.span_m;
+  return finger;
 }
 
 }  // namespace
@@ -60,6 +114,10 @@ void SimulatedRoom::expect(std::span<const drive::PreparedBurst> bursts) {
   plant_.set_tones(frequencies);
 }
 
+void SimulatedRoom::touch(std::int64_t frames) {
+  if (plant_.setup().capture.bridge_a) plant_.touch(frames);
+}
+
 sensing::CaptureBlock SimulatedRoom::advance(std::int64_t first_frame, std::span<const std::int32_t> played) {
   const auto& setup = plant_.setup();
   const auto frames = played.size() / static_cast<std::size_t>(setup.playback_channels);
@@ -72,6 +130,10 @@ sensing::CaptureBlock SimulatedRoom::advance(std::int64_t first_frame, std::span
   std::transform(captured_.begin(), captured_.end(), samples_.begin(), [](double value) {
     return static_cast<std::int32_t>(std::clamp(std::round(value * 0x1p31), -0x1p31, 0x1p31 - 1));
   });
+  if (marker_broken_ && setup.capture.marker)
+    for (auto k = static_cast<std::size_t>(*setup.capture.marker); k < samples_.size();
+         k += static_cast<std::size_t>(setup.capture.count))
+      samples_[k] = 0;
   return {samples_, setup.capture.count, first_frame, setup.rate_Hz};
 }
 
@@ -81,7 +143,8 @@ CaptureSetup SimulatedRoom::capture() const {
   made.rate_Hz = setup.rate_Hz;
   made.channels = setup.capture.count;
   made.delay_frames = setup.loop_delay_frames;
-  made.in_contact = !setup.finger.touches.empty();
+  made.in_contact = false;
+  if (setup.capture.bridge_a) made.finger = finger_of(setup);
   for (std::size_t p = 0; p < setup.pickups.size(); ++p) {
     auto& pick_up = made.pick_ups.emplace_back();
     pick_up.channel = setup.pickups[p].channel;

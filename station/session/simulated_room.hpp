@@ -10,7 +10,7 @@
 namespace turnpoint::session {
 
 /// The simulated laboratory behind the converter of a rig whose [capture] is `sim:`: the plate moves as its
-/// model says, and pick-ups near the drive edge record it.
+/// model says, pick-ups near the drive edge record it, and force cells feel the finger.
 class SimulatedRoom {
  public:
   /// Throws std::logic_error if the rig captures nothing.
@@ -22,12 +22,20 @@ class SimulatedRoom {
   /// meanwhile. Frames may be left out while nothing is played.
   sensing::CaptureBlock advance(std::int64_t first_frame, std::span<const std::int32_t> played);
 
+  /// The simulated participant touches the surface from now on for this many frames, and strokes it. Without
+  /// force cells, nobody touches it.
+  void touch(std::int64_t frames);
+  void lift(std::int64_t frames) { plant_.lift(frames); }  ///< The participant lifts the finger after this.
+
   /// How the station judges what it captures here. The responses of the pick-ups are those of the plate.
   CaptureSetup capture() const;
   plant::Plant& plant() { return plant_; }
+  /// While the wire from the marker's output is broken, its captured channel is silent.
+  void break_marker_wire(bool broken) { marker_broken_ = broken; }
 
  private:
   plant::Plant plant_;
+  bool marker_broken_ = false;
   std::vector<double> played_, captured_;
   std::vector<std::int32_t> samples_;
 };

@@ -17,6 +17,7 @@
 #include "station/session/devices.hpp"
 #include "station/session/inputs.hpp"
 #include "station/session/simulated_room.hpp"
+#include "station/session/triggers.hpp"
 
 namespace turnpoint::session {
 
@@ -85,6 +86,9 @@ class Stage {
   /// Switches the amplifier off after the stimuli, as soon as the surface is silent.
   virtual void close_amplifier() = 0;
 
+  /// The trigger codes of this run.
+  virtual Triggers& triggers() = 0;
+
   /// Names of the rig's response buttons, in the order of their indices.
   virtual const std::vector<std::string>& buttons() const = 0;
   /// Names the lines (buttons, contact) that are disconnected at present, with the reason; "" if none are.
@@ -110,13 +114,15 @@ drive::StreamConfig stream_of(const rig::Rig& rig);
 /// from a display and the touch panel. `inputs` must outlive the stage. With a `capture`, the surface is
 /// measured: a pilot aligns playback and capture before the amplifier is enabled, unless they still are.
 std::unique_ptr<Stage> real_stage(const drive::StreamConfig& stream, Devices devices, Inputs& inputs,
-                                  const std::optional<CardCapture>& capture = std::nullopt);
+                                  const std::optional<CardCapture>& capture = std::nullopt,
+                                  const TriggerSetup& triggers = {});
 
 /// Makes a stage on the virtual clock. The drive advances with the clock. The simulated observer answers,
 /// arms a simulated amplifier, and presses Continue when nothing else is left to do. `inputs` must outlive
 /// the stage. Of `inputs`, only a stop has an effect, and only between trials. With a `room`, stimuli are
 /// computed sample by sample, and the surface is measured.
 std::unique_ptr<Stage> virtual_stage(const drive::StreamConfig& stream, observer::Observer observer,
-                                     Inputs& inputs, std::unique_ptr<SimulatedRoom> room = nullptr);
+                                     Inputs& inputs, std::unique_ptr<SimulatedRoom> room = nullptr,
+                                     const TriggerSetup& triggers = {});
 
 }  // namespace turnpoint::session

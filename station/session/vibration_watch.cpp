@@ -6,26 +6,33 @@
 
 namespace turnpoint::session {
 
-VibrationWatch::VibrationWatch(CaptureSetup setup) : setup_(std::move(setup)) {}
+VibrationWatch::VibrationWatch(CaptureSetup setup) : setup_(std::move(setup)) {
+  if (setup_.finger) finger_.emplace(*setup_.finger);
+}
 
 void VibrationWatch::set_delay(double frames) {
   const std::lock_guard lock(mutex_);
   setup_.delay_frames = frames;
 }
 
-void VibrationWatch::expect(std::span<const drive::PreparedBurst> intervals) {
+void VibrationWatch::expect(std::span<const drive::PreparedBurst> intervals, std::int64_t quiet_until) {
   std::vector<std::unique_ptr<sensing::IntervalProof>> proofs;
+  std::vector<sensing::TrialFinger::Range> ranges;
+  for (const auto& burst : intervals)
+    ranges.push_back({burst.start_frame, burst.start_frame + burst.length_frames});
   for (const auto& burst : intervals)
     proofs.push_back(std::make_unique<sensing::IntervalProof>(sensing::IntervalPlan{
         burst, setup_.rate_Hz, setup_.channels, setup_.pick_ups, setup_.delay_frames, setup_.limits}));
   const std::lock_guard lock(mutex_);
   proofs_ = std::move(proofs);
+  if (finger_) finger_->expect(quiet_until, std::move(ranges));
 }
 
 void VibrationWatch::cut(std::int64_t from_frame) {
   const std::lock_guard lock(mutex_);
   for (auto& proof : proofs_)
     if (proof) proof->stopped(from_frame);
+  if (finger_) finger_->cut(from_frame);
 }
 
 void VibrationWatch::changed(std::size_t interval) {
@@ -45,18 +52,29 @@ void VibrationWatch::push(const sensing::CaptureBlock& block) {
   const std::lock_guard lock(mutex_);
   for (auto& proof : proofs_)
     if (proof) proof->push(block);
+  if (finger_) finger_->push(block);
 }
 
 std::int64_t VibrationWatch::known_at(std::size_t interval) const {
   const std::lock_guard lock(mutex_);
-  return interval < proofs_.size() && proofs_[interval] ? proofs_[interval]->end_frame()
-                                                        : std::numeric_limits<std::int64_t>::min();
+  auto frame = std::numeric_limits<std::int64_t>::min();
+  if (interval >= proofs_.size()) return frame;
+  if (proofs_[interval]) frame = proofs_[interval]->end_frame();
+  if (finger_ && interval + 1 == proofs_.size()) frame = std::max(frame, finger_->known_at());
+  return frame;
 }
 
 std::shared_ptr<const sensing::IntervalResult> VibrationWatch::result(std::size_t interval) {
   const std::lock_guard lock(mutex_);
   if (interval >= proofs_.size() || !proofs_[interval]) return nullptr;
-  return std::make_shared<sensing::IntervalResult>(proofs_[interval]->result(setup_.in_contact));
+  const auto contact = finger_ ? finger_->contact(interval) : setup_.in_contact;
+  return std::make_shared<sensing::IntervalResult>(proofs_[interval]->result(contact));
+}
+
+std::shared_ptr<const sensing::TrialForces> VibrationWatch::forces(std::size_t interval) {
+  const std::lock_guard lock(mutex_);
+  if (!finger_ || interval + 1 != proofs_.size()) return nullptr;
+  return std::make_shared<sensing::TrialForces>(finger_->result());
 }
 
 }  // namespace turnpoint::session

@@ -7,8 +7,14 @@
 
 #include "station/drive/prepared_burst.hpp"
 #include "station/sensing/interval_proof.hpp"
+#include "station/sensing/trial_finger.hpp"
 
 namespace turnpoint::session {
+
+/// Amplitude of the carrier that excites the bridges of force cells; 1 is full scale.
+constexpr double kCarrier = 0.5;
+/// Load at which a force cell is at full scale.
+constexpr double kRated_N = 10;
 
 /// What the pick-ups of a rig capture, and how it is judged.
 struct CaptureSetup {
@@ -18,10 +24,11 @@ struct CaptureSetup {
   double delay_frames = 0;                ///< from a played to a captured frame
   std::optional<bool> in_contact;         ///< whether a finger was on the surface, if that is known
   sensing::ProofLimits limits;
+  std::optional<sensing::FingerSetup> finger;  ///< the force cells, if there are any
 };
 
-/// Proves the intervals of a trial from what the pick-ups capture. One thread may push samples while the
-/// session thread calls the other functions.
+/// Proves the intervals of a trial from what the pick-ups capture, and measures the finger with the force
+/// cells. One thread may push samples while the session thread calls the other functions.
 class VibrationWatch {
  public:
   explicit VibrationWatch(CaptureSetup setup);
@@ -30,7 +37,8 @@ class VibrationWatch {
   void set_delay(double frames);
 
   /// The intervals of a trial, with absolute start frames, in order. Replaces those of the previous trial.
-  void expect(std::span<const drive::PreparedBurst> intervals);
+  /// Until playback frame `quiet_until` the participant has not been asked to touch the surface.
+  void expect(std::span<const drive::PreparedBurst> intervals, std::int64_t quiet_until);
   /// All bursts ramp down from this playback frame on. Intervals that have not begun by then are dropped.
   void cut(std::int64_t from_frame);
   /// The interval glides to other tones, which is not measured: it stays unproven.
@@ -45,11 +53,15 @@ class VibrationWatch {
   /// The result of an interval. Frames that were not captured by now count as lost. Null if the interval is
   /// not expected.
   std::shared_ptr<const sensing::IntervalResult> result(std::size_t interval);
+  /// What the force cells say about the trial, once its last interval is known. Null for the other intervals,
+  /// and without force cells.
+  std::shared_ptr<const sensing::TrialForces> forces(std::size_t interval);
 
  private:
   CaptureSetup setup_;
   mutable std::mutex mutex_;
   std::vector<std::unique_ptr<sensing::IntervalProof>> proofs_;  ///< null: will not be proven
+  std::optional<sensing::TrialFinger> finger_;
 };
 
 }  // namespace turnpoint::session

@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <deque>
 #include <utility>
@@ -12,17 +14,23 @@ namespace {
 class VirtualStage : public Stage {
  public:
   VirtualStage(const drive::StreamConfig& config, observer::Observer observer, Inputs& inputs,
-               std::unique_ptr<SimulatedRoom> room)
+               std::unique_ptr<SimulatedRoom> room, const TriggerSetup& triggers)
       : stream_(drive::open_synchronous(config)),
+        triggers_(triggers, *stream_, nullptr),
+        simulated_sync_(triggers.simulated_sync),
         observer_(std::move(observer)),
         inputs_(inputs),
         room_(std::move(room)) {
     if (room_) {
       watch_.emplace(room_->capture());
+      capture_.emplace(triggers, room_->capture().delay_frames);
       stream_->listen([this](std::int64_t first_frame, std::span<const std::int32_t> played) {
         const auto frames = static_cast<std::int64_t>(played.size()) / stream_->config().output.channels;
-        if (watch_->needs(first_frame - kLead_frames, first_frame + frames))
-          watch_->push(room_->advance(first_frame, played));
+        const bool watched = touchable_ || watch_->needs(first_frame - kLead_frames, first_frame + frames);
+        if (!watched && !triggers_.needs(first_frame - kLead_frames, first_frame + frames)) return;
+        const auto captured = room_->advance(first_frame, played);
+        if (watched) watch_->push(captured);
+        capture_->push(captured);
       });
     }
     static_cast<void>(arm());  // a simulated amplifier never refuses at the start
@@ -31,6 +39,13 @@ class VirtualStage : public Stage {
   std::int64_t now_ns() override { return now_ns_; }
 
   std::optional<Input> wait_until(std::int64_t deadline_ns) override {
+    if (!simulated_sync_) return wait_for_input(deadline_ns);
+    // Pulses do not hurry anything: they are reported with the next input.
+    if (sync_due_ns_ <= now_ns_) return pulse();
+    return wait_for_input(deadline_ns);
+  }
+
+  std::optional<Input> wait_for_input(std::int64_t deadline_ns) {
     if (auto heard =
             next_heard(script_.empty() ? deadline_ns : std::min(deadline_ns, script_.front().time_ns)))
       return heard;
@@ -58,6 +73,7 @@ class VirtualStage : public Stage {
   std::vector<Input> drain() override {
     script_.clear();
     unheard_.clear();
+    touchable_ = false;
     std::vector<Input> stops;
     for (auto& input : inputs_.drain()) {
       if (input.kind != InputKind::stop) continue;
@@ -74,11 +90,15 @@ class VirtualStage : public Stage {
                              std::int64_t earliest_ns) override {
     // The bursts of an aborted trial may still be ramping down. They occupy the drive until they are silent.
     advance_to(quiet_ns_);
+    if (triggers_.active())
+      earliest_ns = std::max(earliest_ns, stream_->time_of(triggers_.free_from()).value());
     const auto onsets = schedule(*stream_, intervals, earliest_ns, presented_);
     unheard_ = presented_;
     if (watch_) {
+      const auto bursts = scheduled(intervals, presented_);
       room_->expect(intervals);
-      watch_->expect(scheduled(intervals, presented_));
+      watch_->expect(bursts, stream_->frame());
+      room_->touch(bursts.back().start_frame + bursts.back().length_frames - stream_->frame());
     }
     return onsets;
   }
@@ -94,16 +114,33 @@ class VirtualStage : public Stage {
     std::erase_if(unheard_, [from](const Presented& interval) { return interval.start_frame >= from; });
     for (auto& interval : unheard_)
       interval.end_frame = std::min(interval.end_frame, from + presented_.back().ramp.frames);
-    if (watch_) watch_->cut(from);
-    return quiet_ns_ = ramp_down(*stream_, presented_, now_ns_);
+    if (watch_) {
+      watch_->cut(from);
+      room_->lift(from - stream_->frame());
+    }
+    quiet_ns_ = ramp_down(*stream_, presented_, now_ns_);
+    triggers_.cut(from, stream_->frame_at(quiet_ns_).value(), now_ns_);
+    return quiet_ns_;
   }
 
   Refusal arm() override { return refusal(alive().arm(now_ns_)); }
   void disarm() override { guard_.disarm(); }
   Refusal clear() override { return refusal(guard_.clear()); }
   drive::AmplifierState amplifier() const override { return guard_.state(); }
-  Refusal open_amplifier() override { return refusal(alive().enable(now_ns_)); }
+  Refusal open_amplifier() override {
+    // The force cells are read without a finger before each trial, which takes a moment.
+    if (room_ && room_->capture().finger) {
+      touchable_ = true;
+      advance_to(now_ns_ + kQuiet_ns);
+    }
+    return refusal(alive().enable(now_ns_));
+  }
   void close_amplifier() override { guard_.disable(); }
+
+  Triggers& triggers() override {
+    if (capture_) triggers_.captured(capture_->take());
+    return triggers_;
+  }
 
   const std::vector<std::string>& buttons() const override { return no_buttons_; }
   std::string missing() const override { return ""; }
@@ -115,7 +152,13 @@ class VirtualStage : public Stage {
     input.kind = InputKind::answer;
     input.value = *reply.choice;
     input.quality = TimeQuality::simulated;
+    if (reply.value) input.kind = InputKind::value, input.number = *reply.value;
     script_ = {input};
+    if (!reply.confidence) return;
+    input.kind = InputKind::answer;
+    input.time_ns += static_cast<std::int64_t>(reply.confidence_time_s * 1e9);
+    input.value = *reply.confidence - 1;
+    script_.push_back(input);
   }
 
   void adjustment(const observer::Adjustment& adjustment, std::int64_t zero_ns) override {
@@ -158,7 +201,10 @@ class VirtualStage : public Stage {
     input.quality = TimeQuality::simulated;
     if (watch_ && !std::exchange(measured_, true)) {
       input.kind = InputKind::measured;
-      if ((input.measured = watch_->result(index))) return input;
+      input.measured = watch_->result(index);
+      input.forces = watch_->forces(index);
+      if (input.forces) touchable_ = false;
+      if (input.measured || input.forces) return input;
     }
     input.kind = InputKind::heard;
     unheard_.erase(unheard_.begin());
@@ -166,8 +212,20 @@ class VirtualStage : public Stage {
     return input;
   }
 
+  /// A pulse of a simulated device, one each second.
+  Input pulse() {
+    Input input;
+    input.time_ns = sync_due_ns_;
+    input.kind = InputKind::sync;
+    input.text = fmt::format("frame {}", stream_->frame_at(sync_due_ns_).value());
+    input.quality = TimeQuality::simulated;
+    sync_due_ns_ += 1'000'000'000;
+    return input;
+  }
+
   // time for which the simulated observer reads a page
   static constexpr std::int64_t kContinue_ns = 1'000'000'000;
+  static constexpr std::int64_t kQuiet_ns = 700'000'000;
 
   void advance_to(std::int64_t time_ns) {
     now_ns_ = std::max(now_ns_, time_ns);
@@ -191,6 +249,10 @@ class VirtualStage : public Stage {
   const std::vector<std::string> no_buttons_;
   lines::Guard guard_;
   std::unique_ptr<drive::SynchronousStream> stream_;
+  Triggers triggers_;
+  std::optional<TriggerCapture> capture_;
+  const bool simulated_sync_;
+  std::int64_t sync_due_ns_ = 0;
   observer::Observer observer_;
   Inputs& inputs_;
   std::int64_t now_ns_ = 0;
@@ -201,14 +263,17 @@ class VirtualStage : public Stage {
   static constexpr std::int64_t kLead_frames = 9600;
   std::unique_ptr<SimulatedRoom> room_;  ///< null: nothing is captured
   std::optional<VibrationWatch> watch_;
+  /// The simulated participant touches the surface, or may soon: all frames are needed.
+  bool touchable_ = false;
   bool measured_ = false;  ///< the first of unheard_ has been reported as measured
 };
 
 }  // namespace
 
 std::unique_ptr<Stage> virtual_stage(const drive::StreamConfig& stream, observer::Observer observer,
-                                     Inputs& inputs, std::unique_ptr<SimulatedRoom> room) {
-  return std::make_unique<VirtualStage>(stream, std::move(observer), inputs, std::move(room));
+                                     Inputs& inputs, std::unique_ptr<SimulatedRoom> room,
+                                     const TriggerSetup& triggers) {
+  return std::make_unique<VirtualStage>(stream, std::move(observer), inputs, std::move(room), triggers);
 }
 
 }  // namespace turnpoint::session

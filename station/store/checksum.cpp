@@ -21,9 +21,9 @@ void add_row(text::Sha256& hash, const Statement& row) {
   for (int i = 0; i < row.columns(); ++i) {
     const auto text = row.is_null(i)   ? std::string()
                       : row.is_real(i) ? std::to_string(std::bit_cast<std::int64_t>(row.real(i)))
-                      : row.is_text(i) ? row.text(i)
-                                       : std::to_string(row.integer(i));
-    bytes += row.is_null(i) ? 'n' : row.is_real(i) ? 'r' : row.is_text(i) ? 't' : 'i';
+                      : row.is_text(i) || row.is_blob(i) ? row.text(i)
+                                                         : std::to_string(row.integer(i));
+    bytes += row.is_null(i) ? 'n' : row.is_real(i) ? 'r' : row.is_text(i) ? 't' : row.is_blob(i) ? 'b' : 'i';
     bytes += std::to_string(text.size());
     bytes += ':';
     bytes += text;
@@ -65,6 +65,8 @@ class Encoder {
     add(hash, trial_, trial_table(), "trial_index", "trial_index", from.trial, to.trial);
     add(hash, tone_, tone_table(), "trial_index", "trial_index, interval_index, scene_index, tone_index",
         from.trial, to.trial);
+    if (encoding_ >= 3)
+      add(hash, signal_, signal_table(), "trial_index", "trial_index, stream", from.trial, to.trial);
     add(hash, event_, event_table(), "event_index", "event_index", from.event, to.event);
   }
 
@@ -87,10 +89,12 @@ class Encoder {
     return last;
   }
 
-  /// True if the database has a tone of a trial that no link covers.
-  bool tone_beyond(std::int64_t last_trial) const {
+  /// True if the database has a tone or a signal of a trial that no link covers.
+  bool row_beyond(std::int64_t last_trial) const {
     Statement row(database_,
-                  "SELECT 1 FROM " + schema_ + ".tone WHERE session_id = ? AND trial_index > ? LIMIT 1");
+                  fmt::format("SELECT 1 FROM {0}.tone WHERE session_id = ?1 AND trial_index > ?2 UNION ALL "
+                              "SELECT 1 FROM {0}.signal WHERE session_id = ?1 AND trial_index > ?2 LIMIT 1",
+                              schema_));
     row.bind(id_, last_trial);
     return row.step();
   }
@@ -114,7 +118,7 @@ class Encoder {
   Database& database_;
   std::string schema_, id_;
   std::int64_t encoding_;
-  std::optional<Statement> segment_, block_, trial_, tone_, event_, extent_;
+  std::optional<Statement> segment_, block_, trial_, tone_, signal_, event_, extent_;
 };
 
 namespace {
@@ -279,7 +283,7 @@ VerifiedSession verify_one(Database& database, const std::string& session_id, co
   }
   verified.last_sha256 = last.sha256;
   Encoder encoder(database, schema, session_id);
-  if (!(encoder.extent() == last.last) || encoder.tone_beyond(last.last.trial))
+  if (!(encoder.extent() == last.last) || encoder.row_beyond(last.last.trial))
     verified.problems.push_back("rows were added or removed after the last checksum");
   if (!follows(last, row.text(2), row.text(3)))
     verified.problems.push_back("the session's status differs from what was recorded");

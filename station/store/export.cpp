@@ -103,7 +103,7 @@ auto writing(const std::string& path, Write write) {
 
 void write_file(const std::string& path, const std::string& bytes) {
   writing(path, [&] {
-    fs::create_directories(fs::path(path).parent_path());
+    system::make_folder(fs::path(path).parent_path().string());
     system::write_file(path, bytes);
   });
 }
@@ -111,7 +111,7 @@ void write_file(const std::string& path, const std::string& bytes) {
 TableFile::TableFile(const std::string& path, const TableStyle& style,
                      const std::vector<std::string>& columns)
     : path_(path), table_(style, columns), file_(writing(path, [&] {
-        fs::create_directories(fs::path(path).parent_path());
+        system::make_folder(fs::path(path).parent_path().string());
         return system::FileWriter(path);
       })) {}
 

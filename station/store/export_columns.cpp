@@ -193,7 +193,9 @@ ExportColumns trial_columns(const std::vector<std::string>& factors) {
   add(columns, session, {"seed", "station_id", "calibration_id", "software_version"});
   add(columns, trial,
       {"response_zero_onset", "trial_duration", "proof", "proof_cause", "drive_ratio_db", "drive_residual_db",
-       "onset_error_us"});
+       "onset_error_us", "confidence", "confidence_time", "sensing", "contact_s", "strokes", "normal_n",
+       "normal_sd_n", "normal_in_window", "speed_mm_s", "speed_in_window", "mu_low", "mu_high",
+       "boundary_felt_mm", "boundary_se_mm", "lag_mm", "tare_mn"});
   columns.push_back(columns_version());
   add_factors(columns, at, factors);
   return columns;

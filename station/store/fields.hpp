@@ -25,7 +25,7 @@ struct Field {
   const char* description;  ///< text for the codebook
   const char* unit;         ///< "" if the column has no unit
   const char* values;       ///< the words that may occur; "" if there is no fixed list
-  const char* type;         ///< type of the column in SQLite: INTEGER, REAL or TEXT
+  const char* type;         ///< type of the column in SQLite: INTEGER, REAL, TEXT or BLOB
   bool nullable;
   void (*bind)(Statement&, int index, const Record&);
   void (*read)(const Statement&, int column, Record&);
@@ -46,6 +46,7 @@ const Table<SegmentStart>& segment_table();
 const Table<BlockStart>& block_table();
 const Table<TrialRow>& trial_table();
 const Table<ToneRow>& tone_table();
+const Table<SignalRow>& signal_table();
 const Table<EventRow>& event_table();
 
 /// The columns of a session. Its data are in four tables, because many sessions share a protocol, a rig and a
@@ -106,11 +107,13 @@ Record record_of(const Statement& row, const Table<Record>& table) {
   return record;
 }
 
-/// Convert factor values to the JSON object of the `factors` column and back, and a list of names to a JSON
-/// list and back.
+/// Convert factor values to the JSON object of the `factors` column and back, a list of names to a JSON list
+/// and back, and the channels of a signal to a list of objects and back.
 std::string to_json(const std::map<std::string, FactorValue>& factors);
 std::string to_json(const std::vector<std::string>& list);
+std::string to_json(const std::vector<SignalChannel>& channels);
 void from_json(const std::string& text, std::map<std::string, FactorValue>& factors);
 void from_json(const std::string& text, std::vector<std::string>& list);
+void from_json(const std::string& text, std::vector<SignalChannel>& channels);
 
 }  // namespace turnpoint::store

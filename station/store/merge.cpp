@@ -42,6 +42,7 @@ const std::vector<Part>& parts() {
       {"block", "session_id,block_index,attempt", "", kBySession},
       {"trial", "session_id,trial_index", "trial_id", kBySession},
       {"tone", "session_id,trial_index,interval_index,scene_index,tone_index", "", kBySession},
+      {"signal", "session_id,trial_index,stream", "", kBySession},
       {"event", "session_id,event_index", "", kBySession},
       {"link", "session_id,link_index", "", kBySession},
       {"unsealed", "session_id", "", kBySession},

@@ -7,6 +7,7 @@ namespace turnpoint::store {
 RowWriter::RowWriter(Database& database)
     : trial_(database, insert_sql(trial_table())),
       tone_(database, insert_sql(tone_table())),
+      signal_(database, insert_sql(signal_table())),
       event_(database, insert_sql(event_table())) {}
 
 void RowWriter::trial(const TrialPlace& at, TrialRow row, std::int64_t recorded_realtime_ns) {
@@ -14,6 +15,8 @@ void RowWriter::trial(const TrialPlace& at, TrialRow row, std::int64_t recorded_
   bind_row(trial_, trial_table(), row, at.session_id, at.block_index, at.attempt, recorded_realtime_ns).run();
   for (const auto& tone : row.tones)
     bind_row(tone_, tone_table(), tone, at.session_id, row.trial_index).run();
+  for (const auto& signal : row.signal_rows)
+    bind_row(signal_, signal_table(), signal, at.session_id, row.trial_index).run();
 }
 
 void RowWriter::event(const TrialPlace& at, std::int64_t event_index, EventRow row) {

@@ -293,6 +293,51 @@ ALTER TABLE tone ADD COLUMN measured_dB REAL;
 ALTER TABLE tone ADD COLUMN measured_phase_deg REAL;
 )sql";
 
+// Version 6. How sure the participant was of an answer, if the task asks. What force sensors measured of the
+// finger: a summary in each trial, and the signals themselves.
+const char* const kStep6 = R"sql(
+ALTER TABLE trial ADD COLUMN confidence INTEGER
+  CHECK (confidence IS NULL OR (confidence >= 1 AND outcome = 'answered'));
+ALTER TABLE trial ADD COLUMN confidence_time_s REAL
+  CHECK ((confidence_time_s IS NULL) = (confidence IS NULL) AND coalesce(confidence_time_s, 0) >= 0);
+ALTER TABLE trial ADD COLUMN sensing TEXT NOT NULL DEFAULT ''
+  CHECK (sensing IN ('', 'ok', 'lost', 'wire', 'tare'));
+ALTER TABLE trial ADD COLUMN contact_s REAL CHECK (contact_s >= 0);
+ALTER TABLE trial ADD COLUMN strokes INTEGER CHECK (strokes >= 0);
+ALTER TABLE trial ADD COLUMN normal_N REAL;
+ALTER TABLE trial ADD COLUMN normal_sd_N REAL;
+ALTER TABLE trial ADD COLUMN normal_in_window REAL;
+ALTER TABLE trial ADD COLUMN speed_mm_s REAL;
+ALTER TABLE trial ADD COLUMN speed_in_window REAL;
+ALTER TABLE trial ADD COLUMN mu_low REAL;
+ALTER TABLE trial ADD COLUMN mu_high REAL;
+ALTER TABLE trial ADD COLUMN boundary_felt_mm REAL;
+ALTER TABLE trial ADD COLUMN boundary_se_mm REAL;
+ALTER TABLE trial ADD COLUMN lag_mm REAL;
+ALTER TABLE trial ADD COLUMN tare_mN REAL;
+
+CREATE TABLE signal (
+  session_id TEXT NOT NULL,
+  trial_index INTEGER NOT NULL,
+  stream TEXT NOT NULL CHECK (stream <> ''),
+  start_frame INTEGER NOT NULL,
+  start_s REAL NOT NULL,
+  rate_Hz REAL NOT NULL CHECK (rate_Hz > 0),
+  points INTEGER NOT NULL CHECK (points >= 0),
+  channels TEXT NOT NULL CHECK (json_valid(channels)),
+  encoding TEXT NOT NULL,
+  data BLOB NOT NULL,
+  PRIMARY KEY (session_id, trial_index, stream),
+  FOREIGN KEY (session_id, trial_index) REFERENCES trial (session_id, trial_index)
+) STRICT;
+
+CREATE TRIGGER signal_is_never_changed BEFORE UPDATE ON signal
+  BEGIN SELECT RAISE(ABORT, 'signal is append-only'); END;
+CREATE TRIGGER signal_is_never_deleted BEFORE DELETE ON signal
+  WHEN NOT EXISTS (SELECT 1 FROM tombstone WHERE session_id = OLD.session_id)
+  BEGIN SELECT RAISE(ABORT, 'signal is append-only'); END;
+)sql";
+
 [[noreturn]] void refuse(ErrorKind kind, const Database& database, const std::string& what) {
   throw StoreError(kind, fmt::format("database {}: {}", database.path(), what));
 }
@@ -306,7 +351,7 @@ void apply(Database& database, int from, int to) {
 }  // namespace
 
 const std::vector<std::string>& schema_steps() {
-  static const std::vector<std::string> steps = {kStep1, kStep2, kStep3, kStep4, kStep5};
+  static const std::vector<std::string> steps = {kStep1, kStep2, kStep3, kStep4, kStep5, kStep6};
   return steps;
 }
 

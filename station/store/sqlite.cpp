@@ -118,11 +118,14 @@ int Statement::columns() const { return sqlite3_column_count(statement_); }
 bool Statement::is_null(int column) const { return sqlite3_column_type(statement_, column) == SQLITE_NULL; }
 bool Statement::is_real(int column) const { return sqlite3_column_type(statement_, column) == SQLITE_FLOAT; }
 bool Statement::is_text(int column) const { return sqlite3_column_type(statement_, column) == SQLITE_TEXT; }
+bool Statement::is_blob(int column) const { return sqlite3_column_type(statement_, column) == SQLITE_BLOB; }
 std::int64_t Statement::integer(int column) const { return sqlite3_column_int64(statement_, column); }
 double Statement::real(int column) const { return sqlite3_column_double(statement_, column); }
 
 std::string Statement::text(int column) const {
-  const auto* bytes = reinterpret_cast<const char*>(sqlite3_column_text(statement_, column));
+  const auto* bytes = is_blob(column)
+                          ? static_cast<const char*>(sqlite3_column_blob(statement_, column))
+                          : reinterpret_cast<const char*>(sqlite3_column_text(statement_, column));
   if (bytes == nullptr) return "";
   return {bytes, static_cast<std::size_t>(sqlite3_column_bytes(statement_, column))};
 }
@@ -151,6 +154,11 @@ void Statement::bind_real(int index, double value) {
 }
 void Statement::bind_text(int index, const char* value, std::size_t size) {
   const int code = sqlite3_bind_text64(statement_, index, value, size, SQLITE_TRANSIENT, SQLITE_UTF8);
+  if (code != SQLITE_OK) database_->fail(code, "bind");
+}
+void Statement::bind_blob(int index, const std::string& bytes) {
+  // A null pointer would bind NULL, so an empty value needs a pointer too.
+  const int code = sqlite3_bind_blob64(statement_, index, bytes.data(), bytes.size(), SQLITE_TRANSIENT);
   if (code != SQLITE_OK) database_->fail(code, "bind");
 }
 void Statement::bind_null(int index) {

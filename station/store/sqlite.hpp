@@ -49,6 +49,8 @@ class Statement {
       bind_null(index);
   }
 
+  void bind_blob(int index, const std::string& bytes);
+
   bool step();  ///< advances to the next row; false if there is none
   void run();   ///< steps until there are no more rows, then resets the statement
   void reset();
@@ -57,9 +59,10 @@ class Statement {
   bool is_null(int column) const;
   bool is_real(int column) const;
   bool is_text(int column) const;
+  bool is_blob(int column) const;
   std::int64_t integer(int column) const;
   double real(int column) const;
-  std::string text(int column) const;  ///< text of a column; "" for NULL
+  std::string text(int column) const;  ///< text or bytes of a column; "" for NULL
   std::optional<std::int64_t> maybe_integer(int column) const;
   std::optional<double> maybe_real(int column) const;
   std::optional<std::string> maybe_text(int column) const;

@@ -84,9 +84,11 @@ void check_ends(Database& database) {
   for (const auto& table : tables) database.integer("SELECT 1 FROM \"" + table + "\" LIMIT 1");
   Statement last(database, "SELECT * FROM trial ORDER BY trial_id DESC LIMIT 1");
   if (!last.step()) return;
+  const bool has_signals = database.integer("PRAGMA user_version") >= 6;
   for (const auto& [table, key] : {std::pair("session", "status"), std::pair("segment", "segment_index"),
                                    std::pair("block", "run_order"), std::pair("tone", "trial_index"),
-                                   std::pair("event", "event_index")}) {
+                                   std::pair("signal", "trial_index"), std::pair("event", "event_index")}) {
+    if (std::string_view(table) == "signal" && !has_signals) continue;
     Statement row(database,
                   fmt::format("SELECT * FROM {} WHERE session_id = ? ORDER BY {} DESC LIMIT 1", table, key));
     row.bind(last.text(1));

@@ -133,7 +133,7 @@ void remove_sessions(Database& database, const Withdrawal& withdrawal) {
         .bind(id, salt, code_goes ? digest(salt, session.start.participant) : "", system::realtime_ns(),
               session.start.station_id)
         .run();
-    for (const auto* table : {"annotation", "merged", "link", "unsealed", "event", "tone", "trial", "block",
+    for (const auto* table : {"annotation", "merged", "link", "unsealed", "event", "signal", "tone", "trial", "block",
                               "segment", "session"})
       remove(database, table, id);
   }

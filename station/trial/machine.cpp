@@ -218,6 +218,7 @@ void Machine::contact(const Event& event) {
 }
 
 void Machine::answer(const Event& event) {
+  if (phase_ == Phase::confidence) return confide(event);
   const bool valid = event.value >= 0 && event.value < plan_.answers;
   const bool late = deadline_at() != kNever && event.time_ns > deadline_at();
   if (!valid || !answers_open() || late) {
@@ -235,6 +236,19 @@ void Machine::answer(const Event& event) {
     result_.decision_time_ns = *lift_off_ns_ - *result_.zero_ns;
     result_.movement_time_ns = event.time_ns - *lift_off_ns_;
   }
+  if (plan_.confidence == 0) return conclude(Outcome::answered, event.time_ns);
+  if (phase_ == Phase::stimulus) actions_.push_back({ActionKind::silence, interval_, event.time_ns});
+  enter(Phase::confidence, kNever);
+}
+
+void Machine::confide(const Event& event) {
+  const auto answered_ns = *result_.zero_ns + *result_.response_time_ns;
+  if (event.value < 0 || event.value >= plan_.confidence || event.time_ns < answered_ns) {
+    ++result_.extra_touches;
+    return;
+  }
+  result_.confidence = event.value + 1;
+  result_.confidence_time_ns = event.time_ns - answered_ns;
   conclude(Outcome::answered, event.time_ns);
 }
 
@@ -263,6 +277,8 @@ void Machine::end(Outcome outcome, std::int64_t at_ns) {
   result_.response_time_ns.reset();
   result_.decision_time_ns.reset();
   result_.movement_time_ns.reset();
+  result_.confidence.reset();
+  result_.confidence_time_ns.reset();
   result_.ended_ns = at_ns;
   enter(Phase::done, kNever);
 }
@@ -288,6 +304,8 @@ const char* name(Phase phase) {
       return "gap";
     case Phase::response:
       return "response";
+    case Phase::confidence:
+      return "confidence";
     case Phase::feedback:
       return "feedback";
     case Phase::late:

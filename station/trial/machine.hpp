@@ -12,14 +12,15 @@ namespace turnpoint::trial {
 using terms::ResponseZero;
 
 enum class Phase {
-  idle,      ///< the trial has not started
-  cue,       ///< the participant gets ready; the surface is silent; all intervals are scheduled
-  stimulus,  ///< an interval is being presented
-  gap,       ///< silence between two intervals
-  response,  ///< silence; an answer is accepted
-  feedback,  ///< the page says whether the answer was right
-  late,      ///< the page shows a message after a timeout or a premature answer
-  interval,  ///< pause between trials
+  idle,        ///< the trial has not started
+  cue,         ///< the participant gets ready; the surface is silent; all intervals are scheduled
+  stimulus,    ///< an interval is being presented
+  gap,         ///< silence between two intervals
+  response,    ///< silence; an answer is accepted
+  confidence,  ///< silence; the participant says how sure the answer was
+  feedback,    ///< the page says whether the answer was right
+  late,        ///< the page shows a message after a timeout or a premature answer
+  interval,    ///< pause between trials
   done,
 };
 
@@ -50,6 +51,8 @@ struct Timing {
   std::int64_t watermark_ns = 20'000'000;
   int answers = 2;             ///< number of possible answers
   std::optional<int> correct;  ///< index of the right answer; empty if no answer is right or wrong
+  /// number of degrees of confidence that are asked for after an answer, without a deadline; 0: none are
+  int confidence = 0;
 };
 
 enum class EventKind {
@@ -57,7 +60,7 @@ enum class EventKind {
   /// value: index of the interval; time_ns: when its first frame reaches the surface, possibly in the future
   onset,
   heard,    ///< value: index of an interval that has been played completely and as scheduled
-  answer,   ///< value: index of the answer
+  answer,   ///< value: index of the answer or, after the answer, of the degree of confidence
   touch,    ///< a touch beside the answers
   contact,  ///< value 1: a finger is on the surface; 0: it was lifted
   xrun,     ///< the drive lost frames; value 1: in an interval of this trial, 0: in silence
@@ -93,6 +96,8 @@ struct Result {
   std::optional<bool> correct;
   std::optional<std::int64_t> zero_ns;  ///< the moment at which response_zero happened
   std::optional<std::int64_t> response_time_ns, decision_time_ns, movement_time_ns;
+  std::optional<int> confidence;                   ///< from 1 for the least sure
+  std::optional<std::int64_t> confidence_time_ns;  ///< counted from the answer
   std::vector<std::int64_t> onsets_ns;
   std::int64_t started_ns = 0, ended_ns = 0;
   int extra_touches = 0;  ///< late, early, repeated or outdated touches; they are logged but never scored
@@ -133,6 +138,7 @@ class Machine {
   void advance(std::int64_t now_ns);
   bool step(std::int64_t now_ns);
   void answer(const Event& event);
+  void confide(const Event& event);
   void contact(const Event& event);
   void onset(const Event& event);
   void begin_interval(std::int64_t onset_ns);

@@ -64,6 +64,8 @@ std::vector<IntervalOrder> orders_of(const protocol::Task& task) {
     case TaskKind::oddity:
       return oddity_orders(task);
     case TaskKind::single_interval:
+      if (!task.standard.empty()) return {{{{task.standard}, task.intervals.front()}, {}}};
+      break;
     case TaskKind::adjustment:
       break;
   }

@@ -1,5 +1,7 @@
 #include "station/trial/question.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <string>
 
 #include "station/protocol/answers.hpp"
@@ -31,6 +33,18 @@ observer::Question question_of(const TrialSpec& spec, const protocol::Protocol& 
   const auto level = level_factor(spec, protocol);
   question.decibel = level.ends_with("_dB");
   question.default_threshold = protocol::middle_level(protocol, level);
+  const auto& task = protocol.task;
+  if (task.confidence) question.confidence = static_cast<int>(task.confidence->labels.size());
+  if (protocol::judges(task)) {
+    question.decides = observer::Decides::presence;
+    question.rating = task.rating;
+    question.middle = !question.decibel && protocol::two_sided(protocol, level) ? observer::Middle::bias
+                                                                                : observer::Middle::threshold;
+    if (const auto& value = task.value)
+      question.value = {value->typed, value->low, value->high, value->decimals,
+                        task.modulus.value_or(std::sqrt(std::max(value->low, 1e-3) * value->high))};
+    return question;
+  }
   const auto rule = protocol::answer_rule(protocol, level);
   question.positive = rule.positive;
   switch (rule.kind) {

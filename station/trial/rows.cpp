@@ -1,5 +1,7 @@
 #include "station/trial/rows.hpp"
 
+#include "station/text/number.hpp"
+
 namespace turnpoint::trial {
 
 namespace {
@@ -45,10 +47,13 @@ records::TrialRow row_of(const TrialSpec& spec, const protocol::Protocol& protoc
 }
 
 void fill_result(records::TrialRow& row, const Result& result, const TrialSpec& spec,
-                 const protocol::Protocol& protocol, std::int64_t origin_ns) {
+                 const protocol::Protocol& protocol, std::int64_t origin_ns,
+                 const std::optional<double>& value) {
   row.outcome = result.outcome;
-  if (result.response) row.response = choice_id(protocol, *result.response);
+  if (result.response) row.response = value ? text::exact(*value) : choice_id(protocol, *result.response);
   row.correct = result.correct;
+  row.confidence = result.confidence;
+  row.confidence_time_s = seconds(result.confidence_time_ns);
   row.onset_ns = result.zero_ns.value_or(result.started_ns);
   row.onset_s = static_cast<double>(row.onset_ns - origin_ns) * 1e-9;
   row.duration_s = static_cast<double>(result.ended_ns - result.started_ns) * 1e-9;

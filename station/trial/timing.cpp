@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "station/protocol/answers.hpp"
 #include "station/terms/limits.hpp"
 
 namespace turnpoint::trial {
@@ -9,10 +10,6 @@ namespace turnpoint::trial {
 namespace {
 
 std::int64_t ns(double s) { return std::llround(s * 1e9); }
-
-bool explored(const protocol::Task& task) {
-  return task.kind == protocol::TaskKind::single_interval || task.kind == protocol::TaskKind::adjustment;
-}
 
 }  // namespace
 
@@ -23,7 +20,7 @@ std::vector<IntervalTimes> interval_times(const protocol::Protocol& protocol, co
     IntervalTimes interval;
     // An explored interval lasts until the answer, but at most explore_s or, if that is not set, until the
     // deadline.
-    const double whole = explored(task)
+    const double whole = protocol::explored(task)
                              ? protocol.timing.explore_s.value_or(spec.foreperiod_s + spec.deadline_s)
                              : task.duration_s.value_or(0);
     interval.length_s = whole;
@@ -46,7 +43,7 @@ Timing timing_of(const protocol::Protocol& protocol, const protocol::Block& bloc
     plan.intervals.push_back(std::move(timed));
   }
   plan.gap_ns = ns(protocol.task.gap_s.value_or(0));
-  plan.answer_ends_stimulus = explored(protocol.task);
+  plan.answer_ends_stimulus = protocol::explored(protocol.task);
   plan.response_zero = protocol.timing.response_zero;
   plan.deadline_ns = ns(spec.deadline_s);
   plan.anticipation_ns = ns(protocol.timing.anticipation_s);
@@ -57,6 +54,7 @@ Timing timing_of(const protocol::Protocol& protocol, const protocol::Block& bloc
                      ? 1
                      : static_cast<int>(protocol.task.choices.size());
   plan.correct = spec.correct;
+  if (protocol.task.confidence) plan.confidence = static_cast<int>(protocol.task.confidence->labels.size());
   return plan;
 }
 

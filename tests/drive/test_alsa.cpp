@@ -61,11 +61,24 @@ bool accepts_exact_rate(const char* name, unsigned rate) {
   return accepted;
 }
 
-const char* const resampling[] = {
-    "rated",           "rated_linear",    "rated_speex",       "rated_samplerate",        "rated_lav",
-    "plugged",         "file_over_rate",  "hooks_over_rate",   "copy_over_rate",          "linear_over_rate",
-    "route_over_rate", "multi_over_rate", "softvol_over_rate", "meter_over_rate",         "mmap_over_rate",
-    "asym_over_rate",  "empty_over_rate", "lfloat_over_rate",  "plug_over_file_over_rate"};
+const char* const resampling[] = {"rated",
+                                  "rated_linear",
+                                  "rated_speex",
+                                  "rated_samplerate",
+                                  "rated_lav",
+                                  "plugged",
+                                  "file_over_rate",
+                                  "hooks_over_rate",
+                                  "copy_over_rate",
+                                  "linear_over_rate",
+                                  "route_over_rate",
+                                  "multi_over_rate",
+                                  "softvol_over_rate",
+                                  "mmap_over_rate",
+                                  "asym_over_rate",
+                                  "empty_over_rate",
+                                  "lfloat_over_rate",
+                                  "plug_over_file_over_rate"};
 
 }  // namespace
 

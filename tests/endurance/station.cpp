@@ -27,7 +27,7 @@ constexpr std::int64_t kRest_ns =
 session::Setup prepare(const std::string& protocol, const std::string& database, std::uint64_t seed) {
   setup::RunRequest request;
   request.protocol = std::string(TURNPOINT_SOURCE_DIR) + "/protocols/" + protocol;
-  request.rig = std::string(TURNPOINT_SOURCE_DIR) + "/deploy/rigs/simulated.toml";
+  request.rig = std::string(TURNPOINT_SOURCE_DIR) + "/tests/support/thin_plate.toml";
   request.participant = "P01";
   request.database = database;
   request.observer = "sim";

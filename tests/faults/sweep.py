@@ -23,7 +23,7 @@ import sys
 import tempfile
 
 SOURCE = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
-RIG = os.path.join(SOURCE, "deploy/rigs/simulated.toml")
+RIG = os.path.join(SOURCE, "tests/support/thin_plate.toml")
 DEMO = os.path.join(SOURCE, "protocols/demo.toml")
 
 

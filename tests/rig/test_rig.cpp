@@ -16,7 +16,10 @@ namespace {
 
 const std::string simulated = std::string(TURNPOINT_SOURCE_DIR) + "/deploy/rigs/simulated.toml";
 
-std::string source() { return system::read_file(simulated); }
+// a rig that mistakes are put into
+std::string source() {
+  return system::read_file(std::string(TURNPOINT_SOURCE_DIR) + "/tests/support/thin_plate.toml");
+}
 
 std::string replaced(std::string where, const std::string& from, const std::string& to) {
   const auto at = where.find(from);
@@ -24,7 +27,7 @@ std::string replaced(std::string where, const std::string& from, const std::stri
   return where.replace(at, from.size(), to);
 }
 
-// The problems of the simulated rig's file after `from` was replaced with `to`, one per line.
+// The problems of the rig after `from` was replaced with `to`, one per line.
 std::string problems(const std::string& from, const std::string& to) {
   try {
     rig::parse(replaced(source(), from, to), "r.toml");
@@ -41,12 +44,12 @@ bool contains(const std::string& all, const std::string& part) { return all.find
 TEST_CASE("the simulated rig loads in SI units", "[rig]") {
   const auto rig = rig::load(simulated);
   CHECK(rig.name == "Aluminium tapered plate, simulated");
-  CHECK(rig.surface.thickness_m == Approx(2e-3));
+  CHECK(rig.surface.thickness_m == Approx(3e-3));
   CHECK(rig.surface.modulus_Pa.value() == Approx(69e9));
   CHECK(rig.surface.yield_Pa.value() > 1e8);
   CHECK(rig.surface.edges == rig::Edges::clamped);
-  CHECK(rig.surface.plate_theory == rig::PlateTheory::kirchhoff);
-  CHECK(rig.surface.taper.half_width_m == Approx(14e-3));
+  CHECK(rig.surface.plate_theory == rig::PlateTheory::mindlin);
+  CHECK(rig.surface.taper.half_width_m == Approx(15.1e-3));
   CHECK(rig.surface.taper.slope.value() == Approx(0.03));
   REQUIRE(rig.transducers.size() == 1);
   CHECK(rig.transducers[0].high_Hz == Approx(60e3));
@@ -56,7 +59,7 @@ TEST_CASE("the simulated rig loads in SI units", "[rig]") {
   CHECK_FALSE(rig.friction.measured);
   CHECK(rig.friction.fingertip_m == Approx(0.01));
   CHECK(rig.limits.displacement_m == Approx(8e-6));
-  CHECK(rig.sha256 == rig::parse(source(), "elsewhere").sha256);
+  CHECK(rig.sha256 == rig::parse(system::read_file(simulated), "elsewhere").sha256);
 }
 
 TEST_CASE("a rig states the finger that loads its surface, in N s/m, degrees and mm", "[rig]") {
@@ -82,12 +85,12 @@ TEST_CASE("every shipped plate states what is not known about its surface", "[ri
     CAPTURE(name);
     const auto& surface =
         rig::load(std::string(TURNPOINT_SOURCE_DIR) + "/deploy/rigs/" + name + ".toml").surface;
-    CHECK(surface.thickness_sd_m == Approx(0.045e-3));
+    CHECK(surface.thickness_sd_m == Approx(0.055e-3));
     CHECK(surface.modulus_sd_Pa == Approx(1e9));
     CHECK(surface.density_sd_kg_m3 > 0);
     CHECK(surface.half_width_sd_m > 0);
     CHECK(surface.slope_sd > 0);
-    CHECK(surface.clamp_line_sd_m == Approx(0.2e-3));
+    CHECK(surface.clamp_line_sd_m == Approx(0.3e-3));
     CHECK(surface.temperature_sd_K == 3);
     CHECK(surface.expansion_per_K == Approx(23.6e-6));
     CHECK(surface.modulus_per_K == Approx(-5.3e-4));
@@ -227,6 +230,35 @@ TEST_CASE("a capture on a card needs a loop: an output channel of its own, wired
                  "\"reference\""));
 }
 
+TEST_CASE("a rig gives out trigger codes on the marker channel and on lines, and takes pulses", "[rig]") {
+  const std::string marker = "[marker]\nchannel = 1\nkind = \"code\"\n",
+                    capture = "[capture]\nuri = \"sim:\"\nchannels = 4\npickups = [0]\n",
+                    lines = "[trigger_lines]\nuri = \"gpio:bit0=A,bit1=B,bit2=C,strobe=D,pulse_ms=2\"\n",
+                    sync = "[sync]\nuri = \"capture:\"\nchannel = 3\n";
+  const auto parsed = [](const std::string& more) {
+    return rig::parse(replaced(source(), "[limits]", more + "[limits]"), "r.toml");
+  };
+  const auto with = [](const std::string& more) { return problems("[limits]", more + "\n[limits]"); };
+  const auto rig = parsed(marker + capture + "marker_channel = 2\n" + lines + sync);
+  CHECK(rig.marker->kind == rig::Marker::Kind::code);
+  CHECK(rig.marker->duration_s == Approx(1e-3));
+  CHECK(rig.capture->marker_channel == 2);
+  CHECK(rig.sync->channel == 3);
+  CHECK(rig::largest_trigger_code(rig) == 7);
+  CHECK(rig::largest_trigger_code(parsed(marker)) == 255);
+  CHECK(rig::largest_trigger_code(parsed("[trigger_lines]\nuri = \"sim:\"\n")) == 255);
+  CHECK(rig::largest_trigger_code(rig::load(simulated)) == 0);
+  CHECK(contains(with(marker + "duration_ms = 30"), "from 0.2 to 20 ms"));
+  CHECK(contains(with(marker + "amplitude = 0.5"), "0.49"));
+  CHECK(contains(with(capture + "marker_channel = 2"), "the rig has no marker with codes"));
+  CHECK(contains(with(marker + capture + "marker_channel = 0"),
+                 "channel 0 is also captured for something else"));
+  CHECK(contains(with(marker + capture + "marker_channel = 4"), "channel 4 is not captured"));
+  CHECK(contains(with(sync), "the rig captures nothing"));
+  CHECK(contains(with("[sync]\nuri = \"gpio:in=A\"\n"), "does not name a line"));
+  CHECK(contains(with("[trigger_lines]\nuri = \"gpio:bit1=A\"\n"), "has no line \"bit0\""));
+}
+
 TEST_CASE("a device may have more channels than the rig uses, not fewer", "[rig]") {
   CHECK(rig::parse(source(), "r.toml").output.device_channels == 0);
   CHECK(rig::parse(replaced(source(), "rate_Hz = 192000", "rate_Hz = 192000\ndevice_channels = 10"), "r.toml")
@@ -301,6 +333,27 @@ TEST_CASE("tables beside the rig file are read, and their rows checked", "[rig]"
   CHECK(rig.transducers[0].response[1].phase_rad == Approx(-std::acos(-1.0)));
   CHECK(rig.friction.measured);
   CHECK(rig.friction.table.at(1).second == Approx(0.4));
+  SECTION("spreadsheets write a byte order mark, semicolons, tabs and decimal commas") {
+    write("response.csv",
+          "\xEF\xBB\xBF"
+          "frequency_Hz;um_per_full_scale;phase_deg\r\n13999,5;4;0\r\n60000;2,25;-180\r\n;;\r\n");
+    write("friction.csv", "displacement_um\trelative_friction\n0\t1\n1\t0,4\n3\t0,2\n");
+    const auto read = parsed();
+    CHECK(read.transducers[0].response[0].frequency_Hz == 13999.5);
+    CHECK(read.transducers[0].response[1].m_per_full_scale == Approx(2.25e-6));
+    CHECK(read.friction.table.at(1).second == Approx(0.4));
+    write("friction.csv", "\"displacement_um\";\"relative_friction\"\n0;1\n1;0.4\n3;0.2\n");
+    CHECK(parsed().friction.table.at(1).second == Approx(0.4));
+  }
+  SECTION("a file with decimal commas has no points, which might group thousands") {
+    write("response.csv", "frequency_Hz;um_per_full_scale;phase_deg\n14.000;4,5;0\n60.000;2;-180\n");
+    try {
+      parsed();
+      FAIL("the points were accepted");
+    } catch (const text::BadInput& error) {
+      CHECK(contains(error.what(), "decimal commas, so its numbers may not have points"));
+    }
+  }
   SECTION("a friction that grows with the displacement is refused") {
     write("friction.csv", "displacement_um,relative_friction\n0,0.5\n1,0.6\n");
     CHECK_THROWS_AS(parsed(), text::BadInput);
@@ -315,7 +368,7 @@ TEST_CASE("tables beside the rig file are read, and their rows checked", "[rig]"
   }
 }
 
-TEST_CASE("a rig file that is not there is bad input, one that cannot be read a system error", "[rig]") {
+TEST_CASE("a rig file that is not there, or is a folder, is bad input", "[rig]") {
   CHECK_THROWS_AS(rig::load("no/such/rig.toml"), text::BadInput);
-  CHECK_THROWS_AS(rig::load("/tmp"), std::system_error);
+  CHECK_THROWS_AS(rig::load("/tmp"), text::BadInput);
 }

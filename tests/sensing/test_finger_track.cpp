@@ -93,7 +93,7 @@ TEST_CASE("contact needs 20 ms of force, and ends with little", "[sensing]") {
     CHECK(finger.contact == (finger.index >= 200 && finger.index < 320));
     contacts += finger.contact ? 1 : 0;
     if (!finger.contact) CHECK(std::isnan(finger.position_mm));
-    if (finger.index >= 230 && finger.index < 270) CHECK(finger.position_mm == Approx(50));
+    if (finger.index >= 240 && finger.index < 280) CHECK(finger.position_mm == Approx(50));
   }
   CHECK(contacts == 120);
 }

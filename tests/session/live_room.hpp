@@ -114,7 +114,7 @@ struct Room : session::Display {
 
 inline session::Setup live_setup(const std::string& database, const std::string& device = "buttons") {
   session::Setup setup;
-  setup.rig = rig::load(std::string(TURNPOINT_SOURCE_DIR) + "/deploy/rigs/simulated.toml");
+  setup.rig = rig::load(std::string(TURNPOINT_SOURCE_DIR) + "/tests/support/thin_plate.toml");
   setup.protocol = protocol::parse(protocol_text(device), "live.toml");
   setup.participant = "P01";
   setup.database = database;

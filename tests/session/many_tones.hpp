@@ -62,7 +62,7 @@ procedures = ["steps"]
 }
 
 inline std::string rig_text() {
-  std::ifstream file(std::string(TURNPOINT_SOURCE_DIR) + "/deploy/rigs/simulated.toml");
+  std::ifstream file(std::string(TURNPOINT_SOURCE_DIR) + "/tests/support/thin_plate.toml");
   return std::string(std::istreambuf_iterator<char>(file), {}) + "\n[noise]\nchannel = 2\nrms = 0.15\n";
 }
 

@@ -52,7 +52,7 @@ session::Setup setup_in(const Folder& folder, const std::string& observer) {
   const std::string source = TURNPOINT_SOURCE_DIR;
   setup::RunRequest request;
   request.protocol = source + "/protocols/boundary-adjustment.toml";
-  request.rig = source + "/deploy/rigs/simulated.toml";
+  request.rig = source + "/tests/support/thin_plate.toml";
   request.participant = "P01";
   request.database = (folder.path / "a.sqlite").string();
   request.observer = observer;

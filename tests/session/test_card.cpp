@@ -25,7 +25,7 @@ const std::string source = TURNPOINT_SOURCE_DIR;
 constexpr Buffer kBuffers[] = {{64, 2}, {384, 4}, {1920, 4}, {4096, 16}};
 
 rig::Rig marked_rig(int period_frames, int periods) {
-  auto rig = rig::load(source + "/deploy/rigs/simulated.toml");
+  auto rig = rig::load(source + "/tests/support/thin_plate.toml");
   use_card(rig, {period_frames, periods});
   return rig;
 }

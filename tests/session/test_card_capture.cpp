@@ -1,3 +1,4 @@
+#include "station/drive/trigger_code.hpp"
 #include "tests/session/card_session.hpp"
 
 // Live sessions on the simulated sound card, whose capture returns what was played, delayed and attenuated.
@@ -118,4 +119,39 @@ TEST_CASE("without a calibration of the pick-ups, trials count and are unproven"
     CHECK(trial.outcome == terms::Outcome::answered);
     CHECK(trial.proof == Proof::unproven);
   }
+}
+
+TEST_CASE("trigger codes that the card plays are read back, and other codes on the wire are found",
+          "[session][card][trigger]") {
+  CardSession card;
+  card.add_capture(12'345);
+  auto& rig = card.setup.rig;
+  rig.marker->kind = rig::Marker::Kind::code;
+  rig.marker->amplitude = 0.45;
+  rig.capture->channels = 3;
+  rig.capture->marker_channel = 2;
+  std::int64_t stray = -1;  // frames since another device has begun to send code 77
+  const auto wires = fake_pcm().wires;
+  fake_pcm().wires = [&](std::span<const std::int32_t> played, std::span<std::int32_t> captured) {
+    wires(played, captured);
+    captured[2] = played[1] / 2;
+    if (stray < 0) return;
+    const auto half_bit = stray++ / 96;
+    if (half_bit < drive::trigger_half_bits)
+      captured[2] += drive::trigger_wave(drive::trigger_pattern(77), static_cast<int>(half_bit)) * (1 << 28);
+  };
+  card.reacts = [&](const session::Page& page) {
+    if (page.kind == PageKind::stimulus && card.room.stimuli == 2) card.later(0.1, [&] { stray = 0; });
+  };
+  REQUIRE(card.runs().size() == 2);
+  const auto rows = live_room::events_of(card.setup.database, card.summary, "trigger");
+  CHECK(rows.size() == 6);
+  for (const auto& row : rows) {
+    INFO(row.value);
+    CHECK(row.value.find("read back") != std::string::npos);
+  }
+  CHECK(card.summary.triggers_missed == 0);
+  const auto extra = live_room::events_of(card.setup.database, card.summary, "trigger_extra");
+  REQUIRE(extra.size() == 1);
+  CHECK(extra[0].value.find("77 frame") == 0);
 }

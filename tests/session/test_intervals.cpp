@@ -31,7 +31,7 @@ std::string shipped(const std::string& protocol) {
 
 std::vector<records::TrialRow> session_of(const std::string& protocol, const Buffer& buffer, double delay_s,
                                           const std::string& rig = std::string(TURNPOINT_SOURCE_DIR) +
-                                                                   "/deploy/rigs/simulated.toml") {
+                                                                   "/tests/support/thin_plate.toml") {
   const TemporaryFolder folder;
   setup::RunRequest request;
   request.protocol = protocol;
@@ -138,7 +138,7 @@ TEST_CASE("simulated sessions include the latency of the rig's buffer", "[sessio
 TEST_CASE("on the virtual clock, a trial that follows an aborted one waits until the surface is silent",
           "[session][intervals]") {
   const auto stream =
-      session::stream_of(rig::load(std::string(TURNPOINT_SOURCE_DIR) + "/deploy/rigs/simulated.toml"));
+      session::stream_of(rig::load(std::string(TURNPOINT_SOURCE_DIR) + "/tests/support/thin_plate.toml"));
   // Three intervals at almost full scale, so that nothing else can be played at the same time.
   drive::Burst interval;
   interval.length_frames = 192000;

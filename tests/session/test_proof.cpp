@@ -1,95 +1,18 @@
 #include <cmath>
-#include <filesystem>
-#include <fstream>
-#include <sstream>
 
-#include "station/session/session.hpp"
-#include "station/session/simulated_room.hpp"
-#include "station/setup/prepare.hpp"
-#include "station/store/read.hpp"
+#include "tests/session/measured_session.hpp"
 #include "tests/support/catch.hpp"
-#include "tests/support/temporary_folder.hpp"
 
 using namespace turnpoint;
+using namespace measured;
 using terms::Proof;
 using terms::ProofCause;
-
-namespace {
-
-const std::string kSource = TURNPOINT_SOURCE_DIR;
-
-std::string with_capture(const TemporaryFolder& folder) {
-  std::ostringstream rig;
-  rig << std::ifstream(kSource + "/deploy/rigs/simulated.toml").rdbuf()
-      << "\n[capture]\nuri = \"sim:\"\nchannels = 4\npickups = [1, 2]\n";
-  const auto path = folder / "measured.toml";
-  std::ofstream(path) << rig.str();
-  return path;
-}
-
-/// Adds faults to the room when a trial begins, and repairs them when it ends.
-struct Saboteur : session::Monitor {
-  std::function<void(int trial)> before, after;
-  int trials = 0;
-  void trial_begins(const trial::TrialSpec&, const protocol::Block&,
-                    const session::PlanAhead::Plans&) override {
-    before(trials);
-  }
-  void trial_ended(const trial::TrialSpec&, const records::TrialRow&) override { after(trials++); }
-};
-
-/// Remembers the fault pages of a session.
-struct Pages : session::Display {
-  std::vector<std::string> faults;
-  void show(const session::Page& page) override {
-    if (page.kind == session::PageKind::fault) faults.push_back(page.detail);
-  }
-};
-
-struct Ran {
-  session::Summary summary;
-  std::vector<records::TrialRow> trials;
-  std::vector<std::string> faults;
-};
-
-/// What may go wrong in a room before a trial.
-using Sabotage = std::function<void(int trial, plant::Plant& plant)>;
-
-/// Runs a protocol in a room with faults. If `repaired`, they last for one trial.
-Ran run(const std::string& protocol, const Sabotage& sabotage, bool repaired = true) {
-  TemporaryFolder folder;
-  setup::RunRequest request;
-  request.protocol = kSource + "/protocols/" + protocol + ".toml";
-  request.rig = with_capture(folder);
-  request.participant = "P01";
-  request.database = folder / "a.sqlite";
-  request.observer = "sim";
-  request.seed = 7;
-  const auto setup = setup::prepare(request);
-  auto room = std::make_unique<session::SimulatedRoom>(setup.rig);
-  Saboteur saboteur;
-  auto& plant = room->plant();
-  saboteur.before = [&](int trial) { sabotage(trial, plant); };
-  saboteur.after = [&](int) {
-    if (repaired) plant.repair();
-  };
-  Pages pages;
-  session::Inputs inputs;
-  Ran ran;
-  ran.summary = session::run(setup, &pages, inputs, std::move(room), &saboteur);
-  for (const auto& block : store::read_session(request.database, ran.summary.session_id).blocks)
-    ran.trials.insert(ran.trials.end(), block.trials.begin(), block.trials.end());
-  ran.faults = pages.faults;
-  return ran;
-}
-
-}  // namespace
 
 TEST_CASE("without a pick-up a session runs, and each trial is unproven", "[session][proof]") {
   TemporaryFolder folder;
   setup::RunRequest request;
   request.protocol = kSource + "/protocols/demo.toml";
-  request.rig = kSource + "/deploy/rigs/simulated.toml";
+  request.rig = kSource + "/tests/support/thin_plate.toml";
   request.participant = "P01";
   request.database = folder / "a.sqlite";
   request.observer = "sim";
@@ -103,7 +26,7 @@ TEST_CASE("without a pick-up a session runs, and each trial is unproven", "[sess
 }
 
 TEST_CASE("a pick-up proves each trial of a good session", "[session][proof]") {
-  const auto ran = run("demo", [](int, plant::Plant&) {});
+  const auto ran = run(shipped("demo"), [](int, plant::Plant&) {});
   CHECK(ran.summary.voided == 0);
   REQUIRE(ran.trials.size() == 10);
   for (const auto& trial : ran.trials) {
@@ -121,7 +44,7 @@ TEST_CASE("a stimulus that the surface did not follow is void, named, and presen
   const auto [kind, cause] = GENERATE(std::pair{FaultKind::transducer_half, ProofCause::half},
                                       std::pair{FaultKind::drive_late, ProofCause::late},
                                       std::pair{FaultKind::frequency_off, ProofCause::frequency});
-  const auto ran = run("demo", [kind = kind](int trial, plant::Plant& plant) {
+  const auto ran = run(shipped("demo"), [kind = kind](int trial, plant::Plant& plant) {
     if (trial == 3) plant.add({kind, plant.frames() + 1, plant::kNever, {}, 0});
   });
   INFO(name(cause));
@@ -139,13 +62,13 @@ TEST_CASE("a stimulus that the surface did not follow is void, named, and presen
 }
 
 TEST_CASE("a dead surface stops the session with a page that says so", "[session][proof]") {
-  const auto ran = run(
-      "demo",
-      [](int trial, plant::Plant& plant) {
-        if (trial == 2)
-          plant.add({plant::FaultKind::transducer_dead, plant.frames() + 1, plant::kNever, {}, 0});
-      },
-      false);
+  const auto ran =
+      run(shipped("demo"),
+          [](int trial, plant::Plant& plant) {
+            if (trial == 2)
+              plant.add({plant::FaultKind::transducer_dead, plant.frames() + 1, plant::kNever, {}, 0});
+          },
+          {kPickUps, false});
   CHECK(ran.summary.status == records::SessionStatus::interrupted);
   REQUIRE(ran.trials.size() == 5);
   CHECK(ran.trials[2].proof == Proof::stopped);

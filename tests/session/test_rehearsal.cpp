@@ -11,10 +11,11 @@ using namespace turnpoint;
 
 TEST_CASE("a rehearsed session has the same trials, answers and times as a session that runs",
           "[session][rehearsal]") {
-  const auto* protocol = GENERATE("demo", "boundary-adjustment");
+  const auto* protocol = GENERATE("demo", "boundary-adjustment", "smoothness-points", "smoothness-line",
+                                  "magnitude-standard", "friction-confidence");
   const TemporaryFolder folder;
   session::Setup setup;
-  setup.rig = rig::load(std::string(TURNPOINT_SOURCE_DIR) + "/deploy/rigs/simulated.toml");
+  setup.rig = rig::load(std::string(TURNPOINT_SOURCE_DIR) + "/tests/support/thin_plate.toml");
   setup.protocol = protocol::load(std::string(TURNPOINT_SOURCE_DIR) + "/protocols/" + protocol + ".toml");
   setup.participant = "P01";
   setup.database = folder / "a.sqlite";
@@ -36,6 +37,7 @@ TEST_CASE("a rehearsed session has the same trials, answers and times as a sessi
       const auto& other = stored.blocks[b].trials[t];
       CHECK((one.level == other.level && one.response == other.response && one.correct == other.correct));
       CHECK(one.outcome == other.outcome);
+      CHECK(one.confidence == other.confidence);
       REQUIRE(one.response_time_s.has_value() == other.response_time_s.has_value());
       if (one.response_time_s) CHECK(*one.response_time_s == Approx(*other.response_time_s).margin(1e-8));
     }

@@ -34,7 +34,7 @@ struct Folder {
 setup::RunRequest request_for(const std::string& protocol, const std::string& database) {
   setup::RunRequest request;
   request.protocol = kSource + "/protocols/" + protocol + ".toml";
-  request.rig = kSource + "/deploy/rigs/simulated.toml";
+  request.rig = kSource + "/tests/support/thin_plate.toml";
   request.participant = "P01";
   request.database = database;
   request.observer = "sim";

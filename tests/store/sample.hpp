@@ -1,10 +1,13 @@
 #pragma once
+#include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <limits>
 #include <sstream>
 #include <string>
 
 #include "station/store/session_log.hpp"
+#include "station/store/signal_code.hpp"
 #include "station/store/sqlite.hpp"
 #include "tests/support/temporary_folder.hpp"
 
@@ -66,6 +69,23 @@ inline ToneRow tone(int interval, int index) {
   return t;
 }
 
+/// Half a second of a finger's force and position; the position is missing at first.
+inline SignalRow finger_signal(int index) {
+  SignalRow s;
+  s.stream = "finger";
+  s.start_frame = 192000;
+  s.start_s = 1.5 + index;
+  s.rate_Hz = 1000;
+  s.channels = {{"normal_N", "N", 1e-4}, {"position_mm", "mm", 0.01}};
+  std::vector<std::vector<double>> values(2);
+  for (int k = 0; k < 500; ++k) {
+    values[0].push_back(0.5 + 0.1 * std::sin(0.02 * k + index));
+    values[1].push_back(k < 20 ? std::numeric_limits<double>::quiet_NaN() : 100 + 0.08 * k);
+  }
+  encode(s, values);
+  return s;
+}
+
 inline TrialRow answered(int index, int tones = 2) {
   TrialRow t;
   t.trial_index = index;
@@ -95,6 +115,23 @@ inline TrialRow answered(int index, int tones = 2) {
   t.drive_ratio_dB = -0.75;
   t.drive_residual_dB = -55;
   t.onset_error_us = 12.5;
+  t.confidence = 1 + index % 4;
+  t.confidence_time_s = 0.75;
+  t.finger.sensing = "ok";
+  t.finger.contact_s = 2.25;
+  t.finger.strokes = 9;
+  t.finger.normal_N = 0.5;
+  t.finger.normal_sd_N = 0.0625;
+  t.finger.normal_in_window = 0.875;
+  t.finger.speed_mm_s = 80.5;
+  t.finger.speed_in_window = 0.6875;
+  t.finger.mu_low = 0.25;
+  t.finger.mu_high = 0.8125;
+  t.finger.boundary_felt_mm = 150.5;
+  t.finger.boundary_se_mm = 0.375;
+  t.finger.lag_mm = 0.625;
+  t.finger.tare_mN = -1.5;
+  t.signal_rows.push_back(finger_signal(index));
   t.state_hash = 0xfedcba9876543210ULL + static_cast<unsigned>(index);
   for (int i = 0; i < 2; ++i)
     for (int k = 0; k < tones; ++k) t.tones.push_back(tone(i, k));
@@ -108,6 +145,8 @@ inline TrialRow timeout(int index) {
   t.correct.reset();
   t.response_time_s.reset();
   t.response_time_quality = "n/a";
+  t.confidence.reset();
+  t.confidence_time_s.reset();
   return t;
 }
 

@@ -11,8 +11,9 @@ TEST_CASE("rows of trials, tones and events cannot be changed or deleted", "[sto
   auto raw = sample::raw(db);
   const auto* sql =
       GENERATE("UPDATE trial SET response = 'first'", "DELETE FROM trial WHERE trial_index = 2",
-               "UPDATE tone SET frequency_Hz = 1", "DELETE FROM tone", "UPDATE event SET kind = 'x'",
-               "DELETE FROM event", "UPDATE session SET seed = 1", "UPDATE session SET participant = 'P02'");
+               "UPDATE tone SET frequency_Hz = 1", "DELETE FROM tone", "UPDATE signal SET points = 1",
+               "DELETE FROM signal", "UPDATE event SET kind = 'x'", "DELETE FROM event",
+               "UPDATE session SET seed = 1", "UPDATE session SET participant = 'P02'");
   INFO(sql);
   const auto [fault, message] = sample::failure([&] { raw.execute(sql); });
   CHECK(fault == ErrorKind::refused);
@@ -41,6 +42,7 @@ TEST_CASE("a trial that was not answered has no answer, no score and no response
   SECTION("a response time is refused") { trial.response_time_s = 0.3; }
   SECTION("a movement time is refused") { trial.movement_time_s = 0.1; }
   SECTION("a score is refused") { trial.correct = true; }
+  SECTION("a confidence is refused") { trial.confidence = 1, trial.confidence_time_s = 0.5; }
   const auto [fault, message] = sample::failure([&] { log.append(trial); });
   CHECK(fault == ErrorKind::refused);
   CHECK(sample::contains(message, "CHECK constraint failed"));

@@ -55,6 +55,7 @@ TEST_CASE("the records' tables of fields contain each column of the schema with 
   CHECK(differences(database, block_table()).empty());
   CHECK(differences(database, trial_table()) == "trial_id is only in the schema\n");
   CHECK(differences(database, tone_table()).empty());
+  CHECK(differences(database, signal_table()).empty());
   CHECK(differences(database, event_table()).empty());
   CHECK(differences(database, session_table()).empty());
   CHECK(differences(database, protocol_table()).empty());

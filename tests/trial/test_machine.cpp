@@ -394,3 +394,45 @@ TEST_CASE("whatever comes in whatever order, the invariants of a trial hold", "[
   }
   SUCCEED();
 }
+
+TEST_CASE("confidence is asked for after an answer, and completes the trial", "[trial]") {
+  auto plan = exploration();
+  plan.confidence = 4;
+  auto machine = exploring(plan);
+  const auto answered = machine.handle({1500 * ms, EventKind::answer, 1});
+  CHECK(enters(answered, Phase::confidence));
+  CHECK(has(answered, ActionKind::silence, 0));
+  CHECK_FALSE(machine.wake_ns());  // no deadline
+  machine.handle({1500 * ms, EventKind::heard, 0});
+  CHECK_FALSE(machine.decided());
+  machine.handle({1400 * ms, EventKind::answer, 2});  // began before the answer
+  machine.handle({1600 * ms, EventKind::answer, 4});  // there are only four degrees
+  CHECK_FALSE(machine.result().confidence);
+  CHECK(machine.result().extra_touches == 2);
+  CHECK(enters(machine.handle({20'000 * ms, EventKind::answer, 2}), Phase::interval));
+  REQUIRE(machine.decided());
+  CHECK(machine.result().outcome == Outcome::answered);
+  CHECK(machine.result().response == 1);
+  CHECK(machine.result().response_time_ns == 1000 * ms);
+  CHECK(machine.result().confidence == 3);
+  CHECK(machine.result().confidence_time_ns == 18'500 * ms);
+}
+
+TEST_CASE("no confidence is asked for after a timeout, and a void trial has none", "[trial]") {
+  auto plan = exploration();
+  plan.confidence = 4;
+  auto late = exploring(plan);
+  late.handle({4500 * ms, EventKind::tick, 0});
+  CHECK(enters(late.handle({6520 * ms, EventKind::tick, 0}), Phase::late));
+  auto refuted = exploring(plan);
+  refuted.handle({1500 * ms, EventKind::answer, 1});
+  refuted.handle({1700 * ms, EventKind::refuted, 0});
+  CHECK(refuted.done());
+  CHECK(refuted.result().outcome == Outcome::fault);
+  CHECK_FALSE(refuted.result().response);
+  auto stopped = exploring(plan);
+  stopped.handle({1500 * ms, EventKind::answer, 1});
+  stopped.handle({1700 * ms, EventKind::abort, 0});
+  CHECK(stopped.result().outcome == Outcome::aborted);
+  CHECK_FALSE(stopped.result().confidence);
+}

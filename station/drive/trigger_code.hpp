@@ -1,0 +1,37 @@
+#pragma once
+#include <cstdint>
+
+namespace turnpoint::drive {
+
+/// A code for recording equipment, as a train of pulses on the marker channel. It begins at the frame of its
+/// event and has three parts, each of which is high as long as it is low, so that a line without DC carries
+/// it: a start (one bit high, one bit low), eight bits of the code, and four check bits. A 1 is half a bit
+/// high, then half a bit low; a 0 is the reverse. The most significant bit comes first. Codes are 1 to 255.
+inline constexpr int trigger_bits = 14;
+inline constexpr int trigger_half_bits = 2 * trigger_bits;
+/// Bits of silence that a code needs before and after itself.
+inline constexpr int trigger_quiet_bits = 1;
+
+/// The remainder of the code by x^4 + x + 1, which finds every one or two wrong bits.
+constexpr std::uint32_t trigger_check(std::uint32_t code) noexcept {
+  std::uint32_t remainder = code << 4;
+  for (int bit = 11; bit >= 4; --bit)
+    if (remainder >> bit & 1) remainder ^= 0b10011u << (bit - 4);
+  return remainder;
+}
+
+/// The half bits of a code: bit 27 is the first, 1 is high. 0 for code 0, which is no code.
+constexpr std::uint32_t trigger_pattern(std::uint8_t code) noexcept {
+  if (code == 0) return 0;
+  std::uint32_t pattern = 0b1100;
+  const std::uint32_t word = std::uint32_t{code} << 4 | trigger_check(code);
+  for (int bit = 11; bit >= 0; --bit) pattern = pattern << 2 | (word >> bit & 1 ? 0b10 : 0b01);
+  return pattern;
+}
+
+/// The wave of a pattern, 1 or -1, in this half bit (from 0).
+constexpr int trigger_wave(std::uint32_t pattern, int half_bit) noexcept {
+  return pattern >> (trigger_half_bits - 1 - half_bit) & 1 ? 1 : -1;
+}
+
+}  // namespace turnpoint::drive

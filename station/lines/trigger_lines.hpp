@@ -1,0 +1,65 @@
+#pragma once
+#include <condition_variable>
+#include <cstdint>
+#include <deque>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "station/lines/lines.hpp"
+
+namespace turnpoint::lines {
+
+/// The lines of a URI `gpio:bit0=LINE,bit1=LINE,strobe=LINE,pulse_ms=5`, or `sim:` with eight bits.
+struct TriggerPlan {
+  std::vector<std::string> names;  ///< lines of the bits, the lowest first, then the strobe; empty for `sim:`
+  int bits = 8;
+  bool strobe = false;
+  std::int64_t pulse_ns = 5'000'000;  ///< how long a code stands on the lines
+};
+/// Throws terms::UsageError for a URI that is not understood.
+TriggerPlan trigger_plan(const std::string& uri);
+
+/// Gives out codes in parallel on GPIO lines, for a device that reads TTL levels. An ordinary thread sets the
+/// lines when a code is due: first the bits together, then the strobe, which falls again before the bits do.
+/// A code that is due while another stands on the lines comes 1 ms after that one has ended.
+class TriggerLines {
+ public:
+  TriggerLines(std::unique_ptr<Outputs> outputs, const TriggerPlan& plan);
+
+  /// Gives out a code at this time (CLOCK_MONOTONIC), or at once if it is past.
+  void give(int code, std::int64_t due_ns);
+  /// Drops the codes that are due at this time or later.
+  void cancel(std::int64_t from_ns);
+
+  struct Given {
+    int code = 0;
+    std::int64_t due_ns = 0;
+    std::int64_t time_ns = 0;  ///< when the code was on the lines (with a strobe: when that rose)
+  };
+  /// Removes and returns the codes given out so far, in order.
+  std::vector<Given> take();
+  /// Why the lines cannot be set; "" if they can. Nothing is given out after that.
+  std::string failure() const;
+
+ private:
+  void run(const std::stop_token& stop);
+  Given give_out(const Given& next);
+  std::uint32_t levels(int code) const;
+
+  std::unique_ptr<Outputs> outputs_;
+  const TriggerPlan plan_;
+  mutable std::mutex mutex_;
+  std::condition_variable_any changed_;
+  std::deque<Given> waiting_;  ///< in order of due_ns
+  std::vector<Given> given_;
+  std::string failure_;
+  std::jthread thread_;
+};
+
+/// Opens the rig's lines for codes. Throws LineError or terms::UsageError.
+std::unique_ptr<TriggerLines> open_trigger_lines(const std::string& uri);
+
+}  // namespace turnpoint::lines

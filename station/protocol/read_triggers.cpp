@@ -1,0 +1,90 @@
+#include <algorithm>
+#include <map>
+
+#include "station/protocol/conditions.hpp"
+#include "station/protocol/expression.hpp"
+#include "station/protocol/reading.hpp"
+#include "station/protocol/triggers.hpp"
+#include "station/text/number.hpp"
+
+namespace turnpoint::protocol {
+
+using text::TableReader;
+
+namespace {
+
+const std::vector<std::string> kEvents{"trial", "onset", "change", "response"};
+
+TriggerEvent event_of(const std::string& word) {
+  const auto found = std::find(kEvents.begin(), kEvents.end(), word);
+  return static_cast<TriggerEvent>(found == kEvents.end() ? 0 : found - kEvents.begin());
+}
+
+void read_send(TableReader& reader, Triggers& triggers) {
+  if (!reader.has("send")) {
+    reader.take("send");
+    return reader.defaulted("send", "[\"trial\", \"onset\", \"change\", \"response\"]");
+  }
+  triggers.send.clear();
+  for (const auto& word : reader.maybe_strings("send")) {
+    if (std::find(kEvents.begin(), kEvents.end(), word) == kEvents.end())
+      reader.problem("send", "\"send\" has \"" + word + "\"", "allowed: " + text::quoted_list(kEvents));
+    else if (std::find(triggers.send.begin(), triggers.send.end(), event_of(word)) != triggers.send.end())
+      reader.problem("send", "\"" + word + "\" appears twice in \"send\"", "list each event only once");
+    else
+      triggers.send.push_back(event_of(word));
+  }
+}
+
+void read_code(const text::Value& table, Reading& reading) {
+  TableReader reader(table, "triggers.code", reading.findings);
+  TriggerCode code;
+  code.event = event_of(reader.word("event", kEvents));
+  const auto known = conditions(reading.protocol);
+  code.condition = reader.maybe_string("condition").value_or("");
+  if (!code.condition.empty() && std::find(known.begin(), known.end(), code.condition) == known.end())
+    reader.problem("condition", "there is no condition \"" + code.condition + "\"",
+                   known.empty()
+                       ? "leave out \"condition\": no factor is in [analysis] \"by\", and no block has "
+                         "an instruction"
+                       : suggestion(code.condition, known));
+  code.code = reader.integer("code", 1, 255);
+  const auto& send = reading.protocol.triggers.send;
+  if (std::find(send.begin(), send.end(), code.event) == send.end())
+    reader.problem("event", std::string("\"") + name(code.event) + "\" is not in \"send\"",
+                   "add it to \"send\" in [triggers]");
+  reader.finish();
+  reading.protocol.triggers.stated.push_back(code);
+}
+
+std::string described(const TriggerCode& code) {
+  return std::string(name(code.event)) + (code.condition.empty() ? "" : " (" + code.condition + ")");
+}
+
+/// Two events with the same code cannot be told apart.
+void check_unique(TableReader& reader, const Reading& reading) {
+  std::map<int, TriggerCode> seen;
+  for (const auto& code : trigger_codes(reading.protocol)) {
+    const auto [first, fresh] = seen.emplace(code.code, code);
+    if (!fresh)
+      reader.problem("code",
+                     "the code " + text::number(code.code) + " stands for " + described(first->second) +
+                         " and for " + described(code),
+                     "give each event of each condition its own code");
+  }
+}
+
+}  // namespace
+
+void read_triggers(TableReader& file, Reading& reading) {
+  const auto* table = file.maybe_table("triggers");
+  if (!table) return;
+  TableReader reader(*table, "triggers", reading.findings);
+  reading.protocol.triggers.place = table->place;
+  read_send(reader, reading.protocol.triggers);
+  for (const auto* code : reader.tables("code")) read_code(*code, reading);
+  check_unique(reader, reading);
+  reader.finish();
+}
+
+}  // namespace turnpoint::protocol

@@ -1,0 +1,164 @@
+#include "station/sensing/trial_finger.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <span>
+#include <utility>
+
+namespace turnpoint::sensing {
+namespace {
+
+constexpr double filter_s = 0.02;   // how far a point's filter reaches, in either direction
+constexpr double tracker_s = 0.04;  // how far the fit of position and speed reaches
+constexpr double idle_s = 1;        // how much is kept while no trial is expected
+constexpr double longest_s = 1200;  // more is not kept; the beginning of such a trial is lost
+
+static_assert(TrialFinger::tail_s >= filter_s + tracker_s);
+
+}  // namespace
+
+const char* name(ForcesState state) {
+  switch (state) {
+    case ForcesState::ok:
+      return "ok";
+    case ForcesState::lost:
+      return "lost";
+    case ForcesState::wire:
+      return "wire";
+    case ForcesState::tare:
+      return "tare";
+  }
+  return "";
+}
+
+TrialFinger::TrialFinger(const FingerSetup& setup)
+    : setup_(setup),
+      demodulator_(setup.bridges),
+      frames_per_point_(demodulator_.frames_per_point()),
+      points_per_s_(points_per_second(setup.bridges.band)) {}
+
+void TrialFinger::expect(std::int64_t quiet_until, std::vector<Range> intervals) {
+  quiet_until_ = quiet_until;
+  intervals_ = std::move(intervals);
+  tared_ = false;
+  tare_moved_N_ = 0;
+  keep_from(index_at(quiet_until) - points_in(tare_s + tracker_s));
+}
+
+void TrialFinger::cut(std::int64_t frame) {
+  std::erase_if(intervals_, [frame](const Range& range) { return range.first_frame >= frame; });
+  for (auto& range : intervals_) range.end_frame = std::min(range.end_frame, frame);
+}
+
+void TrialFinger::keep_from(std::int64_t index) {
+  while (!points_.empty() && points_.front().index < index) points_.pop_front();
+}
+
+void TrialFinger::push(const CaptureBlock& block) {
+  // After a long pause of the capture, begin again, instead of filtering frames that do not exist.
+  if (block.first_frame > next_frame_ + static_cast<std::int64_t>(idle_s * setup_.bridges.rate_Hz)) {
+    demodulator_ = BridgeDemodulator(setup_.bridges);
+    points_.clear();
+  }
+  next_frame_ = std::max(next_frame_, block.first_frame + block.frames());
+  demodulator_.push(block, [this](const BridgePoint& point) { points_.push_back(point); });
+  if (points_.empty()) return;
+  keep_from(points_.back().index - points_in(intervals_.empty() ? idle_s : longest_s));
+}
+
+std::int64_t TrialFinger::known_at() const {
+  if (intervals_.empty()) return std::numeric_limits<std::int64_t>::min();
+  return intervals_.back().end_frame + static_cast<std::int64_t>(tail_s * setup_.bridges.rate_Hz);
+}
+
+/// The state of the points with indices from `first` to before `end`.
+ForcesState TrialFinger::state_of(std::int64_t first, std::int64_t end) const {
+  auto next = first;
+  for (const auto& point : points_) {
+    if (point.index < first || point.index >= end) continue;
+    if (point.fault != WireFault::none) return ForcesState::wire;
+    if (point.index != next++ || std::isnan(point.ratio[0])) return ForcesState::lost;
+  }
+  return next == end ? ForcesState::ok : ForcesState::lost;
+}
+
+void TrialFinger::take_tare() {
+  if (std::exchange(tared_, true)) return;
+  const auto end = index_at(quiet_until_) - points_in(filter_s);
+  std::vector<BridgePoint> quiet;
+  for (const auto& point : points_) {
+    if (point.index < end - points_in(tare_s) || point.index >= end) continue;
+    // Frames from before the beginning of the capture are missing; later ones must be complete.
+    if (quiet.empty() && std::isnan(point.ratio[0])) continue;
+    quiet.push_back(point);
+  }
+  auto taken = tare(quiet, setup_.bridges.band, setup_.calibration, zero_.value_or(Readings{}));
+  loaded_ = zero_ && taken.state == TareState::stopped;
+  // Without a usable tare, the previous one holds: a finger that waits on the surface is no reason to stop.
+  if (loaded_ || taken.state == TareState::restless || taken.state == TareState::incomplete) return;
+  if (zero_) tare_moved_N_ = taken.moved_N;
+  zero_ = taken.readings;
+}
+
+std::vector<FingerPoint> TrialFinger::track(std::int64_t first, std::int64_t end) const {
+  FingerTracker tracker(setup_.bridges.band);
+  std::vector<FingerPoint> points;
+  for (const auto& point : points_) {
+    if (point.index < first - points_in(tracker_s) || point.index >= end + points_in(tracker_s)) continue;
+    if (const auto finger = tracker.push(force_point(point, setup_.calibration, *zero_));
+        finger && finger->index >= first && finger->index < end)
+      points.push_back(*finger);
+  }
+  return points;
+}
+
+std::optional<bool> TrialFinger::contact(std::size_t interval) {
+  if (interval >= intervals_.size()) return std::nullopt;
+  take_tare();
+  const auto first = index_at(intervals_[interval].first_frame),
+             end = index_at(intervals_[interval].end_frame);
+  if (!zero_ || state_of(first, end) != ForcesState::ok) return std::nullopt;
+  std::int64_t above = 0;
+  for (const auto& point : points_) {
+    if (point.index < first || point.index >= end) continue;
+    above = force_point(point, setup_.calibration, *zero_).force.normal_N > contact_N ? above + 1 : 0;
+    if (above >= points_in(contact_s)) return true;
+  }
+  return false;
+}
+
+TrialForces TrialFinger::result() {
+  TrialForces forces;
+  forces.frames_per_point = frames_per_point_;
+  if (intervals_.empty()) return forces;
+  take_tare();
+  const auto begin = index_at(quiet_until_), first = index_at(intervals_.front().first_frame);
+  const auto end = index_at(intervals_.back().end_frame);
+  forces.state = state_of(first, end);
+  forces.tare_moved_N = tare_moved_N_;
+  if ((!zero_ || loaded_) && forces.state != ForcesState::wire) forces.state = ForcesState::tare;
+  const auto last = index_at(intervals_.back().first_frame);
+  intervals_.clear();
+  if (!zero_) return forces;
+  forces.track = track(std::min(begin, first), end);
+  const auto in_trial = std::span(forces.track)
+                            .subspan(static_cast<std::size_t>(
+                                std::lower_bound(forces.track.begin(), forces.track.end(), first,
+                                                 [](const FingerPoint& point, std::int64_t index) {
+                                                   return point.index < index;
+                                                 }) -
+                                forces.track.begin()));
+  const auto strokes = find_strokes(in_trial);
+  // Scenes differ between intervals, so only the last interval gives the profile.
+  std::vector<Stroke> of_last;
+  for (const auto& stroke : strokes)
+    if (in_trial[stroke.first].index >= last) of_last.push_back(stroke);
+  Bins bins;
+  bins.count = static_cast<std::size_t>(setup_.length_mm / bins.width_mm);
+  const auto step = felt_step(friction_profile(in_trial, of_last, bins));
+  forces.summary = summarise(in_trial, setup_.bridges.band, strokes, step, setup_.window);
+  return forces;
+}
+
+}  // namespace turnpoint::sensing

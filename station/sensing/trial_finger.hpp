@@ -1,0 +1,92 @@
+#pragma once
+#include <cstdint>
+#include <deque>
+#include <optional>
+#include <vector>
+
+#include "station/sensing/capture_block.hpp"
+#include "station/sensing/carrier.hpp"
+#include "station/sensing/finger_track.hpp"
+#include "station/sensing/force_calibration.hpp"
+#include "station/sensing/trial_summary.hpp"
+
+namespace turnpoint::sensing {
+
+/// The force cells of a rig, and how their readings are used.
+struct FingerSetup {
+  BridgeOptions bridges;
+  ForceCalibration calibration{{}, {}};
+  MovementWindow window;
+  double length_mm = 0;  ///< length of the strip, in which a step of friction is looked for
+};
+
+/// Whether the forces of a trial are known.
+enum class ForcesState {
+  ok,
+  lost,  ///< captured frames are missing
+  wire,  ///< a bridge or the reference has a wire fault
+  tare,  ///< the zero of the cells is not known: something lay on the surface, or it was never quiet
+};
+const char* name(ForcesState state);
+
+/// The finger in one trial. The track covers the trial from before the first interval to the end of the last.
+struct TrialForces {
+  ForcesState state = ForcesState::lost;
+  double tare_moved_N = 0;  ///< change of the zero since the previous tare
+  TrialSummary summary;     ///< friction and felt step are those of the last interval
+  std::vector<FingerPoint> track;
+  std::int64_t frames_per_point = 0;  ///< point k is at playback frame k * frames_per_point
+};
+
+/// Measures the finger in one trial after another from captured frames, which must have the numbers at which
+/// they were played. Not thread-safe; allocates.
+class TrialFinger {
+ public:
+  /// The cells are read for this long before the trial, without a finger on the surface.
+  static constexpr double tare_s = 0.4;
+  /// Captured frames are needed up to this long after the last interval.
+  static constexpr double tail_s = 0.06;
+
+  explicit TrialFinger(const FingerSetup& setup);
+
+  /// Playback frames in which one interval of the trial is presented.
+  struct Range {
+    std::int64_t first_frame = 0, end_frame = 0;
+  };
+  /// The intervals of the next trial. The tare is taken from what was captured before `quiet_until`. Points
+  /// that the trial does not need are dropped.
+  void expect(std::int64_t quiet_until, std::vector<Range> intervals);
+  /// The intervals end at this playback frame, or do not begin.
+  void cut(std::int64_t frame);
+  void push(const CaptureBlock& block);
+
+  /// The playback frame before which the result of the expected trial is not known.
+  std::int64_t known_at() const;
+  /// True if a finger touched the surface in this interval; empty if that is not known.
+  std::optional<bool> contact(std::size_t interval);
+  /// What was measured in the expected trial. Frames that were not captured by now count as lost.
+  TrialForces result();
+
+ private:
+  void keep_from(std::int64_t index);
+  void take_tare();
+  ForcesState state_of(std::int64_t first, std::int64_t end) const;
+  std::vector<FingerPoint> track(std::int64_t first, std::int64_t end) const;
+  std::int64_t index_at(std::int64_t frame) const { return frame / frames_per_point_; }
+  std::int64_t points_in(double seconds) const { return static_cast<std::int64_t>(seconds * points_per_s_); }
+
+  FingerSetup setup_;
+  BridgeDemodulator demodulator_;
+  std::int64_t frames_per_point_;
+  double points_per_s_;
+  std::int64_t next_frame_ = 0;  ///< number of the next captured frame, if none is missing
+  std::deque<BridgePoint> points_;
+  std::optional<Readings> zero_;  ///< the newest tare
+  bool tared_ = false;            ///< take_tare() has been called for the expected trial
+  bool loaded_ = false;           ///< something lay on the surface during the tare
+  double tare_moved_N_ = 0;
+  std::int64_t quiet_until_ = 0;
+  std::vector<Range> intervals_;  ///< empty: no trial is expected
+};
+
+}  // namespace turnpoint::sensing

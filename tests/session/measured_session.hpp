@@ -1,0 +1,100 @@
+#pragma once
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "station/session/session.hpp"
+#include "station/session/simulated_room.hpp"
+#include "station/setup/prepare.hpp"
+#include "station/store/read.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+// Simulated sessions on a rig that captures, with faults in the room.
+namespace measured {
+
+using namespace turnpoint;
+
+inline const std::string kSource = TURNPOINT_SOURCE_DIR;
+
+inline const char* const kPickUps = "uri = \"sim:\"\nchannels = 4\npickups = [1, 2]\n";
+inline const char* const kCells =
+    "uri = \"sim:\"\nchannels = 8\npickups = [5, 6]\nreference = 0\nexcitation_channel = 3\nbridges = [1, 2, "
+    "3]\n";
+
+/// Writes the simulated rig with this [capture].
+inline std::string with_capture(const TemporaryFolder& folder, const std::string& capture) {
+  std::ostringstream rig;
+  rig << std::ifstream(kSource + "/tests/support/thin_plate.toml").rdbuf() << "\n[capture]\n" << capture;
+  const auto path = folder / "measured.toml";
+  std::ofstream(path) << rig.str();
+  return path;
+}
+
+/// Adds faults to the room when a trial begins, and repairs them when it ends.
+struct Saboteur : session::Monitor {
+  std::function<void(int trial)> before, after;
+  int trials = 0;
+  void trial_begins(const trial::TrialSpec&, const protocol::Block&,
+                    const session::PlanAhead::Plans&) override {
+    before(trials);
+  }
+  void trial_ended(const trial::TrialSpec&, const records::TrialRow&) override { after(trials++); }
+};
+
+/// Remembers the fault pages of a session.
+struct Pages : session::Display {
+  std::vector<std::string> faults;
+  void show(const session::Page& page) override {
+    if (page.kind == session::PageKind::fault) faults.push_back(page.detail);
+  }
+};
+
+struct Ran {
+  session::Summary summary;
+  std::vector<records::TrialRow> trials;
+  std::vector<std::string> faults;
+};
+
+/// What may go wrong in a room before a trial.
+using Sabotage = std::function<void(int trial, plant::Plant& plant)>;
+
+struct How {
+  std::string capture = kPickUps;
+  bool repaired = true;  ///< faults last for one trial
+  std::string observer = "sim";
+};
+
+/// Runs a protocol file in a room with faults.
+inline Ran run(const std::string& protocol, const Sabotage& sabotage, const How& how = {}) {
+  TemporaryFolder folder;
+  setup::RunRequest request;
+  request.protocol = protocol;
+  request.rig = with_capture(folder, how.capture);
+  request.participant = "P01";
+  request.database = folder / "a.sqlite";
+  request.observer = how.observer;
+  request.seed = 7;
+  const auto setup = setup::prepare(request);
+  auto room = std::make_unique<session::SimulatedRoom>(setup.rig);
+  Saboteur saboteur;
+  auto& plant = room->plant();
+  saboteur.before = [&](int trial) { sabotage(trial, plant); };
+  saboteur.after = [&](int) {
+    if (how.repaired) plant.repair();
+  };
+  Pages pages;
+  session::Inputs inputs;
+  Ran ran;
+  ran.summary = session::run(setup, &pages, inputs, std::move(room), &saboteur);
+  for (const auto& block : store::read_session(request.database, ran.summary.session_id).blocks)
+    ran.trials.insert(ran.trials.end(), block.trials.begin(), block.trials.end());
+  ran.faults = pages.faults;
+  return ran;
+}
+
+inline std::string shipped(const std::string& name) { return kSource + "/protocols/" + name + ".toml"; }
+
+}  // namespace measured

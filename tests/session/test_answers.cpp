@@ -1,0 +1,83 @@
+// Answers that are numbers, and confidence: a person on the screen gives them, and rows store them.
+#include "tests/session/live_room.hpp"
+#include "tests/support/catch.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+using namespace turnpoint;
+using namespace turnpoint::live_room;
+
+namespace {
+
+session::Setup setup_with(const std::string& answers, const TemporaryFolder& folder,
+                          const std::string& device = "touch") {
+  auto setup = live_setup(folder / "a.sqlite", device);
+  auto text = protocol_text(device);
+  const auto from = text.find("choices"), to = text.find("[timing]");
+  text.replace(from, to - from, answers);
+  setup.protocol = protocol::parse(text, "live.toml");
+  return setup;
+}
+
+const char* const kChoices =
+    "choices = [{ id = \"left\", label = { en = \"Left\" } }, { id = \"right\", label = { en = \"Right\" } "
+    "}]\n";
+
+}  // namespace
+
+TEST_CASE("a typed number is stored as the answer, and one outside of the range is not an answer",
+          "[session]") {
+  const TemporaryFolder folder;
+  const auto setup = setup_with("[task.number]\nlow = 0.5\nhigh = 99\ndecimals = 1\n", folder);
+  Room room;
+  const auto type = [&](double number) {
+    session::Input input;
+    input.time_ns = system::monotonic_ns();
+    input.kind = InputKind::value;
+    input.number = number;
+    room.inputs.push(input);
+  };
+  room.reacts = [&](const session::Page& page) {
+    if (page.kind != PageKind::number) return room.cooperate(page);
+    CHECK(page.value.decimals == 1);
+    if (room.stimuli++ > 0) return type(7.5);
+    for (const double wrong : {100.0, 0.25, 3.14, -1.0, std::nan("")}) type(wrong);
+    room.push(InputKind::answer, 0);
+    type(12.3);
+  };
+  const auto summary = session::run(setup, &room, room.inputs, room.devices());
+  CHECK(summary.status == records::SessionStatus::completed);
+  const auto trials = trials_of(setup.database, summary);
+  REQUIRE(trials.size() == 2);
+  CHECK(trials[0].response == "12.3");
+  CHECK(trials[0].extra_touches == 6);
+  CHECK(trials[0].response_time_s);
+  CHECK_FALSE(trials[0].correct);
+  CHECK(trials[1].response == "7.5");
+  CHECK(events_of(setup.database, summary, "value").size() == 7);
+}
+
+TEST_CASE("confidence is stored with its answer; a stop before it leaves no trial", "[session]") {
+  const TemporaryFolder folder;
+  const auto setup = setup_with(std::string(kChoices) +
+                                    "[task.confidence]\nquestion = { en = \"Sure?\" }\n"
+                                    "labels = [{ en = \"no\" }, { en = \"perhaps\" }, { en = \"yes\" }]\n",
+                                folder, "either");
+  Room room;
+  int asked = 0;
+  room.reacts = [&](const session::Page& page) {
+    if (page.kind == PageKind::stimulus) return room.push(InputKind::answer, 0);
+    if (page.kind != PageKind::confidence) return room.cooperate(page);
+    CHECK(page.answers.size() == 3);
+    CHECK(page.text == "Sure?");
+    room.press(0);  // a response button is no confidence
+    room.push(asked++ == 0 ? InputKind::answer : InputKind::stop, 2);
+  };
+  const auto summary = session::run(setup, &room, room.inputs, room.devices());
+  const auto trials = trials_of(setup.database, summary);
+  REQUIRE(trials.size() == 2);
+  CHECK(trials[0].response == "left");
+  CHECK(trials[0].confidence == 3);
+  CHECK(trials[0].confidence_time_s.value_or(-1) >= 0);
+  CHECK(trials[1].outcome == terms::Outcome::aborted);
+  CHECK_FALSE(trials[1].confidence);
+}

@@ -1,0 +1,104 @@
+#include <cmath>
+
+#include "tests/session/measured_session.hpp"
+#include "tests/support/catch.hpp"
+
+using namespace turnpoint;
+using namespace measured;
+
+namespace {
+
+/// The demo with other values of some keys.
+std::string demo_with(const TemporaryFolder& folder,
+                      const std::vector<std::pair<std::string, std::string>>& changes) {
+  std::ostringstream text;
+  text << std::ifstream(shipped("demo")).rdbuf();
+  auto protocol = text.str();
+  for (const auto& [from, to] : changes) {
+    const auto at = protocol.find(from);
+    REQUIRE(at != std::string::npos);
+    protocol.replace(at, from.size(), to);
+  }
+  const auto path = folder / "demo.toml";
+  std::ofstream(path) << protocol;
+  return path;
+}
+
+}  // namespace
+
+TEST_CASE("force cells measure the finger in each trial, and the stimuli are still proven",
+          "[session][forces]") {
+  plant::Truth truth;
+  const auto ran = run(shipped("demo"), [&](int, plant::Plant& plant) { truth = plant.truth(); }, {kCells});
+  REQUIRE(ran.trials.size() == 10);
+  for (const auto& trial : ran.trials) {
+    CHECK(trial.outcome == terms::Outcome::answered);
+    CHECK(trial.proof == terms::Proof::ok);
+    const auto& finger = trial.finger;
+    CHECK(finger.sensing == "ok");
+    CHECK(finger.contact_s.value() > 0.5);
+    CHECK(finger.strokes.value() >= 0);
+    if (finger.strokes.value() == 0) continue;
+    CHECK(finger.normal_N.value() == Approx(0.5).margin(0.15));
+    CHECK(finger.speed_mm_s.value() == Approx(128).margin(12));
+    CHECK(std::abs(finger.tare_mN.value()) < 1);
+  }
+}
+
+TEST_CASE("the step of friction is felt where the plan puts it", "[session][forces]") {
+  TemporaryFolder folder;
+  const auto protocol = demo_with(folder, {{"edge = \"p50\"", "edge = { friction = 0.55 }"},
+                                           {"displacement_um = 1.0", "displacement_um = 3.0"},
+                                           {"explore_s = 4.0", "explore_s = 20.0"},
+                                           {"deadline_s = 6.0", "deadline_s = 25.0"},
+                                           {"repeats = 2", "repeats = 1"}});
+  How how{kCells};
+  how.observer = "sim:residual=18";  // an answer ends the stimulus
+  const auto ran = run(
+      protocol, [](int, plant::Plant&) {}, how);
+  REQUIRE(ran.trials.size() == 5);
+  for (const auto& trial : ran.trials) {
+    const auto& finger = trial.finger;
+    INFO("planned " << trial.boundary_mm.value());
+    REQUIRE(finger.boundary_felt_mm);
+    CHECK(finger.boundary_felt_mm.value() == Approx(trial.boundary_mm.value()).margin(1.5));
+    CHECK(finger.boundary_se_mm.value() < 1);
+    CHECK(finger.mu_high.value() == Approx(0.8).epsilon(0.1));  // the finger's friction at rest
+    CHECK(finger.mu_low.value() < 0.4);
+  }
+}
+
+TEST_CASE("a trial whose forces are not known says why", "[session][forces]") {
+  using plant::FaultKind;
+  const auto [kind, why] = GENERATE(std::pair{FaultKind::no_reference, std::string("wire")},
+                                    std::pair{FaultKind::broken_bridge, std::string("wire")});
+  const auto ran = run(shipped("demo"),
+                       [kind = kind](int trial, plant::Plant& plant) {
+                         if (trial == 3) plant.add({kind, plant.frames() + 192000, plant::kNever, {}, 0});
+                       },
+                       {kCells});
+  INFO(why);
+  REQUIRE(ran.trials.size() >= 10);
+  for (const auto& trial : ran.trials) {
+    CHECK(trial.finger.sensing == (trial.trial_index == 3 ? why : "ok"));
+    CHECK(trial.finger.normal_N.has_value() == (trial.trial_index != 3));
+  }
+}
+
+TEST_CASE("something that lies on the surface before a trial is reported", "[session][forces]") {
+  const auto ran = run(shipped("demo"),
+                       [](int trial, plant::Plant& plant) {
+                         plant.set_load(trial == 4 ? plant::Load{0.05, 0, 0.1} : plant::Load{});
+                       },
+                       {kCells});
+  for (const auto& trial : ran.trials)
+    CHECK(trial.finger.sensing == (trial.trial_index == 4 ? "tare" : "ok"));
+}
+
+TEST_CASE("without force cells nothing is said about the finger", "[session][forces]") {
+  const auto ran = run(shipped("demo"), [](int, plant::Plant&) {});
+  for (const auto& trial : ran.trials) {
+    CHECK(trial.finger.sensing.empty());
+    CHECK_FALSE(trial.finger.contact_s.has_value());
+  }
+}

@@ -1,0 +1,114 @@
+#include <zlib.h>
+
+#include "station/store/fields.hpp"
+#include "station/store/merge.hpp"
+#include "station/store/verify.hpp"
+#include "station/store/withdraw.hpp"
+#include "tests/store/sample.hpp"
+#include "tests/support/catch.hpp"
+
+using namespace turnpoint::store;
+
+namespace {
+
+SignalRow stored_signal(const std::string& path, int trial_index) {
+  auto database = sample::raw(path);
+  Statement rows(database,
+                 "SELECT " + column_list(signal_table()) + " FROM signal WHERE trial_index = ? LIMIT 1");
+  rows.bind(trial_index);
+  REQUIRE(rows.step());
+  return record_of(rows, signal_table());
+}
+
+}  // namespace
+
+TEST_CASE("a signal comes back as it was recorded, rounded to its resolution, with its gaps", "[store]") {
+  TemporaryFolder folder;
+  const auto db = folder / "a.sqlite";
+  sample::session(db, 3);
+  const auto row = stored_signal(db, 1);
+  CHECK(row.stream == "finger");
+  CHECK(row.start_frame == 192000);
+  CHECK(row.rate_Hz == 1000);
+  REQUIRE(row.channels == sample::finger_signal(1).channels);
+  const auto values = decode(row);
+  REQUIRE(values.size() == 2);
+  REQUIRE(values[0].size() == 500);
+  for (std::size_t k = 0; k < 500; ++k) {
+    CHECK(std::abs(values[0][k] - (0.5 + 0.1 * std::sin(0.02 * static_cast<double>(k) + 1))) <= 0.5001e-4);
+    if (k < 20)
+      CHECK(std::isnan(values[1][k]));
+    else
+      CHECK(std::abs(values[1][k] - (100 + 0.08 * static_cast<double>(k))) < 0.00501);
+  }
+}
+
+TEST_CASE("a stored signal has the documented encoding", "[store]") {
+  SignalRow row;
+  row.stream = "finger";
+  row.channels = {{"x", "mm", 0.5}, {"y", "N", 1}};
+  encode(row,
+         std::vector<std::vector<double>>{{1, 1.5, std::numeric_limits<double>::quiet_NaN()}, {-1, -1, 300}});
+  CHECK(row.points == 3);
+  // Whole numbers 2, 3, -2^31 and -1, -1, 300; differences 2, 1, 0x7FFFFFFD and 0xFFFFFFFF, 0, 301.
+  const std::string shuffled{
+      "\x02\x01\xFD\xFF\x00\x2D"
+      "\x00\x00\xFF\xFF\x00\x01"
+      "\x00\x00\xFF\xFF\x00\x00"
+      "\x00\x00\x7F\xFF\x00\x00",
+      24};
+  std::string unpacked(24, '\0');
+  uLongf size = unpacked.size();
+  REQUIRE(uncompress(reinterpret_cast<Bytef*>(unpacked.data()), &size,
+                     reinterpret_cast<const Bytef*>(row.data.bytes.data()), row.data.bytes.size()) == Z_OK);
+  CHECK(size == 24);
+  CHECK(unpacked == shuffled);
+  CHECK(decode(row)[1] == std::vector<double>{-1, -1, 300});
+}
+
+TEST_CASE("a damaged signal is reported, and impossible values are refused", "[store]") {
+  auto row = sample::finger_signal(0);
+  SECTION("a changed byte") { row.data.bytes[row.data.bytes.size() / 2] ^= 0x10; }
+  SECTION("missing bytes") { row.data.bytes.resize(row.data.bytes.size() - 5); }
+  SECTION("more points than there are") { row.points = 501; }
+  SECTION("fewer points than there are") { row.points = 499; }
+  SECTION("an impossible number of points") { row.points = -1; }
+  SECTION("another encoding") { row.encoding = "raw"; }
+  const auto [kind, message] = sample::failure([&] { decode(row); });
+  CHECK(kind == ErrorKind::corrupt);
+  CHECK(sample::contains(message, "signal \"finger\""));
+  SignalRow large;
+  large.channels = {{"x", "mm", 1e-6}};
+  CHECK_THROWS_AS(encode(large, std::vector<std::vector<double>>{{1e6}}), std::logic_error);
+  CHECK_THROWS_AS(encode(large, std::vector<std::vector<double>>{{1}, {2}}), std::logic_error);
+}
+
+TEST_CASE("verify finds a changed signal and a removed signal", "[store]") {
+  TemporaryFolder folder;
+  const auto db = folder / "a.sqlite";
+  sample::session(db, 3);
+  CHECK(verify(db).good());
+  auto database = sample::raw(db);
+  database.execute("DROP TRIGGER signal_is_never_changed; DROP TRIGGER signal_is_never_deleted");
+  const auto* sql = GENERATE("UPDATE signal SET data = zeroblob(length(data)) WHERE trial_index = 1",
+                             "UPDATE signal SET start_s = start_s + 0.001 WHERE trial_index = 1",
+                             "DELETE FROM signal WHERE trial_index = 1");
+  database.execute(sql);
+  CHECK_FALSE(verify(db).good());
+}
+
+TEST_CASE("signals are merged with their trials and withdrawn with their session", "[store]") {
+  TemporaryFolder folder;
+  const auto db = folder / "a.sqlite", other = folder / "b.sqlite";
+  sample::session(db, 2);
+  auto start = sample::start("P07");
+  start.station_id = "bench-b";
+  sample::session(other, 4, start);
+  merge(db, other);
+  CHECK(sample::raw(db).integer("SELECT count(*) FROM signal") == 6);
+  CHECK(decode(stored_signal(db, 3))[0].size() == 500);
+  CHECK(verify(db).good());
+  withdraw(db, {"P07", "", "", ""});
+  CHECK(sample::raw(db).integer("SELECT count(*) FROM signal") == 2);
+  CHECK(verify(db).good());
+}
