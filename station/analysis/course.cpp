@@ -67,6 +67,21 @@ std::optional<Proportion> catch_accuracy(const std::vector<TrialRecord>& trials)
   return result;
 }
 
+std::map<int, Proportion> accuracy_by_confidence(const std::vector<TrialRecord>& trials) {
+  std::map<int, Proportion> degrees;
+  for (const auto& trial : trials) {
+    if (trial.type != TrialType::experimental || !trial.confidence || !trial.correct) continue;
+    auto& degree = degrees[*trial.confidence];
+    ++degree.trials;
+    degree.right += *trial.correct;
+  }
+  for (auto& [confidence, degree] : degrees) {
+    degree.value = static_cast<double>(degree.right) / degree.trials;
+    degree.interval = clopper_pearson(degree.right, degree.trials);
+  }
+  return degrees;
+}
+
 namespace {
 
 struct Sample {

@@ -1,4 +1,5 @@
 #pragma once
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -44,6 +45,9 @@ struct Proportion {
 /// Returns the proportion of catch trials answered correctly. Timeouts and anticipations do not count as
 /// answers. Empty if no catch trial was answered.
 std::optional<Proportion> catch_accuracy(const std::vector<TrialRecord>& trials);
+/// Returns the proportion of right answers for each degree of confidence that occurs in answered experimental
+/// trials with a score.
+std::map<int, Proportion> accuracy_by_confidence(const std::vector<TrialRecord>& trials);
 
 /// A linear trend over the session. Its 95 % interval assumes a normally distributed estimate.
 struct Trend {

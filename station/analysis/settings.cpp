@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <boost/math/distributions/chi_squared.hpp>
-#include <boost/math/distributions/students_t.hpp>
 #include <cmath>
 #include <numeric>
 
+#include "station/analysis/student.hpp"
 #include "station/text/number.hpp"
 
 namespace turnpoint::analysis {
@@ -24,21 +24,10 @@ double squares_about(const std::vector<double>& values, double mean) {
                          [mean](double sum, double v) { return sum + (v - mean) * (v - mean); });
 }
 
-double student(double degrees) { return boost::math::quantile(boost::math::students_t(degrees), 1 - kTail); }
-
-Estimate around(double value, double half) { return {value, {value - half, value + half, 0.95}}; }
-
 /// Returns the least-squares slope of the settings over their starting positions. Empty if all starts are
 /// equal or if there are fewer than 5 settings.
 std::optional<Estimate> slope_on_starts(const Settings& s) {
-  const double n = static_cast<double>(s.values.size());
-  const double start = mean_of(s.starts), mean = mean_of(s.values), spread = squares_about(s.starts, start);
-  if (spread <= 0 || n < 5) return std::nullopt;
-  double product = 0;
-  for (std::size_t i = 0; i < s.values.size(); ++i) product += (s.starts[i] - start) * (s.values[i] - mean);
-  const double slope = product / spread;
-  const double left = std::max(squares_about(s.values, mean) - slope * product, 0.0);
-  return around(slope, student(n - 2) * std::sqrt(left / (n - 2) / spread));
+  return s.values.size() < 5 ? std::nullopt : student_slope(s.starts, s.values);
 }
 
 void estimate(Settings& s) {
@@ -51,7 +40,7 @@ void estimate(Settings& s) {
   const double n = static_cast<double>(s.values.size());
   const double mean = mean_of(s.values), squares = squares_about(s.values, mean);
   const double sd = std::sqrt(squares / (n - 1));
-  s.mean = around(mean, student(n - 1) * sd / std::sqrt(n));
+  s.mean = student_mean(s.values);
   if (sd > 0) {
     const boost::math::chi_squared law(n - 1);
     s.sd = Estimate{sd,

@@ -25,6 +25,7 @@ struct TrialRecord {
   std::optional<bool> correct;
   /// final position of a slider in the unit of the level; `level` is its starting position
   std::optional<double> setting;
+  std::optional<int> confidence;  ///< from 1 for the least sure; empty if the task does not ask
   Outcome outcome = Outcome::answered;
   std::optional<double> response_time_s;
   /// the condition by which the analysis groups trials; "" if there is only one

@@ -19,6 +19,9 @@ constexpr double kLn2 = 0.69314718055994531;
 // largest |z|: beyond it the tail of the normal distribution is below 1e-9, and its logarithm loses precision
 constexpr double kSurest_sd = 6;
 constexpr double kRatingStep_sd = 0.5;  // distance between the criteria of neighbouring ratings
+constexpr double kLinePoints = 9;
+constexpr double kConfidenceSd = 0.2;
+constexpr double kLn10 = 2.302585092994046;
 constexpr int kMoves = 5;
 constexpr double kLook_s = 1.6;       // typical time to slide the finger across the surface and back
 constexpr double kLookSpread = 0.25;  // SD of the logarithm of the time kLook_s
@@ -52,9 +55,9 @@ double mean_over_drift(double drift, double sd, Function function) {
 }
 
 /// Returns the criterion between rating `rating` and the next higher one, in SDs from the mean of noise. The
-/// criteria of the ratings lie symmetrically around the yes/no criterion.
-double rating_criterion(const Parameters& p, int rating, int ratings) {
-  return p.criterion + kRatingStep_sd * (rating - 0.5 * (ratings - 2));
+/// criteria of the ratings lie symmetrically around `centre`.
+double rating_criterion(double centre, int rating, int ratings) {
+  return centre + kRatingStep_sd * (rating - 0.5 * (ratings - 2));
 }
 
 }  // namespace
@@ -67,7 +70,47 @@ double Observer::strength(const Question& q, double from) const {
   return ratio > 0 ? capped(parameters_.slope * random::log(ratio)) : 0;
 }
 
-double Observer::sensitivity(const Question& q) const { return q.absent ? 0 : 2 * kZ75 * strength(q, 0); }
+double Observer::sensitivity(const Question& q) const {
+  if (q.absent) return 0;
+  switch (q.middle) {
+    case Middle::criterion:
+      return 2 * kZ75 * strength(q, 0);
+    case Middle::threshold:
+      return 2 * kZ75 * random::log(std::max(strength(q, 0), 1e-9));
+    case Middle::bias:
+      break;
+  }
+  return (q.level < parameters_.bias ? -2 : 2) * kZ75 * strength(q, parameters_.bias);
+}
+
+/// The sensation in the middle of a rating scale, in SDs from the mean of noise.
+double Observer::centre(const Question& q) const {
+  return q.middle == Middle::criterion ? parameters_.criterion : 0;
+}
+
+/// The number that the observer gives. A line is as wide as a scale of kLinePoints points.
+double Observer::value(const Question& q, random::Draws& draws) const {
+  const auto& v = *q.value;
+  double value = 0;
+  if (v.typed) {
+    const double ratio =
+        random::log(std::max(strength(q, 0), 1e-9)) + parameters_.scatter * kLn10 * draws.normal();
+    value = v.modulus * random::exp(ratio);
+  } else {
+    const double felt = sensitivity(q) + draws.normal() - centre(q);
+    value = v.low + (v.high - v.low) * (0.5 + felt / (kLinePoints * kRatingStep_sd));
+  }
+  double scale = 1;
+  for (int i = 0; i < v.decimals; ++i) scale *= 10;
+  return std::round(std::clamp(value, v.low, v.high) * scale) / scale;
+}
+
+int Observer::confidence(const Question& q, int choice, random::Draws& draws) const {
+  const double chance = 1.0 / q.answers;
+  const double sure = q.answers < 2 ? 0.5 : std::max(0.0, (share(q, choice) - chance) / (1 - chance));
+  const double felt = std::clamp(sure + kConfidenceSd * draws.normal(), 0.0, 1.0);
+  return 1 + std::min(q.confidence - 1, static_cast<int>(felt * q.confidence));
+}
 
 /// Returns the drift (1 / square root of a second). A positive drift leads to the right answer
 /// (right_answer), to the answer for levels above the bias (side), or to "yes" (presence).
@@ -106,11 +149,11 @@ double Observer::share(const Question& q, int choice) const {
   if (q.decides == Decides::right_answer && q.correct) {
     const double right = mean([&](double drift) { return share_right(upper(drift), q.answers); });
     share = choice == *q.correct ? right : (1 - right) / std::max(1, q.answers - 1);
-  } else if (q.decides == Decides::presence && q.answers > 2) {
+  } else if (q.rating) {
     const auto below = [&](int rating) {
       if (rating < 0) return 0.0;
       if (rating >= q.answers - 1) return 1.0;
-      return random::normal_cdf(rating_criterion(p, rating, q.answers) - sensitivity(q));
+      return random::normal_cdf(rating_criterion(centre(q), rating, q.answers) - sensitivity(q));
     };
     share = below(choice) - below(choice - 1);
   } else if (q.decides != Decides::right_answer) {
@@ -142,16 +185,25 @@ Reply Observer::answer(const Question& q) const {
     const bool found = passage.upper && u * upper < share_right(upper, q.answers);
     const int right = q.correct.value_or(any);
     reply.choice = found ? right : (right + 1 + other) % q.answers;
-  } else if (q.answers > 2) {
+  } else if (q.rating) {
     const double seems = sensitivity(q) + felt;
     int rating = 0;
-    while (rating < q.answers - 1 && seems > rating_criterion(p, rating, q.answers)) ++rating;
+    while (rating < q.answers - 1 && seems > rating_criterion(centre(q), rating, q.answers)) ++rating;
     reply.choice = rating;
   } else {
     reply.choice = passage.upper ? q.positive : 1 - q.positive;
   }
   if (lapses || anticipates) reply.choice = any;
   reply.response_time_s = anticipates ? 0.05 : passage.time_s + residual_s + p.travel_s;
+  if (q.value) {
+    auto asked = q;
+    if (lapses) asked.level = q.middle == Middle::bias ? p.bias : p.threshold.value_or(q.default_threshold);
+    reply.choice = 0, reply.value = value(asked, draws);
+  }
+  if (q.confidence > 0) {
+    reply.confidence = confidence(q, *reply.choice, draws);
+    reply.confidence_time_s = p.residual_s + p.travel_s;
+  }
   return reply;
 }
 
@@ -187,6 +239,7 @@ void check(const Parameters& p) {
   };
   require(!p.threshold || *p.threshold != 0, "threshold must not be 0");
   require(p.slope > 0, "slope must be above 0");
+  require(p.scatter >= 0, "scatter must be 0 or more");
   require(p.lapse >= 0 && p.lapse <= 1 && p.anticipation >= 0 && p.anticipation <= 1,
           "lapse and anticipation must be probabilities from 0 to 1");
   require(p.bound > 0 && p.residual_s >= 0 && p.travel_s >= 0,
@@ -207,6 +260,7 @@ Parameters parse(const std::string& text) {
                                              {"lapse", &p.lapse},
                                              {"bias", &p.bias},
                                              {"criterion", &p.criterion},
+                                             {"scatter", &p.scatter},
                                              {"bound", &p.bound},
                                              {"residual", &p.residual_s},
                                              {"travel", &p.travel_s},
@@ -215,8 +269,8 @@ Parameters parse(const std::string& text) {
                                              {"residual_range", &p.residual_range_s},
                                              {"anticipation", &p.anticipation}};
   const std::string allowed =
-      "sim, or sim: and threshold, slope, lapse, bias, criterion, bound, residual, travel, drift_sd, "
-      "start_range, residual_range, anticipation with numbers, as in sim:threshold=6,slope=1.2";
+      "sim, or sim: and threshold, slope, lapse, bias, criterion, scatter, bound, residual, travel, "
+      "drift_sd, start_range, residual_range, anticipation with numbers, as in sim:threshold=6,slope=1.2";
   const auto colon = text.find(':');
   if (text.substr(0, colon) != "sim") throw terms::UsageError("--observer " + text + ": " + allowed);
   for (std::size_t at = colon; at != std::string::npos;) {

@@ -39,6 +39,8 @@ struct Parameters {
   double start_range = 0;
   /// range of the non-decision time (uniform around residual_s); at most twice residual_s
   double residual_range_s = 0;
+  /// spread of judgements: of numbers, the SD of their decimal logarithm
+  double scatter = 0.1;
   double anticipation = 0;  ///< fraction of trials answered before anything can be felt
 };
 
@@ -53,6 +55,19 @@ enum class Decides {
   presence,      ///< yes or no, whether there was a signal; or ratings, from the surest no to the surest yes
 };
 
+/// An answer that is a number from `low` to `high`, a multiple of 10^-decimals.
+struct ValueQuestion {
+  /// true: a magnitude, which follows Stevens' power law with the exponent `slope`; false: a place on a line
+  bool typed = false;
+  double low = 0, high = 1;
+  int decimals = 0;
+  double modulus = 10;  ///< the magnitude of the threshold
+};
+
+/// The level that is rated in the middle of a scale. Sensation grows with the level from the bias, with the
+/// logarithm of its ratio to the threshold, or, as in yes/no tasks, from noise to the criterion and beyond.
+enum class Middle { criterion, threshold, bias };
+
 /// The question that a trial asks: everything in the trial on which a simulated observer's answer depends.
 struct Question {
   double level = 0;
@@ -63,7 +78,11 @@ struct Question {
   bool absent = false;         ///< for `presence`: true if the trial has no signal, whatever its level
   std::optional<int> correct;  ///< for `right_answer`: the right answer; empty if no answer is right
   int answers = 2;
-  double default_threshold = 1;  ///< the threshold, if the parameters have none
+  bool rating = false;  ///< the answers are the points of a scale, from low to high levels
+  Middle middle = Middle::criterion;
+  std::optional<ValueQuestion> value;  ///< set if the answer is a number
+  int confidence = 0;                  ///< number of degrees of confidence that are asked for
+  double default_threshold = 1;        ///< the threshold, if the parameters have none
   /// 0: no deadline; if time is short, the observer decides sooner and makes more errors
   double deadline_s = 0;
   random::Key key;  ///< key of the trial's random draws; the observer sets its stream
@@ -71,7 +90,10 @@ struct Question {
 
 struct Reply {
   std::optional<int> choice;
-  double response_time_s = 0;  ///< measured from response_zero; may be negative for an anticipation
+  std::optional<double> value;    ///< set if the question asks for a number; `choice` is then 0
+  std::optional<int> confidence;  ///< from 1; higher if the observer is more likely to choose this answer
+  double response_time_s = 0;     ///< measured from response_zero; may be negative for an anticipation
+  double confidence_time_s = 0;   ///< measured from the answer
 };
 
 /// A slider to be adjusted: its starting position and its range.
@@ -113,6 +135,9 @@ class Observer {
   double strength(const Question& question, double from) const;
   double drift(const Question& question) const;
   double sensitivity(const Question& question) const;
+  double centre(const Question& question) const;
+  double value(const Question& question, random::Draws& draws) const;
+  int confidence(const Question& question, int choice, random::Draws& draws) const;
   Parameters parameters_;
 };
 

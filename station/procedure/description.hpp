@@ -15,7 +15,7 @@ enum class Choice {
   /// estimate
   track,
   /// the answers update a posterior for an assumed psychometric function, and the posterior determines the
-  /// levels; the report fits the psychometric function again
+  /// levels; the report prints the procedure's own estimate and fits the psychometric function again
   posterior,
 };
 

@@ -43,19 +43,35 @@ AnswerRule answer_rule(const Protocol& protocol, const std::string& level) {
   if (task.kind == TaskKind::same_different) return {AnswerKind::presence, index_of(task, "different")};
   const auto* factor = find_factor(protocol.factors, level);
   if (task.kind != TaskKind::single_interval || task.correct_answer.size() != 2 || !factor) return {};
-  std::vector<double> ends;
-  if (factor->range) ends = {factor->range->first, factor->range->second};
-  for (const auto& value : factor->levels)
-    if (const auto* number = std::get_if<double>(&value)) ends.push_back(*number);
-  if (ends.empty()) return {};
-  const auto [low, high] = std::minmax_element(ends.begin(), ends.end());
-  const int below = *low < 0 ? right_at(protocol, level, *low) : -1;
-  const int above = *high > 0 ? right_at(protocol, level, *high) : -1;
-  const int at_zero = *low <= 0 && *high >= 0 ? right_at(protocol, level, 0) : -1;
+  const auto ends = span(*factor);
+  if (!ends) return {};
+  const auto [low, high] = *ends;
+  const int below = low < 0 ? right_at(protocol, level, low) : -1;
+  const int above = high > 0 ? right_at(protocol, level, high) : -1;
+  const int at_zero = low <= 0 && high >= 0 ? right_at(protocol, level, 0) : -1;
   if (below >= 0 && above >= 0 && below != above) return {AnswerKind::side, above};
   const int off = std::max(below, above);
   if (at_zero >= 0 && off >= 0 && off != at_zero) return {AnswerKind::presence, off};
   return {};
+}
+
+bool two_sided(const Protocol& protocol, const std::string& level) {
+  const auto* factor = find_factor(protocol.factors, level);
+  const auto ends = factor ? span(*factor) : std::nullopt;
+  return ends && ends->first < 0 && ends->second > 0;
+}
+
+bool explored(const Task& task) {
+  return (task.kind == TaskKind::single_interval && task.standard.empty()) ||
+         task.kind == TaskKind::adjustment;
+}
+
+std::optional<double> accepted(const ValueAnswer& answer, double given) {
+  const double scale = std::pow(10.0, answer.decimals);
+  const double value = std::round(given * scale) / scale;
+  if (!(value >= answer.low && value <= answer.high)) return std::nullopt;
+  if (answer.typed && std::fabs(given - value) > 1e-6 / scale) return std::nullopt;
+  return value;
 }
 
 double middle_level(const Protocol& protocol, const std::string& level) {

@@ -1,4 +1,5 @@
 #pragma once
+#include <optional>
 #include <string>
 
 #include "station/protocol/protocol.hpp"
@@ -24,6 +25,19 @@ struct AnswerRule {
 /// Finds out how the answers relate to this factor by evaluating the comparisons of `correct` at zero and at
 /// the ends of the factor's range.
 AnswerRule answer_rule(const Protocol& protocol, const std::string& level);
+
+/// True if the participant may answer while the surface moves.
+bool explored(const Task& task);
+
+/// True if answers are ratings or numbers, none of which is right or wrong.
+inline bool judges(const Task& task) { return task.rating || task.value; }
+
+/// Rounds an answer to the decimals of the task; empty if it is outside of the range. A typed number with
+/// more decimals is refused too.
+std::optional<double> accepted(const ValueAnswer& answer, double given);
+
+/// True if the factor's levels lie on both sides of zero.
+bool two_sided(const Protocol& protocol, const std::string& level);
 
 /// A typical level of the factor `level` in the protocol's procedures, or in its blocks if it has no
 /// procedures. For a factor in dB it is the median of all levels, otherwise the median magnitude of all

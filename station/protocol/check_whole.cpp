@@ -3,6 +3,7 @@
 
 #include "station/procedure/description.hpp"
 #include "station/protocol/advice_list.hpp"
+#include "station/protocol/answers.hpp"
 #include "station/protocol/expression.hpp"
 #include "station/protocol/reading.hpp"
 #include "station/protocol/sources.hpp"
@@ -57,7 +58,11 @@ void check_scored(text::TableReader& file, const Reading& reading) {
   const bool stated = table && table->find("correct");
   if (!table || task.kind != TaskKind::single_interval || stated) return;
   for (const auto& spec : protocol.procedures) {
-    if (procedure::follows_answers(spec) && spec.tracks.empty())
+    if (procedure::follows_answers(spec) && judges(task))
+      reading.findings.add(reading.places.of(key_of(spec, "kind")),
+                           "the procedure \"" + spec.name + "\" needs answers that are right or wrong",
+                           "kind = \"constant-stimuli\"");
+    else if (procedure::follows_answers(spec) && spec.tracks.empty())
       reading.findings.add(
           table->place,
           "the procedure \"" + spec.name + "\" depends on correct answers, but no answer is correct",
@@ -123,8 +128,7 @@ void check_timing(text::TableReader& file, const Reading& reading) {
     return entry ? entry->value.place : table->place;
   };
   auto& findings = reading.findings;
-  const bool one_interval =
-      protocol.task.kind == TaskKind::single_interval || protocol.task.kind == TaskKind::adjustment;
+  const bool one_interval = explored(protocol.task);
   if (one_interval && !table->find("explore_s") && !protocol.task.duration_s)
     findings.add(
         table->place, "nothing ends the interval: [timing] has no \"explore_s\"",

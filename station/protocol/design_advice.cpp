@@ -5,6 +5,7 @@
 #include <set>
 
 #include "station/protocol/advice_list.hpp"
+#include "station/protocol/answers.hpp"
 #include "station/protocol/expression.hpp"
 #include "station/text/number.hpp"
 
@@ -26,9 +27,10 @@ std::string trimmed(const std::string& text) {
 
 void check_words(AdviceList& advice) {
   const auto& task = advice.protocol.task;
+  const auto labelled = judges(task) ? 0 : task.choices.size();
   for (const auto& language : advice.protocol.languages) {
     std::set<std::string> seen;
-    for (std::size_t i = 0; i < task.choices.size(); ++i) {
+    for (std::size_t i = 0; i < labelled; ++i) {
       const auto& choice = task.choices[i];
       const auto found = choice.label.find(language);
       const auto label = found == choice.label.end() ? "" : trimmed(found->second);

@@ -117,6 +117,26 @@ struct Choice {
   Localised label;
 };
 
+/// A text at a value of a rating scale.
+struct Anchor {
+  double at = 0;
+  Localised text;
+};
+
+/// An answer that is a number: a mark on a line, or a number typed on a pad.
+struct ValueAnswer {
+  bool typed = false;
+  double low = 0, high = 1;
+  int decimals = 0;             ///< values are multiples of 10^-decimals
+  std::vector<Anchor> anchors;  ///< texts along the line, at ascending values
+};
+
+/// Asks after each answer how sure the participant is.
+struct Confidence {
+  Localised question;
+  std::vector<Localised> labels;  ///< from the least sure to the surest
+};
+
 struct Task {
   TaskKind kind = TaskKind::single_interval;
   std::vector<std::vector<std::string>> intervals;  ///< scene names; an interval is a sequence of scenes
@@ -130,7 +150,13 @@ struct Task {
   Sound sound = Sound::none;  ///< sound that is played while the surface vibrates
   Place sound_place;
   Localised question;
+  /// If the answer is a value, there is one choice, which says that a value was given.
   std::vector<Choice> choices;
+  std::vector<Anchor> anchors;  ///< rating on points: texts at some of the choices, which are 1, 2, ...
+  bool rating = false;          ///< the choices are the points of a scale, in ascending order
+  std::optional<ValueAnswer> value;
+  std::optional<double> modulus;  ///< the number given to `standard`, which begins each trial
+  std::optional<Confidence> confidence;
   std::string correct_scene;  ///< 2ifc: the interval that contains this scene is the correct answer
   /// id of each choice, with the condition under which the choice is right
   std::vector<std::pair<std::string, Comparison>> correct_answer;
@@ -220,6 +246,25 @@ struct Resume {
   std::string restart_unit;  ///< "block" if a resumed session restarts the interrupted block, otherwise ""
 };
 
+/// What the station gives out a trigger code for: a trial begins, an interval begins, an interval changes to
+/// its next scene, the participant answers.
+enum class TriggerEvent { trial, onset, change, response };
+
+/// The code of an event in the trials of one condition.
+struct TriggerCode {
+  TriggerEvent event = TriggerEvent::trial;
+  std::string condition;  ///< as conditions() names it; "" for trials that belong to none
+  int code = 0;           ///< 1 to 255
+};
+
+/// Which events get a code, and codes that the file states instead of the default ones.
+struct Triggers {
+  std::vector<TriggerEvent> send{TriggerEvent::trial, TriggerEvent::onset, TriggerEvent::change,
+                                 TriggerEvent::response};
+  std::vector<TriggerCode> stated;
+  Place place;
+};
+
 /// A complete and checked protocol file. Everything that it refers to by name exists.
 struct Protocol {
   std::string path, source, sha256;
@@ -236,6 +281,7 @@ struct Protocol {
   std::vector<std::variant<Block, Sequence>> plan;  ///< blocks and sequences in the order of the file
   std::map<std::string, Instruction> instructions;
   Analysis analysis;
+  Triggers triggers;
   Resume resume;
   std::vector<std::string> defaults_used;
 };

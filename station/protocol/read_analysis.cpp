@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <set>
 
+#include "station/protocol/answers.hpp"
 #include "station/protocol/expression.hpp"
 #include "station/protocol/reading.hpp"
 
@@ -46,6 +47,7 @@ std::string without_effect(const std::string& word, const Protocol& protocol) {
   // the reader of [task] reports a task without choices
   if (word == "trace" || task.choices.empty()) return "";
   if (task.kind == TaskKind::adjustment) return "an adjustment task has settings instead of answers";
+  if (judges(task)) return "ratings and numbers are neither right nor wrong";
   if (word == "psychometric") return "";
   if (task.kind == TaskKind::single_interval && task.correct_answer.empty())
     return "without \"correct\" in [task], no answer is right or wrong";

@@ -1,8 +1,11 @@
 #include <algorithm>
+#include <cmath>
 #include <set>
 
+#include "station/protocol/answers.hpp"
 #include "station/protocol/expression.hpp"
 #include "station/protocol/reading.hpp"
+#include "station/text/number.hpp"
 
 namespace turnpoint::protocol {
 
@@ -66,8 +69,7 @@ void read_intervals(TableReader& reader, Task& task, const Reading& reading) {
 
 void read_times(TableReader& reader, Task& task) {
   const Range seconds{0, 600, Range::Ends::open_low, "s"};
-  const bool several = task.kind != TaskKind::single_interval && task.kind != TaskKind::adjustment;
-  if (several) {
+  if (!explored(task)) {
     task.duration_s = reader.number("duration_s", seconds);
     task.gap_s = reader.number("gap_s", {0, 60, Range::Ends::closed, "s"});
   } else {
@@ -86,6 +88,124 @@ void read_times(TableReader& reader, Task& task) {
         reader.problem(key, std::string("\"") + key + "\" needs an interval with a second scene",
                        "use an interval of two scenes: intervals = [[\"a\", \"b\"]]");
   }
+}
+
+constexpr int most_choices = 9;
+
+/// Reads texts at values of a scale. Both ends must have one.
+std::vector<Anchor> read_anchors(TableReader& reader, double low, double high, const Reading& reading) {
+  std::vector<Anchor> anchors;
+  reader.require("labels", "write what the ends mean: [ { at = 1, text = { en = \"not at all\" } }, ... ]");
+  for (const auto* table : reader.tables("labels")) {
+    TableReader inner(*table, reader.path("labels"), reading.findings);
+    Anchor anchor;
+    anchor.at = inner.number("at", {low, high});
+    anchor.text = read_localised(inner, "text", reading);
+    if (!anchors.empty() && anchor.at <= anchors.back().at)
+      inner.problem("at", "the labels are not in ascending order", "begin with the lowest value");
+    inner.finish();
+    anchors.push_back(std::move(anchor));
+  }
+  if (reader.has("labels") && (anchors.size() < 2 || anchors.front().at > low || anchors.back().at < high))
+    reader.problem("labels", "an end of the scale has no label",
+                   "write labels at " + text::number(low) + " and at " + text::number(high));
+  return anchors;
+}
+
+void read_rating(const Value& table, Task& task, const Reading& reading) {
+  TableReader reader(table, "task.rating", reading.findings);
+  if (reader.has("points") == reader.has("line"))
+    reader.problem("points", "a rating needs either \"points\" or a \"line\"",
+                   "points = 7 for seven buttons, or line = [0, 100] for a line without points");
+  if (const auto points = reader.maybe_integer("points", 2, most_choices)) {
+    task.rating = true;
+    for (int i = 1; i <= *points; ++i) task.choices.push_back({std::to_string(i), {}});
+    task.anchors = read_anchors(reader, 1, *points, reading);
+  }
+  if (const auto line = reader.maybe_interval("line", {-1e6, 1e6})) {
+    ValueAnswer value{false, line->first, line->second, reader.integer("decimals", 0, 3, 0), {}};
+    const double steps = (value.high - value.low) * std::pow(10.0, value.decimals);
+    if (steps < 10 || steps > 1000)
+      reader.problem(reader.has("decimals") ? "decimals" : "line",
+                     "the line has " + text::number(steps) + " steps of its smallest decimal",
+                     "from 10 to 1000: a finger cannot place more");
+    value.anchors = read_anchors(reader, value.low, value.high, reading);
+    task.value = std::move(value);
+  }
+  for (const auto* key : {"labels", "decimals"}) {
+    if (task.rating && key == std::string("decimals") && reader.has(key))
+      reader.problem(key, "points have no decimals", "remove \"decimals\"");
+    reader.take(key);
+  }
+  reader.finish();
+}
+
+void read_number(const Value& table, Task& task, const Reading& reading) {
+  TableReader reader(table, "task.number", reading.findings);
+  ValueAnswer value;
+  value.typed = true;
+  value.decimals = reader.integer("decimals", 0, 3, 0);
+  const double least = std::pow(10.0, -value.decimals);
+  value.low = reader.number("low", {0, 1e6}, least);
+  value.high = reader.number("high", {least, 1e6}, 1000);
+  if (value.high <= value.low)
+    reader.problem("high", "\"high\" is not above \"low\"", "give the largest number that may be typed");
+  if (reader.has("standard")) {
+    task.standard = reader.string("standard", "name the scene that begins each trial");
+    check_scene(task.standard, reader.place("standard"), reading);
+    reader.require("modulus", "give the number that stands for the standard, such as 10");
+    task.modulus = reader.maybe_number("modulus", {value.low, value.high});
+  } else if (reader.take("modulus")) {
+    reader.problem("modulus", "\"modulus\" needs a \"standard\"",
+                   "name the scene that has this number, or leave the modulus free");
+  }
+  reader.finish();
+  task.value = std::move(value);
+}
+
+/// Reads the answer of a task without choices: [task.rating] or [task.number].
+void read_judgement(TableReader& reader, Task& task, const Reading& reading) {
+  const auto* rating = reader.maybe_table("rating");
+  const auto* number = reader.maybe_table("number");
+  if (!rating && !number) return;
+  if (rating && number)
+    return reader.problem("number", "the task has both a \"rating\" and a \"number\"", "use one of them");
+  const char* key = rating ? "rating" : "number";
+  if (task.kind != TaskKind::single_interval)
+    reader.problem(key, std::string("this kind of task cannot have a \"") + key + "\"",
+                   "kind = \"single-interval\"");
+  for (const auto* other : {"choices", "correct"})
+    if (reader.take(other))
+      reader.problem(other, std::string("a ") + key + " has no \"" + other + "\"",
+                     std::string("remove \"") + other + "\"");
+  if (task.device == Device::buttons)
+    reader.problem("device", std::string("a ") + key + " is given on the screen", "\"touch\"");
+  if (rating)
+    read_rating(*rating, task, reading);
+  else
+    read_number(*number, task, reading);
+  if (task.value) task.choices = {{"value", {}}};
+}
+
+void read_confidence(TableReader& reader, Task& task, const Reading& reading) {
+  const auto* table = reader.maybe_table("confidence");
+  if (!table) return;
+  TableReader inner(*table, "task.confidence", reading.findings);
+  Confidence confidence;
+  confidence.question = read_localised(inner, "question", reading);
+  inner.require("labels",
+                "list what the participant can say, from the least sure: [ { en = \"guessed\" }, ... ]");
+  for (const auto* label : inner.tables("labels"))
+    confidence.labels.push_back(localised_from(*label, "labels", reading));
+  if (inner.has("labels") && (confidence.labels.size() < 2 || confidence.labels.size() > most_choices))
+    inner.problem("labels", "\"labels\" has " + std::to_string(confidence.labels.size()),
+                  "from 2 to 9, from the least sure to the surest");
+  inner.finish();
+  if (task.kind == TaskKind::adjustment)
+    reader.problem("confidence", "an adjustment cannot have a \"confidence\"", "use another kind of task");
+  if (task.device == Device::buttons)
+    reader.problem("device", "confidence is given on the screen", "\"touch\" or \"either\"");
+  task.confidence = std::move(confidence);
 }
 
 void read_choices(TableReader& reader, Task& task, const Reading& reading) {
@@ -188,7 +308,6 @@ void read_task(TableReader& file, Reading& reading) {
   const auto kind = reader.word("kind", kinds);
   task.kind = static_cast<TaskKind>(std::find(kinds.begin(), kinds.end(), kind) - kinds.begin());
   read_intervals(reader, task, reading);
-  read_times(reader, task);
   const auto device = reader.word("device", {"touch", "buttons", "either"});
   task.device_place = reader.place("device");
   task.device = device == "touch" ? Device::touch : device == "buttons" ? Device::buttons : Device::either;
@@ -198,8 +317,13 @@ void read_task(TableReader& file, Reading& reading) {
     task.sound = Sound::masking_noise;
   task.sound_place = reader.place("sound");
   task.question = read_localised(reader, "question", reading);
-  read_choices(reader, task, reading);
-  read_correct(reader, task, reading);
+  read_judgement(reader, task, reading);
+  read_confidence(reader, task, reading);
+  read_times(reader, task);
+  if (!judges(task) && !reader.has("rating") && !reader.has("number")) {
+    read_choices(reader, task, reading);
+    read_correct(reader, task, reading);
+  }
   reader.finish();
 }
 

@@ -11,6 +11,7 @@
 #include "station/protocol/combinations.hpp"
 #include "station/protocol/key_places.hpp"
 #include "station/protocol/resolve.hpp"
+#include "station/protocol/triggers.hpp"
 #include "station/scene/planner.hpp"
 #include "station/scene/transducer.hpp"
 #include "station/terms/limits.hpp"
@@ -283,6 +284,38 @@ void check_devices(const Protocol& protocol, const rig::Rig& rig, Survey& survey
         "use a rig with [contact], or another \"response_zero\"");
 }
 
+/// The shortest time from the beginning of an interval, or of its second scene, to what comes next.
+double shortest_event_s(const Protocol& protocol) {
+  const auto& task = protocol.task;
+  const double length_s = task.duration_s.value_or(protocol.timing.explore_s.value_or(0));
+  if (!task.foreperiod_s) return length_s;
+  return std::min(task.foreperiod_s->low, length_s);
+}
+
+void check_triggers(const Protocol& protocol, const rig::Rig& rig, Survey& survey) {
+  const int largest = rig::largest_trigger_code(rig);
+  if (largest == 0) return;
+  const auto codes = trigger_codes(protocol);
+  const auto most = std::max_element(codes.begin(), codes.end(),
+                                     [](const auto& a, const auto& b) { return a.code < b.code; });
+  auto place = protocol.triggers.place;
+  if (place.line == 0) place = {protocol.path, 0, 0};
+  if (most != codes.end() && most->code > largest)
+    survey.problems.push_back(
+        {place,
+         "the trigger codes go up to " + std::to_string(most->code) + ", for " +
+             std::to_string(codes.size() / protocol.triggers.send.size() - 1) + " conditions",
+         "the rig's outputs give codes up to " + std::to_string(largest) +
+             "; send fewer events (\"send\" in [triggers]), or use a rig with more trigger lines"});
+  const bool marked = rig.marker && rig.marker->kind == rig::Marker::Kind::code;
+  const double code_s = marked ? rig::trigger_code_bits * rig.marker->duration_s : 0;
+  if (!codes.empty() && code_s > shortest_event_s(protocol))
+    survey.problems.push_back({place,
+                               "a trigger code lasts " + text::number(1e3 * code_s, 3) +
+                                   " ms, longer than the shortest time between two events",
+                               "shorten \"duration_ms\" in [marker] of the rig"});
+}
+
 void check_limits(const Protocol& protocol, const rig::Rig& rig, Survey& survey) {
   const double longest_s =
       protocol.task.duration_s ? *protocol.task.duration_s : protocol.timing.explore_s.value_or(0);
@@ -299,6 +332,7 @@ void check_limits(const Protocol& protocol, const rig::Rig& rig, Survey& survey)
 Survey survey(const Protocol& protocol, const rig::Rig& rig, const std::stop_token& stop) {
   Survey survey;
   check_devices(protocol, rig, survey);
+  check_triggers(protocol, rig, survey);
   check_limits(protocol, rig, survey);
   plan_scenes(protocol, rig, stop, survey);
   for (auto& warning : advice(protocol)) survey.warnings.push_back(std::move(warning));

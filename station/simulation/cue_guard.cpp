@@ -9,6 +9,7 @@
 #include <stdexcept>
 #include <tuple>
 
+#include "station/protocol/answers.hpp"
 #include "station/protocol/combinations.hpp"
 #include "station/random/draws.hpp"
 #include "station/simulation/cue_score.hpp"
@@ -366,6 +367,10 @@ CueGuard cue_guard(const Protocol& protocol, const rig::Rig& rig, const protocol
   CueGuard guard;
   if (protocol.task.kind == TaskKind::adjustment) {
     guard.nothing_to_tell = "in an adjustment no setting is right or wrong";
+    return guard;
+  }
+  if (protocol::judges(protocol.task)) {
+    guard.nothing_to_tell = "no rating and no number is right or wrong";
     return guard;
   }
   try {

@@ -9,12 +9,14 @@
 #include "station/analysis/proportion.hpp"
 #include "station/analysis/quantile.hpp"
 #include "station/analysis/trade.hpp"
+#include "station/protocol/answers.hpp"
 #include "station/protocol/conditions.hpp"
 #include "station/report/stored_trials.hpp"
 #include "station/report/summary.hpp"
 #include "station/simulation/parallel.hpp"
 #include "station/simulation/power_truth.hpp"
 #include "station/simulation/rehearsal.hpp"
+#include "station/terms/usage_error.hpp"
 
 namespace turnpoint::simulation {
 
@@ -73,6 +75,11 @@ std::string slope_unit(const analysis::FitOptions& options, const std::string& l
 }
 
 void add_fits(const report::SessionData& data, const std::string& unit, Outcome& outcome) {
+  for (const auto& judged : report::judgements_of(data))
+    if (judged.exponent)
+      outcome.findings.push_back({of("numbers", judged.condition), "exponent", "", judged.exponent->value,
+                                  judged.exponent->interval});
+  if (report::judges(data.design)) return;
   if (data.design == report::Design::adjustment) {
     for (const auto& settings : analysis::settings(data.trials, data.conditions))
       if (settings.mean)
@@ -157,6 +164,9 @@ class Truths {
       if (spec.kind == procedure::Kind::adjustment)
         for (const auto& condition : with_none(protocol::conditions(protocol)))
           add(of(of("settings", spec.name), condition), "PSE", options.observer.bias);
+    if (protocol.task.value && protocol.task.value->typed)
+      for (const auto& condition : with_none(protocol::conditions(protocol)))
+        add(of("numbers", condition), "exponent", options.observer.slope);
     GeneratingValues generating;
     for (const auto& outcome : outcomes) generating.add(outcome.generating);
     add_fits(generating, observer, outcomes);
@@ -266,6 +276,10 @@ Power power(const protocol::Protocol& protocol, const PowerOptions& options) {
     throw std::invalid_argument(
         "power: there must be at least 1 observer, 1 thread and 40 replicates, and the number of sessions "
         "with intervals must not be negative");
+  if (protocol::judges(protocol.task) && !(protocol.task.value && protocol.task.value->typed))
+    throw terms::UsageError(protocol.path +
+                            ": ratings have no threshold, so there is nothing to estimate; simulate sessions "
+                            "with `turnpoint run --observer sim` and analyse their export");
   std::vector<Outcome> outcomes(static_cast<std::size_t>(options.observers));
   in_parallel(options.observers, options.threads, options.progress, [&](int session) {
     outcomes[static_cast<std::size_t>(session)] = simulate(protocol, options, session);

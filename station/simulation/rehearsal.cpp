@@ -1,10 +1,10 @@
 #include "station/simulation/rehearsal.hpp"
 
 #include <algorithm>
+#include <deque>
 #include <optional>
 #include <stdexcept>
 
-#include "station/text/number.hpp"
 #include "station/trial/machine.hpp"
 #include "station/trial/question.hpp"
 #include "station/trial/rows.hpp"
@@ -52,9 +52,9 @@ class Bench {
     perform(machine_.start(now_ns_), reply);
     while (!machine_.done()) {
       const auto wake_ns = machine_.wake_ns();
-      if (answer_ && (!wake_ns || answer_->time_ns <= *wake_ns)) {
-        const auto answer = *answer_;
-        answer_.reset();
+      if (!answers_.empty() && (!wake_ns || answers_.front().time_ns <= *wake_ns)) {
+        const auto answer = answers_.front();
+        answers_.pop_front();
         handle(answer, reply);
       } else if (wake_ns) {
         handle({*wake_ns, trial::EventKind::tick, 0}, reply);
@@ -79,7 +79,10 @@ class Bench {
       const auto onset_ns = present(std::max(now_ns_, action.time_ns), reply);
       if (!reply.choice) continue;
       const auto at_ns = onset_ns + zero_after_onset_ns(protocol_, spec_) + ns(reply.response_time_s);
-      answer_ = trial::Event{std::max(now_ns_, at_ns), trial::EventKind::answer, *reply.choice};
+      answers_ = {{std::max(now_ns_, at_ns), trial::EventKind::answer, *reply.choice}};
+      if (reply.confidence)
+        answers_.push_back({answers_.front().time_ns + ns(reply.confidence_time_s), trial::EventKind::answer,
+                            *reply.confidence - 1});
     }
   }
 
@@ -99,7 +102,7 @@ class Bench {
   const TrialSpec& spec_;
   trial::Machine machine_;
   std::int64_t now_ns_;
-  std::optional<trial::Event> answer_;
+  std::deque<trial::Event> answers_;  ///< what the participant will press, in order of time
 };
 
 /// The participant's action in a trial: an answer, or a setting and the time at which the participant
@@ -140,12 +143,9 @@ Rehearsal rehearse(const protocol::Protocol& protocol, int sequence_index, std::
       Bench bench(protocol, *block, *spec, now_ns);
       const auto doing = done_by(rehearser, *spec, protocol, seed);
       const auto& result = bench.run(doing.reply);
-      trial::fill_result(row, result, *spec, protocol, 0);
+      trial::fill_result(row, result, *spec, protocol, 0, doing.setting ? doing.setting : doing.reply.value);
       trial::TrialEnd end{row.outcome, result.response, row.correct, {}};
-      if (doing.setting && result.response) {
-        end.setting = doing.setting;
-        row.response = text::exact(*doing.setting);
-      }
+      if (result.response) end.setting = doing.setting;
       director.record(end);
       now_ns = bench.now_ns();
       record.trials.push_back(std::move(row));

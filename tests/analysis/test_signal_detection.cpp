@@ -90,6 +90,7 @@ std::vector<TrialRecord> yes_no_session(const turnpoint::observer::Observer& obs
   for (int i = 0; i < trials; ++i) {
     observer::Question question;
     question.decides = observer::Decides::presence;
+    question.rating = answers > 2;
     question.answers = answers;
     question.level = i % 2 == 0 ? 0 : i % 4 == 1 ? 3 : 6;
     question.key = {9, random::Stream::observer, run, 0, i};
@@ -174,7 +175,7 @@ TEST_CASE(
   const int sessions = 200;
   double expected = 0, below = 0;  // `expected` is the area below the ROC of six ratings
   turnpoint::observer::Question question;
-  question.decides = turnpoint::observer::Decides::presence, question.answers = 6;
+  question.decides = turnpoint::observer::Decides::presence, question.rating = true, question.answers = 6;
   for (int rating = 0; rating < 6; ++rating) {
     question.level = 0;
     const double noise = observer.share(question, rating);

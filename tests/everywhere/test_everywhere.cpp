@@ -57,7 +57,7 @@ std::vector<records::TrialRow> session_of(const std::string& protocol, const Tem
                                           const std::string& output) {
   setup::RunRequest request;
   request.protocol = std::string(TURNPOINT_SOURCE_DIR) + "/protocols/" + protocol + ".toml";
-  request.rig = std::string(TURNPOINT_SOURCE_DIR) + "/deploy/rigs/simulated.toml";
+  request.rig = std::string(TURNPOINT_SOURCE_DIR) + "/tests/support/thin_plate.toml";
   request.participant = "P01";
   request.database = folder / "a.sqlite";
   request.observer = "sim";
@@ -83,6 +83,7 @@ std::string decided(const std::vector<records::TrialRow>& trials) {
          << trial.response.value_or("-") << ' ' << store::name(trial.outcome) << ' ' << trial.state_hash;
     for (const auto& [name, value] : trial.factors)
       if (const auto* number = std::get_if<double>(&value)) text << ' ' << name << ' ' << *number;
+    if (trial.confidence) text << " confidence " << *trial.confidence;
     text << '\n';
   }
   return text::sha256(text.str()).substr(0, 16);
@@ -114,6 +115,11 @@ constexpr Recorded kSessions[] = {
     {"friction-staircase", "73be2a4b407a38ee", "59166cc9296dd387"},
     {"friction-same-different", "6cf59207376ed713", "db60992d42e78ad8"},
     {"speed-accuracy", "d6cdfb21b5174f97", "f6301fcfbdf34bf9"},
+    {"smoothness-points", "97853ee09d67fb8a", "5820a77bdc8728a7"},
+    {"smoothness-line", "50117bb6c419b5e1", "5820a77bdc8728a7"},
+    {"magnitude-free", "e896a54b91f9083a", "5820a77bdc8728a7"},
+    {"magnitude-standard", "e896a54b91f9083a", "20f24ce4e08d1d1d"},
+    {"friction-confidence", "bdf1f5fe2278e9cb", "6dfc0cdffeb0ca19"},
     {"two-spots-oddity", "d84ae5fc63983e76", "b2d2fee42b03d1aa"},
 };
 

@@ -159,7 +159,7 @@ TEST_CASE("yes and no fall about the criterion", "[observer]") {
 TEST_CASE("ratings of signal and noise overlap by d'", "[observer]") {
   const Observer observer(parse("sim:threshold=5,lapse=0"));
   auto question = at_level(5);
-  question.decides = Decides::presence, question.answers = 6;
+  question.decides = Decides::presence, question.answers = 6, question.rating = true;
   check_shares(observer, question);
   double area = 0, below = 0;
   for (int rating = 0; rating < 6; ++rating) {

@@ -50,16 +50,8 @@ TEST_CASE("every shipped protocol can be run, without a warning, on a rig like t
   check_shipped(quick_rig());
 }
 
-// This test is excluded by default: run it by name. It takes seconds per protocol, because the maps of a
-// clamped plate are computed from its two-dimensional field.
-TEST_CASE("every shipped protocol can be run on the simulated rig, without a warning", "[.slow]") {
+TEST_CASE("every shipped protocol can be run on the simulated rig, without a warning", "[protocol]") {
   check_shipped(simulated());
-}
-
-TEST_CASE("the demo can be run on the simulated rig, without a warning", "[.slow]") {
-  const auto survey = protocol::survey(protocol::parse(source("demo.toml"), "p.toml"), simulated());
-  CHECK(all_of(survey.problems) == "");
-  CHECK(all_of(survey.warnings) == "");
 }
 
 TEST_CASE("a survey plans each combination of level and mark once, with its boundary", "[protocol]") {

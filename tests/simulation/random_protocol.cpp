@@ -10,7 +10,8 @@ namespace {
 
 class Maker {
  public:
-  Maker(unsigned seed, std::map<std::string, int>& features) : random_(seed), features_(features) {}
+  Maker(unsigned seed, std::map<std::string, int>& features)
+      : seed_(seed), random_(seed), features_(features) {}
 
   std::string text() {
     task_ = pick({"single-interval", "2ifc", "same-different", "oddity"});
@@ -84,6 +85,12 @@ class Maker {
     for (const auto& id : ids) text += "{ id = " + quoted(id) + ", label = { en = " + quoted(id) + " } },";
     text += "]\n";
     if (single_) text += correct();
+    // Not drawn from random_, so that this feature changes nothing else of the file.
+    if (seed_ % 4 == 0) {
+      use("confidence");
+      text +=
+          "[task.confidence]\nquestion = { en = \"Sure?\" }\nlabels = [{ en = \"no\" }, { en = \"yes\" }]\n";
+    }
     return text + "[timing]\nresponse_zero = " + quoted(single_ ? "go_cue" : "interval_off") +
            "\ndeadline_s = 6.0\niti_s = 0.5\n" + (single_ ? "explore_s = 3.0\n" : "");
   }
@@ -184,6 +191,7 @@ class Maker {
 
   static std::string quoted(const std::string& text) { return "\"" + text + "\""; }
 
+  unsigned seed_;
   std::mt19937 random_;
   std::map<std::string, int>& features_;
   std::string task_, kind_;

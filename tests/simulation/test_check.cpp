@@ -1,17 +1,58 @@
 #include "station/simulation/check.hpp"
 
+#include <algorithm>
+#include <filesystem>
 #include <string>
 
+#include "station/simulation/parallel.hpp"
 #include "station/simulation/rehearsal.hpp"
 #include "tests/support/catch.hpp"
 
 using namespace turnpoint;
 
+namespace {
+
+std::vector<simulation::SessionLength> lengths(const protocol::Protocol& protocol, std::uint64_t first_seed,
+                                               int sessions) {
+  std::vector<simulation::SessionLength> all(static_cast<std::size_t>(sessions));
+  simulation::in_parallel(sessions, simulation::processors(), {}, [&](int i) {
+    all[static_cast<std::size_t>(i)] =
+        simulation::session_length(protocol, first_seed + static_cast<std::uint64_t>(i));
+  });
+  return all;
+}
+
+std::vector<double> values_of(const std::vector<simulation::SessionLength>& lengths,
+                              double simulation::SessionLength::*what, std::size_t count = 100000) {
+  std::vector<double> values;
+  for (const auto& length : lengths)
+    if (values.size() < count) values.push_back(length.*what);
+  return values;
+}
+
+/// True if the range holds 86 to 94 % of the sessions. Several sessions may lie exactly on an end, because
+/// trials are counted; half of them count as held.
+bool holds_nine_of_ten(const simulation::Spread& spread, const std::vector<double>& values) {
+  double inside = 0;
+  for (const double value : values)
+    inside += value > spread.low && value < spread.high     ? 1
+              : value == spread.low || value == spread.high ? 0.5
+                                                            : 0;
+  const auto ends = std::count(values.begin(), values.end(), spread.low) +
+                    std::count(values.begin(), values.end(), spread.high);
+  const double share = inside / static_cast<double>(values.size());
+  const double tied = 0.5 * static_cast<double>(ends) / static_cast<double>(values.size());
+  UNSCOPED_INFO("share " << share << " +- " << tied << ", " << spread.low << " to " << spread.high);
+  return share + tied >= 0.86 && share - tied <= 0.94;
+}
+
+}  // namespace
+
 TEST_CASE("the duration estimated by check is that of a rehearsed session plus the time that people need",
           "[check]") {
   const std::string root = TURNPOINT_SOURCE_DIR;
   const auto path = root + "/protocols/friction-2ifc.toml";
-  const auto check = simulation::check(path, root + "/deploy/rigs/simulated.toml", {1});
+  const auto check = simulation::check(path, root + "/tests/support/thin_plate.toml", {1});
   const auto protocol = protocol::load(path);
   const auto rehearsal =
       simulation::rehearse(protocol, 0, 0, simulation::rehearser(observer::Observer(observer::Parameters{})));
@@ -33,10 +74,31 @@ TEST_CASE("the duration estimated by check is that of a rehearsed session plus t
 TEST_CASE("the duration estimated by check includes time to set a slider", "[check]") {
   const std::string root = TURNPOINT_SOURCE_DIR;
   const auto path = root + "/protocols/boundary-adjustment.toml";
-  const auto check = simulation::check(path, root + "/deploy/rigs/simulated.toml", {1});
+  const auto check = simulation::check(path, root + "/tests/support/thin_plate.toml", {1});
   const auto protocol = protocol::load(path);
   const double longest_s = protocol.timing.explore_s.value();
   const double setting_s = longest_s < 15 ? longest_s : 15;
   CHECK(check.duration_s.median > check.trials.median * setting_s);
   CHECK(check.duration_s.median < check.trials.median * (setting_s + 5) + 60);
+}
+
+TEST_CASE("the ranges of check hold nine of ten sessions of each shipped protocol, and its medians are right",
+          "[check]") {
+  int too_few = 0;  // ranges of 21 sessions that do not
+  for (const auto& entry :
+       std::filesystem::directory_iterator(std::string(TURNPOINT_SOURCE_DIR) + "/protocols")) {
+    if (entry.path().extension() != ".toml") continue;
+    INFO(entry.path().stem().string());
+    const auto protocol = protocol::load(entry.path().string());
+    const auto stated = lengths(protocol, 0, simulation::usual_sessions(protocol)),
+               others = lengths(protocol, 2000, 600);  // so many that chance alone stays inside
+    for (const auto what : {&simulation::SessionLength::trials, &simulation::SessionLength::duration_s}) {
+      const auto spread = simulation::spread_of(values_of(stated, what));
+      const auto values = values_of(others, what);
+      CHECK(holds_nine_of_ten(spread, values));
+      CHECK(spread.median == Approx(simulation::spread_of(values).median).epsilon(0.05));
+      too_few += !holds_nine_of_ten(simulation::spread_of(values_of(stated, what, 21)), values);
+    }
+  }
+  CHECK(too_few > 3);
 }

@@ -158,3 +158,14 @@ TEST_CASE("each parallel task runs once, and an exception in one of them reaches
                                           }),
                   std::runtime_error);
 }
+
+TEST_CASE("the exponent that sessions find is the observer's own slope, and ratings are refused", "[power]") {
+  const auto power = simulation::power(shipped("magnitude-free"), options("sim:slope=0.6,lapse=0", 60));
+  const auto& exponent = find(power, "numbers", "exponent");
+  CHECK(*exponent.truth == 0.6);
+  CHECK(std::fabs(*exponent.bias) < 4 * exponent.sd / std::sqrt(60.0));
+  REQUIRE(exponent.coverage);
+  CHECK(exponent.coverage->value > 0.85);
+  CHECK_THROWS_WITH(simulation::power(shipped("smoothness-line"), options("sim", 2)),
+                    Catch::Matchers::Contains("ratings have no threshold"));
+}

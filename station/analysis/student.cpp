@@ -1,0 +1,44 @@
+#include "station/analysis/student.hpp"
+
+#include <algorithm>
+#include <boost/math/distributions/students_t.hpp>
+#include <cmath>
+#include <numeric>
+
+namespace turnpoint::analysis {
+
+namespace {
+
+double average(const std::vector<double>& values) {
+  return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+}
+
+Estimate student(double value, double error, double degrees) {
+  const double half = boost::math::quantile(boost::math::students_t(degrees), 0.975) * error;
+  return {value, {value - half, value + half, 0.95}};
+}
+
+}  // namespace
+
+std::optional<Estimate> student_mean(const std::vector<double>& values) {
+  if (values.size() < 3) return std::nullopt;
+  const double n = static_cast<double>(values.size()), mean = average(values);
+  double squares = 0;
+  for (const double value : values) squares += (value - mean) * (value - mean);
+  return student(mean, std::sqrt(squares / (n - 1) / n), n - 1);
+}
+
+std::optional<Estimate> student_slope(const std::vector<double>& x, const std::vector<double>& y) {
+  if (x.size() < 3) return std::nullopt;
+  const double n = static_cast<double>(x.size()), x_mean = average(x), y_mean = average(y);
+  double xx = 0, xy = 0, yy = 0;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    const double dx = x[i] - x_mean, dy = y[i] - y_mean;
+    xx += dx * dx, xy += dx * dy, yy += dy * dy;
+  }
+  if (xx <= 0) return std::nullopt;
+  const double slope = xy / xx;
+  return student(slope, std::sqrt(std::max(yy - slope * xy, 0.0) / (n - 2) / xx), n - 2);
+}
+
+}  // namespace turnpoint::analysis

@@ -1,0 +1,14 @@
+#pragma once
+#include <optional>
+#include <vector>
+
+#include "station/analysis/estimate.hpp"
+
+namespace turnpoint::analysis {
+
+/// Estimates with 95 % intervals by Student's t. Empty with fewer than 3 values.
+std::optional<Estimate> student_mean(const std::vector<double>& values);
+/// The least-squares slope of y over x. Empty if all x are equal.
+std::optional<Estimate> student_slope(const std::vector<double>& x, const std::vector<double>& y);
+
+}  // namespace turnpoint::analysis
