@@ -67,12 +67,10 @@ std::vector<ProtocolEntry> list_protocols(const std::string& folder) {
       entry.id = protocol.id, entry.version = protocol.version, entry.title = protocol.title;
       entry.languages = protocol.languages;
     } catch (const text::BadInput& bad) {
-      entry.problem = format(bad.problems().front());
-      if (bad.problems().size() > 1)
-        entry.problem += fmt::format(" (and {} more)", bad.problems().size() - 1);
+      for (const auto& problem : bad.problems()) entry.problems.push_back(format(problem));
     } catch (const std::exception& error) {
       // Keep the error with this file and continue, so that the list contains the other files too.
-      entry.problem = error.what();
+      entry.problems = {error.what()};
     }
     list.push_back(std::move(entry));
   }

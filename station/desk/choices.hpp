@@ -12,7 +12,8 @@ namespace turnpoint::desk {
 struct ProtocolEntry {
   std::string path, id, version, title;
   std::vector<std::string> languages;
-  std::string problem;  ///< why the file cannot be used; if set, all other fields except `path` are empty
+  /// why the file cannot be used; if there are any, all other fields except `path` are empty
+  std::vector<std::string> problems;
 };
 
 /// Returns the protocol files of a folder in the order of their names, including those that cannot be used.

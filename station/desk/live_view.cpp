@@ -148,7 +148,8 @@ std::optional<plot::Figure> live_trace(const std::vector<LiveTrial>& trials, con
   if (levels.empty()) return std::nullopt;
   plot::Chart panel;
   panel.title = "Levels (open symbols: not right)";
-  panel.x = {"Trial", 0, std::max(10.0, static_cast<double>(trials.size()) + 1)};
+  panel.x = {"Trial", 0, std::max(10.0, static_cast<double>(trials.size()) + 1), plot::AxisScale::linear,
+             true};
   panel.y = plot::fitted(label, levels, 0.1);
   int number = 0;
   for (auto& [name, points] : series) {
@@ -172,7 +173,8 @@ std::optional<plot::Figure> live_times(const std::vector<LiveTrial>& trials) {
   if (points.x.empty()) return std::nullopt;
   plot::Chart panel;
   panel.title = "Response times (open symbols: wrong)";
-  panel.x = {"Trial", 0, std::max(10.0, static_cast<double>(trials.size()) + 1)};
+  panel.x = {"Trial", 0, std::max(10.0, static_cast<double>(trials.size()) + 1), plot::AxisScale::linear,
+             true};
   panel.y = plot::fitted("Response time (s)", points.y, 0.15);
   panel.y.low = 0;
   points.series = 2;

@@ -120,7 +120,7 @@ OperatorCode operator_code(const std::vector<std::string>& files) {
 }
 
 void store_operator_code(const OperatorCode& code, const std::string& file) {
-  fs::create_directories(fs::path(file).parent_path());
+  system::make_folder(fs::path(file).parent_path().string());
   system::write_file(file, code.hash() + "\n", 0600);
   if (fs::path(file).parent_path() != kStationFolder) return;
   const auto* group = ::getgrnam(kStationGroup);

@@ -52,6 +52,23 @@ std::string proofs(const std::vector<store::BlockRecord>& blocks) {
   return text.empty() ? "none" : text;
 }
 
+/// Says how many trigger codes were given out, read back, missed or found without having been sent.
+std::string triggers(const std::vector<records::EventRow>& events) {
+  int sent = 0, heard = 0, missed = 0, extra = 0;
+  for (const auto& event : events) {
+    if (event.kind == "trigger_missed") ++missed;
+    if (event.kind == "trigger_extra") ++extra;
+    if (event.kind != "trigger") continue;
+    ++sent;
+    if (event.value.find("read back") != std::string::npos) ++heard;
+  }
+  if (sent + missed + extra == 0) return "none";
+  std::string text = std::to_string(sent) + " sent, ";
+  if (heard + missed + extra == 0) return text + "not read back";
+  return text + std::to_string(heard) + " read back, " + std::to_string(missed) + " missed, " +
+         std::to_string(extra) + " that were not sent";
+}
+
 std::vector<report::MeasuredTrial> measured_trials(const std::vector<store::BlockRecord>& blocks) {
   std::vector<report::MeasuredTrial> trials;
   for (const auto& block : blocks)
@@ -85,6 +102,7 @@ void add_health(const store::StoredSession& stored, report::SessionData& data) {
   const auto& start = stored.session.start;
   data.health = {{"Trials stored", std::to_string(trials)},
                  {"Vibration of the surface", proofs(stored.blocks)},
+                 {"Trigger codes", triggers(stored.events)},
                  {"Underruns and overruns", std::to_string(xruns)},
                  {"Touches that were not answers", std::to_string(extra)},
                  {"Late screen frames", late_frames(stored.events)},

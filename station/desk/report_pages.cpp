@@ -68,6 +68,18 @@ void add_fits(const report::Summary& summary, ReportPages& pages) {
   }
 }
 
+void add_judgements(const report::Summary& summary, ReportPages& pages) {
+  const auto& unit = summary.data.level_unit;
+  for (const auto& judged : summary.judgements) {
+    const auto prefix = judged.condition.empty() ? "" : judged.condition + ": ";
+    if (judged.exponent) pages.fit.emplace_back(prefix + "exponent", with(judged.exponent, ""));
+    for (const auto& level : judged.levels)
+      pages.fit.emplace_back(prefix + number(level.level, 4) + (unit.empty() ? "" : " " + unit),
+                             with(level.mean, ""));
+    for (const auto& statement : judged.statements) pages.statements.push_back(prefix + statement.text);
+  }
+}
+
 void add_trade(const report::Summary& summary, ReportPages& pages) {
   const auto& trade = summary.trade;
   for (const auto& result : trade.instructions) {
@@ -93,13 +105,15 @@ ReportPages report_pages(const report::Summary& summary) {
                 summary.data.status + ")";
   add_outcomes(summary, pages);
   add_fits(summary, pages);
+  add_judgements(summary, pages);
   add_trade(summary, pages);
   pages.health = summary.data.health;
   if (summary.bias)
     for (const auto& statement : summary.bias->statements) pages.statements.push_back(statement.text);
   for (const auto& statement : summary.fatigue.statements) pages.statements.push_back(statement.text);
   pages.trade = drawing(report::trade_figure(summary));
-  pages.fits = drawing(report::psychometric_figure(summary));
+  pages.fits = drawing(report::judges(summary.data.design) ? report::judgement_figure(summary)
+                                                           : report::psychometric_figure(summary));
   pages.levels = drawing(report::trace_figure(summary));
   pages.times = drawing(report::response_time_figure(summary));
   return pages;

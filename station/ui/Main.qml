@@ -40,11 +40,11 @@ Window {
         if (participant.inTrial) bridge.pause()
         liveView.wanted = true
     }
-    /// Leaves the participant's pages. If there is no operator's page, this closes the window.
-    function leave() {
-        if (operating !== null) ask("leave")
-        else start.close()
-    }
+    /// Leaves the participant's pages, which needs the operator's code. If there is no operator's page, this
+    /// closes the window.
+    function leave() { ask("leave") }
+    /// Goes back to the previous question to the participant, or leaves the first one.
+    function back() { if (!start.back()) leave() }
 
     /// The session's pages are created only after the first page is on the screen, so that the first page
     /// appears early.
@@ -59,6 +59,18 @@ Window {
     title: "Turnpoint"
     color: theme.paper
 
+    // Ignore taps for a short time after a page change: they were meant for the previous page.
+    Timer {
+        id: arming
+        interval: 350
+    }
+    Connections {
+        target: root.start
+        function onChanged() {
+            arming.restart()
+            if (root.start.stage === StartController.Operator) root.leftHanded = false
+        }
+    }
     Theme {
         id: theme
         width: root.width
@@ -85,7 +97,10 @@ Window {
             anchors.fill: parent
             visible: root.start.stage === StartController.Language
             theme: theme
+            texts: texts
+            armed: !arming.running
             names: root.start.languageNames
+            onBack: root.back()
             onChosen: index => root.start.chooseLanguage(index)
         }
         ConsentPage {
@@ -95,6 +110,8 @@ Window {
             theme: theme
             texts: texts
             version: root.start.consentVersion
+            armed: !arming.running
+            onBack: root.back()
             onAgreed: root.start.consent()
             onDeclined: root.leave()
         }
@@ -107,6 +124,8 @@ Window {
             texts: texts
             leftHanded: root.leftHanded
             asksHand: true
+            armed: !arming.running
+            onBack: root.back()
             onHandChosen: left => root.leftHanded = left
             onEdited: code => codePage.known = root.start.isKnown(code)
             onAccepted: code => root.start.enterCode(code)

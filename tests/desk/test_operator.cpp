@@ -77,7 +77,7 @@ std::vector<std::string> drives_shown(const desk::LiveState& state) {
 setup::RunRequest demo_in(const Folder& folder) {
   setup::RunRequest request;
   request.protocol = kSource + "/protocols/demo.toml";
-  request.rig = kSource + "/deploy/rigs/simulated.toml";
+  request.rig = kSource + "/tests/support/thin_plate.toml";
   request.participant = "P09";
   request.database = (folder.path / "a.sqlite").string();
   request.observer = "sim";
@@ -261,7 +261,8 @@ TEST_CASE("protocol files of a folder are listed with the ones that cannot be us
   REQUIRE(list.size() == 2);
   CHECK(list[0].id == "demo");
   CHECK(list[0].languages.size() == 3);
-  CHECK(list[1].problem.find("b.toml: ") != std::string::npos);
+  REQUIRE_FALSE(list[1].problems.empty());
+  CHECK(list[1].problems.front().find("b.toml: ") != std::string::npos);
 }
 
 TEST_CASE("odd entries among the protocols have a message and hide no other", "[operator]") {
@@ -276,7 +277,7 @@ TEST_CASE("odd entries among the protocols have a message and hide no other", "[
   REQUIRE(list.size() == 4);
   for (const auto& entry : list) {
     INFO(entry.path);
-    CHECK(entry.problem.empty() == (entry.id == "demo"));
+    CHECK(entry.problems.empty() == (entry.id == "demo"));
   }
 }
 
@@ -320,7 +321,7 @@ TEST_CASE("a check that is no longer wanted is abandoned before it plans anythin
   std::stop_source stop;
   const auto check = [&] {
     return simulation::check(kSource + "/protocols/friction-2ifc.toml",
-                             kSource + "/deploy/rigs/simulated.toml", {}, stop.get_token());
+                             kSource + "/tests/support/thin_plate.toml", {}, stop.get_token());
   };
   CHECK(check().problems.empty());
   stop.request_stop();

@@ -15,7 +15,8 @@ namespace {
 const std::string kSource = TURNPOINT_SOURCE_DIR;
 
 desk::Preview preview_of(const std::string& protocol) {
-  return desk::Preview(kSource + "/protocols/" + protocol + ".toml", kSource + "/deploy/rigs/simulated.toml");
+  return desk::Preview(protocol::load(kSource + "/protocols/" + protocol + ".toml"),
+                       rig::load(kSource + "/tests/support/thin_plate.toml"));
 }
 
 protocol::Factors factors(const desk::Preview& preview, const std::vector<std::string>& set) {
@@ -47,6 +48,20 @@ std::string clash(const std::string& svg, double height) {
 }
 
 }  // namespace
+
+TEST_CASE("the chart of friction under a fingertip shows the loaded surface", "[preview]") {
+  auto preview = preview_of("demo");
+  const auto look = preview.look("edge", factors(preview, {}));
+  const auto figure = desk::profile_figure({look});
+  const auto lowest = [&](std::size_t chart) {
+    const auto& y = std::get<plot::Line>(figure.charts.at(chart).layers.at(0)).y;
+    return *std::min_element(y.begin(), y.end());
+  };
+  CHECK(figure.charts.at(1).title == "Friction under a fingertip");
+  CHECK(lowest(1) == look.under.lowest_friction);
+  const auto& free = look.profile.friction;
+  CHECK(lowest(1) > *std::min_element(free.begin(), free.end()) + 0.1);
+}
 
 TEST_CASE("a scene's knobs are the factors that it depends on, with their ranges and levels", "[preview]") {
   const auto preview = preview_of("demo");

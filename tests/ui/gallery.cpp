@@ -70,6 +70,65 @@ Page oddity(const Words& words, PageKind kind, int interval) {
   return page;
 }
 
+Page smoothness(const Words& words, PageKind kind) {
+  Page page = base(words, kind);
+  page.text = words.pick("How smooth does the strip feel?", "Wie glatt fühlt sich der Streifen an?",
+                         "帯はどのくらいなめらかに感じますか?");
+  page.answers_open = true;
+  return page;
+}
+
+void add_judgements(std::vector<Exhibit>& all, const Words& words) {
+  const auto none = words.pick("not smooth at all", "überhaupt nicht glatt", "全くなめらかでない");
+  const auto most = words.pick("as smooth as can be", "so glatt wie nur möglich", "これ以上なくなめらか");
+  for (const int points : {5, 7, 9}) {
+    Page page = smoothness(words, PageKind::response);
+    for (int i = 1; i <= points; ++i) page.answers.push_back({std::to_string(i), std::to_string(i)});
+    page.answers.front().caption = words.pick("not at all", "überhaupt nicht", "全く");
+    page.answers[static_cast<std::size_t>(points) / 2].caption = words.pick("medium", "mittel", "中間");
+    page.answers.back().caption = words.pick("very", "außerordentlich", "とても");
+    all.push_back({"rating-" + std::to_string(points), page});
+    if (points == 7) {
+      page.kind = PageKind::stimulus;
+      all.push_back({"rating-7-explore", page});
+    }
+  }
+  Page line = smoothness(words, PageKind::line);
+  line.value = {0, 100, 0, {0, 1}, {none, most}, ""};
+  all.push_back({"line", line});
+  line.value.places = {0, 0.25, 0.5, 1};
+  line.value.texts = {none, words.pick("a little", "ein wenig", "少し"),
+                      words.pick("medium", "mittel", "中間"), most};
+  all.push_back({"line-labels", line});
+  Page number = smoothness(words, PageKind::number);
+  number.text = words.pick("Which number fits its smoothness? Twice as smooth: twice the number.",
+                           "Welche Zahl passt zur Glätte? Doppelt so glatt: doppelte Zahl.",
+                           "なめらかさに合う数はいくつですか? 二倍なめらかなら二倍の数です。");
+  number.value = {0.1, 1000, 1, {}, {}, ""};
+  all.push_back({"number", number});
+  number.value.decimals = 0;
+  number.value.first = texts::text("first_is", words.language);
+  number.value.first.replace(number.value.first.find("%1"), 2, "10");
+  all.push_back({"number-standard", number});
+  Page sure = base(words, PageKind::confidence);
+  sure.answers_open = true;
+  sure.text = words.pick("How sure are you?", "Wie sicher sind Sie?", "どのくらい確かですか?");
+  sure.answers = {{"1", words.pick("guessed", "geraten", "勘")},
+                  {"2", words.pick("not very", "nicht sehr", "あまり")},
+                  {"3", words.pick("quite", "ziemlich", "かなり")},
+                  {"4", words.pick("certain", "vollkommen", "確か")}};
+  all.push_back({"confidence", sure});
+  Page many = base(words, PageKind::response);
+  many.answers_open = true;
+  many.text = words.pick("Which pattern was it?", "Welches Muster war es?", "どの模様でしたか?");
+  for (int i = 1; i <= 9; ++i)
+    many.answers.push_back(
+        {std::to_string(i), words.pick("Pattern ", "Muster ", "模様") + std::to_string(i)});
+  all.push_back({"choices-9", many});
+  many.answers.resize(4);
+  all.push_back({"choices-4", many});
+}
+
 void add_trials(std::vector<Exhibit>& all, const Words& words) {
   Page cue = boundary(words, PageKind::cue);
   cue.text.clear();
@@ -130,9 +189,9 @@ void add_faults(std::vector<Exhibit>& all, const Words& words) {
     page.detail = detail;
     if (kind == FaultKind::disarmed) page.amplifier = "disarmed";
     // The amplifier stays armed during these faults.
-    const auto armed = {FaultKind::disarmed,  FaultKind::limits,          FaultKind::touch_gone,
-                        FaultKind::disk_full, FaultKind::stimulus_missed, FaultKind::vibration,
-                        FaultKind::other};
+    const auto armed = {
+        FaultKind::disarmed,        FaultKind::limits,    FaultKind::touch_gone, FaultKind::disk_full,
+        FaultKind::stimulus_missed, FaultKind::vibration, FaultKind::capture,    FaultKind::other};
     if (std::find(armed.begin(), armed.end(), kind) == armed.end()) page.amplifier = "faulted";
     all.push_back({std::string("fault-") + terms::name(kind), page});
   }
@@ -146,7 +205,15 @@ void add_notices(std::vector<Exhibit>& all, const Words& words) {
   all.push_back({"rest-over", rest});
   add_faults(all, words);
   all.push_back({"paused", base(words, PageKind::paused)});
+  Page failed = base(words, PageKind::failed);
+  failed.text = "lab.sqlite: database or disk is full";
+  all.push_back({"failed", failed});
   Page end = base(words, PageKind::end);
+  end.title = texts::text("thanks_early", words.language);
+  end.resumable = true;
+  all.push_back({"end-early", end});
+  end.resumable = false;
+  end.title = texts::text("thanks", words.language);
   end.trials_done = end.trials_total = 88;
   all.push_back({"end", end});
   end.summary = {{"Trials", "88"},
@@ -209,6 +276,7 @@ std::vector<Exhibit> gallery(const std::string& language) {
   std::vector<Exhibit> all;
   add_starts(all, words);
   add_trials(all, words);
+  add_judgements(all, words);
   add_notices(all, words);
   for (auto exhibit : std::vector<Exhibit>(all))
     if (exhibit.name == "fault-amplifier" || exhibit.name == "adjust") {

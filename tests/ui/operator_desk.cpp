@@ -14,7 +14,7 @@ OperatorDesk::OperatorDesk(SessionBridge& bridge, QObject* parent) : QObject(par
   if (mistaken.open(QIODevice::WriteOnly)) mistaken.write("format = \"friction-protocol/1\"\nprotocl = 3\n");
   mistaken.close();
   operating_ = std::make_unique<OperatorController>(
-      setup::StationRequest{folder_.path().toStdString(), TURNPOINT_SOURCE_DIR "/deploy/rigs/simulated.toml",
+      setup::StationRequest{folder_.path().toStdString(), TURNPOINT_SOURCE_DIR "/tests/support/thin_plate.toml",
                             folder_.filePath("lab.sqlite").toStdString()});
   connect(operating_.get(), &OperatorController::chosen, this, [this](const ChosenSession& session) {
     const auto& setup = session.setup;

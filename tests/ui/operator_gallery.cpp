@@ -13,7 +13,7 @@ namespace {
 setup::RunRequest request_for(const std::string& protocol, const std::string& database) {
   setup::RunRequest request;
   request.protocol = TURNPOINT_SOURCE_DIR "/protocols/" + protocol + ".toml";
-  request.rig = TURNPOINT_SOURCE_DIR "/deploy/rigs/simulated.toml";
+  request.rig = TURNPOINT_SOURCE_DIR "/tests/support/thin_plate.toml";
   request.participant = "P03";
   request.database = database;
   request.observer = "sim";

@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <vector>
 
 namespace turnpoint::ui {
 
@@ -42,6 +43,19 @@ void each_text(const QQuickItem& item, const std::function<void(const QQuickItem
   const bool is_text = item.inherits("QQuickText");
   if (is_text && !item.property("text").toString().trimmed().isEmpty()) look(item);
   for (const auto* child : item.childItems()) each_text(*child, look);
+}
+
+/// The part of an area that the clipping items around `item` leave visible.
+QRectF seen(const QQuickItem& item, QRectF area) {
+  for (const auto* around = item.parentItem(); around != nullptr; around = around->parentItem())
+    if (around->clip()) area = area.intersected(around->mapRectToScene(around->boundingRect()));
+  return area;
+}
+
+void each_button(const QQuickItem& item, const std::function<void(const QQuickItem&)>& look) {
+  if (!item.isVisible()) return;
+  if (item.property("holdMs").isValid()) look(item);
+  for (const auto* child : item.childItems()) each_button(*child, look);
 }
 
 bool has_ideographs(const QString& word) {
@@ -99,6 +113,33 @@ QStringList PageInspector::brokenWords(QQuickItem* page) const {
       if (!has_ideographs(word) && metrics.horizontalAdvance(word) > text.width() + 1) broken += word;
   });
   return broken;
+}
+
+QStringList PageInspector::overlaps(QQuickItem* page) const {
+  struct Thing {
+    const QQuickItem* item;
+    QRectF area;
+    QString name;
+  };
+  page->window()->grabWindow();  // this moves everything to its place
+  std::vector<Thing> things;
+  each_text(*page, [&](const QQuickItem& text) {
+    things.push_back({&text, seen(text, letters(text)), text.property("text").toString()});
+  });
+  const auto texts = things.size();
+  each_button(*page, [&](const QQuickItem& button) {
+    things.push_back({&button, seen(button, button.mapRectToScene(button.boundingRect())),
+                      "[" + button.objectName() + " " + button.property("text").toString() + "]"});
+  });
+  QStringList found;
+  for (std::size_t i = 0; i < things.size(); ++i)
+    for (std::size_t k = std::max(i + 1, i < texts ? 0 : texts); k < things.size(); ++k) {
+      const auto common = things[i].area.intersected(things[k].area);
+      const bool inside = things[k].item->isAncestorOf(things[i].item);
+      if (!inside && common.width() > 1.5 && common.height() > 1.5)
+        found += things[i].name + " / " + things[k].name;
+    }
+  return found;
 }
 
 bool PageInspector::reachesEdge(QQuickItem* item) const {

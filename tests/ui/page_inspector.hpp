@@ -22,6 +22,9 @@ class PageInspector : public QObject {
   /// Texts below `page` with a line break inside a word. (Breaks between Chinese or Japanese characters do
   /// not count.)
   Q_INVOKABLE QStringList brokenWords(QQuickItem* page) const;
+  /// Pairs of a text and something that it touches: another text, or a button that it is not part of. Pairs
+  /// of buttons that touch each other, too.
+  Q_INVOKABLE QStringList overlaps(QQuickItem* page) const;
   /// True if anything but the background reaches the left or the right edge of an item.
   Q_INVOKABLE bool reachesEdge(QQuickItem* item) const;
   /// Number of texts on the page that the other functions inspect.

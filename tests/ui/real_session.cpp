@@ -34,7 +34,7 @@ void RealSession::start(const QString& protocol) {
   lines_ = std::make_shared<lines::SimulatedLines>(SharedLines::count);
   setup::RunRequest request;
   request.protocol = TURNPOINT_SOURCE_DIR "/tests/ui/" + protocol.toStdString();
-  request.rig = TURNPOINT_SOURCE_DIR "/deploy/rigs/simulated.toml";
+  request.rig = TURNPOINT_SOURCE_DIR "/tests/support/thin_plate.toml";
   request.participant = "T1";
   request.database = database().toStdString();
   thread_ = std::jthread([this, request, number = sessions_] {

@@ -186,13 +186,13 @@ int shoot_operator(const QString& out, const QStringList& sizes) {
   const QTemporaryDir folder;
   const std::string source = TURNPOINT_SOURCE_DIR;
   const auto database = ui::interrupted_exhibit(folder.path().toStdString());
-  ui::OperatorController operating({source + "/protocols", source + "/deploy/rigs/simulated.toml", database});
+  ui::OperatorController operating({source + "/protocols", source + "/tests/support/thin_plate.toml", database});
   operating.select(9);
   wait_for([&] { return !operating.checking(); });
   ui::PreviewController preview(
-      {source + "/protocols/demo.toml", source + "/deploy/rigs/simulated.toml", "", {}});
+      {source + "/protocols/demo.toml", source + "/tests/support/thin_plate.toml", "", {}});
   ui::PreviewController zones(
-      {source + "/protocols/friction-2ifc.toml", source + "/deploy/rigs/simulated.toml", "", {}});
+      {source + "/protocols/friction-2ifc.toml", source + "/tests/support/thin_plate.toml", "", {}});
   wait_for([&] { return !preview.busy() && !zones.busy(); });
   const auto live = ui::live_exhibit("boundary-adaptive", 40), live2 = ui::live_exhibit("friction-2ifc", 12);
   const auto live3 = ui::live_exhibit("two-spots-oddity", 12);

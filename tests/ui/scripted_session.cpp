@@ -71,6 +71,9 @@ void ScriptedSession::take(const session::Input& input) {
     case InputKind::slider:
       inputs_ += QStringLiteral("slider %1").arg(input.number);
       break;
+    case InputKind::value:
+      inputs_ += QStringLiteral("value %1").arg(input.number);
+      break;
     case InputKind::touch_down:
       ++touches_;
       break;
@@ -102,6 +105,7 @@ void ScriptedSession::take(const session::Input& input) {
     case InputKind::notice:
     case InputKind::button:
     case InputKind::disarm:
+    case InputKind::sync:
       qFatal("the screen cannot send this input");
   }
   emit inputsChanged();

@@ -42,7 +42,7 @@ void StationRoom::open(const QString& code) {
   folder_ = std::make_unique<QTemporaryDir>();
   QDir(folder_->path()).mkdir("protocols");
   QFile::copy(TURNPOINT_SOURCE_DIR "/tests/ui/short.toml", folder_->filePath("protocols/short.toml"));
-  QFile::copy(TURNPOINT_SOURCE_DIR "/deploy/rigs/simulated.toml", folder_->filePath("rig.toml"));
+  QFile::copy(TURNPOINT_SOURCE_DIR "/tests/support/thin_plate.toml", folder_->filePath("rig.toml"));
   latency_.again();
   reopen(code);
 }
@@ -60,6 +60,11 @@ void StationRoom::entitle(const QString& title) {
 void StationRoom::reopen(const QString& code) { start(code, Begins::open); }
 
 void StationRoom::reopenLocked(const QString& code) { start(code, Begins::locked); }
+
+void StationRoom::reopenEmpty(const QString& code) {
+  QFile::remove(folder_->filePath("protocols/short.toml"));
+  reopen(code);
+}
 
 void StationRoom::start(const QString& digits, Begins begins) {
   close();

@@ -42,6 +42,8 @@ class StationRoom : public QObject {
   Q_INVOKABLE void reopen(const QString& code);
   /// Ends the program and starts it again as a locked station, in the same folder.
   Q_INVOKABLE void reopenLocked(const QString& code);
+  /// Ends the program, deletes the protocol, and starts the program again.
+  Q_INVOKABLE void reopenEmpty(const QString& code);
   Q_INVOKABLE void close();
   Q_INVOKABLE void addSecondScreen();
 

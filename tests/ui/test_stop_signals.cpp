@@ -27,7 +27,7 @@ std::vector<std::string> without_screen(const TemporaryFolder& folder) {
 }
 
 std::vector<std::string> station(const TemporaryFolder& folder) {
-  return {TURNPOINT_UI, "station", "--rig", kSource + "/deploy/rigs/simulated.toml", "--db", folder / "db"};
+  return {TURNPOINT_UI, "station", "--rig", kSource + "/tests/support/thin_plate.toml", "--db", folder / "db"};
 }
 
 struct Loop {
@@ -95,7 +95,7 @@ TEST_CASE("with its first page on the screen, the station ends cleanly on a stop
 
 TEST_CASE("a session stopped during a stimulus is closed in its log, and can be resumed", "[stop]") {
   const TemporaryFolder folder;
-  Child child({STOPPED_SESSION, kSource + "/tests/ui/short.toml", kSource + "/deploy/rigs/simulated.toml",
+  Child child({STOPPED_SESSION, kSource + "/tests/ui/short.toml", kSource + "/tests/support/thin_plate.toml",
                folder / "db"},
               without_screen(folder));
   REQUIRE(child.ends_within(kPatience_ms));

@@ -24,8 +24,8 @@ Item {
 
         function init() {
             page.known = false
+            page.clear()
             accepted.clear()
-            for (let i = 0; i < 8; ++i) tap("backspace")
         }
 
         function tap(name) {
@@ -61,9 +61,13 @@ Item {
             type("P1")
             tap("accept")
             compare(accepted.count, 0)
+            tap("mine")  // too early to have been read
+            compare(accepted.count, 0)
+            wait(400)
             tap("notMine")
             type("P2")
             tap("accept")
+            wait(400)
             tap("mine")
             compare(accepted.signalArguments[0][0], "P2")
         }

@@ -189,6 +189,62 @@ Item {
             compare(script.inputs, ["slider 100", "next"])
         }
 
+        function test_a_line_has_no_mark_and_no_done_button_until_it_is_touched() {
+            show("line")
+            untilArmed()
+            verify(!item("mark").visible)
+            const done = []
+            collect(view, "proceed", done)
+            compare(done.length, 0)
+            const line = visibleItem("line")
+            mouseClick(line, line.inset + 0.62 * (line.width - 2 * line.inset), line.height / 2)
+            verify(item("mark").visible)
+            compare(script.inputs, ["slider 62"])
+            mouseClick(line, line.width - 1, line.height / 2)
+            tap("proceed")
+            compare(script.inputs, ["slider 62", "slider 100", "value 100"])
+            show("between-trials")
+            show("line")
+            verify(!item("mark").visible)
+        }
+
+        function test_a_number_is_typed_and_confirmed_only_inside_its_range() {
+            show("number")
+            untilArmed()
+            for (const key of ["1", "2", "3", "4", ".", "5", "6"]) tap("key" + key)
+            compare(item("typed").text, "1234.5")
+            verify(!visibleItem("proceed").enabled)  // above 1000
+            for (let i = 0; i < 4; ++i) tap("key<")
+            compare(item("typed").text, "12")
+            tap("key.")
+            tap("key5")
+            tap("proceed")
+            compare(script.inputs, ["value 12.5"])
+            show("between-trials")
+            show("number-standard")
+            compare(item("typed").text, "")
+            verify(!item("key.").enabled)
+        }
+
+        function test_answers_in_several_rows_are_found_where_they_are_drawn_data() {
+            return [0, 4, 5, 8].map(index => ({ tag: "answer " + index, index: index }))
+        }
+        function test_answers_in_several_rows_are_found_where_they_are_drawn(row) {
+            show("choices-9")
+            mouseClick(visibleItem("answer" + row.index))
+            tryCompare(script, "inputs", ["answer " + row.index])
+        }
+
+        function test_the_second_tap_of_an_answer_is_no_confidence() {
+            show("confidence")
+            mouseClick(visibleItem("answer1"))
+            wait(2 * settleMs)
+            compare(script.inputs, [])
+            wait(400)
+            mouseClick(visibleItem("answer1"))
+            tryCompare(script, "inputs", ["answer 1"])
+        }
+
         function test_every_fault_page_says_what_happened_what_is_safe_and_what_to_do_data() {
             const goOn = ["touch_gone", "disk_full", "limits", "stimulus_missed"]
             return ["converter_gone", "converter_rate", "converter_saturated", "suspended", "amplifier", "enable_line",
@@ -234,18 +290,6 @@ Item {
             mouseClick(item("answer0"))
             tryCompare(script, "inputs", ["answer 0"])
             view.leftHanded = false
-        }
-
-        function test_ending_asks_for_confirmation() {
-            show("paused")
-            untilArmed()
-            tap("end")
-            compare(script.inputs, [])
-            tap("proceed")
-            compare(script.inputs, [])
-            tap("end")
-            tap("end")
-            compare(script.inputs, ["stop"])
         }
 
         function test_a_participant_can_pause_from_every_page_of_a_block_data() {

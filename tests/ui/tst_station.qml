@@ -120,7 +120,6 @@ Item {
             room.open("7391")
             tryVerify(() => operating.mayBegin, 20000)
             tap("live")
-            tap("begin")
             tryVerify(() => operating.problems.length > 0, 20000)
             verify(operating.problems[0].includes("the illustrative friction curve"), operating.problems[0])
             // the illustrative curve is allowed in a pilot session
@@ -274,8 +273,9 @@ Item {
             tap("keepNote", room.second)
             tap("liveStop", room.second)
             compare(page.kind === PageModel.End, false)
-            tap("liveStop", room.second)
+            tap("confirm", room.second)
             ends()
+            verify(says(room.second, "It can be continued"))
             compare(room.column("trials.csv", "outcome")[1], "answered")
             compare(room.column("sessions.csv", "status"), ["interrupted"])
             compare(inspector.cutTexts(room.second), [])
@@ -308,8 +308,9 @@ Item {
             tap("liveClose")
             verify(!shown("liveView"))
             tap("end")
-            tap("end")
+            tap("confirm")
             ends()
+            verify(says(room.screen, "call the experimenter"))
 
             // The pages after the last page of the session are also for the operator only.
             for (const way of ["results", "close"]) {
@@ -339,6 +340,83 @@ Item {
             // after unlocking, a session can begin as usual
             begin("T8")
             tryCompare(page, "kind", PageModel.Instructions, 20000)
+        }
+
+        function test_every_question_before_the_session_can_be_taken_back() {
+            room.open("7391")
+            tryVerify(() => operating.mayBegin, 20000)
+            tap("begin")
+            appears("languagePage")
+            tap("language1")
+            appears("codePage")
+            for (const key of "T9") tap("key" + key)
+            tap("hand")
+            tap("back")
+            appears("languagePage")
+            tap("language0")
+            appears("codePage")
+            verify(says(room.screen, "Your participant code"))
+            compare(find(room.screen, "accept").enabled, false)
+            tap("back")
+            // Leaving the first question needs the operator's code.
+            tap("back")
+            appears("gate")
+            tap("gateLeave")
+            verify(!shown("operatorPage"))
+            tap("back")
+            type("7391")
+            appears("operatorPage")
+            compare(find(room.screen, "operatorPage").Window.window.leftHanded, false)
+            verify(operating.mayBegin)
+        }
+
+        function test_a_wrong_code_is_named_until_the_next_digit() {
+            room.open("7391")
+            room.reopenLocked("7391")
+            appears("gate")
+            type("1357")
+            tryVerify(() => says(room.screen, "Wrong code. Try again."))
+            verify(says(room.screen, "Operator's code"))
+            tap("digit7")
+            verify(!says(room.screen, "Wrong code") && says(room.screen, "Operator's code"))
+        }
+
+        function test_an_empty_folder_says_what_to_do() {
+            room.open("7391")
+            room.reopenEmpty("7391")
+            appears("noProtocols")
+            verify(says(room.screen, "There are no protocols in"))
+            compare(operating.mayBegin, false)
+        }
+
+        function test_nothing_of_the_last_participant_is_shown_to_the_next_one() {
+            room.open("7391")
+            tryVerify(() => operating.mayBegin, 20000)
+            tap("language0")
+            tap("begin")
+            for (const key of "T1") tap("key" + key)
+            tap("hand")
+            tap("accept")
+            tap("pause")
+            tap("end")
+            tap("confirm")
+            ends()
+            tap("close")
+            type("7391")
+            tryVerify(() => operating.mayBegin, 20000)
+            tap("begin")
+            appears("codePage")
+            // The keypad is empty again, and the hand is the usual one.
+            compare(find(room.screen, "accept").enabled, false)
+            verify(says(room.screen, "right hand"))
+            for (const key of "T2") tap("key" + key)
+            const seen = []
+            const look = () => { seen.push(page.kind) }
+            page.changed.connect(look)
+            tap("accept")
+            tryCompare(page, "kind", PageModel.Instructions, 20000)
+            page.changed.disconnect(look)
+            compare(seen[0], PageModel.Interval)
         }
     }
 }

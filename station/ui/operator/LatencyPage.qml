@@ -84,14 +84,16 @@ Rectangle {
             objectName: "latencyLeave"
             theme: look
             primary: false
-            text: "Leave"
+            holdMs: root.controller.taps > 0 ? 900 : 0
+            text: root.controller.taps > 0 ? "Hold to leave without saving" : "Leave"
             onActivated: root.closed()
         }
         ActionButton {
             objectName: "latencyAgain"
             theme: look
             primary: false
-            text: "Start over"
+            holdMs: root.controller.taps > 0 ? 900 : 0
+            text: root.controller.taps > 0 ? "Hold to delete the taps" : "Start over"
             onActivated: root.controller.again()
         }
         ActionButton {

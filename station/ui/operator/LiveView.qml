@@ -11,11 +11,12 @@ Rectangle {
     required property real pixelsPerMm
     property bool closable: false
     property bool noting: false
-    property bool stopping: false
     property int shown: 0
+    readonly property bool tall: height > width
     /// Text size in the figures.
     readonly property real small: Math.max(0.8 * look.textSmall, 2 * pixelsPerMm)
     readonly property bool waiting: bridge.page.kind === PageModel.Paused || bridge.page.kind === PageModel.Fault
+    onOverChanged: stopping.visible = false
     readonly property bool over: bridge.page.kind === PageModel.End || bridge.page.kind === PageModel.Failed
     readonly property var notes: ["participant asked", "noise in the room", "hand moved away", "surface wiped"]
     signal closed()
@@ -47,9 +48,11 @@ Rectangle {
     Item {
         id: header
         anchors { left: parent.left; right: parent.right; top: parent.top; margins: look.margin; topMargin: frame.band + look.unit }
-        height: look.controlHeight
+        height: root.tall ? buttons.height + heading.implicitHeight + look.unit : Math.max(buttons.height, heading.height)
         PlainText {
-            anchors { left: parent.left; right: buttons.left; verticalCenter: parent.verticalCenter; rightMargin: look.unit }
+            id: heading
+            anchors { left: parent.left; top: parent.top; topMargin: root.tall ? 0 : (parent.height - height) / 2 }
+            width: root.tall ? parent.width : parent.width - buttons.width - look.unit
             // Only this page shows the word "LIVE"; the participant's pages of a live session leave it out.
             text: (root.bridge.page.runMode === "live" ? "LIVE   " : "") + (root.live.heading !== "" ? root.live.heading : "No trial yet")
             color: look.ink
@@ -58,9 +61,16 @@ Rectangle {
             wrapMode: Text.Wrap
             elide: Text.ElideRight
         }
-        Row {
+        Flow {
             id: buttons
-            anchors { right: parent.right; verticalCenter: parent.verticalCenter }
+            anchors { right: parent.right; bottom: parent.bottom }
+            width: root.tall ? parent.width : Math.min(0.8 * parent.width, row)
+            /// Width of the visible buttons in one row.
+            readonly property real row: {
+                let sum = -spacing
+                for (let i = 0; i < children.length; ++i) if (children[i].visible) sum += children[i].width + spacing
+                return sum
+            }
             spacing: look.unit
             ActionButton {
                 objectName: "livePause"
@@ -77,7 +87,8 @@ Rectangle {
                 theme: look
                 primary: false
                 enabled: root.live.held
-                text: "Repeat trial"
+                holdMs: 600
+                text: "Hold to repeat"
                 onActivated: root.live.repeat()
             }
             ActionButton {
@@ -101,12 +112,10 @@ Rectangle {
                 objectName: "liveStop"
                 visible: !root.over
                 theme: look
-                primary: root.stopping
-                text: root.stopping ? "Really stop" : "Stop"
-                onActivated: {
-                    if (root.stopping) root.live.stop()
-                    root.stopping = !root.stopping
-                }
+                primary: false
+                danger: true
+                text: "Stop …"
+                onActivated: stopping.open()
             }
             ActionButton {
                 objectName: "liveClose"
@@ -122,8 +131,9 @@ Rectangle {
 
     Column {
         id: surfaces
-        anchors { left: parent.left; right: side.left; top: header.bottom; leftMargin: look.margin; rightMargin: look.unit; topMargin: look.unit }
-        height: (root.live.surfaces.length > 1 ? 0.4 : 0.24) * (root.height - header.height - frame.band)
+        anchors { left: parent.left; top: header.bottom; leftMargin: look.margin; topMargin: look.unit }
+        width: root.tall ? root.width - 2 * look.margin : side.x - look.unit - look.margin
+        height: (root.live.surfaces.length > 1 ? 0.4 : 0.24) * (root.tall ? 0.62 : 1) * (root.height - header.height - frame.band)
         spacing: 0.4 * look.unit
         Repeater {
             model: root.live.surfaces
@@ -138,7 +148,7 @@ Rectangle {
     }
     Item {
         id: pictures
-        anchors { left: surfaces.left; right: surfaces.right; top: surfaces.bottom; bottom: parent.bottom; topMargin: 0.6 * look.unit; bottomMargin: frame.edge + look.unit }
+        anchors { left: surfaces.left; right: surfaces.right; top: surfaces.bottom; bottom: root.tall ? side.top : parent.bottom; topMargin: 0.6 * look.unit; bottomMargin: root.tall ? look.unit : frame.edge + look.unit }
         // Show three figures if there is enough room for each. Otherwise show one, with buttons to choose it.
         // The figures in the lower row need room for legends.
         readonly property real cell: 0.45 * (height - 0.6 * look.unit)
@@ -194,8 +204,9 @@ Rectangle {
     }
     Rectangle {
         id: side
-        anchors { right: parent.right; top: header.bottom; bottom: parent.bottom; rightMargin: look.margin; topMargin: look.unit; bottomMargin: frame.edge + look.unit }
-        width: 0.36 * parent.width
+        anchors { right: parent.right; bottom: parent.bottom; rightMargin: look.margin; bottomMargin: frame.edge + look.unit }
+        width: root.tall ? parent.width - 2 * look.margin : 0.36 * parent.width
+        height: (parent.height - header.y - header.height - look.unit - anchors.bottomMargin) * (root.tall ? 0.4 : 1)
         radius: look.radius
         color: look.raised
         border { color: look.line; width: 1 }
@@ -216,6 +227,19 @@ Rectangle {
                     text: "During the trial only the texts are updated; the figures follow afterwards."
                     color: look.ink
                     font.pixelSize: look.textSmall
+                    wrapMode: Text.Wrap
+                }
+                PlainText {
+                    objectName: "ended"
+                    visible: root.over
+                    width: parent.width
+                    text: root.bridge.page.kind === PageModel.Failed
+                        ? "The session had to stop: " + root.bridge.page.text + " What has been stored is safe."
+                        : root.bridge.page.resumable
+                        ? "The session was stopped. All answers are saved. It can be continued: press Resume on the start page, or run turnpoint resume."
+                        : "The session has ended. All answers are saved."
+                    color: look.ink
+                    font { pixelSize: look.textBody; weight: Font.DemiBold }
                     wrapMode: Text.Wrap
                 }
                 FactTable { width: parent.width; theme: look; heading: "Course"; facts: root.live.course }
@@ -297,5 +321,16 @@ Rectangle {
                 }
             }
         }
+    }
+    ConfirmDialog {
+        id: stopping
+        objectName: "stopping"
+        anchors.fill: parent
+        theme: look
+        title: "Stop the session?"
+        text: "No more trials run. All answers so far are saved, and the session can be continued later."
+        keepText: "Do not stop"
+        confirmText: "Stop the session"
+        onConfirmed: root.live.stop()
     }
 }

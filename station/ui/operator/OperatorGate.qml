@@ -35,15 +35,22 @@ Rectangle {
     MouseArea { anchors.fill: parent }
     Column {
         anchors.centerIn: parent
-        spacing: 1.2 * root.theme.unit
+        spacing: 0.9 * root.theme.unit
         PlainText {
             anchors.horizontalCenter: parent.horizontalCenter
-            // Shows one dot for each typed digit, so that nobody learns the length of the correct code.
-            text: root.lock.waitS > 0 ? "Wrong code. Wait " + root.lock.waitS + " s"
-                : root.lock.checking ? "…" : root.wrong ? "Wrong code"
-                : root.typed === "" ? "Operator's code" : "•".repeat(root.typed.length)
+            text: "Operator's code"
             color: root.theme.ink
-            font { pixelSize: root.theme.textTitle; weight: Font.Bold }
+            font { pixelSize: 0.8 * root.theme.textTitle; weight: Font.Bold }
+        }
+        PlainText {
+            objectName: "gateSays"
+            anchors.horizontalCenter: parent.horizontalCenter
+            // Shows one dot for each typed digit, so that nobody learns the length of the correct code.
+            text: root.lock.waitS > 0 ? "Wrong code. Wait " + root.lock.waitS + " s."
+                : root.lock.checking ? "Checking …" : root.wrong ? "Wrong code. Try again."
+                : root.typed === "" ? "Type the digits, then OK." : "•".repeat(root.typed.length)
+            color: root.wrong || root.lock.waitS > 0 ? root.theme.wrong : root.theme.ink
+            font { pixelSize: root.theme.textBody; weight: Font.DemiBold }
         }
         Grid {
             anchors.horizontalCenter: parent.horizontalCenter

@@ -10,6 +10,8 @@ Rectangle {
     required property real pixelsPerMm
     property bool typing: false
     readonly property real gap: look.unit
+    /// On a tall screen, what stands side by side on a wide one stands above each other.
+    readonly property bool tall: height > width
 
     color: look.paper
 
@@ -82,13 +84,28 @@ Rectangle {
         }
     }
 
+    Item {
+        id: body
+        anchors { left: parent.left; right: parent.right; top: interrupted.bottom; bottom: footer.top; margins: look.margin; topMargin: root.gap; bottomMargin: root.gap }
+    }
     Rectangle {
         id: list
-        anchors { left: parent.left; top: interrupted.bottom; bottom: footer.top; margins: look.margin; topMargin: root.gap; bottomMargin: root.gap }
-        width: 0.34 * parent.width
+        x: body.x
+        y: body.y
+        width: root.tall ? body.width : 0.34 * root.width
+        height: root.tall ? 0.36 * body.height : body.height
         radius: look.radius
         color: look.raised
         border { color: look.line; width: 1 }
+        PlainText {
+            objectName: "noProtocols"
+            visible: root.operating.protocols.length === 0
+            anchors { fill: parent; margins: 1.4 * look.unit }
+            text: "There are no protocols in " + root.operating.folder + ". Copy protocol files (*.toml) into this folder, or make one with turnpoint new. Then restart the station."
+            color: look.ink
+            font.pixelSize: look.textBody
+            wrapMode: Text.Wrap
+        }
         ListView {
             id: protocols
             objectName: "protocols"
@@ -119,8 +136,8 @@ Rectangle {
                     }
                     PlainText {
                         width: parent.width
-                        text: card.modelData.problem !== "" ? "cannot be used" : card.modelData.title
-                        color: card.chosen ? look.actionText : card.modelData.problem !== "" ? look.wrong : look.quiet
+                        text: card.modelData.usable ? card.modelData.title : "cannot be used"
+                        color: card.chosen ? look.actionText : card.modelData.usable ? look.quiet : look.wrong
                         font.pixelSize: look.textSmall
                         wrapMode: Text.Wrap
                         maximumLineCount: 3
@@ -138,7 +155,10 @@ Rectangle {
 
     Rectangle {
         id: summary
-        anchors { left: list.right; right: parent.right; top: list.top; bottom: list.bottom; leftMargin: root.gap; rightMargin: look.margin }
+        x: root.tall ? body.x : list.x + list.width + root.gap
+        y: root.tall ? list.y + list.height + root.gap : body.y
+        width: body.x + body.width - x
+        height: body.y + body.height - y
         radius: look.radius
         color: look.raised
         border { color: look.line; width: 1 }
@@ -250,104 +270,119 @@ Rectangle {
         size: look.textBody
     }
 
+    component Caption: PlainText {
+        height: look.controlHeight
+        color: look.quiet
+        font.pixelSize: look.textBody
+        verticalAlignment: Text.AlignVCenter
+    }
     Item {
         id: footer
         anchors { left: parent.left; right: parent.right; bottom: parent.bottom; margins: look.margin }
-        height: 2 * look.controlHeight + root.gap
+        height: choices.height
         // The software renderer does not clip symbols that scroll out of the form above, so this strip covers
         // them.
         Rectangle {
             anchors { fill: parent; topMargin: 1 - root.gap }
             color: look.paper
         }
-        Row {
-            id: first
-            anchors { left: parent.left; top: parent.top }
+        Column {
+            id: choices
+            width: parent.width
             spacing: root.gap
-            PlainText {
-                height: look.controlHeight
-                text: "Participant"
-                color: look.quiet
-                font.pixelSize: look.textBody
-                verticalAlignment: Text.AlignVCenter
-            }
-            Choice {
-                objectName: "askCode"
-                chosen: root.operating.participant === ""
-                text: "types the code"
-                onActivated: root.operating.enterParticipant("")
-            }
-            Choice {
-                objectName: "enterCode"
-                chosen: root.operating.participant !== ""
-                text: root.operating.participant === "" ? "enter it now" : root.operating.participant + (root.operating.participantKnown ? " (known)" : " (new)")
-                onActivated: root.typing = true
-            }
-        }
-        Row {
-            anchors { right: parent.right; top: parent.top }
-            spacing: root.gap
-            visible: root.operating.languages.length > 1
-            PlainText {
-                height: look.controlHeight
-                text: "Language"
-                color: look.quiet
-                font.pixelSize: look.textBody
-                verticalAlignment: Text.AlignVCenter
-            }
-            Choice {
-                objectName: "languageAsked"
-                chosen: root.operating.language < 0
-                text: "asked"
-                onActivated: root.operating.chooseLanguage(-1)
-            }
-            Repeater {
-                model: root.operating.languages
-                Choice {
-                    required property string modelData
-                    required property int index
-                    objectName: "language" + index
-                    chosen: root.operating.language === index
-                    text: modelData
-                    onActivated: root.operating.chooseLanguage(index)
+            Flow {
+                width: parent.width
+                spacing: root.gap
+                Row {
+                    spacing: root.gap
+                    rightPadding: 2 * root.gap
+                    Caption { text: "Participant" }
+                    Choice {
+                        objectName: "askCode"
+                        chosen: root.operating.participant === ""
+                        text: "types the code"
+                        onActivated: root.operating.enterParticipant("")
+                    }
+                    Choice {
+                        objectName: "enterCode"
+                        chosen: root.operating.participant !== ""
+                        text: root.operating.participant === "" ? "enter it now" : root.operating.participant + (root.operating.participantKnown ? " (known)" : " (new)")
+                        onActivated: root.typing = true
+                    }
+                }
+                Row {
+                    spacing: root.gap
+                    visible: root.operating.languages.length > 1
+                    Caption { text: "Language" }
+                    Choice {
+                        objectName: "languageAsked"
+                        chosen: root.operating.language < 0
+                        text: "asked"
+                        onActivated: root.operating.chooseLanguage(-1)
+                    }
+                    Repeater {
+                        model: root.operating.languages
+                        Choice {
+                            required property string modelData
+                            required property int index
+                            objectName: "language" + index
+                            chosen: root.operating.language === index
+                            text: modelData
+                            onActivated: root.operating.chooseLanguage(index)
+                        }
+                    }
                 }
             }
-        }
-        Row {
-            anchors { left: parent.left; bottom: parent.bottom }
-            spacing: root.gap
-            Choice {
-                objectName: "pilot"
-                chosen: !root.operating.live
-                text: "Pilot run"
-                onActivated: root.operating.setLive(false)
+            Item {
+                id: last
+                /// True if everything of the last row fits beside the button that begins.
+                readonly property bool wide: mode.implicitWidth + arm.implicitWidth + begin.width + 4 * root.gap <= width
+                width: parent.width
+                height: wide ? look.controlHeight : ready.height + root.gap + begin.height
+                Flow {
+                    id: ready
+                    width: last.wide ? parent.width - begin.width - root.gap : parent.width
+                    spacing: root.gap
+                    Row {
+                        id: mode
+                        spacing: root.gap
+                        rightPadding: root.gap
+                        Choice {
+                            objectName: "pilot"
+                            chosen: !root.operating.live
+                            text: "Pilot run"
+                            onActivated: root.operating.setLive(false)
+                        }
+                        Choice {
+                            objectName: "live"
+                            chosen: root.operating.live
+                            text: "Live: study data"
+                            onActivated: root.operating.setLive(true)
+                        }
+                    }
+                    ActionButton {
+                        id: arm
+                        objectName: "arm"
+                        theme: look
+                        primary: root.operating.armed
+                        quiet: !root.operating.armed
+                        holdMs: root.operating.armed ? 0 : 900
+                        glyph: root.operating.armed ? "tick" : ""
+                        text: root.operating.armed ? "Amplifier will be armed" : "Hold to arm the amplifier"
+                        onActivated: root.operating.setArmed(!root.operating.armed)
+                    }
+                }
+                ActionButton {
+                    id: begin
+                    objectName: "begin"
+                    anchors { right: parent.right; bottom: parent.bottom }
+                    width: Math.max(implicitWidth, 18 * look.unit)
+                    theme: look
+                    enabled: root.operating.mayBegin
+                    text: root.operating.preparing ? "Preparing …" : root.operating.live ? "Begin LIVE session" : "Begin pilot"
+                    onActivated: root.operating.begin()
+                }
             }
-            Choice {
-                objectName: "live"
-                chosen: root.operating.live
-                text: "Live: study data"
-                onActivated: root.operating.setLive(true)
-            }
-            Item { width: root.gap; height: 1 }
-            ActionButton {
-                objectName: "arm"
-                theme: look
-                primary: root.operating.armed
-                quiet: !root.operating.armed
-                holdMs: root.operating.armed ? 0 : 900
-                glyph: root.operating.armed ? "tick" : ""
-                text: root.operating.armed ? "Amplifier will be armed" : "Hold to arm the amplifier"
-                onActivated: root.operating.setArmed(!root.operating.armed)
-            }
-        }
-        ActionButton {
-            objectName: "begin"
-            anchors { right: parent.right; bottom: parent.bottom }
-            width: Math.max(implicitWidth, 18 * look.unit)
-            theme: look
-            enabled: root.operating.mayBegin
-            text: root.operating.preparing ? "Preparing …" : root.operating.live ? "Begin LIVE session" : "Begin pilot"
-            onActivated: root.operating.begin()
         }
     }
 
@@ -363,6 +398,9 @@ Rectangle {
             theme: largeTheme
             texts: texts
             confirms: false
+            title: "Code of the participant"
+            help: "Type the participant's code, or choose a known one below. No names."
+            onBack: root.typing = false
             onAccepted: code => {
                 root.operating.enterParticipant(code)
                 root.typing = false

@@ -9,6 +9,8 @@ Rectangle {
     required property real pixelsPerMm
     property string runMode
     property int shown: 0
+    /// On a tall screen, the numbers stand below the figure.
+    readonly property bool tall: height > width
     signal closed()
 
     color: look.paper
@@ -48,9 +50,14 @@ Rectangle {
             onActivated: root.closed()
         }
     }
-    Row {
+    Item {
+        id: body
+        anchors { left: parent.left; right: parent.right; top: header.bottom; bottom: parent.bottom; margins: look.margin; topMargin: look.unit; bottomMargin: frame.edge + look.unit }
+    }
+    Flow {
         id: tabs
-        anchors { left: parent.left; top: header.bottom; leftMargin: look.margin; topMargin: look.unit }
+        anchors { left: body.left; top: body.top }
+        width: figure.width
         spacing: 0.6 * look.unit
         Repeater {
             model: root.report.pictureNames
@@ -68,15 +75,18 @@ Rectangle {
         }
     }
     FigureView {
+        id: figure
         objectName: "picture"
-        anchors { left: parent.left; right: side.left; top: tabs.bottom; bottom: parent.bottom; leftMargin: look.margin; rightMargin: look.unit; topMargin: look.unit; bottomMargin: frame.edge + look.unit }
+        anchors { left: body.left; top: tabs.bottom; topMargin: look.unit }
+        width: root.tall ? body.width : 0.6 * body.width - look.unit
+        height: (root.tall ? 0.55 : 1) * body.height - tabs.height - look.unit
         textPixels: Math.max(0.85 * look.textSmall, 2 * root.pixelsPerMm)
         picture: root.report.pictures[Math.min(root.shown, root.report.pictures.length - 1)] ?? ""
     }
     Rectangle {
         id: side
-        anchors { right: parent.right; top: header.bottom; bottom: parent.bottom; rightMargin: look.margin; topMargin: look.unit; bottomMargin: frame.edge + look.unit }
-        width: 0.4 * parent.width
+        anchors { right: body.right; top: root.tall ? figure.bottom : body.top; topMargin: root.tall ? look.unit : 0; bottom: body.bottom }
+        width: root.tall ? body.width : 0.4 * body.width
         radius: look.radius
         color: look.raised
         border { color: look.line; width: 1 }

@@ -33,7 +33,12 @@ OperatorController::OperatorController(setup::StationRequest request, QObject* p
     : OperatorController(
           std::move(request),
           [](const std::string& protocol, const std::string& rig, const std::stop_token& stop) {
-            return simulation::check(protocol, rig, {kSessions}, stop);
+            simulation::CheckOptions options{kSessions};
+            options.load_rig = [](const std::string& path) {
+              std::ostringstream messages;  // the page says elsewhere which calibration is used
+              return setup::calibrated_rig(path, "", messages);
+            };
+            return simulation::check(protocol, rig, options, stop);
           },
           parent) {}
 
@@ -116,8 +121,9 @@ void OperatorController::select(int index) {
   language_ = -1;
   words_ = {};
   refused_.clear();
+  not_live_.clear();
   worker_.abandon();
-  if (!entry()->problem.empty()) return fail({entry()->problem});
+  if (!entry()->problems.empty()) return fail(entry()->problems);
   checking_ = true;
   emit changed();
   check_selected();
@@ -132,9 +138,38 @@ void OperatorController::check_selected() {
           words_ = words;
           checking_ = false;
           emit changed();
+          if (live_) check_live();
         };
       },
       &OperatorController::fail);
+}
+
+setup::RunRequest OperatorController::request_for(const char* mode) const {
+  setup::RunRequest request;
+  request.protocol = entry()->path;
+  request.rig = request_.rig;
+  request.database = request_.database;
+  request.participant = kCodeToCome;
+  request.mode = mode;
+  return request;
+}
+
+/// Checks whether a live session of the chosen protocol is possible on this rig.
+void OperatorController::check_live() {
+  if (!may_begin()) return;
+  preparing_ = true;
+  emit changed();
+  work(
+      [this, request = request_for("live")](const std::stop_token& stop) -> Then {
+        return [this, reasons = setup::live_problems(request, stop)] { refuse_live(reasons); };
+      },
+      &OperatorController::refuse_live);
+}
+
+void OperatorController::refuse_live(std::vector<std::string> reasons) {
+  for (auto& reason : reasons) reason.insert(0, "Live is not possible: ");
+  not_live_ = std::move(reasons);
+  stay();
 }
 
 void OperatorController::chooseLanguage(int index) {
@@ -151,9 +186,12 @@ void OperatorController::enterParticipant(const QString& code) {
 }
 
 void OperatorController::setLive(bool live) {
+  if (preparing_) return;
   live_ = live;
   refused_.clear();
+  not_live_.clear();
   emit changed();
+  if (live_) check_live();
 }
 
 void OperatorController::setArmed(bool armed) {
@@ -162,19 +200,15 @@ void OperatorController::setArmed(bool armed) {
 }
 
 bool OperatorController::may_begin() const {
-  return entry() != nullptr && !checking_ && !preparing_ && words_.problems.empty();
+  return entry() != nullptr && !checking_ && !preparing_ && words_.problems.empty() && not_live_.empty();
 }
 
 void OperatorController::begin() {
   if (!may_begin()) return;
-  setup::RunRequest request;
-  request.protocol = entry()->path;
-  request.rig = request_.rig;
-  request.database = request_.database;
-  request.mode = live_ ? "live" : "pilot";
+  auto request = request_for(live_ ? "live" : "pilot");
   const bool ask_code = participant_.isEmpty();
   const bool ask_language = language_ < 0 && languages().size() > 1;
-  request.participant = ask_code ? kCodeToCome : participant_.toStdString();
+  if (!ask_code) request.participant = participant_.toStdString();
   if (language_ >= 0) request.language = languages()[language_].toStdString();
   preparing_ = true;
   refused_.clear();
@@ -219,13 +253,15 @@ QVariantList OperatorController::protocols() const {
     const auto file = QFileInfo(QString::fromStdString(entry.path)).fileName();
     list += QVariantMap{{"id", entry.id.empty() ? file : QString::fromStdString(entry.id)},
                         {"title", QString::fromStdString(entry.title)},
-                        {"problem", QString::fromStdString(entry.problem)}};
+                        {"usable", entry.problems.empty()}};
   }
   return list;
 }
 
 QVariantList OperatorController::facts() const { return to_list(words_.facts); }
-QStringList OperatorController::problems() const { return to_list(words_.problems) + to_list(refused_); }
+QStringList OperatorController::problems() const {
+  return to_list(words_.problems) + to_list(not_live_) + to_list(refused_);
+}
 QStringList OperatorController::warnings() const { return to_list(words_.warnings); }
 
 QVariantList OperatorController::cues() const {

@@ -11,6 +11,7 @@
 
 #include "station/desk/choices.hpp"
 #include "station/session/session.hpp"
+#include "station/setup/prepare.hpp"
 #include "station/setup/station_request.hpp"
 #include "station/simulation/check.hpp"
 #include "station/ui/platform/newest_job.hpp"
@@ -32,7 +33,7 @@ class OperatorController : public QObject {
   Q_OBJECT
   QML_ELEMENT
   QML_UNCREATABLE("made by the program")
-  Q_PROPERTY(QVariantList protocols READ protocols NOTIFY changed)  ///< protocols as {id, title, problem}
+  Q_PROPERTY(QVariantList protocols READ protocols NOTIFY changed)  ///< protocols as {id, title, usable}
   Q_PROPERTY(int selected READ selected NOTIFY changed)
   Q_PROPERTY(bool checking READ checking NOTIFY changed)
   Q_PROPERTY(QVariantList facts READ facts NOTIFY changed)
@@ -55,6 +56,7 @@ class OperatorController : public QObject {
   Q_PROPERTY(bool mayBegin READ may_begin NOTIFY changed)
   Q_PROPERTY(bool preparing READ preparing NOTIFY changed)
   Q_PROPERTY(QString rig READ rig CONSTANT)
+  Q_PROPERTY(QString folder READ folder CONSTANT)  ///< folder of the protocols
   Q_PROPERTY(QString database READ database CONSTANT)
 
  public:
@@ -85,6 +87,7 @@ class OperatorController : public QObject {
   bool may_begin() const;
   bool preparing() const { return preparing_; }
   QString rig() const { return QString::fromStdString(request_.rig); }
+  QString folder() const { return QString::fromStdString(request_.protocols); }
   QString database() const { return QString::fromStdString(request_.database); }
 
   /// Reads protocols, participants and interrupted sessions again: at the start and after each session.
@@ -92,6 +95,7 @@ class OperatorController : public QObject {
   Q_INVOKABLE void select(int index);
   Q_INVOKABLE void chooseLanguage(int index);
   Q_INVOKABLE void enterParticipant(const QString& code);
+  /// Choosing a live session checks at once whether it is possible.
   Q_INVOKABLE void setLive(bool live);
   Q_INVOKABLE void setArmed(bool armed);
   /// Prepares the chosen session. Then emits chosen(), or sets problems.
@@ -104,9 +108,12 @@ class OperatorController : public QObject {
 
  private:
   using Then = std::function<void()>;
+  setup::RunRequest request_for(const char* mode) const;
   void work(std::function<Then(const std::stop_token&)> job,
             void (OperatorController::*failed)(std::vector<std::string>));
   void check_selected();
+  void check_live();
+  void refuse_live(std::vector<std::string> reasons);
   void look_at_backup();
   void stay();
   void fail(std::vector<std::string> problems);
@@ -121,7 +128,8 @@ class OperatorController : public QObject {
   desk::BackupNote backup_;
   QTimer minutes_;  ///< updates the ages shown on the page, which may be open for days
   desk::CheckWords words_;
-  std::vector<std::string> refused_;  ///< why the last chosen session did not begin
+  std::vector<std::string> refused_;   ///< why the last chosen session did not begin
+  std::vector<std::string> not_live_;  ///< why the chosen protocol cannot run live
   int selected_ = -1, language_ = -1;
   QString participant_;
   bool live_ = false, armed_ = false, checking_ = false, preparing_ = false;

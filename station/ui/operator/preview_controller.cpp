@@ -1,16 +1,28 @@
 #include "station/ui/operator/preview_controller.hpp"
 
 #include <algorithm>
+#include <sstream>
 #include <utility>
 
 #include "station/desk/scene_figures.hpp"
+#include "station/setup/prepare.hpp"
 #include "station/terms/usage_error.hpp"
 #include "station/ui/operator/facts.hpp"
 
 namespace turnpoint::ui {
+namespace {
+
+rig::Rig rig_of(const std::string& path) {
+  std::ostringstream messages;
+  return setup::calibrated_rig(path, "", messages);
+}
+
+}  // namespace
 
 PreviewController::PreviewController(const desk::PreviewRequest& request, QObject* parent)
-    : QObject(parent), preview_(request.protocol, request.rig), scenes_(preview_.scenes()) {
+    : QObject(parent),
+      preview_(protocol::load(request.protocol), rig_of(request.rig)),
+      scenes_(preview_.scenes()) {
   std::vector<std::string> assumed;
   factors_ = desk::factors_for(preview_.protocol(), request.set, assumed);
   if (!request.scene.empty()) {

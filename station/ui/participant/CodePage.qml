@@ -13,6 +13,10 @@ Item {
     property bool confirms: true
     /// True if the participant may choose which hand taps. This changes the layout, but not the scoring.
     property bool asksHand: false
+    property bool armed: true
+    property string title: texts.codeTitle
+    property string help: texts.codeHelp
+    signal back()
     signal handChosen(left: bool)
     signal edited(code: string)
     signal accepted(code: string)
@@ -26,10 +30,12 @@ Item {
         if (!code.valid) return
         if (root.confirms && root.known && !question.visible) {
             question.visible = true
+            asking.restart()
             return
         }
-        question.visible = false
-        root.accepted(code.text)
+        const typed = code.text
+        clear()
+        root.accepted(typed)
     }
 
     ParticipantCode {
@@ -37,18 +43,35 @@ Item {
         onChanged: root.edited(text)
     }
 
+    /// Forgets what was typed, because somebody else may type next.
+    function clear() {
+        code.clear()
+        question.visible = false
+    }
+
+    BackButton {
+        id: back
+        theme: root.theme
+        texts: root.texts
+        armed: root.armed
+        onActivated: {
+            root.clear()
+            root.back()
+        }
+    }
     PlainText {
-        id: title
-        anchors { left: parent.left; right: parent.right; top: parent.top }
-        text: root.texts.codeTitle
+        id: heading
+        anchors { left: back.right; leftMargin: root.theme.unit; right: parent.right; rightMargin: back.width + root.theme.unit; top: parent.top }
+        text: root.title
         color: root.theme.ink
         font { pixelSize: 0.85 * root.theme.textTitle; weight: Font.Bold }
+        fontSizeMode: Text.HorizontalFit
         horizontalAlignment: Text.AlignHCenter
     }
     PlainText {
         id: help
-        anchors { left: parent.left; right: parent.right; top: title.bottom; topMargin: 0.4 * root.theme.unit }
-        text: root.texts.codeHelp
+        anchors { left: heading.left; right: heading.right; top: heading.bottom; topMargin: 0.4 * root.theme.unit }
+        text: root.help
         color: root.theme.quiet
         font.pixelSize: root.theme.textSmall
         horizontalAlignment: Text.AlignHCenter
@@ -100,6 +123,7 @@ Item {
         property string label
         property string glyph
         property bool strong: false
+        readonly property bool armed: root.armed
         signal tapped()
         readonly property bool filled: strong !== touch.pressed
         width: root.keyWidth
@@ -124,6 +148,7 @@ Item {
         MouseArea {
             id: touch
             anchors.fill: parent
+            enabled: key.armed
             onClicked: key.tapped()
         }
     }
@@ -173,6 +198,10 @@ Item {
         id: question
         visible: false
         anchors { left: parent.left; right: parent.right; top: cells.bottom; bottom: parent.bottom }
+        Timer {
+            id: asking
+            interval: 350
+        }
         PlainText {
             anchors { left: parent.left; right: parent.right; verticalCenter: parent.verticalCenter; verticalCenterOffset: -5 * root.theme.unit }
             text: root.texts.codeKnown
@@ -187,16 +216,15 @@ Item {
             ActionButton {
                 objectName: "notMine"
                 theme: root.theme
+                armed: !asking.running
                 primary: false
                 text: root.texts.codeNo
-                onActivated: {
-                    code.clear()
-                    question.visible = false
-                }
+                onActivated: root.clear()
             }
             ActionButton {
                 objectName: "mine"
                 theme: root.theme
+                armed: !asking.running
                 text: root.texts.codeYes
                 onActivated: root.accept()
             }

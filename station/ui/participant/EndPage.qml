@@ -12,15 +12,15 @@ Item {
     readonly property PageModel page: bridge.page
     readonly property bool hasNumbers: page.summaryLabels.length > 0
     property bool hasReport: false
+    property bool armed: true
     /// True while the numbers are shown, which requires the operator's code.
     property bool counting: false
     signal closed()
     signal reportWanted()
 
-    Column {
-        id: thanks
-        anchors { left: parent.left; right: parent.right; top: parent.top }
-        topPadding: Math.max(0, (buttons.y - 24 * root.theme.unit) / 2)
+    FittedColumn {
+        theme: root.theme
+        anchors { left: parent.left; right: parent.right; top: parent.top; bottom: buttons.top; bottomMargin: root.theme.unit }
         spacing: 1.2 * root.theme.unit
         Glyph {
             anchors.horizontalCenter: parent.horizontalCenter
@@ -38,7 +38,8 @@ Item {
         }
         PlainText {
             width: parent.width
-            text: root.page.text !== "" ? root.texts.phrased(root.page.text) : root.texts.thanksText
+            text: root.page.text !== "" ? root.texts.phrased(root.page.text)
+                : root.page.resumable ? root.texts.stoppedText : root.texts.thanksText
             color: root.theme.quiet
             font.pixelSize: root.theme.textBody
             horizontalAlignment: Text.AlignHCenter
@@ -52,6 +53,7 @@ Item {
         ActionButton {
             objectName: "results"
             theme: root.theme
+            armed: root.armed
             primary: false
             quiet: true
             visible: root.hasReport || root.hasNumbers
@@ -61,6 +63,7 @@ Item {
         ActionButton {
             objectName: "close"
             theme: root.theme
+            armed: root.armed
             primary: false
             text: root.texts.close
             onActivated: root.closed()

@@ -5,14 +5,23 @@ import Turnpoint
 Item {
     id: root
     required property Theme theme
+    required property Texts texts
     required property var names
+    property bool armed: true
     signal chosen(index: int)
+    signal back()
 
     readonly property int columns: names.length > 3 ? 2 : 1
     readonly property int rows: Math.ceil(names.length / columns)
     readonly property real gap: theme.targetGap * 0.7
     readonly property real cell: Math.min(10 * theme.unit, (height - sign.height - (rows + 1) * gap) / rows)
 
+    BackButton {
+        theme: root.theme
+        texts: root.texts
+        armed: root.armed
+        onActivated: root.back()
+    }
     Row {
         id: sign
         anchors { horizontalCenter: parent.horizontalCenter; top: parent.top; topMargin: root.theme.unit }
@@ -40,6 +49,7 @@ Item {
                 width: root.columns === 1 ? 44 * root.theme.unit : 35 * root.theme.unit
                 height: root.cell
                 theme: root.theme
+                armed: root.armed
                 size: root.theme.textTitle
                 text: modelData
                 onActivated: root.chosen(index)

@@ -2,7 +2,7 @@ import QtQuick
 import Turnpoint
 
 // Page for a fault or a pause: what happened, what is safe, what to do next. If the amplifier has to be armed
-// first, only an operator can continue. Ending the session requires a confirmation.
+// first, only an operator can continue. Ending the session opens a dialog.
 Item {
     id: root
     required property Theme theme
@@ -10,7 +10,6 @@ Item {
     required property SessionBridge bridge
     property bool armed: true
     property bool armable: false
-    property bool asking: false
     readonly property PageModel page: bridge.page
     readonly property bool failed: page.kind === PageModel.Failed
     readonly property bool fault: page.kind === PageModel.Fault || failed
@@ -18,7 +17,11 @@ Item {
     signal closed()
     signal armingWanted()
 
-    onVisibleChanged: asking = false
+    onVisibleChanged: ending.visible = false
+    Connections {
+        target: root.page
+        function onChanged() { ending.visible = false }
+    }
 
     Row {
         id: banner
@@ -35,15 +38,15 @@ Item {
         PlainText {
             objectName: "headline"
             anchors.verticalCenter: parent.verticalCenter
-            text: root.asking ? root.texts.reallyEnd : root.page.title !== "" ? root.texts.phrased(root.page.title) : root.texts.faultTitle
+            text: root.page.title !== "" ? root.texts.phrased(root.page.title) : root.texts.faultTitle
             color: root.theme.ink
             font { pixelSize: 0.8 * root.theme.textTitle; weight: Font.Bold }
         }
     }
-    Column {
-        id: head
+    FittedColumn {
+        theme: root.theme
         visible: !root.explained
-        anchors { left: parent.left; right: parent.right; top: parent.top; topMargin: root.theme.unit }
+        anchors { left: parent.left; right: parent.right; top: parent.top; bottom: buttons.top; bottomMargin: root.theme.unit }
         spacing: 1.6 * root.theme.unit
         Glyph {
             anchors.horizontalCenter: parent.horizontalCenter
@@ -54,7 +57,7 @@ Item {
         }
         PlainText {
             width: parent.width
-            text: root.asking ? root.texts.reallyEnd : root.page.title !== "" ? root.texts.phrased(root.page.title)
+            text: root.page.title !== "" ? root.texts.phrased(root.page.title)
                 : root.failed ? root.texts.failedTitle : root.fault ? root.texts.faultTitle : root.texts.paused
             color: root.theme.ink
             font { pixelSize: 0.85 * root.theme.textTitle; weight: Font.Bold }
@@ -173,17 +176,14 @@ Item {
             objectName: "end"
             visible: !root.failed
             theme: root.theme
-            primary: root.asking
+            primary: false
             armed: root.armed
             text: root.texts.endSession
-            onActivated: {
-                if (root.asking) root.bridge.stop()
-                root.asking = !root.asking
-            }
+            onActivated: ending.open()
         }
         ActionButton {
             objectName: "operatorArms"
-            visible: root.page.awaitsArming && !root.asking && !root.armable
+            visible: root.page.awaitsArming && !root.armable
             theme: root.theme
             armed: root.armed
             text: root.texts.forOperator
@@ -191,7 +191,7 @@ Item {
         }
         ActionButton {
             objectName: "holdToArm"
-            visible: root.page.awaitsArming && !root.asking && root.armable
+            visible: root.page.awaitsArming && root.armable
             theme: root.theme
             holdMs: 900
             text: root.texts.holdToArm
@@ -199,17 +199,22 @@ Item {
         }
         ActionButton {
             objectName: "proceed"
-            visible: !root.page.awaitsArming || root.asking
+            visible: !root.page.awaitsArming
             theme: root.theme
             width: Math.max(implicitWidth, 22 * root.theme.unit)
-            primary: !root.asking
             armed: root.armed
-            text: root.failed ? root.texts.close : root.asking ? root.texts.keepGoing : root.texts.proceed
-            onActivated: {
-                if (root.failed) return root.closed()
-                if (!root.asking) root.bridge.next()
-                root.asking = false
-            }
+            text: root.failed ? root.texts.close : root.texts.proceed
+            onActivated: root.failed ? root.closed() : root.bridge.next()
         }
+    }
+    ConfirmDialog {
+        id: ending
+        anchors.fill: parent
+        theme: root.theme
+        title: root.texts.reallyEnd
+        text: root.page.unsaved ? root.texts.endUnsaved : root.texts.endText
+        keepText: root.texts.keepGoing
+        confirmText: root.texts.endSession
+        onConfirmed: root.bridge.stop()
     }
 }

@@ -26,7 +26,9 @@ Rectangle {
     readonly property bool inTrial: kind === PageModel.Cue || kind === PageModel.Stimulus || kind === PageModel.Pause
                                     || kind === PageModel.Response || kind === PageModel.Feedback
                                     || kind === PageModel.Interval
-    readonly property bool mayPause: inTrial || kind === PageModel.Adjust || kind === PageModel.Instructions
+                                    || kind === PageModel.Confidence
+    readonly property bool enters: kind === PageModel.Line || kind === PageModel.Number
+    readonly property bool mayPause: inTrial || enters || kind === PageModel.Adjust || kind === PageModel.Instructions
                                      || kind === PageModel.Rest
 
     color: theme.paper
@@ -47,10 +49,10 @@ Rectangle {
         interval: 350
         running: true
     }
-    onKindChanged: {
-        arming.restart()
-        armable = false
-    }
+    /// Changes with everything that makes a page another one for the participant.
+    readonly property string topic: kind + "\n" + page.title + "\n" + page.text + "\n" + page.safe
+    onTopicChanged: arming.restart()
+    onKindChanged: armable = false
 
     RunModeFrame {
         id: frame
@@ -69,8 +71,9 @@ Rectangle {
         height: root.mayPause ? Math.max(pause.height, badge.height) : 0
         InstructionBadge {
             id: badge
-            anchors { verticalCenter: parent.verticalCenter; left: root.leftHanded ? undefined : parent.left; right: root.leftHanded ? parent.right : undefined }
-            visible: instruction !== "" && root.inTrial
+            anchors.verticalCenter: parent.verticalCenter
+            x: root.leftHanded ? parent.width - width : 0
+            visible: instruction !== "" && (root.inTrial || root.enters)
             theme: theme
             texts: texts
             instruction: root.page.instruction
@@ -80,7 +83,8 @@ Rectangle {
             id: pause
             objectName: "pause"
             visible: root.mayPause
-            anchors { verticalCenter: parent.verticalCenter; left: root.leftHanded ? parent.left : undefined; right: root.leftHanded ? undefined : parent.right }
+            anchors.verticalCenter: parent.verticalCenter
+            x: root.leftHanded ? 0 : parent.width - width
             implicitHeight: Math.max(9 * theme.pixelsPerMm, 5 * theme.unit)
             theme: theme
             primary: false
@@ -88,6 +92,7 @@ Rectangle {
             size: theme.textSmall
             glyph: "bars"
             text: texts.pause
+            atOnce: true
             onActivated: root.bridge.pause()
         }
     }
@@ -132,6 +137,22 @@ Rectangle {
             leftHanded: root.leftHanded
             armed: !arming.running
         }
+        LinePage {
+            anchors.fill: parent
+            visible: root.kind === PageModel.Line
+            theme: theme
+            texts: texts
+            bridge: root.bridge
+            armed: !arming.running
+        }
+        NumberPage {
+            anchors.fill: parent
+            visible: root.kind === PageModel.Number
+            theme: theme
+            texts: texts
+            bridge: root.bridge
+            armed: !arming.running
+        }
         NoticePage {
             anchors.fill: parent
             visible: root.kind === PageModel.Fault || root.kind === PageModel.Paused || root.kind === PageModel.Failed
@@ -151,6 +172,7 @@ Rectangle {
             texts: texts
             bridge: root.bridge
             hasReport: root.hasReport
+            armed: !arming.running
             onClosed: root.closed()
             onReportWanted: root.reportWanted()
         }

@@ -26,10 +26,10 @@ Item {
         onTriggered: --root.secondsLeft
     }
 
-    Column {
-        anchors { left: parent.left; right: parent.right; bottom: go.top; top: parent.top }
+    FittedColumn {
+        theme: root.theme
+        anchors { left: parent.left; right: parent.right; bottom: go.top; top: parent.top; bottomMargin: root.theme.unit }
         spacing: 1.5 * root.theme.unit
-        topPadding: Math.max(0, (height - 24 * root.theme.unit) / 2)
         PlainText {
             width: parent.width
             text: root.page.title !== "" ? root.texts.phrased(root.page.title) : root.texts.breakTitle

@@ -17,11 +17,19 @@ Item {
     readonly property bool asks: page.answersOpen && page.answers.length > 0
     readonly property bool counted: page.intervals > 1
 
+    // A second tap of the answer must not become the confidence.
+    readonly property bool confides: page.kind === PageModel.Confidence
+    onConfidesChanged: if (confides) second.restart()
+    Timer {
+        id: second
+        interval: 350
+    }
+
     SurfaceDrawing {
         id: surface
-        visible: !root.counted && (root.cue || root.stimulus || root.page.kind === PageModel.Response)
+        visible: !root.counted && height > 12 * root.theme.unit && (root.cue || root.stimulus || root.page.kind === PageModel.Response)
         anchors { left: parent.left; right: parent.right; top: parent.top }
-        height: 0.46 * parent.height
+        height: Math.max(0, Math.min(0.46 * parent.height, parent.height - answers.height - 10 * root.theme.unit))
         lengthMm: root.page.lengthMm
         wideHalfWidthMm: root.page.wideHalfWidthMm
         narrowHalfWidthMm: root.page.narrowHalfWidthMm
@@ -37,7 +45,7 @@ Item {
 
     // One dot for each interval; the dot of the current interval is filled.
     Row {
-        visible: root.counted && !root.feedback && root.page.kind !== PageModel.Interval
+        visible: root.counted && !root.confides && !root.feedback && root.page.kind !== PageModel.Interval
         anchors { horizontalCenter: parent.horizontalCenter; verticalCenter: surface.verticalCenter }
         spacing: root.theme.targetGap
         Repeater {
@@ -81,9 +89,10 @@ Item {
         id: answers
         visible: root.asks
         anchors { left: parent.left; right: parent.right; bottom: parent.bottom }
-        height: Math.max(root.theme.targetMin, 0.36 * parent.height)
+        height: Math.max(leastHeight, 0.36 * parent.height)
         theme: root.theme
         answers: root.page.answers
+        captions: root.page.captions
         pressed: field.pressed
     }
 
@@ -103,8 +112,9 @@ Item {
         bridge: root.bridge
         row: answers
         count: root.page.answers.length
+        columns: answers.columns
         gap: answers.gap
         pixelsPerMm: root.theme.pixelsPerMm
-        open: root.visible && root.asks
+        open: root.visible && root.asks && !second.running
     }
 }

@@ -20,6 +20,12 @@ PageModel::Kind PageModel::kind() const {
       return Kind::Pause;
     case PageKind::response:
       return Kind::Response;
+    case PageKind::confidence:
+      return Kind::Confidence;
+    case PageKind::line:
+      return Kind::Line;
+    case PageKind::number:
+      return Kind::Number;
     case PageKind::feedback:
       return Kind::Feedback;
     case PageKind::interval:
@@ -49,6 +55,18 @@ QStringList PageModel::answers() const {
   QStringList labels;
   for (const auto& answer : page_.answers) labels += QString::fromStdString(answer.label);
   return labels;
+}
+
+QStringList PageModel::captions() const {
+  QStringList captions;
+  for (const auto& answer : page_.answers) captions += QString::fromStdString(answer.caption);
+  return captions;
+}
+
+QStringList PageModel::anchor_texts() const {
+  QStringList texts;
+  for (const auto& text : page_.value.texts) texts += QString::fromStdString(text);
+  return texts;
 }
 
 QStringList PageModel::summary_labels() const {

@@ -20,6 +20,13 @@ class PageModel : public QObject {
   Q_PROPERTY(QString title READ title NOTIFY changed)
   Q_PROPERTY(QString text READ text NOTIFY changed)
   Q_PROPERTY(QStringList answers READ answers NOTIFY changed)
+  Q_PROPERTY(QStringList captions READ captions NOTIFY changed)
+  Q_PROPERTY(double valueLow READ value_low NOTIFY changed)
+  Q_PROPERTY(double valueHigh READ value_high NOTIFY changed)
+  Q_PROPERTY(int valueDecimals READ value_decimals NOTIFY changed)
+  Q_PROPERTY(QList<double> anchorPlaces READ anchor_places NOTIFY changed)
+  Q_PROPERTY(QStringList anchorTexts READ anchor_texts NOTIFY changed)
+  Q_PROPERTY(QString first READ first NOTIFY changed)
   Q_PROPERTY(bool answersOpen READ answers_open NOTIFY changed)
   Q_PROPERTY(Verdict verdict READ verdict NOTIFY changed)
   Q_PROPERTY(QString instruction READ instruction NOTIFY changed)
@@ -44,6 +51,8 @@ class PageModel : public QObject {
   Q_PROPERTY(QString toDo READ to_do NOTIFY changed)
   Q_PROPERTY(QString detail READ detail NOTIFY changed)
   Q_PROPERTY(bool awaitsArming READ awaits_arming NOTIFY changed)
+  Q_PROPERTY(bool resumable READ resumable NOTIFY changed)
+  Q_PROPERTY(bool unsaved READ unsaved NOTIFY changed)
   Q_PROPERTY(QStringList summaryLabels READ summary_labels NOTIFY changed)
   Q_PROPERTY(QStringList summaryValues READ summary_values NOTIFY changed)
 
@@ -55,6 +64,9 @@ class PageModel : public QObject {
     Stimulus,
     Pause,
     Response,
+    Confidence,
+    Line,
+    Number,
     Feedback,
     Interval,
     Rest,
@@ -77,6 +89,13 @@ class PageModel : public QObject {
   QString title() const { return QString::fromStdString(page_.title); }
   QString text() const { return QString::fromStdString(page_.text); }
   QStringList answers() const;
+  QStringList captions() const;
+  double value_low() const { return page_.value.low; }
+  double value_high() const { return page_.value.high; }
+  int value_decimals() const { return page_.value.decimals; }
+  QList<double> anchor_places() const { return {page_.value.places.begin(), page_.value.places.end()}; }
+  QStringList anchor_texts() const;
+  QString first() const { return QString::fromStdString(page_.value.first); }
   bool answers_open() const { return page_.answers_open; }
   Verdict verdict() const;
   QString instruction() const { return QString::fromStdString(page_.instruction); }
@@ -102,6 +121,11 @@ class PageModel : public QObject {
   QString detail() const { return QString::fromStdString(page_.detail); }
   /// True if only an operator who arms the amplifier can continue from this page.
   bool awaits_arming() const { return page_.amplifier == "disarmed" || page_.amplifier == "faulted"; }
+  bool resumable() const { return page_.resumable; }
+  /// True while the last answer is kept in memory only, because the disk is full.
+  bool unsaved() const {
+    return page_.kind == session::PageKind::fault && page_.fault == session::FaultKind::disk_full;
+  }
   QStringList summary_labels() const;
   QStringList summary_values() const;
 

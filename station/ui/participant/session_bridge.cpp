@@ -21,6 +21,7 @@ void SessionBridge::show(const session::Page& page) {
   QMetaObject::invokeMethod(
       this,
       [this, page] {
+        left_ = false;
         page_.set(page);
         emit shown();
       },
@@ -74,8 +75,11 @@ void SessionBridge::push_touch(session::InputKind kind, int value, const Pending
   sink_(std::move(input));
 }
 
-void SessionBridge::next() { push(session::InputKind::next); }
+void SessionBridge::next() {
+  if (!std::exchange(left_, true)) push(session::InputKind::next);
+}
 void SessionBridge::moveSlider(double value) { push(session::InputKind::slider, 0, value); }
+void SessionBridge::answerValue(double value) { push(session::InputKind::value, 0, value); }
 void SessionBridge::pause() { push(session::InputKind::pause); }
 void SessionBridge::stop() { push(session::InputKind::stop); }
 

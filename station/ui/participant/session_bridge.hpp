@@ -61,8 +61,10 @@ class SessionBridge : public QObject, public session::Display {
   /// `index`.
   void answer(int index, std::int64_t time_ns);
 
+  /// Reports Continue or Done. Only the first press on a page counts.
   Q_INVOKABLE void next();
   Q_INVOKABLE void moveSlider(double value);
+  Q_INVOKABLE void answerValue(double value);
   Q_INVOKABLE void pause();
   Q_INVOKABLE void stop();
   /// For the operator: repeat() makes the current trial void and presents it again, arm() arms the amplifier,
@@ -97,6 +99,7 @@ class SessionBridge : public QObject, public session::Display {
   Sink sink_;
   KernelTime kernel_time_;
   PageModel page_;
+  bool left_ = false;  ///< somebody has pressed Continue or Done on this page
   std::vector<Pending> pending_;
   QTimer flush_;
 };

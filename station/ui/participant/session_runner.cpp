@@ -62,6 +62,11 @@ void SessionRunner::begin(session::Setup setup) {
   over_ = false;
   report_.clear();
   open_touch();
+  // Until the session shows its first page, nothing of an earlier session may be on the screen.
+  session::Page empty;
+  empty.language = setup_.language;
+  empty.run_mode = store::name(setup_.run_mode);
+  bridge_.show(empty);
   view_ = std::make_unique<desk::LiveView>(setup_.protocol, setup_.rig,
                                            [this](desk::LiveState state) { live_.take(std::move(state)); });
   inputs_.page_alive(system::monotonic_ns());

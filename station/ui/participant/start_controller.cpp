@@ -18,6 +18,7 @@ void StartController::ask(Questions questions) {
   if (questions_.language.isEmpty() && questions_.languages.size() == 1)
     questions_.language = questions_.languages.front();
   with_operator_ = consented_ = false;
+  asked_ = questions_;
   proceed();
 }
 
@@ -52,6 +53,17 @@ void StartController::chooseLanguage(int index) {
 void StartController::consent() {
   consented_ = true;
   proceed();
+}
+
+bool StartController::back() {
+  if (std::exchange(consented_, false)) {
+    emit changed();
+    return true;
+  }
+  if (questions_.language == asked_.language) return false;
+  questions_.language = asked_.language;
+  emit changed();
+  return true;
 }
 
 void StartController::enterCode(const QString& code) {

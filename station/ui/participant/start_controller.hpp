@@ -54,6 +54,8 @@ class StartController : public QObject {
   Q_INVOKABLE void consent();
   /// Call this if the participant does not consent, or leaves the last page.
   Q_INVOKABLE void close() { emit closed(); }
+  /// Goes back to the previous question. Returns false if this is the first one.
+  Q_INVOKABLE bool back();
   Q_INVOKABLE void enterCode(const QString& code);
 
  signals:
@@ -66,7 +68,7 @@ class StartController : public QObject {
  private:
   void proceed();
 
-  Questions questions_;
+  Questions questions_, asked_;  ///< with and without the answers so far
   Known known_;
   bool with_operator_ = true, consented_ = false;
 };

@@ -28,11 +28,15 @@ void TouchField::set_open(bool open) {
 int TouchField::target_at(QPointF position) const {
   if (row_ == nullptr || count_ <= 0) return -1;
   const QPointF inside = mapToItem(row_, position);
-  if (inside.y() < 0 || inside.y() >= row_->height()) return -1;
-  const double pitch = (row_->width() + gap_) / count_;
-  const int column = static_cast<int>(std::floor(inside.x() / pitch));
-  if (column < 0 || column >= count_) return -1;
-  return inside.x() - column * pitch < pitch - gap_ ? column : -1;
+  const int columns = std::max(1, columns_), rows = (count_ + columns - 1) / columns;
+  const auto cell = [this](double at, double length, int cells) {
+    const double pitch = (length + gap_) / cells;
+    const int index = static_cast<int>(std::floor(at / pitch));
+    return index >= 0 && index < cells && at - index * pitch < pitch - gap_ ? index : -1;
+  };
+  const int column = cell(inside.x(), row_->width(), columns), row = cell(inside.y(), row_->height(), rows);
+  const int index = row * columns + column;
+  return column >= 0 && row >= 0 && index < count_ ? index : -1;
 }
 
 void TouchField::down(int id, QPointF position, double diameter_mm) {

@@ -8,14 +8,15 @@
 namespace turnpoint::ui {
 
 /// Takes every touch (and mouse press) on its area and lets a TouchJudge find the answer. `row` is the item
-/// that contains the answer buttons: `count` equal columns, `gap` pixels apart. It must be inside the field.
-/// The judge is open while `open` is true.
+/// that contains the answer buttons: `count` equal buttons in rows of `columns`, `gap` pixels apart. It must
+/// be inside the field. The judge is open while `open` is true.
 class TouchField : public QQuickItem {
   Q_OBJECT
   QML_ELEMENT
   Q_PROPERTY(turnpoint::ui::SessionBridge* bridge MEMBER bridge_ REQUIRED)
   Q_PROPERTY(QQuickItem* row MEMBER row_ REQUIRED)
   Q_PROPERTY(int count MEMBER count_)
+  Q_PROPERTY(int columns MEMBER columns_)
   Q_PROPERTY(double gap MEMBER gap_)
   Q_PROPERTY(double pixelsPerMm MEMBER pixels_per_mm_)
   Q_PROPERTY(bool open READ is_open WRITE set_open NOTIFY openChanged)
@@ -45,6 +46,7 @@ class TouchField : public QQuickItem {
   SessionBridge* bridge_ = nullptr;
   QQuickItem* row_ = nullptr;
   int count_ = 0;
+  int columns_ = 1;
   double gap_ = 0;
   double pixels_per_mm_ = 4;
   TouchJudge judge_;

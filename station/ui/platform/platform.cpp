@@ -3,15 +3,17 @@
 #include <QTemporaryFile>
 
 #include <algorithm>
+#include <cstdlib>
 #include <filesystem>
 #include <iostream>
 #include <memory>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
+#include "station/cli/screens.hpp"
 #include "station/maintenance/doctor.hpp"
 #include "station/setup/places.hpp"
-#include "station/terms/usage_error.hpp"
 #include "station/ui/platform/screen.hpp"
 
 namespace turnpoint::ui {
@@ -50,13 +52,48 @@ std::unique_ptr<QTemporaryFile> choose_platform() {
   }
   if (!wanted.isEmpty()) return nullptr;  // other plug-ins of eglfs find their screen by themselves
   if (!std::filesystem::exists("/dev/fb0"))
-    throw terms::UsageError(
-        "no screen: no DISPLAY, no WAYLAND_DISPLAY, no graphics card with a connector and no /dev/fb0; use "
-        "--headless --observer sim, or --buttons-only (for turnpoint preview use --out DIR)");
+    throw cli::NoScreen(
+        "no screen: no DISPLAY, no WAYLAND_DISPLAY, no graphics card with a connector and no /dev/fb0");
   qputenv("QT_QPA_PLATFORM", "linuxfb");
   qputenv("QT_QUICK_BACKEND", "software");
   return nullptr;
 }
+
+/// Says why Qt has no screen. Called when Qt gives up, which is when no display answers.
+void explain_no_screen() {
+  std::string tried;
+  for (const char* variable : {"QT_QPA_PLATFORM", "WAYLAND_DISPLAY", "DISPLAY"})
+    if (const auto value = qgetenv(variable); !value.isEmpty())
+      tried += (tried.empty() ? "" : ", ") + std::string(variable) + "=" + value.toStdString();
+  std::cerr << "turnpoint: no screen: nothing answers at " << tried
+            << "; name a display that runs, or unset the variable to use a screen of this machine\n";
+}
+
+/// Replaces Qt's list of plug-ins, which it prints before it aborts, by one sentence. Prints other messages
+/// of Qt later, and only if Qt does not give up.
+class StartMessages {
+ public:
+  StartMessages() : before_(qInstallMessageHandler(take)) {}
+  StartMessages(const StartMessages&) = delete;
+  StartMessages& operator=(const StartMessages&) = delete;
+  ~StartMessages() {
+    qInstallMessageHandler(before_);
+    for (const auto& text : texts()) std::cerr << text << "\n";
+    texts().clear();
+  }
+
+ private:
+  static std::vector<std::string>& texts() {
+    static std::vector<std::string> all;
+    return all;
+  }
+  static void take(QtMsgType type, const QMessageLogContext&, const QString& text) {
+    if (type != QtFatalMsg) return texts().push_back(text.toStdString());
+    explain_no_screen();
+    std::_Exit(2);  // Qt would abort when this function returns
+  }
+  QtMessageHandler before_;
+};
 
 /// Reports the input devices that Qt cannot open, because Qt does not report them.
 void tell_refused_input() {
@@ -73,7 +110,10 @@ Application::Application() {
   hide_pointer();
   const auto read_at_start = choose_platform();
   qputenv("QT_QPA_NO_SIGNAL_HANDLER", "1");  // StopSignals handles the stop signals instead of Qt
-  application_ = std::make_unique<QGuiApplication>(argc_, argv_);
+  {
+    const StartMessages messages;
+    application_ = std::make_unique<QGuiApplication>(argc_, argv_);
+  }
   tell_refused_input();
   set_fonts();
   watchdog_ = std::make_unique<ServiceWatchdog>();

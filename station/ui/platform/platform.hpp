@@ -13,7 +13,8 @@ constexpr QSize kWindow{1280, 800};
 
 /// The application object, with a suitable Qt platform plug-in: the one in QT_QPA_PLATFORM, or a desktop's,
 /// or eglfs, or else linuxfb, which needs nothing but a frame buffer. If there is no screen, Qt would kill
-/// the process; before that, this class throws terms::UsageError.
+/// the process; before that, this class throws cli::NoScreen, or ends the process with status 2 after one
+/// sentence if no display answers.
 class Application {
  public:
   Application();

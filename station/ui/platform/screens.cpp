@@ -19,8 +19,9 @@ namespace {
 /// a window opens.
 constexpr const char* kCodeToCome = "keypad";
 
-StationWindow::Place place_on(const Application& application) {
-  return {pixels_per_mm(application.screen()), application.window_size(), application.is_bare_panel()};
+StationWindow::Place place_on(const Application& application, bool fullscreen) {
+  return {pixels_per_mm(application.screen()), application.window_size(),
+          fullscreen || application.is_bare_panel()};
 }
 
 /// From the moment at which the window shows its first page, a stop signal ends the event loop. Before that,
@@ -66,7 +67,8 @@ session::Summary run_on_screen(setup::RunRequest request, std::optional<session:
   chosen.ask_language = !prepared && request.language.empty() && chosen.setup.protocol.languages.size() > 1;
   chosen.arm = true;  // starting a session from the command line is the operator's request to arm
   const Application application;
-  StationWindow window(place_on(application), {nullptr, desk::operator_code()}, chosen.setup.database);
+  StationWindow window(place_on(application, request.fullscreen), {nullptr, desk::operator_code()},
+                       chosen.setup.database);
   use_second_screen(application, window);
   stop_in_order(application, window);
   window.ask(chosen);
@@ -79,8 +81,8 @@ session::Summary run_on_screen(setup::RunRequest request, std::optional<session:
 void run_station(const setup::StationRequest& request) {
   const Application application;
   OperatorController operating(request);
-  StationWindow window(place_on(application), {&operating, desk::operator_code(), request.locked},
-                       request.database);
+  StationWindow window(place_on(application, request.fullscreen),
+                       {&operating, desk::operator_code(), request.locked}, request.database);
   use_second_screen(application, window);
   stop_in_order(application, window);
   try {

@@ -10,7 +10,7 @@
 namespace turnpoint::ui {
 
 // The commands that need a screen. Each makes the application object, so a process can call only one of them.
-// Each returns when its window is closed, and throws terms::UsageError if there is no screen.
+// Each returns when its window is closed, and throws cli::NoScreen if there is no screen.
 
 /// Runs one session. Asks for what the request leaves open (language, consent, participant's code), shows the
 /// session's pages and takes its inputs. The session runs on its own thread. If it throws, the exception is

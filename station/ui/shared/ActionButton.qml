@@ -2,7 +2,8 @@ import QtQuick
 import Turnpoint
 
 // A button for everything except answers. It acts only if a press both begins and ends on it while the button
-// is armed, so that a tap meant for the previous page never triggers it.
+// is armed, so that a tap meant for the previous page never triggers it. It also acts if another finger rests
+// elsewhere on the screen.
 Rectangle {
     id: root
     required property Theme theme
@@ -12,22 +13,27 @@ Rectangle {
     property bool armed: true
     property bool primary: true
     property bool quiet: false
+    /// True for an action that cannot be undone.
+    property bool danger: false
     /// If above 0, the button must be held for this number of milliseconds. It fills up in that time.
     property int holdMs: 0
+    /// True if the button acts when the finger comes down.
+    property bool atOnce: false
     signal activated()
 
-    readonly property bool filled: holdMs > 0 ? primary && !area.pressed : primary !== area.pressed
-    readonly property color foreground: filled ? theme.actionText : quiet ? theme.quiet : theme.action
+    readonly property color tint: danger ? theme.wrong : theme.action
+    readonly property bool filled: holdMs > 0 ? primary && !tap.pressed : primary !== tap.pressed
+    readonly property color foreground: filled ? theme.actionText : quiet ? theme.quiet : tint
 
     implicitHeight: theme.controlHeight
     implicitWidth: theme.dense ? row.implicitWidth + 3 * theme.unit : Math.max(row.implicitWidth + 5 * theme.unit, theme.targetMin)
     radius: theme.radius
-    color: filled ? theme.action : quiet ? theme.paper : theme.raised
-    border { color: quiet ? theme.line : theme.action; width: quiet ? theme.stroke / 2 : theme.stroke }
+    color: filled ? tint : quiet ? theme.paper : theme.raised
+    border { color: quiet ? theme.line : tint; width: quiet ? theme.stroke / 2 : theme.stroke }
     opacity: enabled ? 1 : 0.35
 
     Rectangle {
-        visible: root.holdMs > 0 && area.pressed
+        visible: root.holdMs > 0 && tap.pressed
         anchors { left: parent.left; top: parent.top; bottom: parent.bottom }
         width: parent.width * root.held
         radius: root.radius
@@ -37,12 +43,12 @@ Rectangle {
     NumberAnimation {
         target: root
         property: "held"
-        running: root.holdMs > 0 && area.pressed
+        running: root.holdMs > 0 && tap.pressed
         from: 0
         to: 1
         duration: Math.max(1, root.holdMs)
         onFinished: {
-            area.done = true
+            tap.done = true
             root.activated()
         }
     }
@@ -66,14 +72,18 @@ Rectangle {
             anchors.verticalCenter: parent.verticalCenter
         }
     }
-    MouseArea {
-        id: area
+    TapHandler {
+        id: tap
         /// True if this press has already triggered the action, which may have changed the button into one
         /// that need not be held.
         property bool done: false
-        anchors.fill: parent
         enabled: root.enabled && root.armed
-        onPressed: done = false
-        onClicked: if (root.holdMs === 0 && !done) root.activated()
+        gesturePolicy: TapHandler.ReleaseWithinBounds
+        onPressedChanged: {
+            if (!pressed) return
+            done = root.atOnce
+            if (root.atOnce) root.activated()
+        }
+        onTapped: if (root.holdMs === 0 && !done) root.activated()
     }
 }

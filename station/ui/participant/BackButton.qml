@@ -1,0 +1,14 @@
+import QtQuick
+import Turnpoint
+
+// Leads back to the previous question, at the same place on each page before the session.
+ActionButton {
+    id: root
+    required property Texts texts
+    objectName: "back"
+    primary: false
+    quiet: true
+    size: theme.textSmall
+    implicitHeight: Math.max(9 * theme.pixelsPerMm, 5 * theme.unit)
+    text: texts.back
+}

@@ -1,0 +1,125 @@
+import QtQuick
+import Turnpoint
+
+// Page for a rating on a line between two texts. Nothing is marked, and there is no Done button, until the line
+// is touched, so that no start position pulls the answer.
+Item {
+    id: root
+    required property Theme theme
+    required property Texts texts
+    required property SessionBridge bridge
+    property bool armed: true
+    readonly property PageModel page: bridge.page
+    /// The mark, from 0 to 1 along the line; below 0 if there is none.
+    property real mark: -1
+    onVisibleChanged: mark = -1
+
+    readonly property real value: page.valueLow + mark * (page.valueHigh - page.valueLow)
+    function moveTo(place: real) {
+        const step = Math.pow(10, -page.valueDecimals) / (page.valueHigh - page.valueLow)
+        const next = Math.max(0, Math.min(1, Math.round(place / step) * step))
+        if (next === mark) return
+        mark = next
+        bridge.moveSlider(value)
+    }
+
+    PlainText {
+        anchors { left: parent.left; right: parent.right; top: parent.top; bottom: labels.top; bottomMargin: root.theme.unit }
+        text: root.texts.phrased(root.page.text)
+        color: root.theme.ink
+        font { pixelSize: 1.15 * root.theme.textBody; weight: Font.Medium }
+        fontSizeMode: Text.Fit
+        minimumPixelSize: root.theme.textSmall
+        wrapMode: Text.Wrap
+        horizontalAlignment: Text.AlignHCenter
+        verticalAlignment: Text.AlignVCenter
+    }
+    Item {
+        id: labels
+        readonly property int count: root.page.anchorTexts.length
+        /// Where an anchor is, in pixels from the left.
+        function place(index: int): real { return line.inset + (root.page.anchorPlaces[index] ?? 0) * (width - 2 * line.inset) }
+        anchors { left: parent.left; right: parent.right; bottom: line.top }
+        height: 3.4 * root.theme.textBody
+        /// Where the room of this text ends and that of the next begins. The texts at the ends reach to one side only.
+        function border(index: int): real {
+            const share = count < 3 ? 0.5 : index === 0 ? 0.6 : index === count - 2 ? 0.4 : 0.5
+            return (1 - share) * place(index) + share * place(index + 1)
+        }
+        Repeater {
+            model: labels.count
+            PlainText {
+                required property int index
+                readonly property real at: labels.place(index)
+                readonly property bool first: index === 0
+                readonly property bool last: index === labels.count - 1
+                readonly property real start: first ? 0 : labels.border(index - 1) + root.theme.unit / 4
+                readonly property real end: last ? labels.width : labels.border(index) - root.theme.unit / 4
+                readonly property real half: Math.min(at - start, end - at)
+                x: first || last ? start : at - half
+                width: first || last ? end - start : 2 * half
+                height: labels.height
+                text: root.texts.phrased(root.page.anchorTexts[index] ?? "")
+                color: root.theme.ink
+                font.pixelSize: root.theme.textBody
+                fontSizeMode: Text.Fit
+                minimumPixelSize: root.theme.textSmall
+                wrapMode: Text.Wrap
+                horizontalAlignment: first ? Text.AlignLeft : last ? Text.AlignRight : Text.AlignHCenter
+                verticalAlignment: Text.AlignBottom
+            }
+        }
+    }
+    Item {
+        id: line
+        objectName: "line"
+        readonly property real inset: 2 * root.theme.unit
+        anchors { left: parent.left; right: parent.right; bottom: confirm.top; bottomMargin: root.theme.unit }
+        height: root.theme.targetMin
+        Rectangle {
+            anchors { left: parent.left; right: parent.right; margins: line.inset; verticalCenter: parent.verticalCenter }
+            height: root.theme.stroke
+            color: root.theme.ink
+        }
+        Repeater {
+            model: root.page.anchorPlaces.length
+            Rectangle {
+                required property int index
+                width: root.theme.stroke
+                height: 0.35 * line.height
+                x: line.inset + (root.page.anchorPlaces[index] ?? 0) * (line.width - 2 * line.inset) - width / 2
+                anchors.verticalCenter: parent.verticalCenter
+                color: root.theme.ink
+            }
+        }
+        Rectangle {
+            objectName: "mark"
+            visible: root.mark >= 0
+            width: 1.2 * root.theme.unit
+            height: 0.8 * line.height
+            radius: width / 2
+            x: line.inset + root.mark * (line.width - 2 * line.inset) - width / 2
+            anchors.verticalCenter: parent.verticalCenter
+            color: root.theme.action
+        }
+        MouseArea {
+            anchors.fill: parent
+            enabled: root.armed
+            function follow(x: real) { root.moveTo((x - line.inset) / (line.width - 2 * line.inset)) }
+            onPressed: mouse => follow(mouse.x)
+            onPositionChanged: mouse => follow(mouse.x)
+        }
+    }
+    ActionButton {
+        id: confirm
+        objectName: "proceed"
+        visible: root.mark >= 0
+        anchors { horizontalCenter: parent.horizontalCenter; bottom: parent.bottom }
+        height: root.theme.targetMin
+        width: Math.max(implicitWidth, 22 * root.theme.unit)
+        theme: root.theme
+        armed: root.armed
+        text: root.texts.done
+        onActivated: root.bridge.answerValue(root.value)
+    }
+}

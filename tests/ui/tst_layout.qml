@@ -1,0 +1,183 @@
+import QtQuick
+import QtTest
+import Turnpoint
+
+// Checks on wide and on tall screens that nothing lies over anything else: with the longest texts of each
+// language, and on the operator's pages.
+Item {
+    id: stage
+    width: 800
+    height: 480
+
+    ParticipantView {
+        id: view
+        anchors.fill: parent
+        bridge: script.bridge
+        pixelsPerMm: 5.2
+    }
+    Loader {
+        id: page
+        anchors.fill: parent
+        active: false
+        property real mm: 5.2
+        sourceComponent: OperatorPage {
+            operating: desk.operating
+            pixelsPerMm: page.mm
+        }
+    }
+    LiveView {
+        id: liveView
+        anchors.fill: parent
+        visible: false
+        live: desk.live
+        bridge: script.bridge
+        pixelsPerMm: page.mm
+    }
+    Rectangle {
+        id: control
+        anchors.fill: parent
+        visible: false
+        Text { text: "one"; font.pixelSize: 20 }
+        Text { id: second; text: "two"; font.pixelSize: 20 }
+    }
+    Texts { id: words; language: "en" }
+    Theme { id: large; width: stage.width; height: stage.height; pixelsPerMm: page.mm }
+    Loader {
+        id: start
+        anchors.fill: parent
+    }
+    Component {
+        id: language
+        LanguagePage { theme: large; texts: words; names: ["English", "Deutsch", "日本語"] }
+    }
+    Component {
+        id: consent
+        ConsentPage { theme: large; texts: words; version: "2026-03" }
+    }
+    Component {
+        id: code
+        CodePage { theme: large; texts: words; asksHand: true }
+    }
+
+    TestCase {
+        name: "Layout"
+        when: windowShown
+
+        readonly property var panels: [{ width: 800, height: 480, mm: 5.2 }, { width: 800, height: 480, mm: 7.36 },
+                                       { width: 1280, height: 800, mm: 5.9 }, { width: 480, height: 800, mm: 5.2 },
+                                       { width: 600, height: 1024, mm: 6.7 }, { width: 800, height: 1280, mm: 5.9 }]
+
+        // Answers of 20 mm for these pages do not fit on a panel of 5 inches beside everything else.
+        readonly property var needSevenInches: ["rating-9", "line-labels", "number", "number-standard", "choices-9"]
+
+        SignalSpy { id: shown; target: script.bridge; signalName: "shown" }
+
+        function cleanup() {
+            page.active = false
+            liveView.visible = false
+            start.sourceComponent = undefined
+            view.visible = true
+        }
+        function resize(panel) {
+            stage.width = panel.width
+            stage.height = panel.height
+            tryCompare(stage.Window.window, "width", panel.width)
+            tryCompare(stage.Window.window, "height", panel.height)
+            view.pixelsPerMm = panel.mm
+            page.mm = panel.mm
+        }
+        function show(name, language) {
+            const before = shown.count
+            script.show(name, language)
+            tryCompare(shown, "count", before + 1)
+            wait(1)
+        }
+        function rows(names) {
+            const rows = []
+            for (const panel of panels)
+                for (const name of names)
+                    rows.push({ tag: name + " " + panel.width + "x" + panel.height + " " + panel.mm, name: name, panel: panel })
+            return rows
+        }
+
+        function test_what_overlaps_is_detected() {
+            control.visible = true
+            compare(inspector.overlaps(control).length, 1)
+            second.y = 100
+            compare(inspector.overlaps(control), [])
+            control.visible = false
+        }
+
+        function test_no_texts_or_buttons_of_a_session_overlap_data() {
+            const rows = []
+            for (const panel of panels)
+                for (const language of ["en", "de", "ja"])
+                    rows.push({ tag: language + " " + panel.width + "x" + panel.height + " " + panel.mm, language: language, panel: panel })
+            return rows
+        }
+        function test_no_texts_or_buttons_of_a_session_overlap(row) {
+            resize(row.panel)
+            const faults = []
+            for (const name of script.pages) {
+                if (row.panel.mm > 7 && needSevenInches.includes(name)) continue
+                show(name, row.language)
+                for (const pair of inspector.overlaps(view)) faults.push(name + ": " + pair)
+                if (row.panel.mm < 7) for (const text of inspector.cutTexts(view)) faults.push(name + ": cut: " + text)
+            }
+            compare(faults.join("\n"), "")
+        }
+
+        function test_no_texts_or_buttons_before_a_session_overlap_data() {
+            const rows = []
+            for (const panel of panels)
+                for (const language of ["en", "de", "ja"])
+                    rows.push({ tag: language + " " + panel.width + "x" + panel.height + " " + panel.mm, language: language, panel: panel })
+            return rows
+        }
+        function test_no_texts_or_buttons_before_a_session_overlap(row) {
+            resize(row.panel)
+            words.language = row.language
+            view.visible = false
+            for (const question of [language, consent, code]) {
+                start.sourceComponent = question
+                wait(20)
+                compare(inspector.overlaps(start.item), [])
+                compare(inspector.cutTexts(start.item), [])
+                if (question !== consent) continue
+                start.item.refused = true
+                wait(20)
+                compare(inspector.overlaps(start.item), [])
+                compare(inspector.cutTexts(start.item), [])
+            }
+        }
+
+        function test_no_texts_or_buttons_of_the_start_page_overlap_data() { return rows(["demo", "boundary-constant", "mistaken.toml"]) }
+        function test_no_texts_or_buttons_of_the_start_page_overlap(row) {
+            resize(row.panel)
+            view.visible = false
+            page.active = true
+            desk.operating.select(desk.operating.protocols.findIndex(protocol => protocol.id === row.name))
+            tryCompare(desk.operating, "checking", false, 20000)
+            for (const armed of [false, true]) {
+                desk.operating.setArmed(armed)
+                if (armed) { desk.operating.setLive(true); tryCompare(desk.operating, "preparing", false, 20000) }
+                wait(20)
+                compare(inspector.overlaps(page.item), [])
+            }
+            desk.operating.setArmed(false)
+            desk.operating.setLive(false)
+        }
+
+        function test_no_texts_or_buttons_of_the_live_view_overlap_data() { return rows(["between-trials", "paused", "end-early"]) }
+        function test_no_texts_or_buttons_of_the_live_view_overlap(row) {
+            resize(row.panel)
+            view.visible = false
+            liveView.visible = true
+            liveView.closable = true
+            show(row.name, "en")
+            desk.tellLive("Block main, trial 35, level -10: zone")
+            wait(50)
+            compare(inspector.overlaps(liveView), [])
+        }
+    }
+}
