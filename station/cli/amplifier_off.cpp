@@ -11,7 +11,7 @@ void add_amplifier_off(CommandLine& app, Context& context) {
                          "Set the amplifier's enable line low after the station program has crashed. Accepts "
                          "the options with which the station was started, but uses only --rig");
   auto request = add_station_options(*command);
-  command->footer("Example: turnpoint amplifier-off --rig /etc/turnpoint/rig.toml");
+  command->footer("Example: turnpoint amplifier-off");
   command->callback([request, &context] {
     const auto path = setup::rig_or_default(request->rig, context.err);
     const auto uri = rig::load(path).amplifier_uri;

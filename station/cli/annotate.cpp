@@ -7,6 +7,8 @@
 
 #include "station/cli/command.hpp"
 #include "station/cli/json.hpp"
+#include "station/cli/shared_options.hpp"
+#include "station/desk/report_data.hpp"
 
 namespace turnpoint::cli {
 
@@ -17,11 +19,12 @@ struct Options {
 };
 
 void annotate(const Options& options, Context& context) {
-  store::annotate(options.database, options.session, options.text);
+  const auto id = options.session.empty() ? desk::session_to_report(options.database, {}) : options.session;
+  store::annotate(options.database, id, options.text);
   if (context.json)
-    context.out << Json{{"session_id", options.session}, {"text", options.text}}.dump(2) << "\n";
+    context.out << Json{{"session_id", id}, {"text", options.text}}.dump(2) << "\n";
   else
-    fmt::print(context.out, "the note was added to session {}\n", options.session);
+    fmt::print(context.out, "the note was added to session {}\n", id);
 }
 
 }  // namespace annotate_command
@@ -30,13 +33,12 @@ void add_annotate(CommandLine& app, Context& context) {
   using namespace annotate_command;
   auto options = std::make_shared<Options>();
   auto* command = app.add_subcommand("annotate", "Add a note to a session without changing its trials");
-  command->add_option("--db", options->database, "Database")->required();
-  command->add_option("--session", options->session, "Session id; `turnpoint sessions` lists all ids")
-      ->required();
+  add_database(*command, options->database);
+  command->add_option("--session", options->session,
+                      "Session id, which `turnpoint sessions` lists; by default the newest session");
   command->add_option("text", options->text, "The note")->required();
   add_json(*command, context);
-  command->footer(
-      "Example: turnpoint annotate --db lab.sqlite --session 2f1c... \"fire alarm during block 2\"");
+  command->footer("Example: turnpoint annotate --db lab.sqlite \"fire alarm during block 2\"");
   command->callback([options, &context] { annotate(*options, context); });
 }
 

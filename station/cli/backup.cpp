@@ -7,6 +7,7 @@
 
 #include "station/cli/command.hpp"
 #include "station/cli/json.hpp"
+#include "station/cli/shared_options.hpp"
 #include "station/desk/choices.hpp"
 
 namespace turnpoint::cli {
@@ -129,13 +130,15 @@ void add_backup(CommandLine& app, Context& context) {
                     "database, and remove it again");
   add_json(*command, context);
   command->footer(
-      "Example: turnpoint backup --db lab.sqlite --dir /mnt/backup --keep 30\n"
+      "Example: turnpoint backup --db lab.sqlite --dir backups --keep 30\n"
       "turnpoint-backup.timer makes a backup every day (deploy/README.md). The exit status is 1 if a backup, "
       "a restore\nor a drill found a problem.");
   command->callback([options, &context] {
     if (options->restore && options->drill) throw UsageError("--restore and --drill cannot be used together");
     if (options->backup.directory.empty())
       throw UsageError("--dir: the name of the folder must not be empty");
+    if (const auto problem = database().problem(options->database); !options->restore && !problem.empty())
+      throw UsageError("backup: --db: " + problem);
     if (options->drill)
       drill(*options, context);
     else if (options->restore)

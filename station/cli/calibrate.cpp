@@ -11,6 +11,7 @@
 #include "station/cli/json.hpp"
 #include "station/cli/run.hpp"
 #include "station/cli/screens.hpp"
+#include "station/cli/shared_options.hpp"
 #include "station/maintenance/calibrate.hpp"
 #include "station/system/write_file.hpp"
 #include "station/text/number.hpp"
@@ -65,7 +66,8 @@ Json boundary_json(const BoundaryFit& fit) {
                       {"sd_mm", json_number(1e3 * p.sd_m)},
                       {"residual_mm", json_number(1e3 * p.residual_m)},
                       {"deviation", json_number(p.deviation)},
-                      {"outlier", p.outlier}});
+                      {"outlier", p.outlier},
+                      {"left_out", p.left_out}});
   return {{"edge", fit.edge}, {"parameters", parameters}, {"points", points}};
 }
 
@@ -76,8 +78,8 @@ void print(std::ostream& out, const BoundaryFit& fit) {
     fmt::print(out, "  {} kHz: {} mm, {} mm from the fit{}\n", number(p.frequency_Hz * 1e-3, 5),
                number(1e3 * p.boundary_m, 5), number(1e3 * p.residual_m, 2),
                p.outlier
-                   ? fmt::format("; OUTLIER, {} deviations from where the others put it: measure it again",
-                                 number(std::abs(p.deviation), 2))
+                   ? fmt::format("; OUTLIER, {} deviations from where the others put it{}: measure it again",
+                                 number(std::abs(p.deviation), 2), p.left_out ? ", left out of the fit" : "")
                    : "");
   for (const auto& p : fit.surface.parameters) {
     const auto parameter = *physics::find_parameter(p.name);
@@ -141,10 +143,13 @@ Json delay_json(const std::optional<calibration::Delay>& delay) {
 }
 
 void calibrate_panel(const Options& options, const rig::Rig& rig, Context& context) {
-  if (!context.screens) return become_ui(context);
+  const auto instead = "the latency of a touch panel can be measured on its screen only";
+  if (!context.screens) return become_ui(context, instead);
   const auto reference = options.reference == "photodiode" ? calibration::LatencyReference::photodiode
                                                            : calibration::LatencyReference::button;
-  const auto measured = context.screens->latency({options.rig, reference});
+  const auto measured = with_screen(instead, [&] {
+    return context.screens->latency({options.rig, reference});
+  });
   if (!measured) throw std::runtime_error("calibrate --panel: no result was accepted, so no file is written");
   const auto made = maintenance::with_panel(rig, *measured);
   const auto out =
@@ -196,7 +201,7 @@ void add_calibrate(CommandLine& app, Context& context) {
   auto* command = app.add_subcommand(
       "calibrate",
       "Make a calibration file from measurements of a rig; list or play the tones for the measurements");
-  command->add_option("--rig", options->rig, "Rig file of the rig that was measured")->required();
+  add_rig(*command, options->rig, "the rig that was measured")->required();
   command->add_option(
       "--response", options->sweeps,
       "TRANSDUCER=FILE: measurements by a vibrometer, with columns frequency_Hz,displacement_um,phase_deg");
@@ -243,8 +248,10 @@ void add_calibrate(CommandLine& app, Context& context) {
       ->capture_default_str();
   add_json(*command, context);
   command->footer(
-      "Example: turnpoint calibrate --rig plate.toml --response main=sweep.csv --full-scale 0.1 --boundaries "
-      "edges.csv --friction friction.csv");
+      "Example: turnpoint calibrate --rig simulated --sweep\n"
+      "It lists the tones to measure. When they are measured: turnpoint calibrate --rig plate.toml "
+      "--response "
+      "main=sweep.csv --full-scale 0.1 --boundaries edges.csv --friction friction.csv");
   command->callback([options, &context] { calibrate(*options, context); });
 }
 

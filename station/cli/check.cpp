@@ -7,9 +7,11 @@
 
 #include "station/cli/command.hpp"
 #include "station/cli/json.hpp"
+#include "station/cli/shared_options.hpp"
 #include "station/cli/sound.hpp"
 #include "station/cli/uncertainty.hpp"
 #include "station/protocol/combinations.hpp"
+#include "station/protocol/triggers.hpp"
 #include "station/setup/places.hpp"
 #include "station/setup/prepare.hpp"
 #include "station/simulation/check.hpp"
@@ -22,8 +24,8 @@ namespace check_command {
 using text::number;
 
 struct Options {
-  std::string protocol, rig;
-  int sessions = 21;
+  std::string protocol, rig, calibration;
+  std::optional<int> sessions;
 };
 
 Json problems_json(const std::vector<text::Problem>& problems) {
@@ -82,7 +84,11 @@ Extremes extremes_of(const protocol::Survey& survey) {
 }
 
 Json to_json(const simulation::Check& check) {
-  Json blocks = Json::array(), cues = Json::array();
+  Json blocks = Json::array(), cues = Json::array(), triggers = Json::array();
+  for (const auto& code : check.triggers)
+    triggers.push_back({{"event", protocol::name(code.event)},
+                        {"condition", code.condition.empty() ? Json(nullptr) : Json(code.condition)},
+                        {"code", code.code}});
   for (const auto& block : check.blocks)
     blocks.push_back({{"name", block.name},
                       {"instruction", block.instruction.empty() ? Json(nullptr) : Json(block.instruction)},
@@ -121,6 +127,7 @@ Json to_json(const simulation::Check& check) {
       {"models", check.survey.models},
       {"combinations", check.survey.combinations},
       {"scenes", scenes_json(check.survey)},
+      {"triggers", triggers},
       {"cues", cues},
       {"cues_not_compared", check.cues.not_compared.empty() ? Json(nullptr) : Json(check.cues.not_compared)},
       {"defaults", {{"protocol", check.protocol_defaults}, {"rig", check.rig_defaults}}}};
@@ -173,8 +180,12 @@ void print(std::ostream& out, const simulation::Check& check, const std::string&
   for (const auto& block : check.blocks)
     fmt::print(out, "  {}{}{}: {} trials\n", block.practice ? "practice block " : "block ", block.name,
                block.instruction.empty() ? "" : " (" + block.instruction + ")", range(block.trials, 1));
-  fmt::print(out, "Trials: {}. Duration: {} minutes. Both are from {} simulated sessions\n",
-             range(check.trials, 1), range(check.duration_s, 60), check.simulated_sessions);
+  if (check.simulated_sessions > 0)
+    fmt::print(
+        out,
+        "Trials: {}. Duration: {} minutes, with the time that a person needs to read, explore and set. "
+        "Medians of {} simulated sessions; in brackets the range of nine sessions in ten\n",
+        range(check.trials, 1), range(check.duration_s, 60), check.simulated_sessions);
   const auto extremes = extremes_of(check.survey);
   std::string models;
   for (const auto& model : check.survey.models) models += (models.empty() ? "" : ", ") + model;
@@ -191,6 +202,12 @@ void print(std::ostream& out, const simulation::Check& check, const std::string&
   fmt::print(out, "Boundaries: model error at most {} mm, {}\n", number(extremes.error_bound_mm, 2),
              uncertainty_in_words(1e-3 * extremes.uncertainty_mm));
   fmt::print(out, "Sound: {}\n", in_words(check.sound));
+  if (!check.triggers.empty()) fmt::print(out, "Trigger codes:");
+  for (const auto& code : check.triggers)
+    fmt::print(out, "{} {}{} = {}", code.code == check.triggers.front().code ? "" : ",",
+               protocol::name(code.event), code.condition.empty() ? "" : " (" + code.condition + ")",
+               code.code);
+  if (!check.triggers.empty()) fmt::print(out, "\n");
   print_cues(out, check.cues);
   if (!check.protocol_defaults.empty()) fmt::print(out, "Defaults used:\n");
   for (const auto& line : check.protocol_defaults) fmt::print(out, "  {}\n", line);
@@ -199,9 +216,14 @@ void print(std::ostream& out, const simulation::Check& check, const std::string&
 
 void check(const Options& options, Context& context) {
   const auto rig = setup::rig_or_default(options.rig, context.err);
-  auto result = simulation::check(options.protocol, rig, {options.sessions, true, true});
+  std::optional<rig::Rig> calibrated;
+  const auto load_rig = [&](const std::string& path) {
+    calibrated = setup::calibrated_rig(path, options.calibration, context.err);
+    return *calibrated;
+  };
+  auto result = simulation::check(options.protocol, rig, {options.sessions, true, true, load_rig});
   if (result.problems.empty())
-    for (const auto& name : rig::unproven_transducers(setup::calibrated_rig(rig, "", context.err)))
+    for (const auto& name : rig::unproven_transducers(calibrated.value()))
       result.notes.push_back(
           {{rig, 0, 0},
            "no pick-up is calibrated for the transducer \"" + name + "\", so its stimuli will be unproven",
@@ -223,14 +245,16 @@ void add_check(CommandLine& app, Context& context) {
   auto options = std::make_shared<Options>();
   auto* command = app.add_subcommand(
       "check", "List all mistakes in a protocol file, or describe its session if there are none");
-  command->add_option("protocol", options->protocol, "Protocol file")->required();
-  command->add_option("--rig", options->rig, "Rig file");
+  add_protocol(*command, options->protocol);
+  add_rig(*command, options->rig);
+  add_calibration(*command, options->calibration);
   command
       ->add_option("--sessions", options->sessions,
-                   "Number of sessions to simulate in order to predict trials and duration; 0 for none")
+                   "Number of sessions to simulate in order to predict trials and duration; 0 for none; by "
+                   "default 1000, or 200 if its procedures need long")
       ->check(range(0, 1000));
   add_json(*command, context);
-  command->footer("Example: turnpoint check protocols/demo.toml --rig deploy/rigs/simulated.toml");
+  command->footer("Example: turnpoint check demo");
   command->callback([options, &context] { check(*options, context); });
 }
 

@@ -1,31 +1,144 @@
 #include "station/cli/command_line.hpp"
 
+#include <fmt/format.h>
+
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cctype>
+#include <charconv>
+#include <cmath>
 #include <utility>
+
+#include "station/terms/usage_error.hpp"
+#include "station/text/number.hpp"
+#include "station/text/problem.hpp"
 
 namespace turnpoint::cli {
 
 namespace {
 
-Check check_of(CLI::Validator validator) {
-  const std::string allowed = validator.get_description();
-  return {allowed, [validator = std::move(validator)](const std::string& value) { return validator(value); }};
+using terms::UsageError;
+
+template <class Number>
+std::optional<Number> parsed(const std::string& text) {
+  Number value{};
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc{} || end != text.data() + text.size()) return std::nullopt;
+  return value;
+}
+
+/// A check of numbers. `good` is never called with a value that is not finite.
+template <class Number>
+Check number_check(const std::string& allowed, std::function<bool(Number)> good) {
+  return {allowed, [allowed, good = std::move(good)](const std::string& value) -> std::string {
+            const auto number = parsed<Number>(value);
+            if (number && std::isfinite(static_cast<double>(*number)) && good(*number)) return "";
+            return fmt::format("\"{}\" is not allowed; write a {}, {}", value,
+                               std::is_integral_v<Number> ? "whole number" : "number", allowed);
+          }};
+}
+
+std::string joined(const std::vector<std::string>& words, const std::string& separator) {
+  return fmt::format("{}", fmt::join(words, separator));
+}
+
+/// "; did you mean KNOWN? ADVICE", or only "; ADVICE" if nothing known resembles the word.
+std::string suggestion(const std::string& word, const std::vector<std::string>& known,
+                       const std::string& advice) {
+  auto near = text::nearest(word, known);
+  for (const auto& candidate : known)  // the beginning of a name, such as --lang, may be far from the whole
+    if (near.empty() && word.size() > 3 && candidate.starts_with(word)) near = candidate;
+  return near.empty() ? "; " + advice : fmt::format("; did you mean {}? {}", near, advice);
+}
+
+std::vector<std::string> options_of(const CLI::App& command) {
+  std::vector<std::string> names;
+  for (const auto* option : command.get_options())
+    for (const auto& name : option->get_lnames()) names.push_back("--" + name);
+  return names;
+}
+
+/// The name under which the user knows the option: "--db", or "protocol" for a positional one.
+std::string name_of(const CLI::Option& option) { return option.get_name(false, false); }
+
+/// Names every required option that was not given.
+std::string missing_of(const CLI::App& command) {
+  std::vector<std::string> names;
+  for (const auto* option : command.get_options())
+    if (option->get_required() && option->count() == 0) names.push_back(name_of(*option));
+  return fmt::format("{} {} missing", joined(names, " and "), names.size() == 1 ? "is" : "are");
+}
+
+/// Explains an error whose message begins with the name of an option.
+std::string explained(const CLI::App& command, const std::string& name) {
+  for (const auto* option : command.get_options()) {
+    if (name_of(*option) != name) continue;
+    if (option->get_expected_max() == 0) return name + " takes no value";
+    if (option->count() == 0 || option->results().empty() || option->results().front().empty())
+      return name + " needs a value";
+    if (static_cast<int>(option->count()) > option->get_expected_max())
+      return fmt::format("{} was given {} times, but can have one value only", name, option->count());
+    return fmt::format("{} {}: this is not a number", name, joined(option->results(), " "));
+  }
+  return name;
+}
+
+std::string before(const std::string& text, const std::string& mark) {
+  return text.substr(0, text.find(mark));
+}
+
+/// What is wrong, for a person. CLI11's own messages do not name the command, and count arguments.
+std::string reason(const CLI::App& command, const CLI::ParseError& error) {
+  const std::string said = error.what();
+  if (dynamic_cast<const CLI::RequiredError*>(&error)) return missing_of(command);
+  if (dynamic_cast<const CLI::ExtrasError*>(&error))
+    return fmt::format("\"{}\" is one value too many", joined(command.remaining(), " "));
+  if (dynamic_cast<const CLI::ArgumentMismatch*>(&error)) return explained(command, before(said, ":"));
+  const std::string conversion = "Could not convert: ";
+  if (said.starts_with(conversion)) return explained(command, before(said.substr(conversion.size()), " = "));
+  if (dynamic_cast<const CLI::ConversionError*>(&error)) return explained(command, before(said, ":"));
+  return said;
 }
 
 }  // namespace
 
-Check range(std::int64_t least, std::int64_t most) { return check_of(CLI::Range(least, most)); }
-Check between(double least, double most) { return check_of(CLI::Range(least, most)); }
-Check positive() { return check_of(CLI::PositiveNumber); }
-Check not_negative() { return check_of(CLI::NonNegativeNumber); }
-Check one_of(std::vector<std::string> values) { return check_of(CLI::IsMember(std::move(values))); }
-Check existing_file() { return check_of(CLI::ExistingFile); }
+Check range(std::int64_t least, std::int64_t most) {
+  return number_check<std::int64_t>(fmt::format("{} to {}", least, most),
+                                    [=](std::int64_t n) { return n >= least && n <= most; });
+}
+
+Check between(double least, double most) {
+  return number_check<double>(fmt::format("{} to {}", text::number(least), text::number(most)),
+                              [=](double n) { return n >= least && n <= most; });
+}
+
+Check positive() {
+  return number_check<double>("above 0", [](double n) { return n > 0; });
+}
+
+Check not_negative() {
+  return number_check<double>("0 or more", [](double n) { return n >= 0; });
+}
+
+Check one_of(std::vector<std::string> values) {
+  const auto all = joined(values, " | ");
+  return {all, [values = std::move(values), all](const std::string& value) -> std::string {
+            if (std::find(values.begin(), values.end(), value) != values.end()) return "";
+            return fmt::format("\"{}\" is not allowed{}", value,
+                               suggestion(value, values, "allowed are " + all));
+          }};
+}
 
 Option* Option::required() { return option_->required(), this; }
 Option* Option::capture_default_str() { return option_->capture_default_str(), this; }
 
 Option* Option::check(Check check) {
   option_->check(std::move(check.problem), std::move(check.allowed));
+  return this;
+}
+
+Option* Option::transform(std::function<std::string(const std::string& value)> change) {
+  option_->transform(std::move(change));
   return this;
 }
 
@@ -45,7 +158,8 @@ CommandLine::CommandLine(const std::string& description, const std::string& prog
                          const std::string& version)
     : app_(std::make_unique<CLI::App>(description, program)) {
   app_->require_subcommand(1);
-  app_->set_version_flag("--version", version);
+  app_->set_version_flag("-V,--version", version);
+  app_->footer("`turnpoint help COMMAND` explains a command and shows an example.");
 }
 
 CommandLine::~CommandLine() = default;
@@ -55,13 +169,56 @@ Command* CommandLine::add_subcommand(const std::string& name, const std::string&
   return commands_.back().get();
 }
 
-std::optional<int> CommandLine::parse(int argc, char** argv, std::ostream& out, std::ostream& err) {
+/// Throws UsageError if the command or one of its options does not exist. CLI11 would complain first about
+/// what is missing, and so hide a misspelt option.
+void CommandLine::require_known(const std::vector<std::string>& words) const {
+  const std::string list = "`turnpoint help` lists the commands";
+  if (words.empty()) throw UsageError("no command was given; " + list);
+  const auto& first = words.front();
+  if (first.starts_with("-")) {
+    auto known = options_of(*app_);
+    known.insert(known.end(), {"-V", "-h"});
+    if (std::find(known.begin(), known.end(), first) != known.end()) return;
+    throw UsageError(
+        fmt::format("{}: the command must come before its options{}", first, suggestion(first, known, list)));
+  }
+  std::vector<std::string> commands{"help"};
+  const CLI::App* command = nullptr;
+  for (const auto* one : app_->get_subcommands({})) {
+    commands.push_back(one->get_name());
+    if (one->get_name() == first) command = one;
+  }
+  if (!command)
+    throw UsageError(fmt::format("there is no command \"{}\"{}", first, suggestion(first, commands, list)));
+  const auto known = options_of(*command);
+  for (std::size_t i = 1; i < words.size() && words[i] != "--"; ++i) {
+    const auto name = before(words[i], "=");
+    const bool option = name.size() > 1 && name[0] == '-' &&
+                        (name[1] == '-' || std::isalpha(static_cast<unsigned char>(name[1])));
+    if (!option || name == "-h" || std::find(known.begin(), known.end(), name) != known.end()) continue;
+    throw UsageError(
+        fmt::format("{}: there is no option {}{}", first, name,
+                    suggestion(name, known, fmt::format("`turnpoint help {}` lists the options", first))));
+  }
+}
+
+bool CommandLine::parse(int argc, char** argv, std::ostream& out) {
+  std::vector<std::string> words(argv + 1, argv + argc);
+  if (!words.empty() && words[0] == "help")
+    words =
+        words.size() > 1 ? std::vector<std::string>{words[1], "--help"} : std::vector<std::string>{"--help"};
+  require_known(words);
   try {
-    app_->parse(argc, argv);
-    return std::nullopt;
+    auto reversed = std::vector<std::string>(words.rbegin(), words.rend());
+    app_->parse(reversed);
+    return true;
+  } catch (const CLI::Success& wish) {  // CLI11 reports --help and --version by exceptions
+    app_->exit(wish, out, out);
+    return false;
   } catch (const CLI::ParseError& error) {
-    // CLI11 reports --help and --version by exceptions too; their code is 0.
-    return app_->exit(error, out, err) == 0 ? 0 : 2;
+    const auto& command = *app_->get_subcommand(words[0]);
+    throw UsageError(fmt::format("{}: {}; `turnpoint help {}` shows an example", words[0],
+                                 reason(command, error), words[0]));
   }
 }
 

@@ -26,7 +26,6 @@ Check between(double least, double most);            ///< accepts any number fro
 Check positive();
 Check not_negative();
 Check one_of(std::vector<std::string> values);
-Check existing_file();
 
 /// One option of a sub-command. Each call returns the option itself, so that calls can be chained.
 class Option {
@@ -35,6 +34,8 @@ class Option {
   Option* required();
   Option* capture_default_str();  ///< shows the target's current value in the help
   Option* check(Check check);
+  /// replaces the value by `change` of it
+  Option* transform(std::function<std::string(const std::string& value)> change);
 
  private:
   CLI::Option* option_;
@@ -72,11 +73,13 @@ class CommandLine {
   Command* add_subcommand(const std::string& name, const std::string& help);
 
   /// Parses the command line and runs the callback of the sub-command; exceptions of the callback pass
-  /// through. Returns nothing if the callback ran. Otherwise returns the exit status: 0 after --help or
-  /// --version (printed on `out`), 2 after wrong usage (explained on `err`).
-  std::optional<int> parse(int argc, char** argv, std::ostream& out, std::ostream& err);
+  /// through. Returns false if --help, --version or `help` was given, whose text it prints on `out`. Throws
+  /// UsageError for a command line that it does not understand.
+  bool parse(int argc, char** argv, std::ostream& out);
 
  private:
+  void require_known(const std::vector<std::string>& words) const;
+
   std::unique_ptr<CLI::App> app_;
   std::vector<std::unique_ptr<Command>> commands_;
 };

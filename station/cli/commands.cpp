@@ -38,7 +38,7 @@ int run(int argc, char** argv, std::ostream& raw_out, std::ostream& raw_err, con
   CommandLine app("Turnpoint: a psychophysics station for ultrasonic tapered friction displays", "turnpoint",
                   TURNPOINT_VERSION);
   for (const auto add : kCommands) add(app, context);
-  return exit_status(err, [&] { return app.parse(argc, argv, out, err).value_or(context.exit_code); });
+  return exit_status(err, [&] { return app.parse(argc, argv, out) ? context.exit_code : 0; });
 }
 
 int exit_status(std::ostream& err, const std::function<int()>& work) {

@@ -6,6 +6,7 @@
 
 #include "station/cli/command.hpp"
 #include "station/cli/json.hpp"
+#include "station/cli/shared_options.hpp"
 #include "station/maintenance/doctor.hpp"
 #include "station/setup/places.hpp"
 #include "station/setup/prepare.hpp"
@@ -49,14 +50,15 @@ void add_doctor(CommandLine& app, Context& context) {
   auto* command =
       app.add_subcommand("doctor", "Check the hardware of a rig; exit status 1 if something is wrong");
   auto rig = std::make_shared<std::string>();
-  auto data =
-      std::make_shared<std::string>(std::filesystem::path(setup::default_database()).parent_path().string());
-  command->add_option("--rig", *rig,
-                      "Rig file; by default the installed rig, or the simulated rig if none is installed");
-  command->add_option("--data", *data, "Folder for databases")->capture_default_str();
+  auto data = std::make_shared<std::string>();
+  add_rig(*command, *rig);
+  command->add_option("--data", *data, "Folder for databases; by default the one in the user's data folder");
   add_json(*command, context);
-  command->footer("Example: turnpoint doctor --rig deploy/rigs/raspberry-pi-aluminium.toml");
-  command->callback([rig, data, &context] { doctor(*rig, *data, context); });
+  command->footer("Example: turnpoint doctor");
+  command->callback([rig, data, &context] {
+    if (data->empty()) *data = std::filesystem::path(setup::default_database()).parent_path().string();
+    doctor(*rig, *data, context);
+  });
 }
 
 }  // namespace turnpoint::cli

@@ -7,6 +7,7 @@
 
 #include "station/cli/command.hpp"
 #include "station/cli/json.hpp"
+#include "station/cli/shared_options.hpp"
 #include "station/cli/sign.hpp"
 
 namespace turnpoint::cli {
@@ -63,7 +64,7 @@ void add_export(CommandLine& app, Context& context) {
   auto options = std::make_shared<Options>();
   auto* command =
       app.add_subcommand("export", "Write sessions as CSV or BIDS, with one folder for each protocol");
-  command->add_option("--db", options->database, "Database")->required();
+  add_database(*command, options->database);
   command->add_option("--out", options->out, "Folder to write to")->required();
   command->add_option("--session", options->selection.session_id, "Export only this session");
   command->add_option("--participant", options->selection.participant,

@@ -9,9 +9,12 @@
 #include "physics/planner.hpp"
 #include "station/cli/command.hpp"
 #include "station/cli/json.hpp"
+#include "station/cli/shared_options.hpp"
 #include "station/cli/tones.hpp"
 #include "station/rig/rig.hpp"
 #include "station/scene/planner.hpp"
+#include "station/setup/places.hpp"
+#include "station/setup/prepare.hpp"
 #include "station/text/number.hpp"
 
 namespace turnpoint::cli {
@@ -19,7 +22,7 @@ namespace turnpoint::cli {
 namespace field_command {
 
 struct Options {
-  std::string rig, at, model = "auto", normalise = "drive";
+  std::string rig, calibration, at, model = "auto", normalise = "drive";
   std::vector<std::string> tones;
   int points = 0;
   double tolerance = 0;
@@ -104,7 +107,8 @@ void print(std::ostream& out, const physics::Field& field, const physics::FieldN
 
 void field(const Options& options, Context& context) {
   if ((options.points > 0) == !options.at.empty()) throw UsageError("field: give either --points or --at");
-  const auto rig = rig::load(options.rig);
+  const auto rig = setup::calibrated_rig(setup::rig_or_default(options.rig, context.err), options.calibration,
+                                         context.err);
   const auto surface = scene::surface_of(rig);
   const auto tones = parse_tones(options.tones);
   std::vector<double> x_m;
@@ -134,7 +138,8 @@ void add_field(CommandLine& app, Context& context) {
   auto options = std::make_shared<Options>();
   auto* command =
       app.add_subcommand("field", "Compute displacement and friction along the centre line of the surface");
-  command->add_option("--rig", options->rig, "Rig file")->required();
+  add_rig(*command, options->rig);
+  add_calibration(*command, options->calibration);
   command
       ->add_option("--tone", options->tones,
                    "HZ[:UM[:DEG]]: frequency, displacement of the driven edge, phase")
@@ -150,7 +155,7 @@ void add_field(CommandLine& app, Context& context) {
       ->check(positive());
   command->add_option("--normalise", options->normalise, "drive | peak | none")->capture_default_str();
   add_json(*command, context);
-  command->footer("Example: turnpoint field --rig deploy/rigs/simulated.toml --tone 30000:0.5 --points 301");
+  command->footer("Example: turnpoint field --tone 30000:0.5 --points 301");
   command->callback([options, &context] { with_users_numbers([&] { field(*options, context); }); });
 }
 

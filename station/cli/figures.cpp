@@ -47,7 +47,7 @@ plot::Figure drawn(const physics::Figure& figure) {
 }
 
 void figures(const Options& options, Context& context) {
-  std::filesystem::create_directories(options.out);
+  system::make_folder(options.out);
   Json list = Json::array();
   for (const auto& figure : physics::figures()) {
     const auto path = (std::filesystem::path(options.out) / figure.id).string();

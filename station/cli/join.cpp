@@ -5,6 +5,7 @@
 
 #include "station/cli/command.hpp"
 #include "station/cli/json.hpp"
+#include "station/cli/shared_options.hpp"
 #include "station/store/people.hpp"
 
 namespace turnpoint::cli {
@@ -34,7 +35,7 @@ void add_join(CommandLine& app, Context& context) {
   using namespace join_command;
   auto options = std::make_shared<Options>();
   auto* command = app.add_subcommand("join", "Record that two participant codes belong to one person");
-  command->add_option("--db", options->database, "Database")->required();
+  add_database(*command, options->database);
   command
       ->add_option("first", options->first,
                    "First code: CODE@STATION, or a code that only one person has; the person gets this name")
@@ -44,7 +45,7 @@ void add_join(CommandLine& app, Context& context) {
       ->required();
   command->add_flag("--undo", options->undo, "Undo a join: the two codes belong to two people");
   add_json(*command, context);
-  command->footer("Example: turnpoint join --db lab.sqlite P01@station-a P07@station-b");
+  command->footer("Example: turnpoint join --db lab.sqlite P01 P02");
   command->callback([options, &context] { join(*options, context); });
 }
 

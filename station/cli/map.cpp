@@ -10,11 +10,13 @@
 #include "physics/boundary_map.hpp"
 #include "station/cli/command.hpp"
 #include "station/cli/json.hpp"
+#include "station/cli/shared_options.hpp"
 #include "station/plot/chart.hpp"
 #include "station/rig/rig.hpp"
 #include "station/scene/planner.hpp"
 #include "station/scene/transducer.hpp"
 #include "station/scene/under_finger.hpp"
+#include "station/setup/places.hpp"
 #include "station/setup/prepare.hpp"
 #include "station/system/write_file.hpp"
 #include "station/terms/limits.hpp"
@@ -172,7 +174,8 @@ void map(const Options& options, Context& context) {
   if (options.boundaries_mm.empty() == options.frequencies_Hz.empty())
     throw UsageError("map: give either --boundary or --frequency");
   if (!options.plot.empty() && !options.budget) throw UsageError("map: --plot needs --budget");
-  const auto rig = setup::calibrated_rig(options.rig, options.calibration, context.err);
+  const auto rig = setup::calibrated_rig(setup::rig_or_default(options.rig, context.err), options.calibration,
+                                         context.err);
   physics::MapOptions wanted;
   wanted.edge = physics::parse_edge(options.edge);
   if (!options.model.empty()) wanted.model = physics::parse_model(options.model);
@@ -218,10 +221,8 @@ void add_map(CommandLine& app, Context& context) {
   auto options = std::make_shared<Options>();
   auto* command =
       app.add_subcommand("map", "Convert boundaries to frequencies, or frequencies to boundaries");
-  command->add_option("--rig", options->rig, "Rig file")->required();
-  command->add_option(
-      "--calibration", options->calibration,
-      "Calibration file; by default the newest valid one beside the rig file, if there is one");
+  add_rig(*command, options->rig);
+  add_calibration(*command, options->calibration);
   command->add_option("--boundary", options->boundaries_mm, "Boundaries in mm from the wide end");
   command->add_option("--frequency", options->frequencies_Hz, "Frequencies in Hz");
   command->add_option("--edge", options->edge, "turning | peak | p70 | p50 | p25 | p10 | friction=0.7")
@@ -236,8 +237,7 @@ void add_map(CommandLine& app, Context& context) {
   command->add_option("--plot", options->plot,
                       "With --budget: SVG file with the same for all boundaries that the rig can present");
   add_json(*command, context);
-  command->footer(
-      "Example: turnpoint map --rig deploy/rigs/simulated.toml --boundary 150 200 --edge p50 --budget");
+  command->footer("Example: turnpoint map --boundary 150 200 --edge p50 --budget");
   command->callback([options, &context] { with_users_numbers([&] { map(*options, context); }); });
 }
 

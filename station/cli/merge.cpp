@@ -7,6 +7,7 @@
 
 #include "station/cli/command.hpp"
 #include "station/cli/json.hpp"
+#include "station/cli/shared_options.hpp"
 
 namespace turnpoint::cli {
 
@@ -60,12 +61,13 @@ void add_merge(CommandLine& app, Context& context) {
   using namespace merge_command;
   auto options = std::make_shared<Options>();
   auto* command = app.add_subcommand("merge", "Merge the sessions of other stations' databases into one");
-  command->add_option("--db", options->database, "Database to merge into; created if missing")->required();
+  add_new_database(*command, options->database, "Database to merge into; created if missing");
   command
       ->add_option("source", options->sources, "Databases or backups of other stations; they are not changed")
-      ->required();
+      ->required()
+      ->check(database());
   add_json(*command, context);
-  command->footer("Example: turnpoint merge --db lab.sqlite station-a.sqlite station-b.sqlite");
+  command->footer("Example: turnpoint merge --db all.sqlite lab.sqlite");
   command->callback([options, &context] { merge(*options, context); });
 }
 

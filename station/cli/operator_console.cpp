@@ -40,6 +40,11 @@ const char* name(PageKind kind) {
       return "gap";
     case PageKind::response:
       return "response: a button";
+    case PageKind::confidence:
+      return "confidence: on the screen";
+    case PageKind::line:
+    case PageKind::number:
+      return "answer on the screen";
     case PageKind::feedback:
       return "feedback";
     case PageKind::interval:

@@ -5,6 +5,7 @@
 
 #include "station/cli/command.hpp"
 #include "station/cli/json.hpp"
+#include "station/cli/shared_options.hpp"
 #include "station/cli/sound.hpp"
 #include "station/cli/uncertainty.hpp"
 #include "station/desk/preview.hpp"
@@ -219,17 +220,15 @@ void add_plan(CommandLine& app, Context& context) {
   auto options = std::make_shared<Options>();
   auto* command =
       app.add_subcommand("plan", "Show how a scene of a protocol is presented: tones, model, reason, cues");
-  command->add_option("protocol", options->protocol, "Protocol file")->required();
+  add_protocol(*command, options->protocol);
   command->add_option("--scene", options->scene, "Name of the scene")->required();
   command->add_option(
       "--set", options->set,
       "Value of a factor, as factor=value; by default its first level or the middle of its range");
-  command->add_option("--rig", options->rig, "Rig file");
-  command->add_option(
-      "--calibration", options->calibration,
-      "Calibration file; by default the newest valid one beside the rig file, if there is one");
+  add_rig(*command, options->rig);
+  add_calibration(*command, options->calibration);
   add_json(*command, context);
-  command->footer("Example: turnpoint plan protocols/demo.toml --scene edge --set offset_mm=9");
+  command->footer("Example: turnpoint plan demo --scene edge --set offset_mm=9");
   command->callback([options, &context] { with_users_numbers([&] { plan(*options, context); }); });
 }
 

@@ -10,7 +10,9 @@
 
 #include "station/cli/command.hpp"
 #include "station/cli/json.hpp"
+#include "station/cli/shared_options.hpp"
 #include "station/setup/places.hpp"
+#include "station/setup/prepare.hpp"
 #include "station/simulation/cue_guard.hpp"
 #include "station/simulation/power_figure.hpp"
 #include "station/system/write_file.hpp"
@@ -23,7 +25,7 @@ namespace power_command {
 using text::number;
 
 struct Options {
-  std::string protocol, rig, observer = "sim", out;
+  std::string protocol, rig, calibration, observer = "sim", out;
   int observers = 1000, intervals = 200;
   std::uint64_t seed = 1;
 };
@@ -127,7 +129,8 @@ std::function<void(int, int)> progress() {
 
 void power(const Options& options, Context& context) {
   const auto protocol = protocol::load(options.protocol);
-  const auto rig = rig::load(setup::rig_or_default(options.rig, context.err));
+  const auto rig = setup::calibrated_rig(setup::rig_or_default(options.rig, context.err), options.calibration,
+                                         context.err);
   const auto survey = protocol::survey(protocol, rig);
   if (!survey.problems.empty()) throw text::BadInput(survey.problems);
   const auto cues = simulation::cue_guard(protocol, rig, survey).reports;
@@ -140,7 +143,7 @@ void power(const Options& options, Context& context) {
   const auto result = simulation::power(protocol, wanted);
   std::vector<std::string> files;
   if (!options.out.empty()) {
-    std::filesystem::create_directories(options.out);
+    system::make_folder(options.out);
     files.push_back((std::filesystem::path(options.out) / (protocol.id + "-power.svg")).string());
     system::write_file(files.back(), plot::render(simulation::figure_of(result, protocol.title)));
   }
@@ -165,9 +168,9 @@ void add_power(CommandLine& app, Context& context) {
   auto options = std::make_shared<Options>();
   auto* command = app.add_subcommand(
       "power", "Predict what a study would find: bias, spread and interval coverage from simulated sessions");
-  command->add_option("protocol", options->protocol, "Protocol file")->required();
-  command->add_option("--rig", options->rig,
-                      "Rig file, used to predict unwanted cues that an observer could use");
+  add_protocol(*command, options->protocol);
+  add_rig(*command, options->rig, "used to predict unwanted cues that an observer could use");
+  add_calibration(*command, options->calibration);
   command->add_option("--observers", options->observers, "Simulated sessions")
       ->capture_default_str()
       ->check(range(1, 1'000'000));
@@ -187,8 +190,8 @@ void add_power(CommandLine& app, Context& context) {
   command->add_option("--out", options->out, "Folder for the figure and the numbers");
   add_json(*command, context);
   command->footer(
-      "Example: turnpoint power protocols/friction-2ifc.toml --observers 1000 --observer "
-      "sim:threshold=-18,slope=1.2 --out power");
+      "Example: turnpoint power friction-2ifc --observers 100 --observer sim:threshold=-18,slope=1.2 --out "
+      "power");
   command->callback([options, &context] { power(*options, context); });
 }
 

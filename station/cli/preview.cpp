@@ -11,13 +11,17 @@
 #include "station/cli/command.hpp"
 #include "station/cli/run.hpp"
 #include "station/cli/screens.hpp"
+#include "station/cli/shared_options.hpp"
 #include "station/desk/scene_figures.hpp"
 #include "station/setup/places.hpp"
+#include "station/setup/prepare.hpp"
 #include "station/system/write_file.hpp"
 
 namespace turnpoint::cli {
 
 namespace preview_command {
+
+constexpr const char* without_screen = "without a screen use --out DIR";
 
 struct Options {
   std::string protocol, rig, scene, out;
@@ -32,11 +36,12 @@ void write(const std::filesystem::path& path, const std::string& text, std::ostr
 /// Writes the pictures of every requested scene. If a scene cannot be presented, prints the reason, continues
 /// with the next scene, and sets a failing exit status at the end.
 void preview_to_files(const Options& options, Context& context) {
-  desk::Preview preview(options.protocol, options.rig);
+  desk::Preview preview(protocol::load(options.protocol),
+                        setup::calibrated_rig(options.rig, "", context.err));
   std::vector<std::string> assumed;
   const auto factors = desk::factors_for(preview.protocol(), options.set, assumed);
   const auto scenes = options.scene.empty() ? preview.scenes() : std::vector<std::string>{options.scene};
-  std::filesystem::create_directories(options.out);
+  system::make_folder(options.out);
   const std::filesystem::path folder = options.out;
   for (const auto& scene : scenes) {
     if (!preview.protocol().scenes.count(scene))
@@ -62,21 +67,22 @@ void add_preview(CommandLine& app, Context& context) {
   using namespace preview_command;
   auto options = std::make_shared<Options>();
   auto* command = app.add_subcommand("preview", "Show the scenes of a protocol without a session");
-  command->add_option("protocol", options->protocol, "Protocol file")->required();
+  add_protocol(*command, options->protocol);
   command->add_option("--scene", options->scene, "Name of the scene; by default all scenes");
   command->add_option(
       "--set", options->set,
       "Value of a factor, as factor=value; by default its first level or the middle of its range");
-  command->add_option("--rig", options->rig, "Rig file");
+  add_rig(*command, options->rig);
   command->add_option("--out", options->out,
                       "Folder in which to write SVG pictures, instead of showing a screen with sliders");
-  command->footer(
-      "Example: turnpoint preview protocols/demo.toml --scene edge --set offset_mm=9 --out looks");
+  command->footer("Example: turnpoint preview demo --scene edge --set offset_mm=9 --out looks");
   command->callback([options, &context] {
-    if (options->out.empty() && !context.screens) return become_ui(context);
+    if (options->out.empty() && !context.screens) return become_ui(context, without_screen);
     options->rig = setup::rig_or_default(options->rig, context.err);
     if (!options->out.empty()) return preview_to_files(*options, context);
-    context.screens->preview({options->protocol, options->rig, options->scene, options->set});
+    with_screen(without_screen, [&] {
+      context.screens->preview({options->protocol, options->rig, options->scene, options->set});
+    });
   });
 }
 

@@ -8,8 +8,10 @@
 #include <system_error>
 
 #include "station/cli/command.hpp"
+#include "station/cli/shared_options.hpp"
 #include "station/report/html.hpp"
 #include "station/system/write_file.hpp"
+#include "station/text/number.hpp"
 
 namespace turnpoint::cli {
 
@@ -27,7 +29,14 @@ void report_session(Options options, Context& context) {
   if (options.out.empty() && !context.json) options.out = "report-" + id + ".html";
   if (options.out.empty()) return;
   system::write_file(options.out, report::to_html(summary));
-  if (!context.json) fmt::print(context.out, "{}\n", options.out);
+  if (context.json) return;
+  const auto& data = summary.data;
+  fmt::print(context.out, "{}: session {} of {}, {}, {} trials\n", options.out, data.session_id,
+             data.participant, data.title, summary.outcomes.presented);
+  for (const auto& estimate : data.estimates)
+    fmt::print(context.out, "  {}: {} {}{}\n", estimate.procedure, estimate.parameter,
+               text::number(estimate.mean, 4),
+               estimate.sd ? fmt::format(" (SD {})", text::number(*estimate.sd, 3)) : "");
 }
 
 }  // namespace report_command
@@ -37,7 +46,7 @@ void add_report(CommandLine& app, Context& context) {
   auto options = std::make_shared<Options>();
   auto* command = app.add_subcommand(
       "report", "Write a report of a session: fits, bias, speed-accuracy trade-off, health");
-  command->add_option("--db", options->database, "Database")->required();
+  add_database(*command, options->database);
   command->add_option("--session", options->filter.session_id,
                       "Session to report; by default the newest one");
   command->add_option("--participant", options->filter.participant,
@@ -47,7 +56,7 @@ void add_report(CommandLine& app, Context& context) {
   command->add_option("--out", options->out,
                       "HTML file to write; by default report-SESSION.html, or no file with --json");
   add_json(*command, context);
-  command->footer("Example: turnpoint report --db lab.sqlite --participant P07 --out P07.html");
+  command->footer("Example: turnpoint report --db lab.sqlite --participant P01 --out P01.html");
   command->callback([options, &context] { report_session(*options, context); });
 }
 

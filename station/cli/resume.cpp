@@ -1,9 +1,12 @@
+#include <fmt/format.h>
+
 #include <memory>
 
 #include "station/cli/command.hpp"
 #include "station/cli/console_session.hpp"
 #include "station/cli/run.hpp"
 #include "station/cli/screens.hpp"
+#include "station/cli/shared_options.hpp"
 #include "station/setup/resume.hpp"
 
 namespace turnpoint::cli {
@@ -11,7 +14,7 @@ namespace turnpoint::cli {
 void add_resume(CommandLine& app, Context& context) {
   auto request = std::make_shared<setup::ResumeRequest>();
   auto* command = app.add_subcommand("resume", "Continue the newest interrupted session");
-  command->add_option("--db", request->database, "Database file")->required()->check(existing_file());
+  add_database(*command, request->database);
   command->add_option("--session", request->session_id,
                       "Session to continue; by default the newest interrupted one");
   command->add_option("--policy", request->policy, "resume | restart | block; otherwise as the protocol says")
@@ -21,9 +24,13 @@ void add_resume(CommandLine& app, Context& context) {
                     "is or was wrong");
   command->add_flag("--headless", request->headless, "No screen");
   add_json(*command, context);
-  command->footer("Example: turnpoint resume --db lab.sqlite --policy resume");
+  command->footer("Example: turnpoint resume --db lab.sqlite");
   command->callback([request, &context] {
     const auto setup = setup::prepare_resume(*request, context.err);
+    if (!setup && !request->session_id.empty())
+      throw UsageError(fmt::format(
+          "resume: {} has no interrupted session {}; `turnpoint sessions --db {}` lists the sessions",
+          request->database, request->session_id, request->database));
     if (!setup) {
       if (context.json)
         context.out << "null\n";
@@ -32,8 +39,10 @@ void add_resume(CommandLine& app, Context& context) {
       return;
     }
     if (setup->observer.empty() && !request->headless) {
-      if (!context.screens) return become_ui(context);
-      return show_summary(context, context.screens->session({}, *setup));
+      const auto instead = "use --headless if the rig has buttons to answer with";
+      if (!context.screens) return become_ui(context, instead);
+      return show_summary(context,
+                          with_screen(instead, [&] { return context.screens->session({}, *setup); }));
     }
     run_without_screen(context, *setup);
   });

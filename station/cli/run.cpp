@@ -11,19 +11,19 @@
 #include "station/cli/console_session.hpp"
 #include "station/cli/json.hpp"
 #include "station/cli/screens.hpp"
+#include "station/cli/shared_options.hpp"
 #include "station/setup/places.hpp"
 #include "station/store/read.hpp"
 #include "station/text/number.hpp"
 
 namespace turnpoint::cli {
 
-void become_ui(const Context& context) {
+void become_ui(const Context& context, const std::string& instead) {
   const auto self = std::filesystem::read_symlink("/proc/self/exe");
   const auto ui = (self.parent_path() / "turnpoint-ui").string();
   auto arguments = context.arguments;
   ::execve(ui.c_str(), arguments.data(), environ);
-  throw std::system_error(errno, std::generic_category(),
-                          "cannot start " + ui + " (without a screen use --headless --observer sim)");
+  throw std::system_error(errno, std::generic_category(), "cannot start " + ui + " (" + instead + ")");
 }
 
 namespace run_command {
@@ -53,6 +53,9 @@ Json to_json(const session::Summary& summary) {
           {"accuracy", json_number(summary.accuracy)},
           {"duration_s", json_number(summary.duration_s)},
           {"xruns", summary.xruns},
+          {"triggers", summary.triggers},
+          {"triggers_missed", summary.triggers_missed},
+          {"triggers_extra", summary.triggers_extra},
           {"stretched_s", json_number(summary.stretched_s)},
           {"realtime_rights", summary.realtime_rights},
           {"checksum", summary.checksum},
@@ -70,6 +73,9 @@ void print_summary(std::ostream& out, const session::Summary& s) {
   if (s.accuracy) fmt::print(out, "  {} % of the scored answers right\n", number(100 * *s.accuracy, 3));
   for (const auto& e : s.estimates)
     fmt::print(out, "  {}: {} {}\n", e.procedure, e.parameter, trial::in_words(e));
+  if (s.triggers_missed + s.triggers_extra > 0)
+    fmt::print(out, "  {} of {} trigger codes were missed; {} were read back that had not been sent\n",
+               s.triggers_missed, s.triggers, s.triggers_extra);
   if (s.stretched_s > 0)
     fmt::print(out, "  pauses were lengthened by {} s in total to keep within the rig's limits\n",
                number(s.stretched_s, 3));
@@ -102,12 +108,11 @@ void show_summary(Context& context, const session::Summary& summary, const std::
 
 std::shared_ptr<setup::RunRequest> add_run_options(Command& command) {
   auto request = std::make_shared<setup::RunRequest>();
-  command.add_option("protocol", request->protocol, "Protocol file")->required();
-  command.add_option("--rig", request->rig,
-                     "Rig file; by default the installed rig, or the simulated rig if none is installed");
+  add_protocol(command, request->protocol);
+  add_rig(command, request->rig);
   command.add_option("--participant", request->participant,
                      "Participant code (never a name); if it is left out, the screen asks for it");
-  command.add_option("--db", request->database, "Database file; created if missing")->required();
+  add_new_database(command, request->database, "Database file; created if missing");
   command.add_option("--mode", request->mode, "live | pilot")
       ->capture_default_str()
       ->check(one_of({"live", "pilot"}));
@@ -123,6 +128,7 @@ std::shared_ptr<setup::RunRequest> add_run_options(Command& command) {
       "--consent", request->consent_version,
       "Version of the consent form; the screen asks the participant to confirm having signed it");
   command.add_flag("--headless", request->headless, "No screen");
+  command.add_flag("--fullscreen", request->fullscreen, "Fill the screen, on a desktop too");
   command.add_flag(
       "--buttons-only", request->buttons_only,
       "Run without a screen: a person answers with the rig's buttons, and the operator types commands");
@@ -137,8 +143,8 @@ void add_run(CommandLine& app, Context& context) {
   auto request = add_run_options(*command);
   add_json(*command, context);
   command->footer(
-      "Example: turnpoint run protocols/demo.toml --rig deploy/rigs/simulated.toml --participant P01 --db "
-      "lab.sqlite\n"
+      "Example: turnpoint run demo --participant P01 --db lab.sqlite --observer sim\n"
+      "Without --observer a person answers: on the screen, or with the rig's buttons and --buttons-only.\n"
       "Ctrl-C or SIGTERM ends a session without a screen cleanly, so that it can be resumed; a second one "
       "kills it.");
   command->callback([request, &context] {
@@ -148,11 +154,14 @@ void add_run(CommandLine& app, Context& context) {
           "run: without a screen nobody can answer; use --observer sim for a simulated observer, or "
           "--buttons-only");
     const bool on_screen = person && !request->buttons_only;
-    if (on_screen && !context.screens) return become_ui(context);
+    const auto instead = "without a screen use --observer sim or --buttons-only";
+    if (on_screen && !context.screens) return become_ui(context, instead);
     if (!on_screen && request->participant.empty())
       throw UsageError("run: --participant is missing; only a screen can ask for it");
     request->rig = setup::rig_or_default(request->rig, context.err);
-    if (on_screen) return show_summary(context, context.screens->session(*request, std::nullopt));
+    if (on_screen)
+      return show_summary(
+          context, with_screen(instead, [&] { return context.screens->session(*request, std::nullopt); }));
     run_without_screen(context, setup::prepare(*request));
   });
 }

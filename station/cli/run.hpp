@@ -3,6 +3,7 @@
 #include <string>
 
 #include "station/cli/command.hpp"
+#include "station/cli/screens.hpp"
 #include "station/setup/prepare.hpp"
 #include "station/setup/station_request.hpp"
 
@@ -16,8 +17,18 @@ std::shared_ptr<setup::RunRequest> add_run_options(Command& command);
 std::shared_ptr<setup::StationRequest> add_station_options(Command& command);
 
 /// Replaces this process by the program turnpoint-ui in the same folder, with the same command line. Never
-/// returns; throws if turnpoint-ui cannot be started.
-void become_ui(const Context& context);
+/// returns; throws if turnpoint-ui cannot be started. `instead` is advice on what to do without a screen.
+void become_ui(const Context& context, const std::string& instead);
+
+/// Calls `show`, which opens a window. If there is no screen, the UsageError contains the advice `instead`.
+template <class Show>
+auto with_screen(const std::string& instead, Show show) {
+  try {
+    return show();
+  } catch (const NoScreen& error) {
+    throw UsageError(error.what() + ("; " + instead));
+  }
+}
 
 /// Prints the summary as JSON, or as text with the command that continues an interrupted session. An
 /// interrupted session sets exit status 1. `resume_options` are further options for that command ("

@@ -6,8 +6,15 @@
 #include "station/maintenance/panel_latency.hpp"
 #include "station/setup/prepare.hpp"
 #include "station/setup/station_request.hpp"
+#include "station/terms/usage_error.hpp"
 
 namespace turnpoint::cli {
+
+/// There is no screen on which to open a window. The message does not say what to do instead, because that
+/// differs from command to command.
+struct NoScreen : terms::UsageError {
+  using UsageError::UsageError;
+};
 
 /// Functions that need a screen, which only turnpoint-ui provides; turnpoint starts turnpoint-ui to call
 /// them. Each returns when its window is closed.

@@ -5,6 +5,7 @@
 
 #include "station/cli/command.hpp"
 #include "station/cli/json.hpp"
+#include "station/cli/shared_options.hpp"
 #include "station/store/read.hpp"
 
 namespace turnpoint::cli {
@@ -65,13 +66,13 @@ void add_sessions(CommandLine& app, Context& context) {
   using namespace sessions_command;
   auto options = std::make_shared<Options>();
   auto* command = app.add_subcommand("sessions", "List the sessions of a database");
-  command->add_option("--db", options->database, "Database")->required();
+  add_database(*command, options->database);
   command->add_option("--session", options->filter.session_id, "List only this session");
   command->add_option("--participant", options->filter.participant,
                       "List only this participant: CODE or CODE@STATION");
   command->add_option("--protocol", options->filter.protocol_id, "List only this protocol");
   add_json(*command, context);
-  command->footer("Example: turnpoint sessions --db lab.sqlite --participant P07");
+  command->footer("Example: turnpoint sessions --db lab.sqlite");
   command->callback([options, &context] { sessions(*options, context); });
 }
 

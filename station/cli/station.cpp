@@ -3,6 +3,7 @@
 #include "station/cli/command.hpp"
 #include "station/cli/run.hpp"
 #include "station/cli/screens.hpp"
+#include "station/cli/shared_options.hpp"
 #include "station/desk/operator_code.hpp"
 #include "station/setup/places.hpp"
 #include "station/setup/station_request.hpp"
@@ -13,9 +14,9 @@ std::shared_ptr<setup::StationRequest> add_station_options(Command& command) {
   auto request = std::make_shared<setup::StationRequest>();
   command.add_option("--protocols", request->protocols,
                      "Folder with protocol files; by default the shipped protocols");
-  command.add_option("--rig", request->rig,
-                     "Rig file; by default the installed rig, or the simulated rig if none is installed");
+  add_rig(command, request->rig);
   command.add_option("--db", request->database, "Database file; by default one in the user's data folder");
+  command.add_flag("--fullscreen", request->fullscreen, "Fill the screen, on a desktop too");
   command.add_flag("--locked", request->locked,
                    "Ask for the operator's code before showing the first page; use this if participants can "
                    "reach the screen");
@@ -33,11 +34,12 @@ void add_station(CommandLine& app, Context& context) {
       throw UsageError(
           "station: --locked needs your own operator's code, because the built-in code is public; store one "
           "with: sudo turnpoint operator-code");
-    if (!context.screens) return become_ui(context);
+    const auto instead = "the station needs a screen; without one run each session with turnpoint run";
+    if (!context.screens) return become_ui(context, instead);
     request->rig = setup::rig_or_default(request->rig, context.err);
     if (request->protocols.empty()) request->protocols = setup::shipped("protocols");
     if (request->database.empty()) request->database = setup::default_database();
-    context.screens->station(*request);
+    with_screen(instead, [&] { context.screens->station(*request); });
   });
 }
 

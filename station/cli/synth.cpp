@@ -7,12 +7,14 @@
 
 #include "station/cli/command.hpp"
 #include "station/cli/json.hpp"
+#include "station/cli/shared_options.hpp"
 #include "station/cli/tones.hpp"
 #include "station/drive/engine.hpp"
 #include "station/maintenance/play_armed.hpp"
 #include "station/rig/rig.hpp"
 #include "station/scene/transducer.hpp"
 #include "station/session/stage.hpp"
+#include "station/setup/places.hpp"
 #include "station/text/number.hpp"
 
 namespace turnpoint::cli {
@@ -89,7 +91,7 @@ drive::PlayReport play(const rig::Rig& rig, const Options& options) {
 }
 
 void synth(const Options& options, Context& context) {
-  const auto rig = rig::load(options.rig);
+  const auto rig = rig::load(setup::rig_or_default(options.rig, context.err));
   const auto report = play(rig, options);
   if (context.json) {
     context.out << to_json(report, options).dump(2) << "\n";
@@ -106,10 +108,7 @@ void add_synth(CommandLine& app, Context& context) {
   using namespace synth_command;
   auto options = std::make_shared<Options>();
   auto* command = app.add_subcommand("synth", "Play or render tones");
-  command
-      ->add_option("--rig", options->rig,
-                   "Rig file, which gives the sample rate, sample size and transducers")
-      ->required();
+  add_rig(*command, options->rig);
   command
       ->add_option("--tone", options->tones,
                    "HZ[:UM[:DEG]]: frequency, displacement of the driven edge, phase")
@@ -124,9 +123,7 @@ void add_synth(CommandLine& app, Context& context) {
   command->add_flag("--arm", options->arm,
                     "With --out alsa:...: arm the rig's amplifier while the tones play");
   add_json(*command, context);
-  command->footer(
-      "Example: turnpoint synth --rig deploy/rigs/simulated.toml --tone 30000:0.5 --seconds 2 --out "
-      "wav:tone.wav");
+  command->footer("Example: turnpoint synth --tone 30000:0.5 --seconds 2 --out wav:tone.wav");
   command->callback([options, &context] { with_users_numbers([&] { synth(*options, context); }); });
 }
 

@@ -5,6 +5,7 @@
 
 #include "station/cli/command.hpp"
 #include "station/cli/json.hpp"
+#include "station/cli/shared_options.hpp"
 #include "station/procedure/trace.hpp"
 #include "station/protocol/protocol.hpp"
 #include "station/text/number.hpp"
@@ -82,7 +83,7 @@ void add_trace(CommandLine& app, Context& context) {
   using namespace trace_command;
   auto options = std::make_shared<Options>();
   auto* command = app.add_subcommand("trace", "Show the levels that a procedure chooses for given answers");
-  command->add_option("protocol", options->protocol, "Protocol file")->required();
+  add_protocol(*command, options->protocol);
   command->add_option("--procedure", options->procedure, "Name of the procedure")->required();
   command
       ->add_option("--answers", options->answers,
@@ -91,8 +92,7 @@ void add_trace(CommandLine& app, Context& context) {
   command->add_option("--seed", options->seed,
                       "Seed for shuffling levels; by default the seed in the protocol file, or 0");
   add_json(*command, context);
-  command->footer(
-      "Example: turnpoint trace protocols/friction-2ifc.toml --procedure threshold --answers 11101");
+  command->footer("Example: turnpoint trace friction-2ifc --procedure threshold --answers 11101");
   command->callback([options, &context] { trace(*options, context); });
 }
 

@@ -5,6 +5,7 @@
 
 #include "station/cli/command.hpp"
 #include "station/cli/json.hpp"
+#include "station/cli/shared_options.hpp"
 #include "station/store/verify.hpp"
 
 namespace turnpoint::cli {
@@ -60,14 +61,13 @@ void add_verify(CommandLine& app, Context& context) {
   using namespace verify_command;
   auto options = std::make_shared<Options>();
   auto* command = app.add_subcommand("verify", "Check that the stored data are as they were recorded");
-  command->add_option("--db", options->database, "Database or backup to check; it is not changed")
-      ->required();
+  add_database(*command, options->database, "Database or backup to check; it is not changed");
   command->add_option("--session", options->verify.session_id, "Check only this session");
   command->add_option("--against", options->verify.against,
                       "A sessions.csv exported earlier: its checksums must still be in the database");
   add_json(*command, context);
   command->footer(
-      "Example: turnpoint verify --db lab.sqlite --against export/my-study/sessions.csv\n"
+      "Example: turnpoint verify --db lab.sqlite\n"
       "The exit status is 1 if anything was changed, added or removed.");
   command->callback([options, &context] { verify(*options, context); });
 }

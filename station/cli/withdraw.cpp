@@ -8,6 +8,7 @@
 
 #include "station/cli/command.hpp"
 #include "station/cli/json.hpp"
+#include "station/cli/shared_options.hpp"
 
 namespace turnpoint::cli {
 
@@ -101,7 +102,7 @@ void add_withdraw(CommandLine& app, Context& context) {
   auto options = std::make_shared<Options>();
   auto* command =
       app.add_subcommand("withdraw", "Delete the data of a participant who withdraws; cannot be undone");
-  command->add_option("--db", options->database, "Database")->required();
+  add_database(*command, options->database);
   command
       ->add_option("--participant", options->withdraw.participant,
                    "Participant: CODE, or CODE@STATION if several people have this code")
@@ -115,7 +116,7 @@ void add_withdraw(CommandLine& app, Context& context) {
   command->add_flag("--dry-run", options->dry_run, "List what would be deleted, and delete nothing");
   command->add_flag("--yes", options->yes, "Do not ask for confirmation (for scripts)");
   add_json(*command, context);
-  command->footer("Example: turnpoint withdraw --db lab.sqlite --participant P07 --backups /mnt/backup");
+  command->footer("Example: turnpoint withdraw --db lab.sqlite --participant P01 --dry-run");
   command->callback([options, &context] { withdraw(*options, context); });
 }
 

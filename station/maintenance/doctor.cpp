@@ -275,6 +275,8 @@ std::vector<lines::Finding> examine(const rig::Rig& rig, const std::string& data
     checks.push_back(lines::check_touch("contact", *rig.contact_uri));
   else if (rig.contact_uri)
     lines("contact", *rig.contact_uri);
+  if (rig.trigger_lines_uri) lines("trigger", *rig.trigger_lines_uri);
+  if (rig.sync && !rig.sync->channel) lines("sync", rig.sync->uri);
   if (rig.touch_uri) checks.push_back(touch(rig));
   display(checks);
   input(checks);

@@ -81,6 +81,44 @@ struct ToneRow {
   std::optional<double> measured_dB, measured_phase_deg;
 };
 
+/// The channels of a signal: one number per channel and point.
+struct SignalChannel {
+  std::string name;
+  std::string unit;
+  double resolution = 0;  ///< values are stored as whole multiples of this
+  bool operator==(const SignalChannel&) const = default;
+};
+
+/// A binary value. It is stored as it is, and not exported.
+struct Bytes {
+  std::string bytes;
+  bool operator==(const Bytes&) const = default;
+};
+
+/// What a sensor recorded during one trial: points at a fixed rate, compressed
+/// (station/store/signal_code.hpp).
+struct SignalRow {
+  std::string stream;            ///< "finger"
+  std::int64_t start_frame = 0;  ///< playback frame of the first point
+  double start_s = 0;            ///< time of the first point from the start of the segment
+  double rate_Hz = 0;            ///< points per second
+  std::int64_t points = 0;
+  std::vector<SignalChannel> channels;
+  std::string encoding;
+  Bytes data;
+};
+
+/// What force sensors say about the finger in one trial (station/sensing/trial_summary.hpp). `sensing` is ""
+/// if the rig has no force sensors; otherwise "ok", or why the forces are not known. A value that could not
+/// be measured is empty.
+struct FingerRow {
+  std::string sensing;
+  std::optional<double> contact_s;
+  std::optional<std::int64_t> strokes;
+  std::optional<double> normal_N, normal_sd_N, normal_in_window, speed_mm_s, speed_in_window;
+  std::optional<double> mu_low, mu_high, boundary_felt_mm, boundary_se_mm, lag_mm, tare_mN;
+};
+
 /// The result of one trial. It is committed as a whole before the next trial begins.
 struct TrialRow {
   int segment_index = 1;   ///< from 1; set by the session log, not by the caller
@@ -98,6 +136,8 @@ struct TrialRow {
   double onset_s = 0;         ///< time of response_zero from the start of the segment
   double duration_s = 0;
   std::optional<double> response_time_s, decision_time_s, movement_time_s;
+  std::optional<int> confidence;                     ///< from 1 (guessed) up; only if the task asks for it
+  std::optional<double> confidence_time_s;           ///< from the answer to the confidence
   std::string response_zero, response_time_quality;  ///< quality: kernel | toolkit | simulated
   double response_offset_s = 0;
   std::optional<double> deadline_s;
@@ -114,7 +154,9 @@ struct TrialRow {
   /// the part of the measured vibration that was not planned, relative to the planned vibration
   std::optional<double> drive_residual_dB;
   std::optional<double> onset_error_us;  ///< measured minus planned onset
+  FingerRow finger;
   std::vector<ToneRow> tones;
+  std::vector<SignalRow> signal_rows;  ///< written, but not read back with the trial
 };
 
 /// A block of a stored session with its finished trials, in the order in which they were run.

@@ -129,6 +129,7 @@ std::optional<plot::Figure> trace_figure(const Summary& summary) {
     plot::Chart panel;
     panel.title = or_default(trace.procedure, "all trials");
     panel.x = plot::fitted("Trial (number in the session)", line.x, 0.03);
+    panel.x.counts = true;
     panel.y = plot::fitted(summary.data.level_label, line.y, 0.1);
     // Draw a line only if the procedure moves in small steps. A line through shuffled levels would only
     // zigzag.
@@ -177,6 +178,44 @@ std::optional<plot::Figure> settings_figure(const Summary& summary) {
   return figure;
 }
 
+std::optional<plot::Figure> judgement_figure(const Summary& summary) {
+  const bool numbers = summary.data.design == Design::numbers;
+  plot::Chart chart;
+  std::vector<double> levels, values;
+  for (const auto& judged : summary.judgements) {
+    plot::Points points;
+    plot::Line line;
+    points.series = line.series = static_cast<int>(chart.layers.size()) / 2;
+    if (!judged.condition.empty()) points.name = judged.condition;
+    for (const auto& level : judged.levels) {
+      if (!level.mean) continue;
+      points.x.push_back(level.level), points.y.push_back(level.mean->value);
+      points.low.push_back(level.mean->interval.low), points.high.push_back(level.mean->interval.high);
+    }
+    if (points.x.empty()) continue;
+    line.x = points.x, line.y = points.y;
+    levels.insert(levels.end(), points.x.begin(), points.x.end());
+    for (const auto* ends : {&points.low, &points.high})
+      values.insert(values.end(), ends->begin(), ends->end());
+    chart.layers.insert(chart.layers.end(), {line, points});
+  }
+  if (levels.empty()) return std::nullopt;
+  const bool ratios =
+      numbers && summary.data.level_unit != "dB" && *std::min_element(levels.begin(), levels.end()) > 0;
+  const auto scale = [](bool logarithmic) {
+    return logarithmic ? plot::AxisScale::log10 : plot::AxisScale::linear;
+  };
+  chart.x = plot::fitted(summary.data.level_label, levels, 0.06, scale(ratios));
+  chart.y =
+      plot::fitted(numbers ? "Geometric mean of the numbers" : "Mean rating", values, 0.08, scale(numbers));
+  plot::Figure figure;
+  figure.title = numbers ? "Numbers at each level" : "Ratings at each level";
+  figure.chart_width_px = 620;
+  figure.chart_height_px = 320;
+  figure.charts.push_back(std::move(chart));
+  return figure;
+}
+
 std::optional<plot::Figure> vibration_figure(const Summary& summary) {
   if (summary.data.measured.empty()) return std::nullopt;
   plot::Points points;
@@ -187,6 +226,7 @@ std::optional<plot::Figure> vibration_figure(const Summary& summary) {
   }
   plot::Chart chart;
   chart.x = plot::fitted("Trial (number)", points.x, 0.03);
+  chart.x.counts = true;
   auto levels = points.y;
   // the axis always includes 0.6 dB below and above the plan, beyond the 0.5 dB of ProofLimits::level_dB
   levels.insert(levels.end(), {-0.6, 0.6});
@@ -225,7 +265,7 @@ std::optional<plot::Figure> response_time_figure(const Summary& summary) {
     plot::Chart panel;
     panel.title = or_default(entry.instruction, "all trials");
     panel.x = {"Response time (s)", 0, high};
-    panel.y = {"Trials (number)", 0, tallest * 1.12};
+    panel.y = {"Trials (number)", 0, tallest * 1.12, plot::AxisScale::linear, true};
     panel.layers.push_back(bars[i]);
     if (entry.times)
       panel.layers.push_back(plot::Rule{plot::Rule::Direction::vertical, entry.times->median_s,

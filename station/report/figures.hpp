@@ -18,6 +18,8 @@ std::optional<plot::Figure> response_time_figure(const Summary& summary);
 /// Plots the settings of a slider in order of presentation, with the slider's starting positions and the mean
 /// setting.
 std::optional<plot::Figure> settings_figure(const Summary& summary);
+/// Plots the mean rating, or the geometric mean of the numbers, at each level, with its interval.
+std::optional<plot::Figure> judgement_figure(const Summary& summary);
 /// Plots the level of the measured vibration relative to the planned vibration, in order of presentation.
 /// Open markers are trials that are void because of their level.
 std::optional<plot::Figure> vibration_figure(const Summary& summary);

@@ -1,6 +1,9 @@
 #include "station/report/html.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <set>
 
 #include "station/plot/svg.hpp"
 #include "station/report/figures.hpp"
@@ -140,6 +143,31 @@ std::string settings_section(const Summary& summary) {
   return html + "<p class=\"soft\">95 % intervals: Student's t, chi squared.</p>\n";
 }
 
+std::string judgement_section(const Summary& summary) {
+  const bool numbers = summary.data.design == Design::numbers;
+  const std::string mean = numbers ? "Geometric mean" : "Mean";
+  std::string html = std::string("<h2>") + (numbers ? "Numbers" : "Ratings") + "</h2>\n" +
+                     picture(judgement_figure(summary));
+  for (const auto& judged : summary.judgements) {
+    if (!judged.condition.empty()) html += "<h3>" + escaped(judged.condition) + "</h3>\n";
+    html += "<table><tr><th>" + escaped(summary.data.level_label) + "</th><th>Answers</th><th>" + mean +
+            "</th><th>Median</th></tr>";
+    for (const auto& level : judged.levels)
+      html += "<tr><td class=\"n\">" + number(level.level, 4) + "</td><td class=\"n\">" +
+              std::to_string(level.values.size()) + "</td>" + cell(level.mean) + "<td class=\"n\">" +
+              number(level.median) + "</td></tr>";
+    html += "</table>\n";
+    if (numbers)
+      html += "<table><tr><td>Exponent of Stevens\u2019 law (no unit)</td>" + cell(judged.exponent) +
+              "</tr></table>\n";
+    html += notes(judged.statements);
+  }
+  html += std::string("<p class=\"soft\">95 % intervals: Student's t") +
+          (numbers ? " of the logarithms. The exponent is the slope of log number over log level." : ".") +
+          "</p>\n";
+  return html;
+}
+
 std::string name_of(const std::string& condition) { return condition.empty() ? "all trials" : condition; }
 
 /// A row of the table of speed and accuracy. The row appears only if the protocol shows the part of the
@@ -266,18 +294,49 @@ std::string detection_section(const Summary& summary) {
          "log-linear correction; 95 % intervals are those of Gourevitch and Galanter.</p>\n";
 }
 
-std::string staircase_table(const SessionData& data) {
-  if (data.staircases.empty()) return "";
-  std::string html = "<table><tr><th>Procedure</th><th>Block</th><th>" + escaped(in_unit("Estimate", data)) +
-                     "</th><th>" + escaped(in_unit("Standard deviation", data)) +
-                     "</th><th>Taken from</th></tr>";
-  for (const auto& stairs : data.staircases) {
-    const auto mean = stairs.sd ? text::estimated(stairs.mean, *stairs.sd) : text::number(stairs.mean, 3);
-    html += "<tr><td>" + escaped(stairs.procedure) + "</td><td>" + escaped(stairs.block) +
-            "</td><td class=\"n\">" + minus(mean) + "</td><td class=\"n\">" +
-            (stairs.sd ? number(*stairs.sd, 2) : "") + "</td><td>" + escaped(stairs.basis) + "</td></tr>";
+/// Says why a procedure's own estimate differs from the fit.
+std::string why_estimates_differ(const SessionData& data) {
+  bool posterior = false, track = false;
+  std::set<std::string> settles_at;
+  for (const auto& estimate : data.estimates) {
+    posterior |= estimate.choice == procedure::Choice::posterior;
+    track |= estimate.choice == procedure::Choice::track;
+    if (estimate.choice == procedure::Choice::track && estimate.settles_at)
+      settles_at.insert(number(100 * *estimate.settles_at) + " %");
   }
-  return html + "</table>\n";
+  std::string why;
+  if (posterior)
+    why +=
+        "A procedure with a posterior estimates the mean of that posterior, with the prior and the grid of "
+        "the "
+        "protocol. The fit uses the same answers, but a prior of its own, which is nearly flat, and shows "
+        "medians. The fewer answers there are, the further the two are apart. ";
+  if (track) why += "A staircase estimates from the last levels that it tried; the fit uses all answers. ";
+  if (!settles_at.empty())
+    why += fmt::format(
+        "A staircase settles where {} of the answers are right (or are the tracked answer), which need not "
+        "be "
+        "the threshold of the fit.",
+        fmt::join(settles_at, " or "));
+  return why;
+}
+
+std::string estimate_section(const SessionData& data) {
+  if (data.estimates.empty()) return "";
+  std::string html =
+      "<h2>The procedure's own estimate</h2>\n<table><tr><th>Procedure</th><th>Block</th>"
+      "<th>Parameter</th><th>Estimate</th><th>Standard deviation</th><th>Taken from</th></tr>";
+  for (const auto& estimate : data.estimates) {
+    const auto mean =
+        estimate.sd ? text::estimated(estimate.mean, *estimate.sd) : text::number(estimate.mean, 3);
+    const bool level = estimate.parameter == "threshold" || estimate.parameter == "pse";
+    html += "<tr><td>" + escaped(estimate.procedure) + "</td><td>" + escaped(estimate.block) + "</td><td>" +
+            escaped(level ? in_unit(estimate.parameter, data) : estimate.parameter) +
+            "</td><td class=\"n\">" + minus(mean) + "</td><td class=\"n\">" +
+            (estimate.sd ? number(*estimate.sd, 2) : "") + "</td><td>" + escaped(estimate.basis) +
+            "</td></tr>";
+  }
+  return html + "</table>\n<p class=\"soft\">" + why_estimates_differ(data) + "</p>\n";
 }
 
 std::string trend(const std::optional<analysis::Trend>& trend, const char* unit) {
@@ -296,6 +355,10 @@ std::string course_section(const Summary& summary) {
                      std::to_string(counts.anticipations) + " anticipations, " +
                      std::to_string(counts.aborted) + " aborted, " + std::to_string(counts.faults) +
                      " faults (practice left out)");
+  for (const auto& [degree, right] : summary.confidence)
+    line("Right with confidence " + std::to_string(degree),
+         std::to_string(right.right) + " of " + std::to_string(right.trials) + ", proportion " +
+             estimated(right.value, right.interval));
   if (summary.catch_trials)
     line("Catch trials right", std::to_string(summary.catch_trials->right) + " of " +
                                    std::to_string(summary.catch_trials->trials) + ", proportion " +
@@ -308,7 +371,7 @@ std::string course_section(const Summary& summary) {
              (summary.bias->criterion ? ", criterion c = " + number(*summary.bias->criterion, 2) : ""));
   line("Trend of response time", trend(summary.fatigue.response_time_s, " s"));
   line("Trend of accuracy", trend(summary.fatigue.proportion_correct, " (proportion correct)"));
-  html += "</table>\n" + picture(trace_figure(summary)) + staircase_table(summary.data);
+  html += "</table>\n" + picture(trace_figure(summary));
   if (summary.bias) html += notes(summary.bias->statements);
   return html + notes(summary.fatigue.statements);
 }
@@ -325,11 +388,13 @@ std::string to_html(const Summary& summary) {
       escaped(data.participant) + "</b>, session " + escaped(data.session_id) + ", " + escaped(data.status);
   if (data.run_mode != "live") html += " <span class=\"mode\">" + escaped(data.run_mode) + "</span>";
   html += "</p>\n" + facts(data.facts);
-  if (data.design != Design::adjustment) {
+  if (judges(data.design)) {
+    html += judgement_section(summary);
+  } else if (data.design != Design::adjustment) {
     if (!summary.fits.empty())
       html += "<h2>Psychometric function</h2>\n" + picture(psychometric_figure(summary));
     for (const auto& named : summary.fits) html += fit_table(named, data);
-    html += detection_section(summary) + trade_section(summary);
+    html += estimate_section(data) + detection_section(summary) + trade_section(summary);
   } else {
     html += settings_section(summary);
   }

@@ -113,6 +113,18 @@ Json instruction_json(const analysis::InstructionResult& entry) {
   return json;
 }
 
+Json judgements_json(const analysis::Judgements& judged) {
+  Json json{{"condition", judged.condition}, {"levels", Json::array()}};
+  for (const auto& level : judged.levels)
+    json["levels"].push_back({{"level", value(level.level)},
+                              {"answers", level.values.size()},
+                              {"mean", value(level.mean)},
+                              {"median", value(level.median)}});
+  json["exponent"] = value(judged.exponent);
+  json["statements"] = value(judged.statements);
+  return json;
+}
+
 Json trend_json(const std::optional<analysis::Trend>& trend) {
   if (!trend) return nullptr;
   return {{"per_100_trials", value(trend->per_100_trials)}, {"interval", value(trend->interval)}};
@@ -146,6 +158,7 @@ std::string to_json(const Summary& summary) {
                                 {"sd", value(settings.sd)},
                                 {"start_slope", value(settings.start_slope)},
                                 {"statements", value(settings.statements)}});
+  for (const auto& judged : summary.judgements) json["judgements"].push_back(judgements_json(judged));
   json["instructions"] = Json::array();
   for (const auto& entry : summary.trade.instructions)
     json["instructions"].push_back(instruction_json(entry));
@@ -166,19 +179,27 @@ std::string to_json(const Summary& summary) {
                                  {"correct_rejections", entry.counts.correct_rejections},
                                  {"d_prime", value(entry.d_prime)},
                                  {"criterion", value(entry.criterion)}});
-  json["staircases"] = Json::array();
-  for (const auto& stairs : data.staircases)
-    json["staircases"].push_back({{"procedure", stairs.procedure},
-                                  {"block", stairs.block},
-                                  {"mean", value(stairs.mean)},
-                                  {"sd", value(stairs.sd)},
-                                  {"basis", stairs.basis}});
+  json["estimates"] = Json::array();
+  for (const auto& estimate : data.estimates)
+    json["estimates"].push_back({{"procedure", estimate.procedure},
+                                 {"block", estimate.block},
+                                 {"parameter", estimate.parameter},
+                                 {"mean", value(estimate.mean)},
+                                 {"sd", value(estimate.sd)},
+                                 {"basis", estimate.basis}});
   json["bias"] = nullptr;
   if (summary.bias)
     json["bias"] = {{"share_second", value(summary.bias->share_second)},
                     {"interval", value(summary.bias->interval)},
                     {"criterion", value(summary.bias->criterion)},
                     {"statements", value(summary.bias->statements)}};
+  json["confidence"] = Json::array();
+  for (const auto& [degree, right] : summary.confidence)
+    json["confidence"].push_back({{"degree", degree},
+                                  {"right", right.right},
+                                  {"trials", right.trials},
+                                  {"proportion", value(right.value)},
+                                  {"interval", value(right.interval)}});
   json["catch"] = nullptr;
   if (summary.catch_trials)
     json["catch"] = {{"right", summary.catch_trials->right},

@@ -8,6 +8,7 @@
 #include "station/analysis/psychometric_fit.hpp"
 #include "station/analysis/speed_accuracy.hpp"
 #include "station/analysis/trial_record.hpp"
+#include "station/procedure/description.hpp"
 
 namespace turnpoint::report {
 
@@ -19,19 +20,26 @@ enum class Design {
   yes_no,  ///< "yes" becomes more frequent as |level| rises; trials at level 0 have no signal
   /// like yes_no: "different" counts as "yes", and pairs of identical stimuli have no signal
   same_different,
+  ratings,     ///< on points or on a line; the report has their mean at each level
+  numbers,     ///< magnitude estimation: geometric means, and the exponent of Stevens' law
   adjustment,  ///< the participant sets a slider; no psychometric function is fitted
 };
 
 /// True if some trials have no signal, so that "yes" is a false alarm in them.
 inline bool has_noise(Design design) { return design == Design::yes_no || design == Design::same_different; }
 
-/// The estimate of one procedure in one block. `basis` says from which data it was computed, such as
-/// "reversals 5 to 12 of 12".
-struct StaircaseResult {
-  std::string block, procedure;
-  double mean = 0;           ///< the estimate, in the unit of the level
-  std::optional<double> sd;  ///< standard deviation of the averaged reversals
-  std::string basis;
+/// True if the answers are ratings or numbers.
+inline bool judges(Design design) { return design == Design::ratings || design == Design::numbers; }
+
+/// What a procedure itself estimates from one block, which `turnpoint run` prints at the end of a session.
+struct ProcedureEstimate {
+  std::string block, procedure, parameter;
+  double mean = 0;           ///< the estimate; a threshold is in the unit of the level
+  std::optional<double> sd;  ///< of the procedure's posterior, or of the averaged reversals
+  std::string basis;         ///< from what it was computed, such as "reversals 5 to 12 of 12"
+  procedure::Choice choice = procedure::Choice::track;  ///< how the procedure chose its levels
+  /// the proportion of right (or tracked) answers at the level on which it converges, if that is known
+  std::optional<double> settles_at;
 };
 
 /// A name and its text, for the head or the health table of a report.
@@ -66,7 +74,7 @@ struct SessionData {
   std::vector<std::string> conditions;
   /// parts of the report that the protocol chooses; if empty, the report has all parts that suit the design
   std::optional<std::vector<std::string>> show;
-  std::vector<StaircaseResult> staircases;
+  std::vector<ProcedureEstimate> estimates;
   std::vector<analysis::TrialRecord> trials;
   std::vector<MeasuredTrial> measured;  ///< empty if no pick-up measured the surface
   /// Set if the answers determined the levels: the intervals then come from the posterior under this prior.

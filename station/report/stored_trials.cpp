@@ -1,7 +1,6 @@
 #include "station/report/stored_trials.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -10,6 +9,7 @@
 #include "station/procedure/description.hpp"
 #include "station/protocol/answers.hpp"
 #include "station/protocol/conditions.hpp"
+#include "station/text/number.hpp"
 
 namespace turnpoint::report {
 
@@ -21,15 +21,6 @@ std::optional<int> index_of(const std::optional<std::string>& id, const protocol
   for (std::size_t i = 0; i < choices.size(); ++i)
     if (choices[i].id == *id) return static_cast<int>(i);
   return std::nullopt;
-}
-
-/// Reads a setting. In trials of an adjustment task, the response column contains the setting instead of an
-/// answer.
-std::optional<double> setting_of(const std::string& response) {
-  double value = 0;
-  const auto* end = response.data() + response.size();
-  const auto read = std::from_chars(response.data(), end, value);
-  return read.ec == std::errc{} && read.ptr == end ? std::optional(value) : std::nullopt;
 }
 
 protocol::Factors factors_of(const records::TrialRow& row) {
@@ -51,8 +42,10 @@ analysis::TrialRecord record_of(const records::TrialRow& row, const records::Blo
   record.right_choice = index_of(row.correct_response, protocol);
   record.response = index_of(row.response, protocol);
   record.correct = row.correct;
-  if (row.response && protocol.task.kind == protocol::TaskKind::adjustment)
-    record.setting = setting_of(*row.response);
+  if (row.response &&
+      (protocol.task.kind == protocol::TaskKind::adjustment || protocol::judges(protocol.task)))
+    record.setting = text::read_number(*row.response);
+  record.confidence = row.confidence;
   record.outcome = row.outcome;
   record.response_time_s = row.response_time_s;
   const auto factors = factors_of(row);
@@ -77,6 +70,8 @@ std::vector<const records::BlockRecord*> last_attempts(const std::vector<records
 report::Design design_of(const protocol::Protocol& protocol, const protocol::AnswerRule& rule,
                          const std::vector<analysis::TrialRecord>& trials) {
   if (protocol.task.kind == protocol::TaskKind::adjustment) return report::Design::adjustment;
+  if (protocol.task.value && protocol.task.value->typed) return report::Design::numbers;
+  if (protocol::judges(protocol.task)) return report::Design::ratings;
   if (protocol.task.kind == protocol::TaskKind::same_different) return report::Design::same_different;
   if (rule.kind == protocol::AnswerKind::presence) return report::Design::yes_no;
   bool below = false, above = false;
@@ -178,23 +173,29 @@ void set_level_words(const std::string& level, report::SessionData& data) {
   data.level_label = name + " (" + (words.unit.empty() ? "no unit" : words.unit) + ")";
 }
 
-/// Recomputes the final estimates of staircases from the stored answers.
-void add_staircases(const std::vector<const records::BlockRecord*>& blocks,
-                    const protocol::Protocol& protocol, report::SessionData& data) {
+/// Recomputes the final estimates of adaptive procedures from the stored answers.
+void add_estimates(const std::vector<const records::BlockRecord*>& blocks, const protocol::Protocol& protocol,
+                   report::SessionData& data) {
   for (const auto& spec : protocol.procedures) {
-    if (procedure::description(spec.kind).choice != procedure::Choice::track) continue;
+    if (!procedure::follows_answers(spec)) continue;
+    const auto& kind = procedure::description(spec.kind);
+    const bool track = kind.choice == procedure::Choice::track;
+    const double least = spec.tracks.empty() ? 1.0 / data.alternatives : 0;
     for (const auto* block : blocks) {
       if (block->start.practice) continue;
-      const auto stairs = procedure::make_procedure(spec, {}, {});
+      const auto replayed = procedure::make_procedure(spec, {}, {});
       for (const auto& row : block->trials) {
         if (row.procedure != spec.name || row.type != terms::TrialType::experimental ||
             row.outcome != terms::Outcome::answered)
           continue;
         const bool one = spec.tracks.empty() ? row.correct.value_or(false) : row.response == spec.tracks;
-        stairs->record(one ? procedure::Answer::one : procedure::Answer::zero);
+        replayed->record(one ? procedure::Answer::one : procedure::Answer::zero);
       }
-      for (const auto& [parameter, estimate] : stairs->estimates())
-        data.staircases.push_back({block->start.name, spec.name, estimate.mean, estimate.sd, estimate.basis});
+      if (replayed->recorded() == 0) continue;
+      for (const auto& [parameter, estimate] : replayed->estimates())
+        data.estimates.push_back({block->start.name, spec.name, parameter, estimate.mean, estimate.sd,
+                                  track ? estimate.basis : "mean of its posterior", kind.choice,
+                                  kind.settles_at(spec, least, 1)});
     }
   }
 }
@@ -220,7 +221,7 @@ void add_trials(const std::vector<records::BlockRecord>& blocks, const protocol:
   data.conditions = protocol::conditions(protocol);
   data.show = protocol.analysis.show;
   data.exclusion = {protocol.analysis.exclude_below_s, protocol.analysis.exclude_mad};
-  add_staircases(counted, protocol, data);
+  add_estimates(counted, protocol, data);
 }
 
 }  // namespace turnpoint::report

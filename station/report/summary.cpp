@@ -137,6 +137,15 @@ std::vector<NamedFit> fits_of(const SessionData& data) {
   return fits;
 }
 
+std::vector<analysis::Judgements> judgements_of(const SessionData& data) {
+  using analysis::Judged;
+  if (!judges(data.design)) return {};
+  return analysis::judgements(data.trials, data.conditions,
+                              data.design == Design::ratings ? Judged::ratings
+                              : data.level_unit == "dB"      ? Judged::magnitudes_dB
+                                                             : Judged::magnitudes);
+}
+
 bool slope_estimated(const NamedFit& named) {
   if (named.intervals.method == analysis::IntervalMethod::posterior) return named.intervals.slope.has_value();
   return !named.fit.at_bound.slope_low && !named.fit.at_bound.slope_high;
@@ -196,9 +205,14 @@ Summary summarise(const SessionData& data) {
   summary.outcomes = analysis::count_outcomes(data.trials);
   if (shows(data, "trace")) summary.traces = analysis::traces(data.trials);
   summary.catch_trials = analysis::catch_accuracy(data.trials);
+  summary.confidence = analysis::accuracy_by_confidence(data.trials);
   summary.fatigue = analysis::fatigue(data.trials);
   if (data.design == Design::adjustment) {
     summary.settings = analysis::settings(data.trials, data.conditions);
+    return summary;
+  }
+  if (judges(data.design)) {
+    summary.judgements = judgements_of(data);
     return summary;
   }
   summary.bias = analysis::choice_bias(data.trials);

@@ -1,9 +1,11 @@
 #pragma once
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "station/analysis/course.hpp"
+#include "station/analysis/judgements.hpp"
 #include "station/analysis/settings.hpp"
 #include "station/analysis/signal_detection.hpp"
 #include "station/analysis/trade.hpp"
@@ -27,16 +29,22 @@ struct Summary {
   std::vector<analysis::Trace> traces;
   std::optional<analysis::Bias> bias;
   std::optional<analysis::Proportion> catch_trials;
+  std::map<int, analysis::Proportion> confidence;  ///< right answers by degree of confidence
   analysis::Fatigue fatigue;
   analysis::Trade trade;
   std::vector<analysis::Detection> detections;  ///< d' and criterion, if the report shows them
   /// for an adjustment task: one entry for each procedure and condition
   std::vector<analysis::Settings> settings;
+  /// for ratings and numbers: one entry for each condition
+  std::vector<analysis::Judgements> judgements;
 };
 
 /// Returns only the psychometric fits: one to all trials, or one per instruction if there are several
 /// instructions. If data.replicates is 0, there are no bootstraps and no bands.
 std::vector<NamedFit> fits_of(const SessionData& data);
+
+/// Returns only the analysis of ratings or numbers; empty for other designs.
+std::vector<analysis::Judgements> judgements_of(const SessionData& data);
 
 /// False if the data give only a limit for the slope. The slope then lies on a bound of the
 /// maximum-likelihood fit, or the posterior does not determine it.

@@ -7,6 +7,7 @@
 #include <tuple>
 #include <vector>
 
+#include "station/terms/usage_error.hpp"
 #include "station/text/problem.hpp"
 
 namespace turnpoint::setup {
@@ -20,6 +21,24 @@ std::string shipped(const std::string& folder) {
   const auto installed = program.parent_path() / "share/turnpoint" / fs::path(folder).filename();
   if (fs::is_directory(installed)) return installed.lexically_normal().string();
   return (program.parent_path().parent_path().parent_path() / folder).lexically_normal().string();
+}
+
+std::string file_or_shipped(const std::string& named, const std::string& folder) {
+  std::error_code ignored;
+  if (named.empty() || named.find('/') != std::string::npos || fs::exists(named, ignored)) return named;
+  const auto name = named.ends_with(".toml") ? named.substr(0, named.size() - 5) : named;
+  std::vector<std::string> known;
+  for (const auto& entry : fs::directory_iterator(shipped(folder), ignored)) {
+    if (entry.path().extension() != ".toml") continue;
+    if (entry.path().stem() == name) return entry.path().string();
+    known.push_back(entry.path().stem().string());
+  }
+  std::sort(known.begin(), known.end());
+  const auto near = text::nearest(name, known);
+  std::string all;
+  for (const auto& one : known) all += (all.empty() ? "" : ", ") + one;
+  throw terms::UsageError(named + ": there is no such file, and none of this name comes with the program" +
+                          (near.empty() ? "; " : "; did you mean " + near + "? ") + "the names are " + all);
 }
 
 std::string rig_or_default(const std::string& named, std::ostream& messages) {
@@ -54,9 +73,12 @@ std::string screen_card(const std::string& drm) {
 std::string default_database() {
   const char* data = std::getenv("XDG_DATA_HOME");
   const char* home = std::getenv("HOME");
-  const std::filesystem::path root = data != nullptr && *data != '\0'
-                                         ? std::filesystem::path(data)
-                                         : std::filesystem::path(home ? home : "/var/lib") / ".local/share";
+  const auto set = [](const char* value) { return value != nullptr && *value != '\0'; };
+  if (!set(data) && !set(home))
+    throw terms::UsageError(
+        "HOME is not set, so there is no data folder; set HOME, or name the place with --db (with --data for "
+        "turnpoint doctor)");
+  const fs::path root = set(data) ? fs::path(data) : fs::path(home) / ".local/share";
   return (root / "turnpoint" / "turnpoint.sqlite").string();
 }
 

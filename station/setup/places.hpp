@@ -9,12 +9,17 @@ namespace turnpoint::setup {
 /// text::BadInput if no file is found.
 std::string rig_or_default(const std::string& named, std::ostream& messages);
 
+/// Returns the path of a TOML file: `named` if it exists or contains a "/", otherwise the file of this name
+/// in the shipped `folder` ("protocols", "deploy/rigs"), with or without ".toml". Returns "" for "". Throws
+/// terms::UsageError if there is neither.
+std::string file_or_shipped(const std::string& named, const std::string& folder);
+
 /// Returns the path of a folder that comes with the program ("protocols", "deploy/rigs"), installed or in the
 /// source tree.
 std::string shipped(const std::string& folder);
 
 /// Returns the path of the station's own database, in the user's data folder ($XDG_DATA_HOME or
-/// ~/.local/share).
+/// ~/.local/share). Throws terms::UsageError if neither variable is set.
 std::string default_database();
 
 /// Returns the graphics card to which a screen is connected, such as "/dev/dri/card1". Without a screen,

@@ -20,6 +20,8 @@ namespace {
 
 using text::Problem;
 
+const std::string kLiveOption = "--mode live: ";
+
 void check_participant(const std::string& code, std::vector<Problem>& problems) {
   static const std::regex allowed("[A-Za-z0-9][A-Za-z0-9_-]{0,31}");
   if (!std::regex_match(code, allowed))
@@ -69,7 +71,7 @@ std::string unmeasured_sound(const session::Setup& setup, const protocol::Sight&
 void check_live(const session::Setup& setup, const protocol::Survey& survey, std::vector<Problem>& problems) {
   const auto& rig = setup.rig;
   const auto add = [&](const std::string& what, const std::string& allowed) {
-    problems.push_back({{rig.path, 0, 0}, "--mode live: " + what, allowed});
+    problems.push_back({{rig.path, 0, 0}, kLiveOption + what, allowed});
   };
   if (!rig.friction.measured)
     add("the rig uses the illustrative friction curve, which was not measured",
@@ -178,6 +180,18 @@ session::Setup prepare(const RunRequest& request, const std::stop_token& stop) {
                    : request.mode == "live"  ? terms::RunMode::live
                                              : terms::RunMode::pilot;
   return setup;
+}
+
+std::vector<std::string> live_problems(const RunRequest& request, const std::stop_token& stop) {
+  std::vector<std::string> reasons;
+  try {
+    prepare(request, stop);
+  } catch (const text::BadInput& bad) {
+    for (const auto& problem : bad.problems())
+      reasons.push_back(problem.what.starts_with(kLiveOption) ? problem.what.substr(kLiveOption.size())
+                                                              : problem.what);
+  }
+  return reasons;
 }
 
 }  // namespace turnpoint::setup

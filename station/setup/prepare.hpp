@@ -18,6 +18,7 @@ struct RunRequest {
   std::optional<std::uint64_t> seed;
   std::string consent_version;  ///< version of the consent form; "" if the study needs none
   bool headless = false, buttons_only = false;
+  bool fullscreen = false;  ///< fill the screen of a desktop, too
   /// path of the calibration file; "" uses the newest one beside the rig file, if there is one
   std::string calibration;
 };
@@ -28,6 +29,10 @@ struct RunRequest {
 /// names it or if the session is live; otherwise it is ignored. Throws protocol::Abandoned soon after `stop`
 /// is requested.
 session::Setup prepare(const RunRequest& request, const std::stop_token& stop = {});
+
+/// Why the session of this request, a live one, cannot run; empty if it can. Names no option of the command
+/// line. Throws like prepare(), except text::BadInput.
+std::vector<std::string> live_problems(const RunRequest& request, const std::stop_token& stop = {});
 
 /// Applies the text of a calibration file to the rig, to the sound levels, and to the values that are stored
 /// with the session. Throws text::BadInput or terms::UsageError.

@@ -80,4 +80,12 @@ void write_file(const std::string& path, std::string_view bytes, mode_t mode) {
   file.commit();
 }
 
+void make_folder(const std::string& path) {
+  std::error_code error;
+  fs::create_directories(path, error);
+  if (error || !fs::is_directory(path, error))
+    throw std::system_error(error ? error : std::make_error_code(std::errc::not_a_directory),
+                            "making the folder " + path);
+}
+
 }  // namespace turnpoint::system

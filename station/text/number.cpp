@@ -45,4 +45,11 @@ std::string exact(double value) {
   return {buffer.data(), end};
 }
 
+std::optional<double> read_number(const std::string& text) {
+  double value = 0;
+  const auto* end = text.data() + text.size();
+  const auto read = std::from_chars(text.data(), end, value);
+  return read.ec == std::errc{} && read.ptr == end ? std::optional(value) : std::nullopt;
+}
+
 }  // namespace turnpoint::text

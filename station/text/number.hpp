@@ -1,4 +1,5 @@
 #pragma once
+#include <optional>
 #include <string>
 
 namespace turnpoint::text {
@@ -20,6 +21,9 @@ double uncertainty(double value, double low, double high);
 /// Formats a number for files: the shortest decimal text that reads back as the same double; "n/a" for
 /// infinity and NaN.
 std::string exact(double value);
+
+/// Reads a whole text that exact() wrote; empty if it is not a number.
+std::optional<double> read_number(const std::string& text);
 
 /// Returns the SHA-256 (FIPS 180-4) of the bytes in lower-case hexadecimal.
 std::string sha256(const std::string& bytes);

@@ -132,8 +132,15 @@ std::string read_text_file(const std::string& path) try {
 } catch (const std::system_error& error) {
   if (error.code() == std::errc::no_such_file_or_directory)
     throw BadInput({{{path, 0, 0}, "there is no such file", "check the path"}});
+  if (error.code() == std::errc::is_a_directory)
+    throw BadInput({{{path, 0, 0}, "this is a folder", "name a file"}});
   if (error.code() != std::errc::file_too_large) throw;
   throw BadInput({{{path, 0, 0}, "the file has more than 4 MiB", "at most 4 MiB"}});
+}
+
+std::string_view without_byte_order_mark(std::string_view text) {
+  const std::string_view mark = "\xEF\xBB\xBF";
+  return text.starts_with(mark) ? text.substr(mark.size()) : text;
 }
 
 }  // namespace turnpoint::text

@@ -1,6 +1,7 @@
 #pragma once
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "station/text/problem.hpp"
@@ -46,5 +47,8 @@ constexpr std::size_t most_text_bytes = 4 << 20;
 /// Reads a file that people write. Throws BadInput if there is no such file or if it is longer than
 /// `most_text_bytes`; other errors are those of system::read_file.
 std::string read_text_file(const std::string& path);
+
+/// Returns the text without the UTF-8 byte order mark that some programs put before it.
+std::string_view without_byte_order_mark(std::string_view text);
 
 }  // namespace turnpoint::text

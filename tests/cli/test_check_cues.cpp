@@ -24,7 +24,7 @@ std::string cues_of(const std::string& protocol) {
   const TemporaryFolder folder;
   const auto path = folder / "p.toml";
   std::ofstream(path) << protocol;
-  Child child({TURNPOINT, "check", path, "--rig", source + "/deploy/rigs/simulated.toml"});
+  Child child({TURNPOINT, "check", path, "--rig", source + "/tests/support/thin_plate.toml"});
   REQUIRE(child.ends_within(60'000));
   INFO(child.said());
   CHECK(child.outcome() == 0);

@@ -36,7 +36,7 @@ TEST_CASE("a protocol's title and keys reach the terminal without their escape s
   REQUIRE(title != std::string::npos);
   const auto said = [&](const std::string& hostile) {
     std::ofstream(protocol) << hostile;
-    Child child({TURNPOINT, "check", protocol, "--rig", source + "/deploy/rigs/simulated.toml"});
+    Child child({TURNPOINT, "check", protocol, "--rig", source + "/tests/support/thin_plate.toml"});
     REQUIRE(child.ends_within(60000));
     return child.said();
   };

@@ -11,7 +11,7 @@ using namespace turnpoint;
 
 namespace {
 
-const std::string kRig = std::string(TURNPOINT_SOURCE_DIR) + "/deploy/rigs/simulated.toml";
+const std::string kRig = std::string(TURNPOINT_SOURCE_DIR) + "/tests/support/thin_plate.toml";
 
 struct End {
   int status = 0;

@@ -18,7 +18,7 @@ const std::string root = TURNPOINT_SOURCE_DIR;
 class Laboratory {
  public:
   Laboratory() {
-    std::ofstream(folder_ / "rig.toml") << system::read_file(root + "/deploy/rigs/simulated.toml");
+    std::ofstream(folder_ / "rig.toml") << system::read_file(root + "/tests/support/thin_plate.toml");
     auto response = std::ofstream(folder_ / "response.csv");
     response << "frequency_Hz,displacement_um,phase_deg\n";
     for (int f = 20000; f <= 50000; f += 1000) response << f << ",4,0\n";

@@ -27,7 +27,7 @@ TEST_CASE("an accelerated stochastic approximation is checked, run and reported"
   const TemporaryFolder folder;
   const auto protocol = folder / "asa.toml", db = folder / "lab.sqlite";
   std::ofstream(protocol) << stochastic_approximation();
-  const auto rig = std::string(TURNPOINT_SOURCE_DIR) + "/deploy/rigs/simulated.toml";
+  const auto rig = std::string(TURNPOINT_SOURCE_DIR) + "/tests/support/thin_plate.toml";
   CHECK(contains(said_by({TURNPOINT, "check", protocol, "--rig", rig}), "is good on"));
   const auto summary = said_by({TURNPOINT, "run", protocol, "--rig", rig, "--participant", "P01", "--db", db,
                                 "--observer", "sim:threshold=-16", "--seed", "7", "--headless"});

@@ -27,7 +27,7 @@ std::vector<std::string> run(const std::string& protocol, const std::string& dat
                                       "run",
                                       source + "/protocols/" + protocol,
                                       "--rig",
-                                      source + "/deploy/rigs/simulated.toml",
+                                      source + "/tests/support/thin_plate.toml",
                                       "--participant",
                                       "P01",
                                       "--seed",

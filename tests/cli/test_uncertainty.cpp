@@ -9,7 +9,7 @@
 
 namespace {
 
-const std::string source = TURNPOINT_SOURCE_DIR, rig = source + "/deploy/rigs/simulated.toml",
+const std::string source = TURNPOINT_SOURCE_DIR, rig = source + "/tests/support/thin_plate.toml",
                   demo = source + "/protocols/demo.toml";
 
 std::string output_of(std::vector<std::string> arguments, int status = 0) {
@@ -68,4 +68,10 @@ TEST_CASE("map and plan use the boundaries that were measured on a rig", "[cli]"
   CHECK(json[0]["boundary_mm"].get<double>() == Approx(160.3).margin(0.5));
   CHECK(json[0]["uncertainty_mm"].get<double>() < 0.5);
   CHECK(contains(output_of({"plan", demo, "--scene", "edge", "--rig", copy}), "uncertain by 0."));
+  CHECK(contains(output_of({"check", demo, "--sessions", "0", "--rig", copy}), "uncertain by 0."));
+  const auto field = output_of({"field", "--tone", "30000", "--points", "2", "--rig", copy});
+  CHECK(contains(field, "calibration "));
+  CHECK_FALSE(contains(field, "turning point 147.4 mm"));  // that of the rig file
+  CHECK(contains(output_of({"power", demo, "--observers", "1", "--intervals", "0", "--rig", copy}),
+                 "calibration "));
 }

@@ -8,7 +8,7 @@
 namespace {
 
 constexpr int kPatience_ms = 20000;
-const std::string kRig = std::string(TURNPOINT_SOURCE_DIR) + "/deploy/rigs/simulated.toml";
+const std::string kRig = std::string(TURNPOINT_SOURCE_DIR) + "/tests/support/thin_plate.toml";
 
 /// Checks the program's message and exit status for this command line.
 void check_refused(std::vector<std::string> arguments, const std::string& why) {

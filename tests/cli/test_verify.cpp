@@ -27,7 +27,7 @@ std::string said_by(const std::vector<std::string>& command, int outcome = 0) {
 
 std::string run_demo(const std::string& db) {
   return said_by({TURNPOINT, "run", kSource + "/protocols/demo.toml", "--rig",
-                  kSource + "/deploy/rigs/simulated.toml", "--participant", "P01", "--db", db, "--observer",
+                  kSource + "/tests/support/thin_plate.toml", "--participant", "P01", "--db", db, "--observer",
                   "sim", "--seed", "7"});
 }
 

@@ -107,8 +107,10 @@ Session Design::run(const Source& source, std::uint64_t seed, bool with_referenc
   for (auto& spec : protocol.procedures) spec.stop.trials = counts.back() / procedures;
   const auto answer = [&](const trial::TrialSpec&, const observer::Question& question) {
     const int right = question.correct.value();
-    return observer::Reply{draws.uniform() < share_right(session.truth, question.level) ? right : 1 - right,
-                           0.5};
+    observer::Reply reply;
+    reply.choice = draws.uniform() < share_right(session.truth, question.level) ? right : 1 - right;
+    reply.response_time_s = 0.5;
+    return reply;
   };
   const auto rehearsal = simulation::rehearse(protocol, 0, seed, {answer, {}});
   report::SessionData data;

@@ -173,14 +173,40 @@ TEST_CASE("show decides what the report contains, each of its values", "[report]
   }
 }
 
+TEST_CASE("a report has each procedure's own estimate, the one that the session ended with", "[report]") {
+  for (const std::string name :
+       {"friction-2ifc", "friction-staircase", "boundary-adaptive", "two-spots-oddity"}) {
+    INFO(name);
+    const auto protocol = protocol::parse(shipped(name), "p.toml");
+    const auto rehearsal = simulation::rehearse(
+        protocol, 0, 5, simulation::rehearser(observer::Observer(observer::parse("sim"))));
+    report::SessionData data;
+    report::add_trials(rehearsal.blocks, protocol, data);
+    data.replicates = 40;
+    REQUIRE_FALSE(data.estimates.empty());
+    const auto html = report::to_html(report::summarise(data));
+    CHECK(html.find("The procedure's own estimate") != std::string::npos);
+    CHECK((html.find("staircase settles where") != std::string::npos) ==
+          (name == "friction-staircase" || name == "boundary-adaptive"));
+    CHECK((html.find("a posterior estimates") != std::string::npos) == (name != "friction-staircase"));
+    std::size_t same = 0;
+    for (const auto& mine : data.estimates)
+      for (const auto& theirs : rehearsal.estimates)
+        if (mine.procedure == theirs.procedure && mine.parameter == theirs.parameter &&
+            mine.mean == theirs.mean && mine.sd == theirs.sd)
+          ++same;
+    CHECK(same == data.estimates.size());
+  }
+}
+
 TEST_CASE("a report has the ids of answers, and the reversals that a staircase averaged", "[report]") {
   const auto source = replaced(shipped("friction-staircase"), "initial_down = 1 ",
                                "discard_reversals = 4\ninitial_down = 1 ");
   const auto data = data_of(source, "sim:threshold=-16");
   CHECK(data.choices == std::vector<std::string>{"first", "second"});
   CHECK(data.level_label == "Contrast (dB)");
-  REQUIRE(data.staircases.size() == 2);
-  CHECK(data.staircases[0].basis == "reversals 5 to 10 of 10");
+  REQUIRE(data.estimates.size() == 2);
+  CHECK(data.estimates[0].basis == "reversals 5 to 10 of 10");
   const auto html = report::to_html(report::summarise(data));
   CHECK(html.find("reversals 5 to 10 of 10") != std::string::npos);
   CHECK(html.find("Threshold (dB)") != std::string::npos);
@@ -188,4 +214,32 @@ TEST_CASE("a report has the ids of answers, and the reversals that a staircase a
   const auto demo =
       data_of(replaced(shipped("demo"), "[\"en\", \"de\", \"ja\"]", "[\"en\", \"de\", \"ja\"]"));
   CHECK(demo.choices == std::vector<std::string>{"left", "right"});
+}
+
+TEST_CASE("ratings and numbers are reported by level, and right and wrong are left out", "[report]") {
+  const auto line = report_of(data_of(shipped("smoothness-line")));
+  REQUIRE(line["judgements"].size() == 1);
+  REQUIRE(line["judgements"][0]["levels"].size() == 5);
+  CHECK(line["judgements"][0]["levels"][0]["answers"] == 8);  // practice is left out
+  CHECK(line["judgements"][0]["levels"][4]["mean"]["value"] >
+        line["judgements"][0]["levels"][0]["mean"]["value"]);
+  CHECK(line["judgements"][0]["exponent"].is_null());
+  CHECK(line["fits"].empty());
+  CHECK(line["bias"].is_null());
+  const auto numbers = data_of(shipped("magnitude-standard"), "sim:slope=0.7,lapse=0");
+  CHECK(report_of(numbers)["judgements"][0]["exponent"]["value"].get<double>() == Approx(0.7).margin(0.12));
+  const auto html = report::to_html(report::summarise(numbers));
+  CHECK(html.find("Geometric mean") != std::string::npos);
+  CHECK(html.find("Exponent of Stevens") != std::string::npos);
+  CHECK(html.find("Proportion correct") == std::string::npos);
+}
+
+TEST_CASE("the report counts right answers for each degree of confidence", "[report]") {
+  const auto report = report_of(data_of(shipped("friction-confidence"), "sim:lapse=0"));
+  REQUIRE(report["confidence"].size() >= 3);
+  int trials = 0;
+  for (const auto& degree : report["confidence"]) trials += degree["trials"].get<int>();
+  CHECK(trials == 60);
+  CHECK(report["confidence"].back()["proportion"] > report["confidence"].front()["proportion"]);
+  CHECK(report_of(data_of(shipped("friction-2ifc")))["confidence"].empty());
 }

@@ -1,0 +1,419 @@
+"""commands.py PROGRAM [NAME...]: runs every command of the program as a user would: the example of its --help, its JSON
+output, and the mistakes that users make most. NAME chooses tests, as for python3 -m unittest."""
+import fcntl
+import json
+import os
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+
+HERE = os.path.dirname(os.path.realpath(__file__))
+SOURCE = os.path.dirname(os.path.dirname(HERE))
+PROGRAM = os.path.realpath(sys.argv[1])
+with open(os.path.join(HERE, "json_shapes.json"), encoding="utf-8") as file:
+    SHAPES = json.load(file)
+
+# Each command with what its example needs: "session" is a database with sessions of P01 and P02, "screen" is
+# the program with a screen, "code" is a code typed on standard input. `status` lists the exit statuses that the
+# example may have: the doctor finds fault with most machines.
+COMMANDS = {
+    "amplifier-off": {}, "annotate": {"needs": "session"}, "backup": {"needs": "session"},
+    "calibrate": {}, "check": {}, "doctor": {"status": (0, 1)}, "export": {"needs": "session"}, "field": {},
+    "figures": {}, "join": {"needs": "session"}, "map": {}, "merge": {"needs": "session"}, "new": {},
+    "operator-code": {"needs": "code"}, "plan": {}, "power": {}, "preview": {}, "protocols": {},
+    "report": {"needs": "session"}, "resume": {"needs": "session"}, "run": {}, "sessions": {"needs": "session"},
+    "station": {"needs": "screen"}, "synth": {}, "trace": {}, "verify": {"needs": "session"},
+    "withdraw": {"needs": "session"},
+}
+# These lines lead to fuller JSON documents than the examples in --help do.
+JSON_EXAMPLES = {"calibrate": "turnpoint calibrate --rig simulated --boundaries edges.csv --out made.toml",
+                 "report": "turnpoint report --db lab.sqlite --participant P02",
+                 "run": "turnpoint run friction-2ifc --participant P03 --db lab.sqlite --observer sim --seed 1"}
+WITH_PROTOCOL = {"check": [], "plan": ["--scene", "edge"], "preview": ["--out", "looks"], "power": ["--observers", "2"],
+                 "run": ["--db", "new.sqlite", "--participant", "P01", "--observer", "sim"],
+                 "trace": ["--procedure", "levels", "--answers", "1"]}
+WITH_RIG = {"amplifier-off": [], "calibrate": ["--sweep"], "check": ["demo"], "doctor": ["--data", "."],
+            "field": ["--tone", "30000", "--points", "3"], "map": ["--boundary", "150"],
+            "plan": ["demo", "--scene", "edge"], "power": ["demo", "--observers", "2"], "preview": ["demo", "--out", "looks"],
+            "run": ["demo", "--db", "new.sqlite", "--participant", "P01", "--observer", "sim"],
+            "synth": ["--tone", "30000", "--seconds", "1", "--out", "null:"]}
+WITH_DATABASE = {"annotate": ["a note"], "backup": ["--dir", "copies"], "export": ["--out", "export"], "join": ["P01", "P02"],
+                 "report": [], "resume": [], "sessions": [], "verify": [], "withdraw": ["--participant", "P01", "--yes"]}
+CREATES_DATABASE = {"merge": ["good.sqlite"], "run": ["demo", "--participant", "P01", "--observer", "sim"]}
+WRITES_DATABASE = {**CREATES_DATABASE, **{name: WITH_DATABASE[name] for name in ("annotate", "join", "withdraw")}}
+OUT_OF_RANGE = [
+    (["backup", "--dir", "copies", "--keep", "-1", "--db", "good.sqlite"], "0 or more"),
+    (["backup", "--dir", "copies", "--to", "dsk", "--db", "good.sqlite"], "did you mean disk?"),
+    (["calibrate", "--rig", "simulated", "--valid-days", "0"], "1 to 3650"),
+    (["calibrate", "--rig", "simulated", "--reference", "buton"], "did you mean button?"),
+    (["check", "demo", "--sessions", "1001"], "0 to 1000"),
+    (["export", "--db", "good.sqlite", "--out", "export", "--format", "bid"], "did you mean bids?"),
+    (["field", "--tone", "30000", "--points", "1"], "2 to 10000000"),
+    (["field", "--tone", "30000", "--points", "3", "--tolerance", "0"], "above 0"),
+    (["map", "--boundary", "150", "--tolerance-mm", "nan"], "above 0"),
+    (["new", "x.toml", "--measure", "contrst"], "contrast"),
+    (["power", "demo", "--observers", "1.5"], "1 to 1000000"),
+    (["power", "demo", "--intervals", "-1"], "0 to 1000000"),
+    (["resume", "--db", "good.sqlite", "--policy", "restrt"], "did you mean restart?"),
+    (["run", "demo", "--db", "good.sqlite", "--participant", "P01", "--observer", "sim", "--mode", "lve"],
+     "did you mean live?"),
+    (["run", "demo", "--db", "good.sqlite", "--participant", "P01", "--observer", "sim", "--seed", "-1"],
+     "0 to 9007199254740992"),
+    (["run", "demo", "--db", "good.sqlite", "--participant", "Anna Miller", "--observer", "sim"], "is not a code"),
+    (["synth", "--tone", "30000", "--seconds", "0", "--out", "null:"], "0.001 to 3600"),
+    (["synth", "--tone", "30000", "--seconds", "1", "--ramp-ms", "-1", "--out", "null:"], "0 or more"),
+]
+# What no message to a user may contain.
+NOT_FOR_PEOPLE = re.compile(r"terminate called|std::|what\(\)|filesystem error|please report|SELECT|PRAGMA|TEXT|"
+                            r"basic_string|Aborted|qt\.qpa")
+
+
+def is_like(value, shape, where="document"):
+    """Says where a JSON value differs from its shape; "" if it does not."""
+    if isinstance(shape, str):
+        kinds = {"text": str, "number": (int, float), "true or false": bool, "null": type(None)}
+        for kind in shape.split(" or null")[0:1] + (["null"] if shape.endswith(" or null") else []):
+            if isinstance(value, kinds[kind]) and (kind == "true or false") == isinstance(value, bool):
+                return ""
+        return f"{where}: {value!r} is not a {shape}"
+    if isinstance(shape, list):
+        if not isinstance(value, list):
+            return f"{where}: not a list"
+        if len(shape) > 1 and len(value) != len(shape):
+            return f"{where}: {len(value)} values instead of {len(shape)}"
+        shapes = shape if len(shape) > 1 else shape * len(value)
+        return next(filter(None, (is_like(v, s, f"{where}[{i}]") for i, (v, s) in enumerate(zip(value, shapes)))), "")
+    if "or null" in shape:
+        return "" if value is None else is_like(value, shape["or null"], where)
+    if not isinstance(value, dict):
+        return f"{where}: not an object"
+    if "*" in shape:
+        return next(filter(None, (is_like(v, shape["*"], f"{where}.{k}") for k, v in value.items())), "")
+    if set(value) != set(shape):
+        return f"{where}: other keys than recorded: {sorted(set(value) ^ set(shape))}"
+    return next(filter(None, (is_like(value[key], shape[key], f"{where}.{key}") for key in shape)), "")
+
+
+def run(arguments, folder, typed="", **environment):
+    """Runs the program in a folder. Returns its exit status, standard output and standard error."""
+    variables = {"PATH": os.path.dirname(PROGRAM) + ":" + os.environ["PATH"], "HOME": folder, "XDG_CONFIG_HOME": folder,
+                 "LANG": "C.UTF-8", "QT_QPA_PLATFORM": "offscreen", "QT_QUICK_BACKEND": "software", **environment}
+    variables = {name: value for name, value in variables.items() if value is not None}
+    for name in ("LD_LIBRARY_PATH", "QEMU_LD_PREFIX", "LSAN_OPTIONS", "XDG_RUNTIME_DIR"):
+        if name in os.environ and name not in environment:
+            variables[name] = os.environ[name]
+    words = ["bash", "-c", arguments] if isinstance(arguments, str) else [PROGRAM, *arguments]
+    ran = subprocess.run(words, env=variables, cwd=folder, input=typed, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+                         text=True, check=False, timeout=300)
+    return ran.returncode, ran.stdout, ran.stderr
+
+
+class Folder(unittest.TestCase):
+    """A test in a fresh folder. The sessions that some commands need are made once for all tests."""
+    @classmethod
+    def setUpClass(cls):
+        cls.shared = tempfile.mkdtemp(prefix="turnpoint-commands-")
+        for person, protocol in (("P01", "demo"), ("P02", "friction-2ifc")):
+            status, _, err = run(["run", protocol, "--participant", person, "--db", "lab.sqlite", "--observer", "sim",
+                                  "--seed", "1"], cls.shared)
+            assert status == 0, err
+        _, cls.help, _ = run(["--help"], cls.shared)
+        listed = cls.help.split("Subcommands:\n")[1]
+        cls.names = re.findall(r"^  ([a-z-]+) ", listed, re.MULTILINE)
+        cls.helps = {name: run(["help", name], cls.shared)[1] for name in cls.names}
+
+    @classmethod
+    def tearDownClass(cls):
+        shutil.rmtree(cls.shared)
+
+    def setUp(self):
+        self.folder = tempfile.mkdtemp(prefix="turnpoint-commands-")
+        self.addCleanup(shutil.rmtree, self.folder)
+
+    def write(self, name, content):
+        with open(os.path.join(self.folder, name), "wb") as made:
+            made.write(content)
+
+    def add_sessions(self, name="lab.sqlite"):
+        shutil.copy(os.path.join(self.shared, "lab.sqlite"), os.path.join(self.folder, name))
+
+    def refused(self, arguments, *wanted, status=2, **environment):
+        """The program must end with this status and one message for people, which contains all of `wanted`."""
+        got, out, err = run(arguments, self.folder, **environment)
+        self.assertEqual(got, status, f"{arguments}: {out}{err}")
+        self.assertNotRegex(out + err, NOT_FOR_PEOPLE, arguments)
+        said = [line for line in err.splitlines() if not line.startswith(("rig: ", "note: "))]
+        self.assertTrue(said, f"{arguments} says nothing")
+        for part in wanted:
+            self.assertIn(part, err, arguments)
+        return said
+
+    def refused_in_one_sentence(self, arguments, *wanted, **how):
+        said = self.refused(arguments, *wanted, **how)
+        self.assertEqual(len(said), 1, said)
+        self.assertTrue(said[0].startswith("turnpoint: "), said)
+
+
+class Examples(Folder):
+    def test_the_table_of_this_test_names_every_command(self):
+        self.assertEqual(sorted(self.names), sorted(COMMANDS), "add a new command to COMMANDS and to the other tables")
+        with_json = [name for name in self.names if "--json" in self.helps[name]]
+        self.assertEqual(sorted(with_json), sorted(SHAPES), "json_shapes.json needs one entry for each command with --json")
+
+    def example(self, name):
+        lines = [line for line in self.helps[name].splitlines() if line.startswith("Example: ")]
+        self.assertEqual(len(lines), 1, f"turnpoint {name} --help needs one line that begins with \"Example: \"")
+        self.assertLess(len(lines[0]), 120)
+        return lines[0].removeprefix("Example: ").removeprefix("sudo ")
+
+    def fresh(self, name):
+        shutil.rmtree(self.folder)
+        os.mkdir(self.folder)
+        if COMMANDS[name].get("needs") == "session":
+            self.add_sessions()
+
+    def test_the_example_in_each_help_works_as_it_stands(self):
+        for name in self.names:
+            if COMMANDS.get(name, {}).get("needs") == "screen":
+                continue
+            with self.subTest(name):
+                self.fresh(name)
+                typed = "13579\n" if COMMANDS[name].get("needs") == "code" else ""
+                status, out, err = run(self.example(name), self.folder, typed)
+                self.assertIn(status, COMMANDS[name].get("status", (0,)), err)
+                self.assertNotRegex(out + err, r"please report|terminate called")
+                self.assertTrue(out, "the example prints nothing")
+
+    def test_json_documents_have_the_recorded_shape(self):
+        for name in SHAPES:
+            with self.subTest(name):
+                self.fresh(name)
+                self.write("edges.csv", b"frequency_Hz,boundary_mm,sd_mm\n26000,124,1\n30000,147,1\n36000,175,1\n")
+                example = JSON_EXAMPLES.get(name) or self.example(name)
+                status, out, err = run(example + " --json", self.folder)
+                self.assertIn(status, COMMANDS[name].get("status", (0,)), err)
+                self.assertEqual(is_like(json.loads(out), SHAPES[name]), "")
+
+    def test_help_and_version_work_in_every_spelling(self):
+        for words in (["help"], ["-h"], ["--help"]):
+            self.assertEqual(run(words, self.folder), (0, self.help, ""))
+        version = run(["--version"], self.folder)
+        self.assertRegex(version[1], r"^[0-9]+\.[0-9]+\.[0-9]+\n$")
+        self.assertEqual(run(["-V"], self.folder), version)
+        for name in self.names:
+            self.assertEqual(run([name, "--help"], self.folder), (0, self.helps[name], ""))
+
+    def test_a_listed_protocol_is_known_by_its_name(self):
+        _, out, _ = run(["protocols", "--json"], self.folder)
+        for protocol in json.loads(out):
+            for name in (protocol["id"], protocol["id"] + ".toml"):
+                status, _, err = run(["check", name, "--sessions", "0"], self.folder)
+                self.assertEqual(status, 0, err)
+        self.write("demo", b"")  # a file of that name is preferred
+        self.refused(["check", "demo"], "demo: the file needs the key")
+
+
+class Mistakes(Folder):
+    def test_a_misspelt_command(self):
+        for name in [*self.names, "help"]:
+            self.refused_in_one_sentence([name[:-1] + "x"], f"there is no command \"{name[:-1]}x\"; did you mean ")
+            self.refused_in_one_sentence([name.replace("-", "") + "q"], f"did you mean {name}?")
+        self.refused_in_one_sentence(["xyzzyplugh"], "there is no command \"xyzzyplugh\"; `turnpoint help` lists")
+        self.refused_in_one_sentence([], "no command was given")
+        self.refused_in_one_sentence(["help", "repot"], "did you mean report?")
+
+    def options(self, name):
+        return re.findall(r"^  (--[a-z-]+)", self.helps[name], re.MULTILINE)
+
+    def test_a_misspelt_option(self):
+        for name in self.names:
+            for option in self.options(name):
+                self.refused_in_one_sentence([name, option + "q"], f"{name}: there is no option {option}q", "did you mean ")
+        self.refused_in_one_sentence(["run", "--lang", "de"], "--lang", "did you mean --language?")
+        self.refused_in_one_sentence(["run", "-x"], "there is no option -x")
+        self.refused_in_one_sentence(["--db", "lab.sqlite", "run"], "the command must come before its options")
+
+    def test_an_option_without_its_value(self):
+        for name in self.names:
+            for option in re.findall(r"^  (--[a-z-]+) (?:TEXT|INT|UINT|FLOAT)", self.helps[name], re.MULTILINE):
+                self.refused_in_one_sentence([name, option], f"{name}: {option} needs a value")
+
+    def test_a_missing_argument(self):
+        for name in self.names:
+            required = re.findall(r"^  (\S+) (?:TEXT|INT|FLOAT)\S* .*?REQUIRED", self.helps[name], re.MULTILINE)
+            if required:
+                self.refused_in_one_sentence([name], required[0], " missing; `turnpoint help " + name)
+
+    def test_an_argument_too_many(self):
+        self.add_sessions("good.sqlite")
+        self.refused_in_one_sentence(["sessions", "--db", "good.sqlite", "twice"], "\"twice\"")
+        self.refused_in_one_sentence(["sessions", "--db", "good.sqlite", "--db", "good.sqlite"], "--db was given 2 times")
+
+    def test_a_value_out_of_range(self):
+        self.add_sessions("good.sqlite")
+        for words, allowed in OUT_OF_RANGE:
+            self.refused(words, allowed)
+        named = {words[0] for words, _ in OUT_OF_RANGE}
+        checked = {name for name in self.names if re.search(r"^  --\S+ \w+:", self.helps[name], re.MULTILINE)}
+        self.assertLessEqual(checked, named, "these commands check a range that OUT_OF_RANGE does not try")
+
+    def wrong_files(self):
+        self.write("empty", b"")
+        self.write("binary", bytes(range(256)) * 20)
+        self.write("letter", b"Dear diary,\ntoday I measured nothing.\n")
+        os.mkdir(os.path.join(self.folder, "folder"))
+        self.add_sessions("good.sqlite")
+        files = ["./missing", "folder", "empty", "binary", "letter"]
+        if os.geteuid() != 0:  # root reads everything
+            self.write("unreadable", b"format = 1\n")
+            os.chmod(os.path.join(self.folder, "unreadable"), 0)
+            files.append("unreadable")
+        return files
+
+    def before(self):
+        names = {}
+        for name in sorted(os.listdir(self.folder)):
+            path = os.path.join(self.folder, name)
+            names[name] = os.path.getsize(path) if os.path.isfile(path) else -1
+        return names
+
+    def test_a_wrong_protocol_or_rig(self):
+        files = self.wrong_files() + ["good.sqlite"]
+        before = self.before()
+        for table, as_option in ((WITH_PROTOCOL, []), (WITH_RIG, ["--rig"])):
+            for name, rest in table.items():
+                for wrong in files:
+                    self.refused([name, *as_option, wrong, *rest], wrong.removeprefix("./"),
+                                 status=1 if wrong == "unreadable" else 2)
+        self.refused_in_one_sentence(["check", "dmeo"], "did you mean demo?", "friction-2ifc")
+        self.refused_in_one_sentence(["field", "--tone", "30000", "--points", "3", "--rig", "simulatd"], "did you mean simulated?")
+        self.assertEqual(self.before(), before, "a refused command left files behind")
+
+    def test_every_protocol_and_rig_option_is_tried(self):
+        self.assertEqual({n for n in self.names if re.search(r"^  protocol ", self.helps[n], re.MULTILINE)}, set(WITH_PROTOCOL))
+        self.assertEqual({n for n in self.names if "--rig" in self.options(n)}, {*WITH_RIG, "station"})
+        self.assertEqual({n for n in self.names if "--db" in self.options(n)},
+                         {*WITH_DATABASE, *CREATES_DATABASE, "station", "amplifier-off"})
+
+    def test_a_wrong_database(self):
+        files = self.wrong_files()
+        before = self.before()
+        for name, rest in WITH_DATABASE.items():
+            for wrong in files:
+                self.refused([name, "--db", wrong, *rest], wrong.removeprefix("./"),
+                             status=1 if wrong in ("empty", "unreadable") else 2)
+        for name, rest in CREATES_DATABASE.items():
+            for wrong in files[1:]:
+                self.refused([name, "--db", wrong, *rest], wrong, status=1 if wrong in ("empty", "unreadable") else 2)
+        for name in ("empty", "unreadable"):  # the lock beside a file that might be a database
+            before.pop(name + ".lock", None)
+        after = {name: size for name, size in self.before().items() if name not in ("empty.lock", "unreadable.lock")}
+        self.assertEqual(after, before, "a refused command left files behind")
+
+    def test_a_session_or_participant_that_does_not_exist(self):
+        self.add_sessions("good.sqlite")
+        for name, rest in WITH_DATABASE.items():
+            if "--session" in self.options(name):
+                got, out, err = run([name, "--db", "good.sqlite", *rest, "--session", "nonsense"], self.folder)
+                self.assertNotRegex(out + err, NOT_FOR_PEOPLE)
+                if name != "sessions":  # an empty list is an answer
+                    self.assertRegex(out + err, "nonsense|matches these options|no session with trials", name)
+                    self.assertIn(got, (1, 2), name)
+
+    def test_an_output_that_cannot_be_written(self):
+        self.add_sessions("good.sqlite")
+        self.write("taken", b"")
+        for words in (["report", "--db", "good.sqlite", "--out", "taken/P01.html"], ["export", "--db", "good.sqlite", "--out", "taken"],
+                      ["figures", "--out", "taken"], ["preview", "demo", "--out", "taken"],
+                      ["power", "demo", "--observers", "2", "--out", "taken"], ["backup", "--db", "good.sqlite", "--dir", "taken"],
+                      ["synth", "--tone", "30000", "--seconds", "0.1", "--out", "wav:taken/tone.wav"],
+                      ["new", "taken/x.toml", "--measure", "demo"], ["map", "--boundary", "150", "--budget", "--plot", "taken/x.svg"]):
+            self.refused(words, "taken", status=1)
+        self.refused_in_one_sentence(["new", "taken", "--measure", "demo"], "taken already exists")
+
+    def test_a_second_session_on_the_same_database(self):
+        self.add_sessions("good.sqlite")
+        self.add_sessions("busy.sqlite")
+        with open(os.path.join(self.folder, "busy.sqlite.lock"), "w", encoding="ascii") as lock:
+            lock.write("4711\n")
+            lock.flush()
+            fcntl.flock(lock, fcntl.LOCK_EX)
+            for name, rest in WRITES_DATABASE.items():
+                self.refused_in_one_sentence([name, "--db", "busy.sqlite", *rest], "another station process, pid 4711", status=1)
+            for name in ("sessions", "verify", "report"):  # reading works beside a session
+                self.assertEqual(run([name, "--db", "busy.sqlite"], self.folder)[0], 0)
+
+
+class Report(Folder):
+    def test_report_says_which_session_it_took(self):
+        self.add_sessions()
+        sessions = {s["participant"]: s["session_id"] for s in json.loads(run(["sessions", "--db", "lab.sqlite", "--json"], self.folder)[1])}
+        for words, person in (([], "P02"), (["--participant", "P01"], "P01"), (["--session", sessions["P01"]], "P01"),
+                              (["--protocol", "demo"], "P01")):
+            status, out, err = run(["report", "--db", "lab.sqlite", "--out", "page.html", *words], self.folder)
+            self.assertEqual(status, 0, err)
+            self.assertTrue(out.startswith(f"page.html: session {sessions[person]} of {person}, "), out)
+        _, out, _ = run(["report", "--db", "lab.sqlite"], self.folder)
+        self.assertRegex(out, r"\n  threshold: threshold -?[0-9.]+ \(SD [0-9.]+\)\n")
+
+
+class Readme(Folder):
+    def test_the_tour_of_the_readme_runs_as_it_stands(self):
+        with open(os.path.join(SOURCE, "README.md"), encoding="utf-8") as readme:
+            first, tour = re.findall(r"^```sh\n(.*?)^```", readme.read(), re.DOTALL | re.MULTILINE)
+        self.assertEqual([line.split()[0] for line in first.splitlines()], ["deploy/run", "tests/run"])  # tests/newcomer runs them
+        for name in ("deploy", "protocols"):
+            os.symlink(os.path.join(SOURCE, name), os.path.join(self.folder, name))
+        os.makedirs(os.path.join(self.folder, "build/release"))
+        os.symlink(os.path.dirname(PROGRAM), os.path.join(self.folder, "build/release/bin"))
+        status, out, err = run("set -eu\n" + tour, self.folder)
+        self.assertEqual(status, 0, out + err)
+        for made in ("my-study.toml", "P01.html", "export/my-study/trials.csv"):
+            self.assertTrue(os.path.exists(os.path.join(self.folder, made)), made)
+
+
+class Surroundings(Folder):
+    def test_without_a_home_folder(self):
+        for words in (["doctor"], ["station"]):
+            self.refused_in_one_sentence(words, "HOME is not set", HOME=None, XDG_CONFIG_HOME=self.folder)
+        status, _, err = run(["check", "demo", "--sessions", "0"], self.folder, HOME=None)
+        self.assertEqual(status, 0, err)
+        status, _, _ = run(["doctor", "--data", "."], self.folder, HOME=None)
+        self.assertIn(status, (0, 1))
+
+
+@unittest.skipUnless(os.path.exists(PROGRAM + "-ui"), "built without the screen")
+class Screen(Folder):
+    def test_every_command_of_the_program_with_a_screen(self):
+        status, out, _ = run("turnpoint-ui help", self.folder)
+        self.assertEqual((status, out), (0, self.help))
+
+    def test_a_display_that_does_not_answer(self):
+        self.add_sessions()
+        for displays in ({"DISPLAY": ":4711"}, {"WAYLAND_DISPLAY": "wayland-4711", "XDG_SESSION_TYPE": "wayland"},
+                         {"DISPLAY": ":4711", "WAYLAND_DISPLAY": "wayland-4711"}):
+            for words in (["station", "--db", "lab.sqlite"], ["preview", "demo"],
+                          ["run", "demo", "--db", "lab.sqlite", "--participant", "P03"]):
+                self.refused_in_one_sentence(words, "no screen: nothing answers at ", *displays.values(), QT_QPA_PLATFORM=None,
+                                             **displays)
+
+    @unittest.skipIf(os.path.exists("/dev/dri") or os.path.exists("/dev/fb0"), "this machine has a screen")
+    def test_without_a_screen_each_command_advises_what_it_accepts(self):
+        for words, advice in ((["station", "--db", "lab.sqlite"], "turnpoint run"), (["preview", "demo"], "--out"),
+                              (["run", "demo", "--db", "lab.sqlite", "--participant", "P03"], "--buttons-only"),
+                              (["calibrate", "--rig", "simulated", "--panel"], "on its screen only")):
+            self.refused_in_one_sentence(words, "no screen: no DISPLAY", advice, QT_QPA_PLATFORM=None)
+            for option in re.findall(r"--[a-z-]+", advice):
+                self.assertIn(option, self.helps[words[0]])
+
+    def test_the_station_opens_its_window(self):
+        with self.assertRaises(subprocess.TimeoutExpired):
+            subprocess.run([PROGRAM, "station", "--db", "lab.sqlite"], cwd=self.folder, timeout=5, check=False,
+                           env={"HOME": self.folder, "QT_QPA_PLATFORM": "offscreen", "QT_QUICK_BACKEND": "software"})
+
+
+if __name__ == "__main__":
+    unittest.main(argv=[sys.argv[0], *sys.argv[2:]])
