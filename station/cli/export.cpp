@@ -27,17 +27,24 @@ char single(const std::string& option, const std::string& text) {
   return text.front();
 }
 
-/// The number of exported trials: the rows of the trial tables, without those of the other tables.
+/// The number of exported trials: the rows of the trial tables, without those of the other tables. Of an
+/// export of signals, the number of signals.
 std::size_t trial_rows(const std::vector<store::ExportedFile>& files) {
   std::size_t rows = 0;
   for (const auto& file : files)
-    if (file.path.ends_with("/trials.csv") || file.path.ends_with("_beh.tsv")) rows += file.rows;
+    for (const auto* table : {"/trials.csv", "_beh.tsv", "/signals.csv"})
+      if (file.path.ends_with(table)) rows += file.rows;
   return rows;
+}
+
+store::ExportFormat format_named(const std::string& word) {
+  if (word == "bids") return store::ExportFormat::bids;
+  return word == "signals" ? store::ExportFormat::signals : store::ExportFormat::csv;
 }
 
 void export_data(Options options, Context& context) {
   auto& selection = options.selection;
-  selection.format = options.format == "bids" ? store::ExportFormat::bids : store::ExportFormat::csv;
+  selection.format = format_named(options.format);
   selection.separator = single("--separator", options.separator);
   selection.decimal = single("--decimal", options.decimal);
   auto files = store::export_data(options.database, options.out, selection);
@@ -54,7 +61,8 @@ void export_data(Options options, Context& context) {
   }
   for (const auto& file : files)
     fmt::print(context.out, "{}{}\n", file.path, file.rows > 0 ? fmt::format(" ({} rows)", file.rows) : "");
-  fmt::print(context.out, "{} trials in {} files\n", trial_rows(files), files.size());
+  fmt::print(context.out, "{} {} in {} files\n", trial_rows(files),
+             selection.format == store::ExportFormat::signals ? "signals" : "trials", files.size());
 }
 
 }  // namespace export_command
@@ -62,16 +70,18 @@ void export_data(Options options, Context& context) {
 void add_export(CommandLine& app, Context& context) {
   using namespace export_command;
   auto options = std::make_shared<Options>();
-  auto* command =
-      app.add_subcommand("export", "Write sessions as CSV or BIDS, with one folder for each protocol");
+  auto* command = app.add_subcommand(
+      "export", "Write sessions as CSV or BIDS, or their signals, with one folder for each protocol");
   add_database(*command, options->database);
   command->add_option("--out", options->out, "Folder to write to")->required();
   command->add_option("--session", options->selection.session_id, "Export only this session");
   command->add_option("--participant", options->selection.participant,
                       "Export only this participant: CODE or CODE@STATION");
   command->add_option("--protocol", options->selection.protocol_id, "Export only this protocol");
-  command->add_option("--format", options->format, "csv | bids")
-      ->check(one_of({"csv", "bids"}))
+  command
+      ->add_option("--format", options->format,
+                   "csv | bids | signals (every point that force cells recorded)")
+      ->check(one_of({"csv", "bids", "signals"}))
       ->capture_default_str();
   command->add_option("--separator", options->separator, "Column separator: , ; | or tab")
       ->capture_default_str();

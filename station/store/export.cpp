@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <filesystem>
 #include <map>
 
@@ -13,7 +12,6 @@
 #include "station/store/open.hpp"
 #include "station/store/sqlite.hpp"
 #include "station/store/whole_file.hpp"
-#include "station/system/write_file.hpp"
 #include "station/terms/usage_error.hpp"
 
 namespace turnpoint::store {
@@ -21,17 +19,6 @@ namespace turnpoint::store {
 namespace fs = std::filesystem;
 
 namespace {
-
-/// Makes a folder name from a protocol id. Researchers may write any text as the id, so characters that could
-/// lead out of the folder are replaced.
-std::string folder_name(const std::string& protocol_id) {
-  std::string name = protocol_id.empty() || protocol_id.front() == '.' ? "_" : "";
-  for (const char c : protocol_id) {
-    const bool plain = std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '-' || c == '_' || c == '.';
-    name += plain ? c : '_';
-  }
-  return name;
-}
 
 void check_style(const ExportOptions& options) {
   const auto refuse = [](const std::string& what) { throw terms::UsageError("export: " + what); };
@@ -45,7 +32,8 @@ void check_style(const ExportOptions& options) {
         options.separator));
   if (options.format == ExportFormat::bids && (options.separator != ',' || options.decimal != '.'))
     refuse(
-        "BIDS tables always use tabs and decimal points; --separator and --decimal are allowed for CSV only");
+        "BIDS tables always use tabs and decimal points; --separator and --decimal are for the other "
+        "formats");
 }
 
 void add_factors(std::vector<std::string>& all, const std::vector<std::string>& more) {
@@ -65,7 +53,7 @@ std::vector<ProtocolSelection> select(Database& database, const std::string& dir
   std::vector<ProtocolSelection> list;
   std::map<std::string, std::string> owners;
   for (auto& [id, selection] : protocols) {
-    const auto folder = folder_name(id);
+    const auto folder = file_name_of(id);
     if (const auto [owner, fresh] = owners.emplace(folder, id); !fresh)
       throw StoreError(ErrorKind::conflict,
                        fmt::format("export: the protocols \"{}\" and \"{}\" would share the folder "
@@ -79,54 +67,6 @@ std::vector<ProtocolSelection> select(Database& database, const std::string& dir
 }
 
 }  // namespace
-
-namespace {
-
-/// Size of the piece of text that is collected before it is written to a table's file.
-constexpr std::size_t kPieceBytes = 1U << 18U;
-
-/// Calls `write`. If `write` fails, throws an error that says what the export was writing and what to do.
-template <class Write>
-auto writing(const std::string& path, Write write) {
-  try {
-    return write();
-  } catch (const std::system_error& error) {
-    const bool full = error.code() == std::errc::no_space_on_device;
-    throw StoreError(
-        full ? ErrorKind::disk_full : ErrorKind::read_only,
-        fmt::format("export to {}: {}; {}", path, error.what(),
-                    full ? "free some space and export again" : "name a folder that can be written"));
-  }
-}
-
-}  // namespace
-
-void write_file(const std::string& path, const std::string& bytes) {
-  writing(path, [&] {
-    system::make_folder(fs::path(path).parent_path().string());
-    system::write_file(path, bytes);
-  });
-}
-
-TableFile::TableFile(const std::string& path, const TableStyle& style,
-                     const std::vector<std::string>& columns)
-    : path_(path), table_(style, columns), file_(writing(path, [&] {
-        system::make_folder(fs::path(path).parent_path().string());
-        return system::FileWriter(path);
-      })) {}
-
-void TableFile::row(const std::vector<Cell>& cells) {
-  table_.row(cells);
-  if (table_.text().size() >= kPieceBytes) writing(path_, [&] { file_.write(table_.take()); });
-}
-
-void TableFile::finish(std::vector<ExportedFile>& files) {
-  writing(path_, [&] {
-    file_.write(table_.take());
-    file_.commit();
-  });
-  files.push_back({path_, table_.rows()});
-}
 
 void export_csv(Database& database, const ProtocolSelection& selection, const TableStyle& style,
                 std::vector<ExportedFile>& files) {
@@ -169,7 +109,7 @@ std::vector<ExportedFile> export_data(const std::string& path, const std::string
   check_pages(database);
   // Read all files from one snapshot of the database, even if a running session adds rows meanwhile.
   database.execute("BEGIN");
-  const auto selections = select(database, directory, options);
+  auto selections = select(database, directory, options);
   if (selections.empty())
     throw StoreError(
         ErrorKind::missing,
@@ -177,14 +117,23 @@ std::vector<ExportedFile> export_data(const std::string& path, const std::string
             "export: no session in {} matches these options; `turnpoint sessions --db {}` lists all sessions",
             path, path));
   std::vector<ExportedFile> files;
+  if (options.format == ExportFormat::signals) keep_with_signals(database, selections);
   for (const auto& selection : selections) {
     // Mark the folder as incomplete. Until the last file is written, old and new files may be mixed in it.
     const auto mark = selection.folder + "/EXPORT-INCOMPLETE.txt";
     write_file(mark, "An export into this folder did not finish. Export again.\n");
-    if (options.format == ExportFormat::bids)
-      export_bids(database, selection, files);
-    else
-      export_csv(database, selection, {TableStyle::Kind::rfc4180, options.separator, options.decimal}, files);
+    const TableStyle style{TableStyle::Kind::rfc4180, options.separator, options.decimal};
+    switch (options.format) {
+      case ExportFormat::csv:
+        export_csv(database, selection, style, files);
+        break;
+      case ExportFormat::bids:
+        export_bids(database, selection, files);
+        break;
+      case ExportFormat::signals:
+        export_signals(database, selection, style, files);
+        break;
+    }
     sync_path(selection.folder);
     remove_file(mark);
   }

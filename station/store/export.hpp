@@ -6,7 +6,7 @@
 
 namespace turnpoint::store {
 
-enum class ExportFormat { csv, bids };
+enum class ExportFormat { csv, bids, signals };
 
 struct ExportOptions {
   std::string session_id, participant, protocol_id;  ///< which sessions to export; "" selects all
@@ -21,9 +21,9 @@ struct ExportedFile {
 };
 
 /// Writes one folder per protocol below `directory`, with trials.csv, intervals.csv, events.csv, sessions.csv
-/// and codebook.json (or the BIDS set). It opens the database for reading only. The same data give the same
-/// bytes. During the export, and after an interrupted export, the folder contains EXPORT-INCOMPLETE.txt.
-/// Throws StoreError.
+/// and codebook.json (or the BIDS set, or signals.csv with compressed tables of all signals). It opens the
+/// database for reading only. The same data give the same bytes. During the export, and after an interrupted
+/// export, the folder contains EXPORT-INCOMPLETE.txt. Throws StoreError.
 std::vector<ExportedFile> export_data(const std::string& database, const std::string& directory,
                                       const ExportOptions& options);
 

@@ -105,7 +105,8 @@ class BidsWriter {
           bids_sidecar(newest.start, explanations(bids_trial_columns(selection_.factors))));
     plain(fmt::format("task-{}_events.json", task_), bids_sidecar(newest.start, bids_event_columns()));
     participants();
-    for (const auto& session : selection_.sessions) runs(read_session(database, session));
+    for (const auto& session : selection_.sessions)
+      runs(database, read_session(database, session), newest.start);
   }
 
  private:
@@ -129,7 +130,8 @@ class BidsWriter {
     plain("participants.json", columns_json(bids_participant_columns()));
   }
 
-  void runs(const StoredSession& stored) {
+  /// Writes the runs of a session. `task` is a session with the texts of the protocol.
+  void runs(Database& database, const StoredSession& stored, const SessionStart& task) {
     const auto spans = stimulus_spans(stored);
     const auto all_events = in_order_of_time(stored.events);
     for (std::size_t i = 0; i < stored.segments.size(); ++i) {
@@ -153,6 +155,7 @@ class BidsWriter {
         if (event.segment_index == segment)
           events.row(bids_event_cells(event, stored.segments[i].monotonic_ns));
       events.finish(files_);
+      export_bids_signals(database, {stored.session.session_id, segment, task}, base, files_);
     }
   }
 

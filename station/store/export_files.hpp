@@ -1,8 +1,10 @@
 #pragma once
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "station/store/export.hpp"
+#include "station/store/gzip.hpp"
 #include "station/store/read.hpp"
 #include "station/store/text_table.hpp"
 #include "station/system/write_file.hpp"
@@ -17,27 +19,55 @@ struct ProtocolSelection {
   std::vector<SessionRecord> sessions;
 };
 
+/// Makes the name of a file or folder from any text, such as a protocol's id. Characters that could lead out
+/// of the folder are replaced.
+std::string file_name_of(const std::string& text);
+
 /// Writes the bytes to a temporary file and renames it, so that readers see either the old or the new bytes.
 /// Creates the folder if necessary. Throws StoreError.
 void write_file(const std::string& path, const std::string& bytes);
 
-/// Writes a table of any length, row by row, to a temporary file.
+/// Writes a table of any length, row by row, to a temporary file. A file whose name ends in .gz is
+/// compressed.
 class TableFile {
  public:
-  TableFile(const std::string& path, const TableStyle& style, const std::vector<std::string>& columns);
+  enum class Header { written, left_out };
+  TableFile(const std::string& path, const TableStyle& style, const std::vector<std::string>& columns,
+            Header header = Header::written);
   void row(const std::vector<Cell>& cells);
   /// Gives the temporary file its final name and adds the file to `files`.
   void finish(std::vector<ExportedFile>& files);
 
  private:
+  void write_piece();
+
   std::string path_;
   TextTable table_;
   system::FileWriter file_;
+  std::unique_ptr<Gzip> gzip_;  ///< null if the file is not compressed
 };
 
-/// These functions write the sessions of one protocol as CSV files or as a BIDS data set.
+/// Removes the sessions without stored signals, and then the protocols without sessions. Throws StoreError
+/// (missing) if nothing is left.
+void keep_with_signals(Database& database, std::vector<ProtocolSelection>& selections);
+
+/// These functions write the sessions of one protocol: as CSV files, as a BIDS data set, or their signals.
 void export_csv(Database& database, const ProtocolSelection& selection, const TableStyle& style,
                 std::vector<ExportedFile>& files);
 void export_bids(Database& database, const ProtocolSelection& selection, std::vector<ExportedFile>& files);
+void export_signals(Database& database, const ProtocolSelection& selection, const TableStyle& style,
+                    std::vector<ExportedFile>& files);
+
+/// One run of a BIDS data set: a segment of a session. `task` describes the protocol.
+struct BidsRun {
+  const std::string& session_id;
+  int segment = 1;
+  const SessionStart& task;
+};
+
+/// Writes the signals of a run as BIDS recordings: BASE_recording-NAME_physio.tsv.gz with its sidecar file,
+/// or nothing if there are no signals.
+void export_bids_signals(Database& database, const BidsRun& run, const std::string& base,
+                         std::vector<ExportedFile>& files);
 
 }  // namespace turnpoint::store

@@ -25,6 +25,13 @@ std::int32_t whole(double value, const SignalChannel& channel) {
   return static_cast<std::int32_t>(rounded);
 }
 
+/// The double nearest to `whole` times the resolution. For a resolution such as 1e-4, only the division by
+/// 10000 is rounded once.
+double multiple(std::int32_t whole, double resolution) {
+  const double parts = std::round(1 / resolution);
+  return 1 / parts == resolution ? whole / parts : whole * resolution;
+}
+
 [[noreturn]] void damaged(const SignalRow& signal, const std::string& why) {
   throw StoreError(ErrorKind::corrupt, fmt::format("signal \"{}\": {}", signal.stream, why));
 }
@@ -84,7 +91,7 @@ std::vector<std::vector<double>> decode(const SignalRow& signal) {
                   << (8 * byte);
       const auto whole = static_cast<std::int32_t>(number);
       value = whole == kMissing ? std::numeric_limits<double>::quiet_NaN()
-                                : whole * signal.channels[c].resolution;
+                                : multiple(whole, signal.channels[c].resolution);
       ++at;
     }
   }

@@ -1,6 +1,8 @@
 """commands.py PROGRAM [NAME...]: runs every command of the program as a user would: the example of its --help, its JSON
 output, and the mistakes that users make most. NAME chooses tests, as for python3 -m unittest."""
+import csv
 import fcntl
+import gzip
 import json
 import os
 import re
@@ -373,6 +375,35 @@ class Readme(Folder):
         self.assertEqual(status, 0, out + err)
         for made in ("my-study.toml", "P01.html", "export/my-study/trials.csv"):
             self.assertTrue(os.path.exists(os.path.join(self.folder, made)), made)
+
+
+class Signals(Folder):
+    def test_the_signals_of_force_cells_as_the_readme_of_the_rigs_has_them(self):
+        with open(os.path.join(SOURCE, "deploy/rigs/README.md"), encoding="utf-8") as readme:
+            section = re.search(r"^## Force cells\n(.*?)^## ", readme.read(), re.DOTALL | re.MULTILINE).group(1)
+        capture, commands = (re.search(rf"^```{kind}\n(.*?)^```", section, re.DOTALL | re.MULTILINE).group(1) for kind in ("toml", "sh"))
+        with open(os.path.join(SOURCE, "deploy/rigs/simulated.toml"), encoding="utf-8") as rig:
+            self.write("cells.toml", (rig.read() + "\n" + capture).encode())
+        status, _, err = run(["run", "demo", "--rig", "cells.toml", "--participant", "P01", "--db", "lab.sqlite", "--observer", "sim",
+                              "--seed", "1"], self.folder)
+        self.assertEqual(status, 0, err)
+        status, out, err = run("set -eu\n" + commands, self.folder)
+        self.assertEqual(status, 0, out + err)
+        self.assertIn("\n10 signals in 3 files\n", out)
+        with open(os.path.join(self.folder, "export/demo/signals.csv"), encoding="utf-8", newline="") as listed:
+            signals = list(csv.DictReader(listed))
+        self.assertEqual([int(signal["trial_index"]) for signal in signals], list(range(10)))
+        with gzip.open(os.path.join(self.folder, "export/demo", signals[0]["file"]), "rt", encoding="utf-8", newline="") as table:
+            points = list(csv.DictReader(table))
+        self.assertEqual(len(points), sum(int(signal["points"]) for signal in signals))
+        self.assertGreater(max(float(point["normal_n"]) for point in points), 0.3)
+        runs = os.path.join(self.folder, "bids/demo/sub-P01/ses-01/beh")
+        self.assertIn("sub-P01_ses-01_task-demo_run-01_recording-force_physio.tsv.gz", os.listdir(runs))
+
+    def test_sessions_without_force_cells_have_no_signals(self):
+        self.add_sessions()
+        self.refused_in_one_sentence(["export", "--db", "lab.sqlite", "--out", "export", "--format", "signals"], "no signals", status=1)
+        self.assertFalse(os.path.exists(os.path.join(self.folder, "export")))
 
 
 class Surroundings(Folder):

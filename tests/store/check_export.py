@@ -1,19 +1,23 @@
 #!/usr/bin/env python3
-"""check_export.py pandas|bids MAKE_SAMPLE README: reads exports with the programs for which they are made.
+"""check_export.py pandas|signals|bids MAKE_SAMPLE README: reads exports with the programs for which they are made.
 
-`pandas` runs the Python example from README; `bids` runs bids-validator-deno. The exit status is 77 (skipped) if the
+`pandas` and `signals` run the Python examples from README; `bids` runs bids-validator-deno. The exit status is 77 (skipped) if the
 program is not installed. To install both: pip install pandas bids-validator-deno==3.0.2
 """
 import csv
 import glob
+import gzip
 import io
 import json
 import os
 import re
 import shutil
+import sqlite3
+import struct
 import subprocess
 import sys
 import tempfile
+import zlib
 
 SKIPPED = 77
 
@@ -23,13 +27,81 @@ def skip(what):
     sys.exit(SKIPPED)
 
 
-def check_pandas(folder, readme):
+def example(readme, number):
+    """Returns one of the README's examples of how to read an export."""
     try:
         import pandas  # noqa: F401
     except ImportError:
         skip("pandas")
     with open(readme, encoding="utf-8") as file:
-        snippet = re.search(r"```python\n(.*?)```", file.read(), re.S).group(1)
+        return re.findall(r"```python\n(.*?)```", file.read(), re.S)[number]
+
+
+def stored_signals(database):
+    """Decodes all signals of a database, by (session, trial): the start, and the values of each channel. This is
+    written from the description in signal_code.hpp, without the station's own decoder."""
+    signals = {}
+    rows = sqlite3.connect(database).execute(
+        "SELECT session_id, trial_index, segment_index, start_s, start_frame, rate_Hz, points, channels, data"
+        " FROM signal JOIN trial USING (session_id, trial_index)")
+    for session, trial, segment, start_s, start_frame, rate_hz, points, channels, data in rows:
+        channels = json.loads(channels)
+        count = points * len(channels)
+        shuffled = zlib.decompress(data)
+        assert len(shuffled) == 4 * count
+        differences = [sum(shuffled[byte * count + i] << 8 * byte for byte in range(4)) for i in range(count)]
+        values = {}
+        for c, channel in enumerate(channels):
+            number, per_unit = 0, round(1 / channel["resolution"])
+            values[channel["name"]] = column = []
+            for difference in differences[c * points:(c + 1) * points]:
+                number = (number + difference) % 2**32
+                signed = number - 2**32 if number >= 2**31 else number
+                column.append(None if signed == -2**31 else signed / per_unit)
+        signals[session, trial] = {"segment": segment, "start_s": start_s, "start_frame": start_frame, "rate_hz": rate_hz,
+                                   "points": points, "values": values}
+    return signals
+
+
+COLUMNS = {"normal": "normal_n", "lateral": "lateral_n", "position": "position_mm", "speed": "speed_mm_s"}
+
+
+def bits(value):
+    """The bits of a double, as text; "" for a missing value."""
+    return "" if value is None or value != value else struct.pack(">d", value).hex()
+
+
+def check_signals(folder, readme):
+    snippet = example(readme, 1)
+    os.chdir(os.path.join(folder, "signals", "two-boundaries"))
+    names = {}
+    exec(snippet, names)  # run the README's example of how to read signals
+    finger, stored = names["finger"], stored_signals(os.path.join(folder, "lab.sqlite"))
+    assert len(stored) == 53 and len(finger) == sum(s["points"] for s in stored.values()) > 20000
+    by_trial = finger.groupby(["session_id", "trial_index"])
+    assert set(by_trial.groups) == set(stored)
+    for key, read in by_trial:
+        signal = stored[key]
+        for channel, column in COLUMNS.items():
+            assert [bits(v) for v in read[column]] == [bits(v) for v in signal["values"][channel]], (key, column)
+        assert list(read.frame) == [signal["start_frame"] + 192 * k for k in range(signal["points"])]
+        times = [signal["start_s"] + k / signal["rate_hz"] for k in range(signal["points"])]
+        assert all(abs(a - b) < 1e-6 for a, b in zip(read.time_s, times))
+        assert set(read.segment_id) == {signal["segment"]}
+        # the friction of the example: mean lateral force / mean normal force of the points where the finger slides
+        normal, lateral, speed = (signal["values"][name] for name in ("normal", "lateral", "speed"))
+        sliding = [k for k in range(signal["points"]) if speed[k] is not None and abs(speed[k]) > 10]
+        friction = sum(abs(lateral[k]) for k in sliding) / sum(normal[k] for k in sliding)
+        assert abs(names["friction"][key] - friction) < 1e-12, key
+    assert finger.position_mm.isna().sum() == 20 * len(stored)
+    os.chdir("/")
+    # Negative control: one bit of one stored value must make a difference.
+    some = next(iter(stored.values()))["values"]["normal"]
+    assert bits(some[0]) != bits(some[0] + 2**-50)
+
+
+def check_pandas(folder, readme):
+    snippet = example(readme, 0)
     os.chdir(os.path.join(folder, "csv", "two-boundaries"))
     names = {}
     exec(snippet, names)  # run the README's example of how to read an export
@@ -63,6 +135,35 @@ def name_of(issue):
     return issue.get("subCode") or issue["code"]
 
 
+def check_recordings(folder, dataset):
+    """Every stored point must be in the recording of its run, at its time from the start of the run."""
+    runs = {}
+    for (session, _), signal in stored_signals(os.path.join(folder, "lab.sqlite")).items():
+        runs.setdefault((session, signal["segment"]), []).append(signal)
+    tables = glob.glob(dataset + "/sub-*/ses-*/beh/*_recording-force_physio.tsv.gz")
+    assert len(tables) == len(runs) == 4, tables
+    for table in tables:
+        with open(table.replace(".tsv.gz", ".json"), encoding="utf-8") as file:
+            sidecar = json.load(file)
+        with open(table.replace("_recording-force_physio.tsv.gz", "_beh.tsv"), encoding="utf-8") as file:
+            trial = next(csv.DictReader(file, delimiter="\t"))
+        assert sidecar["Columns"] == list(COLUMNS.values())
+        assert [sidecar[column]["Units"] for column in sidecar["Columns"]] == ["N", "N", "mm", "mm/s"]
+        with gzip.open(table, "rt", encoding="utf-8") as file:
+            rows = [line.rstrip("\n").split("\t") for line in file]
+        signals = runs[trial["session_id"], int(trial["segment_id"])]
+        found = 0
+        for signal in signals:
+            first = round((signal["start_s"] - sidecar["StartTime"]) * sidecar["SamplingFrequency"])
+            for k in range(signal["points"]):
+                values = [bits(signal["values"][channel][k]) for channel in COLUMNS]
+                assert [bits(None if text == "n/a" else float(text)) for text in rows[first + k]] == values, (table, k)
+                found += 1
+        gaps = [row for row in rows if row == ["n/a"] * 4]
+        assert found + len(gaps) == len(rows), table
+        assert len(signals) < 2 or gaps, table
+
+
 def check_bids(folder, readme):
     validator = shutil.which("bids-validator-deno")
     if validator is None:
@@ -79,7 +180,15 @@ def check_bids(folder, readme):
         with open(table, encoding="utf-8") as file:
             onsets = [float(row["onset"]) for row in csv.DictReader(file, delimiter="\t")]
         assert onsets == sorted(onsets), table
-    # Negative control: the validator must find that a required file is missing.
+    check_recordings(folder, dataset)
+    # Negative controls: the validator must read the recordings, and find that a required file is missing.
+    sidecar = glob.glob(dataset + "/sub-*/ses-*/beh/*_recording-force_physio.json")[0]
+    with open(sidecar, encoding="utf-8") as file:
+        content = json.load(file)
+    del content["StartTime"]
+    with open(sidecar, "w", encoding="utf-8") as file:
+        json.dump(content, file)
+    assert any(issue["severity"] == "error" and "physio" in issue.get("location", "") for issue in issues_of(validator, dataset))
     os.remove(os.path.join(dataset, "dataset_description.json"))
     assert any(issue["severity"] == "error" for issue in issues_of(validator, dataset))
 
@@ -88,7 +197,7 @@ def main():
     kind, make_sample, readme = sys.argv[1:]
     with tempfile.TemporaryDirectory() as folder:
         subprocess.run([make_sample, folder], check=True)
-        {"pandas": check_pandas, "bids": check_bids}[kind](folder, readme)
+        {"pandas": check_pandas, "signals": check_signals, "bids": check_bids}[kind](folder, readme)
     print("passed")
 
 

@@ -1,5 +1,5 @@
-// make_sample FOLDER: writes a database of several sessions to FOLDER/lab.sqlite and exports it to FOLDER/csv
-// and FOLDER/bids.
+// make_sample FOLDER: writes a database of several sessions to FOLDER/lab.sqlite and exports it to
+// FOLDER/csv, FOLDER/bids and FOLDER/signals.
 #include <cstdio>
 
 #include "station/store/annotate.hpp"
@@ -25,5 +25,8 @@ int main(int argc, char** argv) {
   ExportOptions bids;
   bids.format = ExportFormat::bids;
   export_data(db, folder + "/bids", bids);
+  ExportOptions signals;
+  signals.format = ExportFormat::signals;
+  export_data(db, folder + "/signals", signals);
   std::puts("made");
 }

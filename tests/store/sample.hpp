@@ -29,7 +29,7 @@ inline SessionStart start(const std::string& participant = "P01") {
   s.level_unit = "dB";
   s.rig_name = "plate";
   s.rig_path = "rigs/plate.toml";
-  s.rig_text = "format = \"friction-rig/1\"\n";
+  s.rig_text = "format = \"friction-rig/1\"\n[output]\nrate_Hz = 192000\n";
   s.rig_sha256 = std::string(64, 'b');
   s.seed = 20240229;
   s.language = "en";
@@ -69,18 +69,22 @@ inline ToneRow tone(int interval, int index) {
   return t;
 }
 
-/// Half a second of a finger's force and position; the position is missing at first.
+/// Half a second of a finger's forces, position and speed; position and speed are missing at first.
 inline SignalRow finger_signal(int index) {
   SignalRow s;
   s.stream = "finger";
-  s.start_frame = 192000;
+  s.start_frame = 192000 * (1 + index);
   s.start_s = 1.5 + index;
   s.rate_Hz = 1000;
-  s.channels = {{"normal_N", "N", 1e-4}, {"position_mm", "mm", 0.01}};
-  std::vector<std::vector<double>> values(2);
+  s.channels = {
+      {"normal", "N", 1e-4}, {"lateral", "N", 1e-4}, {"position", "mm", 0.01}, {"speed", "mm/s", 0.1}};
+  constexpr double missing = std::numeric_limits<double>::quiet_NaN();
+  std::vector<std::vector<double>> values(4);
   for (int k = 0; k < 500; ++k) {
     values[0].push_back(0.5 + 0.1 * std::sin(0.02 * k + index));
-    values[1].push_back(k < 20 ? std::numeric_limits<double>::quiet_NaN() : 100 + 0.08 * k);
+    values[1].push_back(0.3 * std::cos(0.01 * k));
+    values[2].push_back(k < 20 ? missing : 100 + 0.08 * k);
+    values[3].push_back(k < 20 ? missing : 80 - 0.3 * k);
   }
   encode(s, values);
   return s;

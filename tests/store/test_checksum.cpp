@@ -311,14 +311,20 @@ TEST_CASE("a database whose rows were changed is not merged", "[store]") {
 TEST_CASE("the encoding of a session, which determines its checksums, never changes", "[store]") {
   TemporaryFolder folder;
   const auto db = folder / "a.sqlite";
-  sample::session(db, 2);
+  auto start = sample::start();
+  start.rig_text = "format = \"friction-rig/1\"\n";
+  sample::session(db, 2, start);
   auto database = unguarded(db);
-  // Replaces random values, clock times and what zlib made (which depends on its version) by fixed ones.
+  // Replaces random values, clock times, what zlib made (which depends on its version), and what the sample
+  // has gained since the checksum was recorded.
   database.execute(
       "UPDATE session SET session_id = '00000000-0000-4000-8000-000000000000';"
       "UPDATE trial SET session_id = (SELECT session_id FROM session), recorded_realtime_ns = 5;"
       "UPDATE tone SET session_id = (SELECT session_id FROM session);"
-      "UPDATE signal SET session_id = (SELECT session_id FROM session), data = x'00FF10';"
+      "UPDATE signal SET session_id = (SELECT session_id FROM session), data = x'00FF10', start_frame = "
+      "192000,"
+      " channels = '[{\"name\":\"normal_N\",\"resolution\":0.0001,\"unit\":\"N\"},"
+      "{\"name\":\"position_mm\",\"resolution\":0.01,\"unit\":\"mm\"}]';"
       "UPDATE event SET session_id = (SELECT session_id FROM session);"
       "UPDATE block SET session_id = (SELECT session_id FROM session);"
       "UPDATE segment SET session_id = (SELECT session_id FROM session); DELETE FROM link");

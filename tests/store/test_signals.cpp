@@ -1,5 +1,6 @@
 #include <zlib.h>
 
+#include "station/store/backup.hpp"
 #include "station/store/fields.hpp"
 #include "station/store/merge.hpp"
 #include "station/store/verify.hpp"
@@ -28,18 +29,33 @@ TEST_CASE("a signal comes back as it was recorded, rounded to its resolution, wi
   sample::session(db, 3);
   const auto row = stored_signal(db, 1);
   CHECK(row.stream == "finger");
-  CHECK(row.start_frame == 192000);
+  CHECK(row.start_frame == 384000);
   CHECK(row.rate_Hz == 1000);
   REQUIRE(row.channels == sample::finger_signal(1).channels);
   const auto values = decode(row);
-  REQUIRE(values.size() == 2);
+  REQUIRE(values.size() == 4);
   REQUIRE(values[0].size() == 500);
   for (std::size_t k = 0; k < 500; ++k) {
     CHECK(std::abs(values[0][k] - (0.5 + 0.1 * std::sin(0.02 * static_cast<double>(k) + 1))) <= 0.5001e-4);
     if (k < 20)
-      CHECK(std::isnan(values[1][k]));
+      CHECK(std::isnan(values[2][k]));
     else
-      CHECK(std::abs(values[1][k] - (100 + 0.08 * static_cast<double>(k))) < 0.00501);
+      CHECK(std::abs(values[2][k] - (100 + 0.08 * static_cast<double>(k))) < 0.00501);
+  }
+}
+
+TEST_CASE("a decoded value is the double nearest to a whole multiple of the resolution", "[store]") {
+  SignalRow row;
+  row.channels = {{"normal", "N", 1e-4}, {"half", "mm", 0.5}, {"odd", "mm", 0.03}};
+  std::vector<double> thousandths;
+  for (int k = -20000; k <= 20000; ++k) thousandths.push_back(1e-4 * k);
+  encode(row, std::vector<std::vector<double>>(3, thousandths));
+  const auto values = decode(row);
+  for (int k = -20000; k <= 20000; ++k) {
+    const auto at = static_cast<std::size_t>(k + 20000);
+    REQUIRE(values[0][at] == k / 1e4);
+    REQUIRE(std::abs(values[1][at] - thousandths[at]) <= 0.25);
+    REQUIRE(std::abs(values[2][at] - thousandths[at]) <= 0.01500001);
   }
 }
 
@@ -97,7 +113,7 @@ TEST_CASE("verify finds a changed signal and a removed signal", "[store]") {
   CHECK_FALSE(verify(db).good());
 }
 
-TEST_CASE("signals are merged with their trials and withdrawn with their session", "[store]") {
+TEST_CASE("signals are merged and backed up with their trials, and withdrawn with their session", "[store]") {
   TemporaryFolder folder;
   const auto db = folder / "a.sqlite", other = folder / "b.sqlite";
   sample::session(db, 2);
@@ -106,9 +122,16 @@ TEST_CASE("signals are merged with their trials and withdrawn with their session
   sample::session(other, 4, start);
   merge(db, other);
   CHECK(sample::raw(db).integer("SELECT count(*) FROM signal") == 6);
+  const auto copy = backup(db, {folder / "copies", 30}).path;
+  CHECK(sample::raw(copy).integer("SELECT count(*) FROM signal") == 6);
+  CHECK(stored_signal(copy, 3).data == stored_signal(other, 3).data);
   CHECK(decode(stored_signal(db, 3))[0].size() == 500);
   CHECK(verify(db).good());
+  REQUIRE(sample::contains(sample::bytes_of(db), stored_signal(other, 3).data.bytes));
   withdraw(db, {"P07", "", "", ""});
   CHECK(sample::raw(db).integer("SELECT count(*) FROM signal") == 2);
   CHECK(verify(db).good());
+  CHECK_FALSE(sample::contains(sample::bytes_of(db), stored_signal(other, 3).data.bytes));
+  merge(db, other);
+  CHECK(sample::raw(db).integer("SELECT count(*) FROM signal") == 2);
 }

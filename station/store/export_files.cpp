@@ -1,0 +1,80 @@
+#include "station/store/export_files.hpp"
+
+#include <fmt/format.h>
+
+#include <cctype>
+#include <filesystem>
+
+#include "station/system/write_file.hpp"
+
+namespace turnpoint::store {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+/// Size of the piece of text that is collected before it is written to a table's file.
+constexpr std::size_t kPieceBytes = 1U << 18U;
+
+/// Calls `write`. If `write` fails, throws an error that says what the export was writing and what to do.
+template <class Write>
+auto writing(const std::string& path, Write write) {
+  try {
+    return write();
+  } catch (const std::system_error& error) {
+    const bool full = error.code() == std::errc::no_space_on_device;
+    throw StoreError(
+        full ? ErrorKind::disk_full : ErrorKind::read_only,
+        fmt::format("export to {}: {}; {}", path, error.what(),
+                    full ? "free some space and export again" : "name a folder that can be written"));
+  }
+}
+
+}  // namespace
+
+std::string file_name_of(const std::string& text) {
+  std::string name = text.empty() || text.front() == '.' ? "_" : "";
+  for (const char c : text) {
+    const bool plain = std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '-' || c == '_' || c == '.';
+    name += plain ? c : '_';
+  }
+  return name;
+}
+
+void write_file(const std::string& path, const std::string& bytes) {
+  writing(path, [&] {
+    system::make_folder(fs::path(path).parent_path().string());
+    system::write_file(path, bytes);
+  });
+}
+
+TableFile::TableFile(const std::string& path, const TableStyle& style,
+                     const std::vector<std::string>& columns, Header header)
+    : path_(path), table_(style, columns), file_(writing(path, [&] {
+        system::make_folder(fs::path(path).parent_path().string());
+        return system::FileWriter(path);
+      })) {
+  if (path.ends_with(".gz")) gzip_ = std::make_unique<Gzip>();
+  if (header == Header::left_out) table_.take();
+}
+
+void TableFile::write_piece() {
+  const auto text = table_.take();
+  writing(path_, [&] { file_.write(gzip_ ? gzip_->add(text) : text); });
+}
+
+void TableFile::row(const std::vector<Cell>& cells) {
+  table_.row(cells);
+  if (table_.text().size() >= kPieceBytes) write_piece();
+}
+
+void TableFile::finish(std::vector<ExportedFile>& files) {
+  write_piece();
+  writing(path_, [&] {
+    if (gzip_) file_.write(gzip_->finish());
+    file_.commit();
+  });
+  files.push_back({path_, table_.rows()});
+}
+
+}  // namespace turnpoint::store

@@ -1,0 +1,44 @@
+#pragma once
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "station/store/export_tables.hpp"
+#include "station/store/names.hpp"
+#include "station/store/sqlite.hpp"
+
+namespace turnpoint::store {
+
+/// Streams of a session that have signals, in alphabetical order.
+std::vector<std::string> signal_streams(Database& database, const std::string& session_id);
+
+/// All channels that signals of this stream have in the session, in the order in which they first occur.
+std::vector<SignalChannel> signal_channels(Database& database, const std::string& session_id,
+                                           const std::string& stream);
+
+/// A signal with its place in the session.
+struct StoredSignal {
+  int trial_index = 0, segment_index = 0;
+  SignalRow row;
+};
+
+/// Reads the signals of one stream of a session one by one, in the order of their trials.
+class SignalReader {
+ public:
+  /// `segment` restricts it to the trials of one segment.
+  SignalReader(Database& database, const std::string& session_id, const std::string& stream,
+               std::optional<int> segment = {});
+  std::optional<StoredSignal> next();
+
+ private:
+  Statement rows_;
+};
+
+/// The place in `channels` of each channel of the signal.
+std::vector<std::size_t> places_of(const SignalRow& signal, const std::vector<SignalChannel>& channels);
+
+/// How a channel is called and explained in exports: its name with its unit, such as normal_n or speed_mm_s.
+Column signal_column(const SignalChannel& channel);
+std::vector<Column> signal_columns(const std::vector<SignalChannel>& channels);
+
+}  // namespace turnpoint::store
