@@ -7,6 +7,7 @@
 
 #include "station/cli/command.hpp"
 #include "station/cli/json.hpp"
+#include "station/cli/long_work.hpp"
 #include "station/cli/shared_options.hpp"
 #include "station/cli/sound.hpp"
 #include "station/cli/uncertainty.hpp"
@@ -26,6 +27,7 @@ using text::number;
 struct Options {
   std::string protocol, rig, calibration;
   std::optional<int> sessions;
+  bool progress = false;
 };
 
 Json problems_json(const std::vector<text::Problem>& problems) {
@@ -83,7 +85,7 @@ Extremes extremes_of(const protocol::Survey& survey) {
   return found;
 }
 
-Json to_json(const simulation::Check& check) {
+Json to_json(const simulation::Check& check, const std::string& signal) {
   Json blocks = Json::array(), cues = Json::array(), triggers = Json::array();
   for (const auto& code : check.triggers)
     triggers.push_back({{"event", protocol::name(code.event)},
@@ -115,6 +117,9 @@ Json to_json(const simulation::Check& check) {
       {"trials_range", {json_number(check.trials.low), json_number(check.trials.high)}},
       {"duration_s", json_number(check.duration_s.median)},
       {"duration_range_s", {json_number(check.duration_s.low), json_number(check.duration_s.high)}},
+      {"simulated_sessions", check.simulated_sessions},
+      {"wanted_sessions", check.wanted_sessions},
+      {"stopped", signal.empty() ? Json(nullptr) : Json(signal)},
       {"blocks", blocks},
       {"frequencies",
        {{"lowest_Hz", planned ? json_number(extremes.lowest_Hz) : Json(nullptr)},
@@ -147,6 +152,11 @@ std::string between(double least, double most) {
 }
 
 void print_cues(std::ostream& out, const simulation::CueGuard& cues) {
+  if (cues.stopped)
+    fmt::print(out,
+               "Cues: stopped after {} of them; it is not known whether the others give the answer away\n",
+               cues.reports.size());
+  if (cues.stopped && cues.reports.empty()) return;
   if (!cues.not_compared.empty())
     return fmt::print(out,
                       "Cues: NOT COMPARED ({}): it is not known whether unwanted cues give the answer away\n",
@@ -175,7 +185,7 @@ void print_cues(std::ostream& out, const simulation::CueGuard& cues) {
 }
 
 void print(std::ostream& out, const simulation::Check& check, const std::string& path) {
-  const bool known = check.cues.not_compared.empty();
+  const bool known = check.cues.not_compared.empty() && !check.cues.stopped;
   fmt::print(out, "{} {} on \"{}\": {}\n", path, known ? "is good" : "can run", check.rig_name, check.title);
   for (const auto& block : check.blocks)
     fmt::print(out, "  {}{}{}: {} trials\n", block.practice ? "practice block " : "block ", block.name,
@@ -184,8 +194,9 @@ void print(std::ostream& out, const simulation::Check& check, const std::string&
     fmt::print(
         out,
         "Trials: {}. Duration: {} minutes, with the time that a person needs to read, explore and set. "
-        "Medians of {} simulated sessions; in brackets the range of nine sessions in ten\n",
-        range(check.trials, 1), range(check.duration_s, 60), check.simulated_sessions);
+        "Medians of {}{} simulated sessions; in brackets the range of nine sessions in ten\n",
+        range(check.trials, 1), range(check.duration_s, 60), check.simulated_sessions,
+        check.simulated_sessions < check.wanted_sessions ? fmt::format(" of {}", check.wanted_sessions) : "");
   const auto extremes = extremes_of(check.survey);
   std::string models;
   for (const auto& model : check.survey.models) models += (models.empty() ? "" : ", ") + model;
@@ -201,7 +212,8 @@ void print(std::ostream& out, const simulation::Check& check, const std::string&
         between(check.finger->least, check.finger->most));
   fmt::print(out, "Boundaries: model error at most {} mm, {}\n", number(extremes.error_bound_mm, 2),
              uncertainty_in_words(1e-3 * extremes.uncertainty_mm));
-  fmt::print(out, "Sound: {}\n", in_words(check.sound));
+  fmt::print(out, "Sound: {}\n",
+             check.stopped && !check.sound ? "stopped before it was computed" : in_words(check.sound));
   if (!check.triggers.empty()) fmt::print(out, "Trigger codes:");
   for (const auto& code : check.triggers)
     fmt::print(out, "{} {}{} = {}", code.code == check.triggers.front().code ? "" : ",",
@@ -221,7 +233,19 @@ void check(const Options& options, Context& context) {
     calibrated = setup::calibrated_rig(path, options.calibration, context.err);
     return *calibrated;
   };
-  auto result = simulation::check(options.protocol, rig, {options.sessions, true, true, load_rig});
+  LongWork work(options.progress);
+  simulation::CheckOptions wanted{options.sessions, true, true, load_rig};
+  wanted.steps.finish = work.stop();
+  wanted.steps.progress = [&work](const char* what, int done, int of) { work.show(what, done, of); };
+  simulation::Check result;
+  try {
+    result = simulation::check(options.protocol, rig, wanted);
+  } catch (const protocol::Abandoned&) {
+    fmt::print(context.err, "turnpoint: stopped by {} while the scenes were planned; nothing was computed\n",
+               work.end(context));
+    return;
+  }
+  const auto signal = work.end(context);
   if (result.problems.empty())
     for (const auto& name : rig::unproven_transducers(calibrated.value()))
       result.notes.push_back(
@@ -233,9 +257,12 @@ void check(const Options& options, Context& context) {
   for (const auto& warning : result.warnings) fmt::print(context.err, "warning: {}\n", format(warning));
   for (const auto& note : result.notes) fmt::print(context.err, "note: {}\n", format(note));
   if (context.json)
-    context.out << to_json(result).dump(2) << "\n";
+    context.out << to_json(result, signal).dump(2) << "\n";
   else if (result.problems.empty())
     print(context.out, result, options.protocol);
+  if (!signal.empty())
+    fmt::print(context.err, "turnpoint: stopped by {} after {} of {} simulated sessions\n", signal,
+               result.simulated_sessions, result.wanted_sessions);
 }
 
 }  // namespace check_command
@@ -245,7 +272,7 @@ void add_check(CommandLine& app, Context& context) {
   auto options = std::make_shared<Options>();
   auto* command = app.add_subcommand(
       "check", "List all mistakes in a protocol file, or describe its session if there are none");
-  add_protocol(*command, options->protocol);
+  add_protocol(*command, options->protocol)->required();
   add_rig(*command, options->rig);
   add_calibration(*command, options->calibration);
   command
@@ -253,6 +280,7 @@ void add_check(CommandLine& app, Context& context) {
                    "Number of sessions to simulate in order to predict trials and duration; 0 for none; by "
                    "default 1000, or 200 if its procedures need long")
       ->check(range(0, 1000));
+  add_progress(*command, options->progress);
   add_json(*command, context);
   command->footer("Example: turnpoint check demo");
   command->callback([options, &context] { check(*options, context); });

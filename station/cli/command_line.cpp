@@ -94,6 +94,10 @@ std::string reason(const CLI::App& command, const CLI::ParseError& error) {
   if (dynamic_cast<const CLI::ExtrasError*>(&error))
     return fmt::format("\"{}\" is one value too many", joined(command.remaining(), " "));
   if (dynamic_cast<const CLI::ArgumentMismatch*>(&error)) return explained(command, before(said, ":"));
+  const std::string excludes = " excludes ";
+  if (dynamic_cast<const CLI::ExcludesError*>(&error))
+    return fmt::format("{} cannot be used with {}", before(said, excludes),
+                       said.substr(said.find(excludes) + excludes.size()));
   const std::string conversion = "Could not convert: ";
   if (said.starts_with(conversion)) return explained(command, before(said.substr(conversion.size()), " = "));
   if (dynamic_cast<const CLI::ConversionError*>(&error)) return explained(command, before(said, ":"));
@@ -136,6 +140,8 @@ Option* Option::check(Check check) {
   option_->check(std::move(check.problem), std::move(check.allowed));
   return this;
 }
+
+Option* Option::excludes(const Option* other) { return option_->excludes(other->option_), this; }
 
 Option* Option::transform(std::function<std::string(const std::string& value)> change) {
   option_->transform(std::move(change));

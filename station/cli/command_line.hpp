@@ -34,6 +34,8 @@ class Option {
   Option* required();
   Option* capture_default_str();  ///< shows the target's current value in the help
   Option* check(Check check);
+  /// refuses a command line that has both this option and the other
+  Option* excludes(const Option* other);
   /// replaces the value by `change` of it
   Option* transform(std::function<std::string(const std::string& value)> change);
 

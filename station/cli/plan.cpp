@@ -220,7 +220,7 @@ void add_plan(CommandLine& app, Context& context) {
   auto options = std::make_shared<Options>();
   auto* command =
       app.add_subcommand("plan", "Show how a scene of a protocol is presented: tones, model, reason, cues");
-  add_protocol(*command, options->protocol);
+  add_protocol(*command, options->protocol)->required();
   command->add_option("--scene", options->scene, "Name of the scene")->required();
   command->add_option(
       "--set", options->set,

@@ -2,18 +2,20 @@
 
 #include <fmt/format.h>
 #include <fmt/ostream.h>
-#include <unistd.h>
 
-#include <algorithm>
+#include <charconv>
 #include <filesystem>
 #include <memory>
 
 #include "station/cli/command.hpp"
 #include "station/cli/json.hpp"
+#include "station/cli/long_work.hpp"
+#include "station/cli/power_part.hpp"
 #include "station/cli/shared_options.hpp"
 #include "station/setup/places.hpp"
 #include "station/setup/prepare.hpp"
 #include "station/simulation/cue_guard.hpp"
+#include "station/simulation/parallel.hpp"
 #include "station/simulation/power_figure.hpp"
 #include "station/system/write_file.hpp"
 #include "station/text/number.hpp"
@@ -25,9 +27,11 @@ namespace power_command {
 using text::number;
 
 struct Options {
-  std::string protocol, rig, calibration, observer = "sim", out;
+  std::string protocol, rig, calibration, observer = "sim", out, part;
+  std::vector<std::string> join;
   int observers = 1000, intervals = 200;
   std::uint64_t seed = 1;
+  bool progress = false;
 };
 
 Json to_json(const simulation::Recovery& recovery) {
@@ -65,24 +69,35 @@ Json to_json(const std::vector<simulation::CueReport>& cues) {
   return list;
 }
 
-Json to_json(const simulation::Power& power, const std::vector<simulation::CueReport>& cues,
-             const std::string& protocol, const std::vector<std::string>& files) {
+/// What was found, from sessions of this process or from the files of parts.
+struct Found {
+  simulation::Power power;
+  std::vector<simulation::CueReport> cues;
+  std::string id, title;  ///< of the protocol
+  std::string signal;     ///< the signal that stopped the work; usually ""
+};
+
+Json to_json(const Found& found, const std::vector<std::string>& files) {
+  const auto& power = found.power;
   Json recoveries = Json::array();
   for (const auto& recovery : power.recoveries) recoveries.push_back(to_json(recovery));
-  return {{"protocol", protocol},
+  return {{"protocol", found.id},
           {"observers", power.observers},
+          {"wanted_observers", power.asked},
+          {"stopped", found.signal.empty() ? Json(nullptr) : Json(found.signal)},
           {"sessions_with_intervals", power.interval_sessions},
           {"trials", json_number(power.trials)},
           {"minutes", json_number(power.minutes)},
           {"accuracy", json_number(power.accuracy)},
           {"recoveries", recoveries},
-          {"cues", to_json(cues)},
+          {"cues", to_json(found.cues)},
           {"files", files}};
 }
 
 void print(std::ostream& out, const simulation::Power& power) {
-  fmt::print(out, "{} simulated sessions, on average {} trials and {} minutes each{}\n", power.observers,
-             number(power.trials, 4), number(power.minutes, 3),
+  fmt::print(out, "{}{} simulated sessions, on average {} trials and {} minutes each{}\n", power.observers,
+             power.observers < power.asked ? fmt::format(" of {}", power.asked) : "", number(power.trials, 4),
+             number(power.minutes, 3),
              power.accuracy ? fmt::format(", {} % right", number(100 * *power.accuracy, 3)) : "");
   constexpr auto line = "{:<22} {:<34} {:>9} {:>9} {:>9} {:>9} {:>9} {:>20} {:>9} {:>9}  {}\n";
   fmt::print(out, line, "source", "number", "truth", "mean", "bias", "SD", "median", "quartiles", "width",
@@ -117,48 +132,89 @@ void print(std::ostream& out, const std::vector<simulation::CueReport>& cues) {
                number(100 * cue.chance, 3), cue.above_chance() ? ", above chance" : "");
 }
 
-/// Returns a function that shows the progress in one line, which it overwrites each time. Returns an empty
-/// function if standard error is not a terminal.
-std::function<void(int, int)> progress() {
-  if (::isatty(STDERR_FILENO) == 0) return {};
-  return [](int done, int of) {
-    if (done % std::max(1, of / 200) != 0 && done != of) return;
-    fmt::print(stderr, "\r{} of {} sessions{}", done, of, done == of ? "\n" : "");
-  };
+simulation::Part part_of(const std::string& text, int observers) {
+  simulation::Part part;
+  const auto* end = text.data() + text.size();
+  const auto [slash, no_number] = std::from_chars(text.data(), end, part.number);
+  const bool two = no_number == std::errc{} && slash != end && *slash == '/';
+  const auto [rest, no_count] = std::from_chars(two ? slash + 1 : end, end, part.of);
+  if (!two || no_count != std::errc{} || rest != end || part.number < 1 || part.number > part.of)
+    throw UsageError(fmt::format("--part {}: this is not a part; write 1/8 to 8/8 for eight parts", text));
+  if (part.of > observers)
+    throw UsageError(
+        fmt::format("--part {}: {} sessions cannot be divided into {} parts; use fewer parts, or "
+                    "more --observers",
+                    text, observers, part.of));
+  return part;
 }
 
-void power(const Options& options, Context& context) {
-  const auto protocol = protocol::load(options.protocol);
-  const auto rig = setup::calibrated_rig(setup::rig_or_default(options.rig, context.err), options.calibration,
-                                         context.err);
-  const auto survey = protocol::survey(protocol, rig);
-  if (!survey.problems.empty()) throw text::BadInput(survey.problems);
-  const auto cues = simulation::cue_guard(protocol, rig, survey).reports;
-  simulation::PowerOptions wanted;
-  wanted.observers = options.observers;
-  wanted.interval_sessions = options.intervals;
-  wanted.observer = observer::parse(options.observer);
-  wanted.seed = options.seed;
-  wanted.progress = progress();
-  const auto result = simulation::power(protocol, wanted);
+/// Prints the result, and writes the files of --out.
+void show(const Found& found, const Options& options, Context& context) {
   std::vector<std::string> files;
   if (!options.out.empty()) {
     system::make_folder(options.out);
-    files.push_back((std::filesystem::path(options.out) / (protocol.id + "-power.svg")).string());
-    system::write_file(files.back(), plot::render(simulation::figure_of(result, protocol.title)));
-  }
-  const auto document = to_json(result, cues, protocol.id, files);
-  if (!options.out.empty()) {
-    const auto path = (std::filesystem::path(options.out) / (protocol.id + "-power.json")).string();
-    system::write_file(path, document.dump(2) + "\n");
+    files.push_back((std::filesystem::path(options.out) / (found.id + "-power.svg")).string());
+    system::write_file(files.back(), plot::render(simulation::figure_of(found.power, found.title)));
+    const auto path = (std::filesystem::path(options.out) / (found.id + "-power.json")).string();
+    system::write_file(path, to_json(found, files).dump(2) + "\n");
     files.push_back(path);
   }
   if (context.json)
-    context.out << to_json(result, cues, protocol.id, files).dump(2) << "\n";
+    context.out << to_json(found, files).dump(2) << "\n";
   else
-    print(context.out, result), print(context.out, cues);
+    print(context.out, found.power), print(context.out, found.cues);
   for (const auto& file : files)
     if (!context.json) fmt::print(context.out, "wrote {}\n", file);
+}
+
+void join(const Options& options, Context& context) {
+  auto all = join_parts(options.join);
+  const auto protocol = protocol::parse(all.protocol, all.path);
+  all.options.observer = observer::parse(all.observer);
+  simulation::complete(protocol, all.options, all.sessions);
+  show({simulation::power_of(protocol, all.options, all.sessions), all.cues, protocol.id, protocol.title, ""},
+       options, context);
+}
+
+void power(const Options& options, Context& context) {
+  if (!options.join.empty()) return join(options, context);
+  if (options.protocol.empty())
+    throw UsageError("power: protocol is missing; `turnpoint help power` shows an example");
+  PowerPart part;
+  auto& wanted = part.options;
+  wanted.observers = options.observers;
+  wanted.interval_sessions = options.intervals;
+  wanted.observer = observer::parse(part.observer = options.observer);
+  wanted.seed = options.seed;
+  wanted.threads = simulation::processors();
+  if (!options.part.empty()) wanted.part = part_of(options.part, options.observers);
+  const auto protocol = protocol::load(options.protocol);
+  part.protocol = protocol.source, part.path = protocol.path;
+  const auto rig = setup::calibrated_rig(setup::rig_or_default(options.rig, context.err), options.calibration,
+                                         context.err);
+  LongWork work(options.progress);
+  simulation::Steps steps;
+  steps.finish = wanted.stop = work.stop();
+  steps.progress = [&work](const char* what, int done, int of) { work.show(what, done, of); };
+  wanted.progress = steps.counted("simulated sessions");
+  try {
+    const auto survey = protocol::survey(protocol, rig, steps.finish, steps.counted("scenes planned"));
+    if (!survey.problems.empty()) throw text::BadInput(survey.problems);
+    part.sessions = simulation::simulate_sessions(protocol, wanted);
+    if (wanted.part.number == 1) part.cues = simulation::cue_guard(protocol, rig, survey, {}, steps).reports;
+  } catch (const protocol::Abandoned&) {  // before the first session
+  }
+  const auto signal = work.end(context);
+  part.whole = signal.empty();
+  if (!signal.empty())
+    fmt::print(context.err, "turnpoint: stopped by {} after {} of {} simulated sessions\n", signal,
+               part.sessions.size(), simulation::sessions_of(wanted.part, wanted.observers));
+  if (!options.part.empty())
+    context.out << to_json(part).dump() << "\n";
+  else if (!part.sessions.empty())
+    show({simulation::power_of(protocol, wanted, part.sessions), part.cues, protocol.id, protocol.title,
+          signal},
+         options, context);
 }
 
 }  // namespace power_command
@@ -168,26 +224,37 @@ void add_power(CommandLine& app, Context& context) {
   auto options = std::make_shared<Options>();
   auto* command = app.add_subcommand(
       "power", "Predict what a study would find: bias, spread and interval coverage from simulated sessions");
-  add_protocol(*command, options->protocol);
-  add_rig(*command, options->rig, "used to predict unwanted cues that an observer could use");
-  add_calibration(*command, options->calibration);
-  command->add_option("--observers", options->observers, "Simulated sessions")
-      ->capture_default_str()
-      ->check(range(1, 1'000'000));
-  command
-      ->add_option("--intervals", options->intervals,
-                   "Number of sessions for which 95 % intervals are computed as well")
-      ->capture_default_str()
-      ->check(range(0, 1'000'000));
-  command
-      ->add_option(
-          "--observer", options->observer,
-          "sim[:threshold=...,slope=...,lapse=...,bias=...,criterion=...,bound=...]: the simulated observer; "
-          "protocols/README.md lists all keys")
-      ->capture_default_str();
-  command->add_option("--seed", options->seed, "Seed of the first session, 0 to 2^53")
-      ->check(range(0, 9007199254740992));
-  command->add_option("--out", options->out, "Folder for the figure and the numbers");
+  auto* protocol = add_protocol(*command, options->protocol);
+  auto* rig = add_rig(*command, options->rig, "used to predict unwanted cues that an observer could use");
+  auto* calibration = add_calibration(*command, options->calibration);
+  auto* observers = command->add_option("--observers", options->observers, "Simulated sessions")
+                        ->capture_default_str()
+                        ->check(range(1, 1'000'000));
+  auto* intervals = command
+                        ->add_option("--intervals", options->intervals,
+                                     "Number of sessions for which 95 % intervals are computed as well")
+                        ->capture_default_str()
+                        ->check(range(0, 1'000'000));
+  auto* observer =
+      command
+          ->add_option(
+              "--observer", options->observer,
+              "sim[:threshold=...,slope=...,lapse=...,bias=...,criterion=...,bound=...]: the simulated "
+              "observer; protocols/README.md lists all keys")
+          ->capture_default_str();
+  auto* seed = command->add_option("--seed", options->seed, "Seed of the first session, 0 to 2^53")
+                   ->check(range(0, 9007199254740992));
+  auto* out = command->add_option("--out", options->out, "Folder for the figure and the numbers");
+  auto* part = command
+                   ->add_option("--part", options->part,
+                                "K/N: simulate only the K-th of N parts, and print it as a file for --join")
+                   ->excludes(out);
+  auto* join = command->add_option(
+      "--join", options->join,
+      "Files of all parts, in any order: print what one machine would have found in all sessions");
+  for (const auto* other : {protocol, rig, calibration, observers, intervals, observer, seed, part})
+    join->excludes(other);
+  add_progress(*command, options->progress);
   add_json(*command, context);
   command->footer(
       "Example: turnpoint power friction-2ifc --observers 100 --observer sim:threshold=-18,slope=1.2 --out "

@@ -67,7 +67,7 @@ void add_preview(CommandLine& app, Context& context) {
   using namespace preview_command;
   auto options = std::make_shared<Options>();
   auto* command = app.add_subcommand("preview", "Show the scenes of a protocol without a session");
-  add_protocol(*command, options->protocol);
+  add_protocol(*command, options->protocol)->required();
   command->add_option("--scene", options->scene, "Name of the scene; by default all scenes");
   command->add_option(
       "--set", options->set,

@@ -43,9 +43,8 @@ Check database(Missing missing) {
 
 Check database() { return database(Missing::refused); }
 
-void add_protocol(Command& command, std::string& target) {
-  command.add_option("protocol", target, "Protocol file, or a name that `turnpoint protocols` lists")
-      ->required()
+Option* add_protocol(Command& command, std::string& target) {
+  return command.add_option("protocol", target, "Protocol file, or a name that `turnpoint protocols` lists")
       ->transform([](const std::string& named) { return setup::file_or_shipped(named, "protocols"); });
 }
 

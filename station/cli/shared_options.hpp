@@ -7,8 +7,8 @@ namespace turnpoint::cli {
 
 // Options that several commands have. The same mistake gets the same message in each of them.
 
-/// Adds the protocol: a file, or the name of a protocol that comes with the program.
-void add_protocol(Command& command, std::string& target);
+/// Adds the protocol: a file, or the name of a protocol that comes with the program. It is not required yet.
+Option* add_protocol(Command& command, std::string& target);
 
 /// Adds --rig: a file, or the name of a rig that comes with the program. `when` completes the help.
 Option* add_rig(Command& command, std::string& target,

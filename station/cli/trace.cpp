@@ -83,7 +83,7 @@ void add_trace(CommandLine& app, Context& context) {
   using namespace trace_command;
   auto options = std::make_shared<Options>();
   auto* command = app.add_subcommand("trace", "Show the levels that a procedure chooses for given answers");
-  add_protocol(*command, options->protocol);
+  add_protocol(*command, options->protocol)->required();
   command->add_option("--procedure", options->procedure, "Name of the procedure")->required();
   command
       ->add_option("--answers", options->answers,

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <future>
 #include <map>
+#include <mutex>
 #include <optional>
 #include <set>
 #include <stdexcept>
@@ -176,7 +177,7 @@ Place blamed_place(const Protocol& protocol, const KeyPlaces& places, const Scen
 
 void plan_range(const Protocol& protocol, const rig::Rig& rig, const std::vector<Combination>& combinations,
                 std::size_t begin, std::size_t end, scene::Planner& planner, std::vector<Answer>& answers,
-                const std::stop_token& stop) {
+                const std::stop_token& stop, const std::function<void()>& planned) {
   std::set<std::string> explained;
   const KeyPlaces places(protocol.source, protocol.path);
   for (std::size_t i = begin; i < end && !stop.stop_requested(); ++i) {
@@ -198,6 +199,7 @@ void plan_range(const Protocol& protocol, const rig::Rig& rig, const std::vector
         } catch (const std::domain_error&) {  // this edge exists at no boundary: suggest nothing
         }
     }
+    planned();
   }
 }
 
@@ -205,25 +207,34 @@ void plan_range(const Protocol& protocol, const rig::Rig& rig, const std::vector
 // planned alone, which fills the cache. Then two threads plan half of the others each, one of them with a
 // copy of the planner.
 std::vector<Answer> plan_all(const Protocol& protocol, const rig::Rig& rig,
-                             const std::vector<Combination>& combinations, const std::stop_token& stop) {
+                             const std::vector<Combination>& combinations, const std::stop_token& stop,
+                             const std::function<void(int done, int of)>& progress) {
   std::vector<Answer> answers(combinations.size());
   const auto count = combinations.size(), begun = std::min<std::size_t>(1, count), half = (count + begun) / 2;
+  std::mutex mutex;
+  int done = 0;
+  const auto planned = [&] {
+    const std::lock_guard lock(mutex);
+    ++done;
+    if (progress) progress(done, static_cast<int>(count));
+  };
   scene::Planner planner(rig);
-  plan_range(protocol, rig, combinations, 0, begun, planner, answers, stop);
+  plan_range(protocol, rig, combinations, 0, begun, planner, answers, stop, planned);
   auto second = std::async(std::launch::async, [&, other = planner]() mutable {
-    plan_range(protocol, rig, combinations, half, count, other, answers, stop);
+    plan_range(protocol, rig, combinations, half, count, other, answers, stop, planned);
   });
-  plan_range(protocol, rig, combinations, begun, half, planner, answers, stop);
+  plan_range(protocol, rig, combinations, begun, half, planner, answers, stop, planned);
   second.get();
   if (stop.stop_requested()) throw Abandoned();
   return answers;
 }
 
-void plan_scenes(const Protocol& protocol, const rig::Rig& rig, const std::stop_token& stop, Survey& survey) {
+void plan_scenes(const Protocol& protocol, const rig::Rig& rig, const std::stop_token& stop,
+                 const std::function<void(int done, int of)>& progress, Survey& survey) {
   const auto all = combinations_of(protocol);
   survey.combinations = all.size();
   const auto combinations = planned(protocol, all);
-  const auto answers = plan_all(protocol, rig, combinations, stop);
+  const auto answers = plan_all(protocol, rig, combinations, stop, progress);
   std::map<std::string, Trouble> unreachable, inexact;
   // text of the first warning of each code; each code is reported only once
   std::map<std::string, std::string> told;
@@ -329,12 +340,13 @@ void check_limits(const Protocol& protocol, const rig::Rig& rig, Survey& survey)
 
 }  // namespace
 
-Survey survey(const Protocol& protocol, const rig::Rig& rig, const std::stop_token& stop) {
+Survey survey(const Protocol& protocol, const rig::Rig& rig, const std::stop_token& stop,
+              const std::function<void(int done, int of)>& progress) {
   Survey survey;
   check_devices(protocol, rig, survey);
   check_triggers(protocol, rig, survey);
   check_limits(protocol, rig, survey);
-  plan_scenes(protocol, rig, stop, survey);
+  plan_scenes(protocol, rig, stop, progress, survey);
   for (auto& warning : advice(protocol)) survey.warnings.push_back(std::move(warning));
   return survey;
 }

@@ -1,4 +1,5 @@
 #pragma once
+#include <functional>
 #include <optional>
 #include <set>
 #include <stdexcept>
@@ -57,8 +58,9 @@ class Abandoned : public std::runtime_error {
 /// checks devices, limits and levels. If a scene has more than 120 combinations (36 with a zone, 6 with a
 /// zone that depends on a single expression), only the extremes and evenly spaced values between them are
 /// planned; sights.size() is then below `combinations`. After `stop` is requested, finishes the current plan
-/// and throws Abandoned.
-Survey survey(const Protocol& protocol, const rig::Rig& rig, const std::stop_token& stop = {});
+/// and throws Abandoned. Calls `progress`, unless it is empty, after each plan, from one thread at a time.
+Survey survey(const Protocol& protocol, const rig::Rig& rig, const std::stop_token& stop = {},
+              const std::function<void(int done, int of)>& progress = {});
 
 /// Returns advice about mistakes that are likely on any rig, each at the line of its key. Examples: levels
 /// smaller than the tolerance, answers that are never right, practice that is passed by always pressing the

@@ -85,13 +85,18 @@ Estimate simulate(const Protocol& protocol, std::uint64_t seed) {
   return estimate;
 }
 
-void estimate(const Protocol& protocol, int sessions, const std::stop_token& stop, Check& check) {
+void estimate(const Protocol& protocol, int sessions, const std::stop_token& stop, const Steps& steps,
+              Check& check) {
   std::vector<double> durations, trials;
   std::vector<Estimate> estimates(static_cast<std::size_t>(sessions));
-  in_parallel(sessions, processors(), {}, [&](int i) {
-    if (stop.stop_requested()) throw protocol::Abandoned();
-    estimates[static_cast<std::size_t>(i)] = simulate(protocol, static_cast<std::uint64_t>(i));
-  });
+  const int done = in_parallel(
+      sessions, processors(), steps.counted("simulated sessions"),
+      [&](int i) {
+        if (stop.stop_requested()) throw protocol::Abandoned();
+        estimates[static_cast<std::size_t>(i)] = simulate(protocol, static_cast<std::uint64_t>(i));
+      },
+      steps.finish);
+  estimates.resize(static_cast<std::size_t>(done));
   if (!estimates.empty()) check.blocks = estimates.front().blocks;
   std::vector<std::vector<double>> by_block(check.blocks.size());
   for (const auto& estimate : estimates) {
@@ -103,17 +108,20 @@ void estimate(const Protocol& protocol, int sessions, const std::stop_token& sto
   for (std::size_t b = 0; b < check.blocks.size(); ++b) check.blocks[b].trials = spread_of(by_block[b]);
   check.trials = spread_of(trials);
   check.duration_s = spread_of(durations);
-  check.simulated_sessions = sessions;
+  check.simulated_sessions = done, check.wanted_sessions = sessions;
 }
 
 std::optional<scene::SoundBound> loudest(const protocol::Survey& survey, const rig::Rig& rig,
-                                         const std::stop_token& stop) {
+                                         const std::stop_token& stop, const Steps& steps) {
   std::vector<std::optional<scene::SoundBound>> bounds(survey.sights.size());
-  in_parallel(static_cast<int>(bounds.size()), processors(), {}, [&](int i) {
-    if (stop.stop_requested()) throw protocol::Abandoned();
-    const auto& sight = survey.sights[static_cast<std::size_t>(i)];
-    bounds[static_cast<std::size_t>(i)] = scene::sound_bound(rig, sight.tones, sight.field_model);
-  });
+  in_parallel(
+      static_cast<int>(bounds.size()), processors(), steps.counted("sound levels computed"),
+      [&](int i) {
+        if (stop.stop_requested()) throw protocol::Abandoned();
+        const auto& sight = survey.sights[static_cast<std::size_t>(i)];
+        bounds[static_cast<std::size_t>(i)] = scene::sound_bound(rig, sight.tones, sight.field_model);
+      },
+      steps.finish);
   std::optional<scene::SoundBound> most;
   for (const auto& bound : bounds) {
     if (!bound) return std::nullopt;
@@ -181,17 +189,24 @@ Check check(const std::string& protocol_path, const std::string& rig_path, const
   check.id = protocol->id, check.title = protocol->title, check.rig_name = rig->name;
   check.protocol_defaults = protocol->defaults_used;
   check.rig_defaults = rig->defaults_used;
-  check.survey = protocol::survey(*protocol, *rig, stop);
+  check.survey =
+      protocol::survey(*protocol, *rig, options.steps.finish.stop_possible() ? options.steps.finish : stop,
+                       options.steps.counted("scenes planned"));
   check.problems = check.survey.problems;
   check.warnings = check.survey.warnings;
   check.notes = protocol::notes(*protocol);
   if (rig::largest_trigger_code(*rig) > 0) check.triggers = protocol::trigger_codes(*protocol);
   try {
-    estimate(*protocol, options.sessions.value_or(usual_sessions(*protocol)), stop, check);
+    const auto& finish = options.steps.finish;
+    estimate(*protocol, options.sessions.value_or(usual_sessions(*protocol)), stop, options.steps, check);
     if (stop.stop_requested()) throw protocol::Abandoned();
-    if (options.sound && check.problems.empty()) check.sound = loudest(check.survey, *rig, stop);
-    if (options.finger && check.problems.empty()) check.finger = shares(check.survey, *rig);
-    if (check.problems.empty()) check.cues = cue_guard(*protocol, *rig, check.survey, stop);
+    if (check.problems.empty()) {
+      if (options.finger) check.finger = shares(check.survey, *rig);
+      if (options.sound) check.sound = loudest(check.survey, *rig, stop, options.steps);
+      if (finish.stop_requested()) check.sound.reset();  // it may be the limit of some scenes only
+      check.cues = cue_guard(*protocol, *rig, check.survey, stop, options.steps);
+    }
+    check.stopped = finish.stop_requested();
   } catch (const protocol::Abandoned&) {
     throw;
   } catch (const std::exception& error) {

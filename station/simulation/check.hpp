@@ -47,7 +47,7 @@ struct Check {
   std::string id, title, rig_name;
   std::vector<CheckedBlock> blocks;
   Spread trials, duration_s;
-  int simulated_sessions = 0;
+  int simulated_sessions = 0, wanted_sessions = 0;
   protocol::Survey survey;
   CueGuard cues;
   /// upper limit of the airborne sound level for the loudest combination of factors; empty if
@@ -58,6 +58,7 @@ struct Check {
   std::optional<scene::FingerShares> finger;
   std::vector<protocol::TriggerCode> triggers;  ///< empty if the rig gives out no codes
   std::vector<std::string> protocol_defaults, rig_defaults;
+  bool stopped = false;  ///< true if CheckOptions::steps.finish was requested
 };
 
 /// What `turnpoint check` computes besides planning every scene of the protocol.
@@ -72,10 +73,12 @@ struct CheckOptions {
   bool finger = false;
   /// reads the rig file; a caller that knows the rig's calibration applies it here
   std::function<rig::Rig(const std::string& path)> load_rig = rig::load;
+  Steps steps = {};
 };
 
 /// Reads and checks both files as `run` would. Throws std::system_error if one cannot be read, and
-/// protocol::Abandoned soon after `stop` is requested.
+/// protocol::Abandoned soon after `stop` is requested, or if steps.finish is requested while the scenes are
+/// being planned. If it is requested later, the result has what was computed until then.
 Check check(const std::string& protocol_path, const std::string& rig_path, const CheckOptions& options = {},
             const std::stop_token& stop = {});
 

@@ -60,6 +60,9 @@ struct NotPlanned : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+/// Thrown if the work is to end before all cues are compared.
+struct Finished {};
+
 /// The cues of one interval's first and last scene, for any strength that roving draws.
 struct Interval {
   RovedCues first, last;
@@ -120,10 +123,10 @@ std::pair<double, double> range_of(const std::vector<Look>& looks, std::size_t i
 class Guard {
  public:
   Guard(const Protocol& protocol, const rig::Rig& rig, const protocol::Survey& survey,
-        const std::stop_token& stop)
-      : protocol_(protocol), stop_(stop), table_(protocol, rig, survey) {}
+        const std::stop_token& stop, const Steps& steps)
+      : protocol_(protocol), stop_(stop), steps_(steps), table_(protocol, rig, survey) {}
 
-  std::vector<CueReport> reports();
+  void add_reports(CueGuard& guard);
 
  private:
   Interval interval_of(const std::vector<std::string>& scenes, const protocol::Factors& factors);
@@ -145,6 +148,7 @@ class Guard {
 
   const Protocol& protocol_;
   const std::stop_token& stop_;
+  const Steps& steps_;
   CueTable table_;
   int points_ = 256;
   double turn_ = 0.5;
@@ -265,6 +269,7 @@ std::vector<std::array<double, 3>> Guard::answers_to(const Cells& cells, const C
 void Guard::run_sessions(const CueKind& kind, const Strategy& strategy, int count, OwnSessions& own) {
   while (static_cast<int>(own.done.size()) < count) {
     if (stop_.stop_requested()) throw protocol::Abandoned();
+    if (steps_.finish.stop_requested()) throw Finished();
     const auto seed = static_cast<std::uint64_t>(own.done.size());
     const auto census = census_of_session(
         protocol_, seed, [&](const TrialSpec& trial) { return answer(kind, strategy, trial, seed); });
@@ -349,21 +354,24 @@ CueReport Guard::report(const CueKind& kind, const Cells& all) {
   return report;
 }
 
-std::vector<CueReport> Guard::reports() {
+void Guard::add_reports(CueGuard& guard) {
   const auto all = cells_of(census_of(protocol_));
   std::size_t count = 0;
   for (const auto& [presentations, trials] : all) count += presentations->size();
-  if (count == 0) return {};
+  if (count == 0) return;
   points_ = std::clamp(static_cast<int>(40'000 / (count + 1)), 16, 256);
-  std::vector<CueReport> reports;
-  for (const auto& kind : cue_kinds) reports.push_back(report(kind, all));
-  return reports;
+  for (const auto& kind : cue_kinds) {
+    if (steps_.finish.stop_requested()) throw Finished();
+    guard.reports.push_back(report(kind, all));
+    if (steps_.progress)
+      steps_.progress("cues compared", static_cast<int>(guard.reports.size()), std::size(cue_kinds));
+  }
 }
 
 }  // namespace
 
 CueGuard cue_guard(const Protocol& protocol, const rig::Rig& rig, const protocol::Survey& survey,
-                   const std::stop_token& stop) {
+                   const std::stop_token& stop, const Steps& steps) {
   CueGuard guard;
   if (protocol.task.kind == TaskKind::adjustment) {
     guard.nothing_to_tell = "in an adjustment no setting is right or wrong";
@@ -374,10 +382,13 @@ CueGuard cue_guard(const Protocol& protocol, const rig::Rig& rig, const protocol
     return guard;
   }
   try {
-    guard.reports = Guard(protocol, rig, survey, stop).reports();
+    Guard(protocol, rig, survey, stop, steps).add_reports(guard);
     if (guard.reports.empty()) guard.nothing_to_tell = "no answer outside practice is right or wrong";
   } catch (const NotPlanned& missing) {
     guard.not_compared = missing.what();
+    guard.reports.clear();
+  } catch (const Finished&) {
+    guard.stopped = true;
   }
   return guard;
 }

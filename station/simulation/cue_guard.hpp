@@ -1,4 +1,5 @@
 #pragma once
+#include <functional>
 #include <optional>
 #include <stop_token>
 #include <string>
@@ -8,6 +9,18 @@
 #include "station/rig/rig.hpp"
 
 namespace turnpoint::simulation {
+
+/// How long work shows its progress, and how it is stopped early with a result.
+struct Steps {
+  /// called after each unit of the work with what is counted, from one thread at a time; may be empty
+  std::function<void(const char* what, int done, int of)> progress;
+  std::stop_token finish;  ///< once requested, the work ends at its next whole unit
+
+  std::function<void(int done, int of)> counted(const char* what) const {
+    if (!progress) return {};
+    return [this, what](int done, int of) { progress(what, done, of); };
+  }
+};
 
 struct Reached {
   double accuracy = 0;  ///< proportion correct of the observer
@@ -41,6 +54,7 @@ struct CueGuard {
   std::string nothing_to_tell;
   /// which trials could not be planned or interpolated; if not empty, no cue was examined
   std::string not_compared;
+  bool stopped = false;  ///< true if `finish` was requested; `reports` then has the cues compared until then
 };
 
 /// Compares everything that the main trials present: standard and target, as they occur together in a trial.
@@ -69,7 +83,9 @@ struct CueGuard {
 ///
 /// Duration is measured at half the amplitude: of two equally long intervals, the one with the longer ramps
 /// is shorter.
+///
+/// Throws protocol::Abandoned soon after `stop` is requested.
 CueGuard cue_guard(const protocol::Protocol& protocol, const rig::Rig& rig, const protocol::Survey& survey,
-                   const std::stop_token& stop = {});
+                   const std::stop_token& stop = {}, const Steps& steps = {});
 
 }  // namespace turnpoint::simulation

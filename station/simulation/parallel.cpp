@@ -10,14 +10,14 @@ namespace turnpoint::simulation {
 
 int processors() { return std::max(1, static_cast<int>(std::thread::hardware_concurrency())); }
 
-void in_parallel(int count, int threads, const std::function<void(int done, int of)>& progress,
-                 const std::function<void(int)>& work) {
+int in_parallel(int count, int threads, const std::function<void(int done, int of)>& progress,
+                const std::function<void(int)>& work, const std::stop_token& stop) {
   std::mutex mutex;
   int next = 0, done = 0;
   std::exception_ptr failure;
   const auto take = [&]() -> int {
     const std::lock_guard lock(mutex);
-    return failure || next >= count ? -1 : next++;
+    return failure || stop.stop_requested() || next >= count ? -1 : next++;
   };
   const auto worker = [&] {
     for (int i = take(); i >= 0; i = take()) try {
@@ -36,6 +36,7 @@ void in_parallel(int count, int threads, const std::function<void(int done, int 
     worker();
   }
   if (failure) std::rethrow_exception(failure);
+  return done;
 }
 
 }  // namespace turnpoint::simulation

@@ -2,6 +2,7 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
+#include <stop_token>
 #include <string>
 #include <vector>
 
@@ -10,6 +11,14 @@
 #include "station/protocol/protocol.hpp"
 
 namespace turnpoint::simulation {
+
+/// One of `of` parts of a study, so that several machines can simulate it. Part `number` (from 1) has every
+/// of-th session, beginning with session number - 1. So each part has its share of the sessions with
+/// intervals.
+struct Part {
+  int number = 1, of = 1;
+};
+int sessions_of(const Part& part, int observers);  ///< number of sessions in a part
 
 struct PowerOptions {
   int observers = 1000;
@@ -21,6 +30,9 @@ struct PowerOptions {
   int replicates = 200;  ///< number of resamples for each bootstrap interval, at least 40
   int threads = 2;
   std::function<void(int done, int of)> progress;  ///< called from any of the threads, one at a time
+  Part part;
+  /// Once a stop is requested, no further session is begun. The result is then that of fewer observers.
+  std::stop_token stop;
 };
 
 /// How well sessions recover one number. `truth` is a parameter of the simulated observer, or is computed
@@ -52,13 +64,15 @@ struct Recovery {
 /// The results of simulated sessions of a protocol with one observer as the participant.
 struct Power {
   int observers = 0, interval_sessions = 0;
+  int asked = 0;                   ///< PowerOptions::observers; after a stop it is larger than `observers`
   double trials = 0, minutes = 0;  ///< averages over the simulated sessions
   std::optional<double> accuracy;  ///< proportion correct of scored experimental answers
   std::vector<Recovery> recoveries;
 };
 
 /// Simulates sessions and analyses each as its report would. The result depends only on the options, except
-/// `threads`. Throws std::invalid_argument for options out of range.
+/// `threads`. If a stop is requested before the first session is done, the result has no sessions. Throws
+/// std::invalid_argument for options out of range, and UsageError if there is nothing to estimate.
 Power power(const protocol::Protocol& protocol, const PowerOptions& options);
 
 }  // namespace turnpoint::simulation

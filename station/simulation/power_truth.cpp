@@ -111,6 +111,34 @@ void GeneratingValues::add(const GeneratingValues& other) {
   }
 }
 
+std::map<std::string, GeneratingValues::Sum> GeneratingValues::sums() const {
+  std::map<std::string, Sum> sums;
+  for (const auto& [condition, made] : conditions_)
+    sums[condition] = {made.question.deadline_s, made.one_deadline, made.trials, made.correct};
+  return sums;
+}
+
+GeneratingValues GeneratingValues::of_sums(const std::map<std::string, Sum>& sums) {
+  GeneratingValues values;
+  for (const auto& [condition, sum] : sums) {
+    auto& made = values.conditions_[condition];
+    made.question.deadline_s = sum.deadline_s, made.one_deadline = sum.one_deadline;
+    made.trials = sum.trials, made.correct = sum.correct;
+  }
+  return values;
+}
+
+void GeneratingValues::take_questions(const GeneratingValues& other) {
+  for (auto& [condition, made] : conditions_)
+    if (const auto found = other.conditions_.find(condition); found != other.conditions_.end())
+      made.question = found->second.question;
+}
+
+bool GeneratingValues::has_all_of(const GeneratingValues& other) const {
+  return std::all_of(other.conditions_.begin(), other.conditions_.end(),
+                     [&](const auto& entry) { return conditions_.count(entry.first) > 0; });
+}
+
 const GeneratingValues::Condition* GeneratingValues::find(const std::string& condition) const {
   const auto found = conditions_.find(condition);
   if (found != conditions_.end()) return &found->second;

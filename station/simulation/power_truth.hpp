@@ -31,6 +31,19 @@ class GeneratingValues {
            const observer::Question& question, const observer::Observer& observer);
   void add(const GeneratingValues& other);
 
+  /// The sums of one condition: all that is needed to add it to others, but for the questions asked.
+  struct Sum {
+    double deadline_s = 0;  ///< of the first trial
+    bool one_deadline = true;
+    int trials = 0;
+    double correct = 0;
+  };
+  std::map<std::string, Sum> sums() const;
+  static GeneratingValues of_sums(const std::map<std::string, Sum>& sums);
+  /// Takes the questions of the conditions that `other` has as well.
+  void take_questions(const GeneratingValues& other);
+  bool has_all_of(const GeneratingValues& other) const;  ///< true if this has each of the other's conditions
+
   /// True values for a fit with these options to the answers of a condition ("" for all trials). The slope is
   /// set only if the observer's function is of the same family as the fitted one; a deadline changes the
   /// family.

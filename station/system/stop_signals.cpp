@@ -81,6 +81,11 @@ std::string StopSignals::told() {
   return first == 0 ? "" : std::string("SIG") + ::sigabbrev_np(first);
 }
 
+int StopSignals::exit_status() {
+  const int first = first_signal;
+  return first == 0 ? 0 : 128 + first;
+}
+
 void StopSignals::release() { wake(wake_.get()); }
 
 }  // namespace turnpoint::system

@@ -1,12 +1,15 @@
 #include <fmt/ostream.h>
 
 #include <CLI/CLI.hpp>
+#include <atomic>
 #include <cmath>
 #include <filesystem>
 #include <iostream>
 #include <nlohmann/json.hpp>
 
 #include "station/plot/chart.hpp"
+#include "station/system/on_stop_signal.hpp"
+#include "station/system/progress.hpp"
 #include "station/system/write_file.hpp"
 #include "tests/benchmark/intervals.hpp"
 #include "tests/benchmark/physics.hpp"
@@ -27,7 +30,7 @@ struct Options {
   std::string out, disk = std::filesystem::temp_directory_path().string();
   double seconds = 8;
   int trials = 200;
-  bool json = false;
+  bool json = false, progress = false;
 };
 
 const std::vector<std::string> kAll{"physics",   "planning", "synth", "procedures",
@@ -71,10 +74,24 @@ std::vector<std::string> write(const Report& report, const std::string& folder) 
   return files;
 }
 
-void bench(const Options& options) {
+/// Returns the exit status. The first stop signal ends it after the table that is being measured.
+int bench(const Options& options) {
   Json document = Json::object();
-  for (const auto& what : options.what.empty() ? kAll : options.what) {
+  const auto tables = options.what.empty() ? kAll : options.what;
+  std::atomic<bool> stop = false;
+  system::Progress progress(options.progress ? system::ShowProgress::always
+                                             : system::ShowProgress::on_terminal);
+  const system::OnStopSignal on_signal([&](const std::string& signal) {
+    fmt::print(stderr, "turnpoint-bench: {}: ends after this table; a second {} ends it now\n", signal,
+               signal);
+    stop = true;
+  });
+  int done = 0;
+  for (const auto& what : tables) {
+    if (stop) break;
+    progress.show("tables", done++, static_cast<int>(tables.size()));
     const Report report = measure(what, options);
+    progress.clear();
     std::vector<std::string> files;
     if (!options.out.empty()) files = write(report, options.out);
     if (options.json) {
@@ -87,6 +104,8 @@ void bench(const Options& options) {
     std::fflush(stdout);
   }
   if (options.json) std::cout << document.dump(2) << "\n";
+  if (stop) fmt::print(stderr, "turnpoint-bench: stopped after {} of {} tables\n", done, tables.size());
+  return stop ? system::StopSignals::exit_status() : 0;
 }
 
 }  // namespace
@@ -109,6 +128,8 @@ int main(int argc, char** argv) {
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
   app.add_flag("--json", options.json, "Print one JSON document on standard output");
+  app.add_flag("--progress", options.progress,
+               "Show the progress on standard error even if it is not a terminal");
   app.footer("Example: turnpoint-bench physics --out bench");
   try {
     app.parse(argc, argv);
@@ -116,8 +137,7 @@ int main(int argc, char** argv) {
     return app.exit(error) == 0 ? 0 : 2;
   }
   try {
-    bench(options);
-    return 0;
+    return bench(options);
   } catch (const std::exception& error) {
     fmt::print(stderr, "turnpoint-bench: {}\n", error.what());
     return 1;

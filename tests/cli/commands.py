@@ -5,8 +5,10 @@ import fcntl
 import gzip
 import json
 import os
+import pty
 import re
 import shutil
+import signal
 import subprocess
 import sys
 import tempfile
@@ -59,6 +61,9 @@ OUT_OF_RANGE = [
     (["new", "x.toml", "--measure", "contrst"], "contrast"),
     (["power", "demo", "--observers", "1.5"], "1 to 1000000"),
     (["power", "demo", "--intervals", "-1"], "0 to 1000000"),
+    (["power", "demo", "--part", "9/8"], "write 1/8 to 8/8"),
+    (["power", "demo", "--part", "2"], "write 1/8 to 8/8"),
+    (["power", "demo", "--part", "1/8", "--observers", "7"], "use fewer parts"),
     (["resume", "--db", "good.sqlite", "--policy", "restrt"], "did you mean restart?"),
     (["run", "demo", "--db", "good.sqlite", "--participant", "P01", "--observer", "sim", "--mode", "lve"],
      "did you mean live?"),
@@ -404,6 +409,131 @@ class Signals(Folder):
         self.add_sessions()
         self.refused_in_one_sentence(["export", "--db", "lab.sqlite", "--out", "export", "--format", "signals"], "no signals", status=1)
         self.assertFalse(os.path.exists(os.path.join(self.folder, "export")))
+
+
+STUDY = ["power", "boundary-constant", "--observers", "12", "--intervals", "4"]
+
+
+class LongWork(Folder):
+    def example(self):
+        with open(os.path.join(SOURCE, "protocols", "README.md"), encoding="utf-8") as page:
+            return next(block for block in re.findall(r"^```sh\n(.*?)^```", page.read(), re.DOTALL | re.MULTILINE)
+                        if "xargs" in block)
+
+    def test_the_example_of_a_divided_study_gives_what_one_process_gives(self):
+        shutil.copy(os.path.join(SOURCE, "protocols", "boundary-constant.toml"), os.path.join(self.folder, "my-study.toml"))
+        example = self.example()
+        for text, quick in (("--observers 1000", "--observers 20 --intervals 9"), ("seq 64", "seq 5"), ("/64", "/5")):
+            self.assertIn(text, example)
+            example = example.replace(text, quick)
+        status, joined, err = run("set -eu\n" + example.strip() + " --json", self.folder)
+        self.assertEqual(status, 0, err)
+        self.assertEqual(len([name for name in os.listdir(self.folder) if name.startswith("part")]), 5)
+        whole = ["power", "my-study.toml", "--observers", "20", "--intervals", "9"]
+        self.assertEqual(joined, run([*whole, "--json"], self.folder)[1])
+        first = min(os.sched_getaffinity(0))
+        self.assertEqual(joined, run(f"taskset -c {first} turnpoint {' '.join(whole)} --json", self.folder)[1])
+        text = run(["power", "--join", *sorted(n for n in os.listdir(self.folder) if n.startswith("part"))], self.folder)[1]
+        self.assertEqual(text, run(whole, self.folder)[1])
+        run([*whole, "--out", "one"], self.folder)
+        run("turnpoint power --out two --join part*.json", self.folder)
+        with open(os.path.join(self.folder, "one/boundary-constant-power.svg"), "rb") as one, \
+                open(os.path.join(self.folder, "two/boundary-constant-power.svg"), "rb") as two:
+            self.assertEqual(one.read(), two.read())
+
+    def part(self, name, number, *more):
+        status, out, err = run([*STUDY, "--part", number, *more], self.folder)
+        self.assertEqual(status, 0, err)
+        self.write(name, out.encode())
+        return json.loads(out)
+
+    def test_parts_that_do_not_make_a_study_are_refused(self):
+        for number in (1, 2, 3):
+            self.part(f"{number}.json", f"{number}/3")
+        self.refused_in_one_sentence(["power", "--join", "1.json", "3.json"], "of 3 parts, 1 is missing: 2")
+        self.refused_in_one_sentence(["power", "--join", "1.json", "2.json", "3.json", "2.json"], "both part 2 of 3")
+        for name, how, what in (("seed.json", ["--seed", "7"], "\"seed\" is 1 and 7"),
+                                ("observer.json", ["--observer", "sim:slope=2"], "\"observer\" is")):
+            self.part(name, "3/3", *how)
+            self.refused_in_one_sentence(["power", "--join", "1.json", "2.json", name], what, "1.json", name)
+        cut = self.part("3.json", "3/3")
+        cut["sessions"].pop()
+        self.write("cut.json", json.dumps(cut).encode())
+        self.refused_in_one_sentence(["power", "--join", "1.json", "2.json", "cut.json"], "stopped after 3 of 4 sessions",
+                                     "run part 3/3 again")
+        cut["study"]["protocol"] += "# changed\n"
+        self.write("other.json", json.dumps(cut).encode())
+        self.refused_in_one_sentence(["power", "--join", "1.json", "other.json"], "different protocols")
+        self.write("half.json", json.dumps(cut).encode()[:999])
+        for wrong in ("half.json", "missing.json", "."):
+            self.refused_in_one_sentence(["power", "--join", wrong], wrong)
+        self.write("list.json", b"[]")
+        self.refused_in_one_sentence(["power", "--join", "list.json"], "is not a part of a power study")
+        self.refused_in_one_sentence(["power", "--join", "1.json", "--seed", "2"], "--seed cannot be used with --join")
+        self.refused_in_one_sentence(["power", "--seed", "2"], "protocol is missing")
+
+    def started(self, words, **how):
+        return subprocess.Popen([PROGRAM, *words], cwd=self.folder, text=True, env={"HOME": self.folder, "LANG": "C.UTF-8"},
+                                stdout=subprocess.PIPE, **how)
+
+    def stopped(self, words, signal_number, mark):
+        """Sends the signal once the progress on standard error shows `mark`. Returns exit status, output and messages."""
+        process = self.started([*words, "--progress"], stderr=subprocess.PIPE)
+        messages = []
+        for line in process.stderr:
+            messages.append(line)
+            if re.search(mark, line):
+                process.send_signal(signal_number)
+                break
+        out, err = process.communicate(timeout=120)
+        return process.returncode, out, "".join(messages) + err
+
+    def test_a_stopped_study_gives_what_fewer_observers_give(self):
+        for number, status in ((signal.SIGINT, 130), (signal.SIGTERM, 143)):
+            got, out, err = self.stopped(["power", "boundary-constant", "--observers", "1000000", "--intervals", "0", "--json"],
+                                         number, "simulated sessions: ")
+            self.assertEqual(got, status, err)
+            document = json.loads(out)
+            self.assertEqual((document["stopped"], document["wanted_observers"]), (number.name, 1000000))
+            done = document["observers"]
+            self.assertIn(f"stopped by {number.name} after {done} of 1000000 simulated sessions", err)
+            self.assertGreater(done, 0)
+        if done < 5000:
+            whole = json.loads(run(["power", "boundary-constant", "--observers", str(done), "--intervals", "0", "--json"],
+                                   self.folder)[1])
+            self.assertEqual(document["recoveries"], whole["recoveries"])
+
+    def test_a_stopped_part_is_not_joined(self):
+        got, out, err = self.stopped(["power", "boundary-constant", "--observers", "1000000", "--part", "1/2"], signal.SIGINT,
+                                     "simulated sessions: ")
+        self.assertEqual(got, 130, err)
+        self.write("part.json", out.encode())
+        self.refused_in_one_sentence(["power", "--join", "part.json"], "of 500000 sessions; run part 1/2 again")
+
+    def test_a_stopped_check_says_what_it_stands_on(self):
+        got, out, err = self.stopped(["check", "two-spots-oddity"], signal.SIGINT, "simulated sessions: ")
+        self.assertEqual(got, 130, err)
+        self.assertRegex(out, r"Medians of [0-9]+ of 200 simulated sessions|Medians of 200 simulated sessions")
+        self.assertRegex(err, r"stopped by SIGINT after [0-9]+ of 200 simulated sessions")
+        self.assertIn("Cues: stopped", out)
+        self.assertIn("can run on", out)
+
+    def test_progress_is_shown_on_a_terminal_and_nowhere_else(self):
+        words = ["power", "boundary-constant", "--observers", "30"]
+        _, whole, err = run(words, self.folder)
+        self.assertNotIn("sessions: ", err)
+        ours, theirs = pty.openpty()
+        process = self.started(words, stderr=theirs)
+        os.close(theirs)
+        said = b""
+        while True:
+            try:
+                said += os.read(ours, 4096)
+            except OSError:  # the program has closed its terminal
+                break
+        self.assertEqual(process.communicate(timeout=60)[0], whole)
+        self.assertRegex(said.decode(), r"\rsimulated sessions: [0-9]+ of 30 \([0-9]+ %\), [0-9]+ s left\x1b\[K")
+        self.assertTrue(said.endswith(b"\r\x1b[K"), said)  # the line is cleared at the end
 
 
 class Surroundings(Folder):

@@ -128,6 +128,41 @@ TEST_CASE("the results do not depend on the number of threads", "[power]") {
     CHECK(a.recoveries[i].estimates == b.recoveries[i].estimates);
 }
 
+TEST_CASE("a study that is stopped is that of fewer observers", "[power]") {
+  const auto protocol = shipped("friction-staircase");
+  auto stopped = options("sim", 50, 3);
+  std::stop_source stop;
+  stopped.threads = 3;
+  stopped.stop = stop.get_token();
+  stopped.progress = [&stop](int done, int) {
+    if (done == 5) stop.request_stop();
+  };
+  const auto some = simulation::power(protocol, stopped);
+  CHECK(some.asked == 50);
+  REQUIRE(some.observers >= 5);
+  REQUIRE(some.observers <= 7);  // each thread may have begun another session
+  const auto fewer = simulation::power(protocol, options("sim", some.observers, 3));
+  REQUIRE(some.recoveries.size() == fewer.recoveries.size());
+  for (std::size_t i = 0; i < some.recoveries.size(); ++i) {
+    CHECK(some.recoveries[i].estimates == fewer.recoveries[i].estimates);
+    CHECK(some.recoveries[i].truth == fewer.recoveries[i].truth);
+    CHECK(some.recoveries[i].interval_width == fewer.recoveries[i].interval_width);
+  }
+  CHECK(simulation::power(protocol, stopped).observers == 0);  // stopped before it began
+}
+
+TEST_CASE("the parts of a study hold its sessions once each", "[power]") {
+  for (const auto& [observers, parts] : {std::pair{10, 3}, {12, 4}, {5, 5}, {1000, 64}}) {
+    int sum = 0;
+    for (int number = 1; number <= parts; ++number)
+      sum += simulation::sessions_of({number, parts}, observers);
+    CHECK(sum == observers);
+  }
+  auto none = options("sim", 4);
+  none.part = {5, 5};
+  CHECK_THROWS_AS(simulation::power(shipped("demo"), none), std::invalid_argument);
+}
+
 TEST_CASE("settings estimate the observer's bias, and their intervals contain it", "[power]") {
   const auto power =
       simulation::power(shipped("boundary-adjustment"), options("sim:threshold=4,bias=3,lapse=0", 300, 300));

@@ -1,0 +1,164 @@
+#include "station/simulation/power_session.hpp"
+
+#include <stdexcept>
+
+#include "station/analysis/trade.hpp"
+#include "station/protocol/answers.hpp"
+#include "station/report/stored_trials.hpp"
+#include "station/report/summary.hpp"
+#include "station/simulation/parallel.hpp"
+#include "station/simulation/rehearsal.hpp"
+#include "station/terms/usage_error.hpp"
+
+namespace turnpoint::simulation {
+
+namespace {
+
+std::optional<analysis::Interval> interval_of(const std::optional<analysis::ParameterInterval>& found) {
+  return found ? std::optional(found->interval) : std::nullopt;
+}
+
+/// Adds the procedures' own threshold estimates. A report prints no intervals for them.
+void add_estimates(const Rehearsal& rehearsal, const std::string& unit, std::vector<Finding>& findings) {
+  for (const auto& estimate : rehearsal.estimates)
+    if (estimate.parameter == "threshold")
+      findings.push_back({"procedure " + estimate.procedure, estimate.parameter, unit, estimate.mean, {}});
+}
+
+std::string slope_unit(const analysis::FitOptions& options, const std::string& level_unit) {
+  switch (options.function) {
+    case terms::Function::normal:
+      return level_unit;
+    case terms::Function::logistic:
+      return level_unit.empty() ? "" : "1/" + level_unit;
+    case terms::Function::weibull:
+      break;
+  }
+  return "exponent";
+}
+
+void add_fits(const report::SessionData& data, const std::string& unit, SessionOutcome& outcome) {
+  for (const auto& judged : report::judgements_of(data))
+    if (judged.exponent)
+      outcome.findings.push_back({source_of("numbers", judged.condition), "exponent", "",
+                                  judged.exponent->value, judged.exponent->interval});
+  if (report::judges(data.design)) return;
+  if (data.design == report::Design::adjustment) {
+    for (const auto& settings : analysis::settings(data.trials, data.conditions))
+      if (settings.mean)
+        outcome.findings.push_back({source_of(source_of("settings", settings.procedure), settings.condition),
+                                    "PSE", unit, settings.mean->value, settings.mean->interval});
+    return;
+  }
+  for (const auto& named : report::fits_of(data)) {
+    outcome.fits.emplace_back(named.name, named.fit.options);
+    if (!named.fit.parameters) continue;
+    const auto& p = *named.fit.parameters;
+    const auto source = source_of("fit", named.name);
+    const bool two_sided = data.design == report::Design::two_sided;
+    auto& findings = outcome.findings;
+    findings.push_back(
+        {source, two_sided ? "PSE" : "threshold", unit, p.threshold, interval_of(named.intervals.threshold)});
+    const bool posterior = named.intervals.method == analysis::IntervalMethod::posterior;
+    if (!posterior || report::slope_estimated(named))
+      findings.push_back({source, spread_name(named.fit.options), slope_unit(named.fit.options, unit),
+                          p.slope, interval_of(named.intervals.slope)});
+    const auto level_75 =
+        posterior ? named.intervals.level_75
+                  : analysis::level_at(named.fit.options.function, named.fit.options.scale, p, 0.75);
+    if (level_75)
+      findings.push_back({source, "75 % point", unit, *level_75, interval_of(named.intervals.interval_75)});
+  }
+}
+
+void add_differences(const analysis::Trade& trade, std::vector<Finding>& findings) {
+  for (const auto& difference : trade.differences)
+    if (difference.estimate)
+      findings.push_back({difference.second + " - " + difference.first, difference.measure, difference.unit,
+                          difference.estimate->value, difference.estimate->interval});
+}
+
+void require_possible(const protocol::Protocol& protocol, const PowerOptions& options) {
+  if (options.observers < 1 || options.interval_sessions < 0 || options.replicates < 40 ||
+      options.threads < 1)
+    throw std::invalid_argument(
+        "power: there must be at least 1 observer, 1 thread and 40 replicates, and the number of sessions "
+        "with intervals must not be negative");
+  if (options.part.number < 1 || options.part.number > options.part.of || options.part.of > options.observers)
+    throw std::invalid_argument("power: each part must have at least one session");
+  if (protocol::judges(protocol.task) && !(protocol.task.value && protocol.task.value->typed))
+    throw terms::UsageError(protocol.path +
+                            ": ratings have no threshold, so there is nothing to estimate; simulate sessions "
+                            "with `turnpoint run --observer sim` and analyse their export");
+}
+
+}  // namespace
+
+std::string source_of(const std::string& what, const std::string& instruction) {
+  return instruction.empty() ? what : what + " " + instruction;
+}
+
+const char* spread_name(const analysis::FitOptions& options) {
+  return options.function == terms::Function::normal ? "spread" : "slope";
+}
+
+SessionOutcome simulate_session(const protocol::Protocol& protocol, const PowerOptions& options,
+                                int session) {
+  const observer::Observer observer(options.observer);
+  SessionOutcome outcome;
+  const auto seed = options.seed + static_cast<std::uint64_t>(session);
+  auto sits = rehearser(observer);
+  sits.answer = [&](const trial::TrialSpec& trial, const observer::Question& q) {
+    outcome.generating.add(protocol, trial, q, observer);
+    return observer.answer(q);
+  };
+  const auto rehearsal = rehearse(protocol, session, seed, sits);
+  report::SessionData data;
+  report::add_trials(rehearsal.blocks, protocol, data);
+  data.seed = seed;
+  data.replicates = session < options.interval_sessions ? options.replicates : 0;
+  const auto& unit = data.level_unit;
+  add_estimates(rehearsal, unit, outcome.findings);
+  add_fits(data, unit, outcome);
+  if (data.replicates > 0)
+    add_differences(analysis::trade(data.trials, report::trade_options(data)), outcome.findings);
+  outcome.design = data.design;
+  outcome.presented = rehearsal.trials;
+  outcome.duration_s = rehearsal.duration_s;
+  for (const auto& trial : data.trials)
+    if (trial.type == terms::TrialType::experimental && trial.correct)
+      ++outcome.scored, outcome.right += *trial.correct ? 1 : 0;
+  return outcome;
+}
+
+std::vector<SessionOutcome> simulate_sessions(const protocol::Protocol& protocol,
+                                              const PowerOptions& options) {
+  require_possible(protocol, options);
+  const auto& [number, of] = options.part;
+  const int count = sessions_of(options.part, options.observers);
+  std::vector<SessionOutcome> outcomes(static_cast<std::size_t>(count));
+  const int done = in_parallel(
+      count, options.threads, options.progress,
+      [&, number = number, of = of](int i) {
+        outcomes[static_cast<std::size_t>(i)] = simulate_session(protocol, options, number - 1 + i * of);
+      },
+      options.stop);
+  outcomes.resize(static_cast<std::size_t>(done));
+  return outcomes;
+}
+
+void complete(const protocol::Protocol& protocol, const PowerOptions& options,
+              std::vector<SessionOutcome>& outcomes) {
+  auto quick = options;
+  quick.interval_sessions = 0;
+  GeneratingValues known;
+  for (std::size_t i = 0; i < outcomes.size(); ++i) {
+    if (i > 0 && known.has_all_of(outcomes[i].generating)) continue;
+    const auto again = simulate_session(protocol, quick, static_cast<int>(i));
+    outcomes[i].generating.take_questions(again.generating);
+    if (i == 0) outcomes[i].fits = again.fits, outcomes[i].design = again.design;
+    known.add(again.generating);
+  }
+}
+
+}  // namespace turnpoint::simulation

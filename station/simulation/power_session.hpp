@@ -1,0 +1,56 @@
+#pragma once
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "station/analysis/psychometric_fit.hpp"
+#include "station/protocol/protocol.hpp"
+#include "station/report/session_data.hpp"
+#include "station/simulation/power.hpp"
+#include "station/simulation/power_truth.hpp"
+
+namespace turnpoint::simulation {
+
+/// One number that the analysis of one session estimated. Source, parameter and unit are those of Recovery.
+struct Finding {
+  std::string source, parameter, unit;
+  double value = 0;
+  std::optional<analysis::Interval> interval;
+};
+
+/// What the analysis of one simulated session found.
+struct SessionOutcome {
+  std::vector<Finding> findings;
+  GeneratingValues generating;
+  /// condition and options of each psychometric fit
+  std::vector<std::pair<std::string, analysis::FitOptions>> fits;
+  report::Design design = report::Design::forced_choice;
+  int presented = 0, scored = 0, right = 0;
+  double duration_s = 0;
+};
+
+/// Simulates session number `session` (from 0) of a study and analyses it. Depends on nothing but its
+/// arguments.
+SessionOutcome simulate_session(const protocol::Protocol& protocol, const PowerOptions& options, int session);
+
+/// Simulates the sessions of options.part, in order: number - 1, number - 1 + of, number - 1 + 2 of, ...
+/// After a stop there are fewer. Throws like power().
+std::vector<SessionOutcome> simulate_sessions(const protocol::Protocol& protocol,
+                                              const PowerOptions& options);
+
+/// Summarises sessions 0, 1, 2, ... of a study.
+Power power_of(const protocol::Protocol& protocol, const PowerOptions& options,
+               const std::vector<SessionOutcome>& outcomes);
+
+/// Completes sessions 0, 1, 2, ... that were read from the files of parts, which leave out what the first
+/// sessions ask and how they are fitted. Simulates those sessions again, without intervals.
+void complete(const protocol::Protocol& protocol, const PowerOptions& options,
+              std::vector<SessionOutcome>& outcomes);
+
+/// The source of a finding: `what`, or `what` and the condition if there is one.
+std::string source_of(const std::string& what, const std::string& condition);
+/// "spread" or "slope", whichever the fitted function has.
+const char* spread_name(const analysis::FitOptions& options);
+
+}  // namespace turnpoint::simulation

@@ -1,0 +1,48 @@
+#pragma once
+#include <chrono>
+#include <deque>
+#include <mutex>
+#include <string>
+
+namespace turnpoint::system {
+
+/// Whether a program that does long work shows how far it is.
+enum class ShowProgress {
+  on_terminal,  ///< only if standard error is a terminal
+  always,       ///< elsewhere in lines of their own, at most one every three seconds
+};
+
+/// Shows on standard error how far long work is: what is counted, the share done, and the time left. On a
+/// terminal this is one line, which is overwritten several times a second and cleared at the end.
+class Progress {
+ public:
+  explicit Progress(ShowProgress show);
+  Progress(const Progress&) = delete;
+  Progress& operator=(const Progress&) = delete;
+  ~Progress() { clear(); }
+
+  /// Call this after each unit of the work. May be called on any thread.
+  void show(const std::string& what, int done, int of);
+  /// Clears the line, so that something else can be printed.
+  void clear();
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  struct Mark {
+    Clock::time_point time;
+    int done = 0;
+  };
+  double left_s(int done, int of) const;
+
+  std::mutex mutex_;
+  bool terminal_ = false, shown_ = false, line_ = false;
+  std::string what_;
+  std::deque<Mark> marks_;  ///< of the last quarter of a minute, from which the speed is computed
+  Clock::time_point last_;
+};
+
+/// The text that Progress shows: "simulated sessions: 137 of 1000 (13 %), 4 min left". Negative seconds: not
+/// known.
+std::string progress_in_words(const std::string& what, int done, int of, double left_s);
+
+}  // namespace turnpoint::system
