@@ -108,8 +108,10 @@ void add_backup(CommandLine& app, Context& context) {
   auto* command = app.add_subcommand(
       "backup",
       "Back up a database (even while it is in use), check the backup, and remove the oldest backups");
-  command->add_option("--db", options->database, "Database")->required();
-  command->add_option("--dir", options->backup.directory, "Folder for the backups")->required();
+  command->add_option("--db", options->database, "Database")->value("FILE")->required();
+  command->add_option("--dir", options->backup.directory, "Folder for the backups")
+      ->value("FOLDER")
+      ->required();
   command->add_option("--keep", options->backup.keep, "Number of backups to keep; 0 keeps all")
       ->check(not_negative())
       ->capture_default_str();

@@ -209,26 +209,34 @@ void add_calibrate(CommandLine& app, Context& context) {
       ->add_option("--full-scale", options->full_scale,
                    "Amplitude of the drive signal during the measurement; 1 is full scale")
       ->capture_default_str();
-  command->add_option(
-      "--boundaries", options->boundaries,
-      "File with columns frequency_Hz,boundary_mm,sd_mm; sd_mm is the precision of the reading");
+  command
+      ->add_option("--boundaries", options->boundaries,
+                   "File with columns frequency_Hz,boundary_mm,sd_mm; sd_mm is the precision of the reading")
+      ->value("FILE");
   command
       ->add_option("--edge", options->edge,
                    "The edge that was measured as boundary: turning | peak | p70 | p50 | p25 | p10")
       ->capture_default_str();
-  command->add_option("--friction", options->friction, "File with columns displacement_um,relative_friction");
-  command->add_option("--sound", options->sound,
-                      "File with columns frequency_Hz,level_dB (sound pressure level at full scale)");
+  command->add_option("--friction", options->friction, "File with columns displacement_um,relative_friction")
+      ->value("FILE");
+  command
+      ->add_option("--sound", options->sound,
+                   "File with columns frequency_Hz,level_dB (sound pressure level at full scale)")
+      ->value("FILE");
   command->add_option("--valid-days", options->valid_days, "Days until the calibration expires")
       ->capture_default_str()
       ->check(range(1, 3650));
   command->add_option("--note", options->note,
                       "Note to store in the calibration file: instruments, temperature, operator");
-  command->add_option("--out", options->out,
-                      "Calibration file to write; by default beside the rig file, with the date in its name, "
-                      "where `run` finds it");
-  command->add_option("--plots", options->plots,
-                      "SVG file with fits and residuals; by default beside the calibration file");
+  command
+      ->add_option("--out", options->out,
+                   "Calibration file to write; by default beside the rig file, with the date in its name, "
+                   "where `run` finds it")
+      ->value("FILE");
+  command
+      ->add_option("--plots", options->plots,
+                   "SVG file with fits and residuals; by default beside the calibration file")
+      ->value("FILE");
   command->add_flag(
       "--panel", options->panel,
       "Measure the latency of the touch panel, using one of the rig's button lines as the reference");

@@ -87,6 +87,14 @@ std::string before(const std::string& text, const std::string& mark) {
   return text.substr(0, text.find(mark));
 }
 
+/// The help without "Excludes: ..." after an option, which would be longer than the option's own text.
+class HelpFormat : public CLI::Formatter {
+ public:
+  std::string make_option_opts(const CLI::Option* option) const override {
+    return before(CLI::Formatter::make_option_opts(option), " Excludes:");
+  }
+};
+
 /// What is wrong, for a person. CLI11's own messages do not name the command, and count arguments.
 std::string reason(const CLI::App& command, const CLI::ParseError& error) {
   const std::string said = error.what();
@@ -126,20 +134,25 @@ Check not_negative() {
 
 Check one_of(std::vector<std::string> values) {
   const auto all = joined(values, " | ");
-  return {all, [values = std::move(values), all](const std::string& value) -> std::string {
+  return {all,
+          [values, all](const std::string& value) -> std::string {
             if (std::find(values.begin(), values.end(), value) != values.end()) return "";
             return fmt::format("\"{}\" is not allowed{}", value,
                                suggestion(value, values, "allowed are " + all));
-          }};
+          },
+          values};
 }
 
 Option* Option::required() { return option_->required(), this; }
 Option* Option::capture_default_str() { return option_->capture_default_str(), this; }
 
 Option* Option::check(Check check) {
+  values_ = std::move(check.values);
   option_->check(std::move(check.problem), std::move(check.allowed));
   return this;
 }
+
+Option* Option::value(const std::string& kind) { return option_->type_name(kind), this; }
 
 Option* Option::excludes(const Option* other) { return option_->excludes(other->option_), this; }
 
@@ -158,11 +171,30 @@ void Command::add_flag(const std::string& name, bool& target, const std::string&
   app_->add_flag(name, target, help);
 }
 void Command::footer(const std::string& text) { app_->footer(text); }
+
+CommandText Command::text() const {
+  CommandText command{app_->get_name(), app_->get_description(), app_->get_footer(), {}};
+  for (const auto* option : app_->get_options()) {
+    auto& text = command.options.emplace_back();
+    text.name = name_of(*option), text.help = option->get_description();
+    text.positional = option->get_positional(), text.required = option->get_required();
+    text.many = option->get_expected_max() > 1, text.preset = option->get_default_str();
+    if (option->get_expected_max() == 0) continue;
+    const auto type = option->get_type_name();  // "INT", or "INT:" and what is allowed
+    text.kind = before(type, ":");
+    if (type.size() > text.kind.size()) text.allowed = type.substr(text.kind.size() + 1);
+    for (const auto& known : options_)
+      if (known->is(option)) text.values = known->values();
+  }
+  return command;
+}
+
 void Command::callback(std::function<void()> action) { app_->callback(std::move(action)); }
 
 CommandLine::CommandLine(const std::string& description, const std::string& program,
                          const std::string& version)
     : app_(std::make_unique<CLI::App>(description, program)) {
+  app_->formatter(std::make_shared<HelpFormat>());
   app_->require_subcommand(1);
   app_->set_version_flag("-V,--version", version);
   app_->footer("`turnpoint help COMMAND` explains a command and shows an example.");
@@ -206,6 +238,12 @@ void CommandLine::require_known(const std::vector<std::string>& words) const {
         fmt::format("{}: there is no option {}{}", first, name,
                     suggestion(name, known, fmt::format("`turnpoint help {}` lists the options", first))));
   }
+}
+
+std::vector<CommandText> CommandLine::texts() const {
+  std::vector<CommandText> texts;
+  for (const auto& command : commands_) texts.push_back(command->text());
+  return texts;
 }
 
 bool CommandLine::parse(int argc, char** argv, std::ostream& out) {

@@ -20,6 +20,7 @@ struct Check {
   std::string allowed;
   /// given the value, returns what is wrong with it; "" if nothing is
   std::function<std::string(const std::string& value)> problem;
+  std::vector<std::string> values = {};  ///< the allowed values, if there are only a few
 };
 Check range(std::int64_t least, std::int64_t most);  ///< accepts whole numbers from `least` to `most`
 Check between(double least, double most);            ///< accepts any number from `least` to `most`
@@ -34,13 +35,36 @@ class Option {
   Option* required();
   Option* capture_default_str();  ///< shows the target's current value in the help
   Option* check(Check check);
+  /// names the kind of value in the help: FILE, FOLDER, PROTOCOL or RIG, which a shell completes
+  Option* value(const std::string& kind);
   /// refuses a command line that has both this option and the other
   Option* excludes(const Option* other);
   /// replaces the value by `change` of it
   Option* transform(std::function<std::string(const std::string& value)> change);
 
+  bool is(const CLI::Option* option) const { return option == option_; }
+  const std::vector<std::string>& values() const { return values_; }  ///< see Check::values
+
  private:
   CLI::Option* option_;
+  std::vector<std::string> values_;
+};
+
+/// What the help says about one option or positional argument.
+struct OptionText {
+  std::string name;     ///< "--db", or "protocol" for a positional one
+  std::string kind;     ///< kind of value, such as "FILE" or "INT"; "" for a flag
+  std::string allowed;  ///< allowed values, such as "1 to 1000"; "" if nothing is said about them
+  std::string preset;   ///< the value that it has if it is not given; "" if there is none
+  std::string help;
+  bool positional = false, required = false;
+  bool many = false;                ///< takes several values
+  std::vector<std::string> values;  ///< see Check::values
+};
+
+struct CommandText {
+  std::string name, help, footer;
+  std::vector<OptionText> options;
 };
 
 /// One sub-command: its options, the example below its help, and its action. An option writes into its
@@ -55,6 +79,7 @@ class Command {
   }
   void add_flag(const std::string& name, bool& target, const std::string& help);
   void footer(const std::string& text);
+  CommandText text() const;
   void callback(std::function<void()> action);
 
  private:
@@ -78,6 +103,8 @@ class CommandLine {
   /// through. Returns false if --help, --version or `help` was given, whose text it prints on `out`. Throws
   /// UsageError for a command line that it does not understand.
   bool parse(int argc, char** argv, std::ostream& out);
+
+  std::vector<CommandText> texts() const;  ///< of all sub-commands
 
  private:
   void require_known(const std::vector<std::string>& words) const;

@@ -4,7 +4,9 @@
 #include <system_error>
 
 #include "station/cli/command.hpp"
+#include "station/cli/completion.hpp"
 #include "station/cli/escaped_output.hpp"
+#include "station/cli/manual.hpp"
 #include "station/text/problem.hpp"
 
 namespace turnpoint::cli {
@@ -17,6 +19,21 @@ constexpr Add kCommands[] = {
     add_export,        add_sessions,  add_backup,  add_merge,     add_join,    add_verify,       add_withdraw,
     add_annotate,      add_check,     add_new,     add_protocols, add_report,  add_power,        add_doctor,
     add_amplifier_off, add_calibrate, add_figures, add_preview,   add_station, add_operator_code};
+
+constexpr auto kDescription = "Turnpoint: a psychophysics station for ultrasonic tapered friction displays";
+
+/// `turnpoint help --man FOLDER` and `turnpoint help --complete WORD...`, with which the package is built and
+/// a shell completes words. Returns false for any other command line.
+bool help_for_tools(const CommandLine& app, const std::vector<std::string>& words, std::ostream& out) {
+  if (words.size() < 3 || words[0] != "help") return false;
+  if (words[1] == "--man")
+    write_manual(app.texts(), std::string(kDescription).substr(std::string("Turnpoint: ").size()), words[2]);
+  else if (words[1] == "--complete")
+    for (const auto& word : completions(app.texts(), {words.begin() + 2, words.end()})) out << word << "\n";
+  else
+    return false;
+  return true;
+}
 
 /// Exit status for an error in the program itself (EX_SOFTWARE of sysexits.h).
 constexpr int kSoftwareFault = 70;
@@ -35,10 +52,12 @@ void add_json(Command& command, Context& context) {
 int run(int argc, char** argv, std::ostream& raw_out, std::ostream& raw_err, const Screens* screens) {
   EscapedOutput out(raw_out), err(raw_err);
   Context context{out, err, false, 0, {argv, argv + argc + 1}, screens};
-  CommandLine app("Turnpoint: a psychophysics station for ultrasonic tapered friction displays", "turnpoint",
-                  TURNPOINT_VERSION);
+  CommandLine app(kDescription, "turnpoint", TURNPOINT_VERSION);
   for (const auto add : kCommands) add(app, context);
-  return exit_status(err, [&] { return app.parse(argc, argv, out) ? context.exit_code : 0; });
+  return exit_status(err, [&] {
+    if (help_for_tools(app, {argv + 1, argv + argc}, out)) return 0;
+    return app.parse(argc, argv, out) ? context.exit_code : 0;
+  });
 }
 
 int exit_status(std::ostream& err, const std::function<int()>& work) {

@@ -52,7 +52,8 @@ void add_doctor(CommandLine& app, Context& context) {
   auto rig = std::make_shared<std::string>();
   auto data = std::make_shared<std::string>();
   add_rig(*command, *rig);
-  command->add_option("--data", *data, "Folder for databases; by default the one in the user's data folder");
+  command->add_option("--data", *data, "Folder for databases; by default the one in the user's data folder")
+      ->value("FOLDER");
   add_json(*command, context);
   command->footer("Example: turnpoint doctor");
   command->callback([rig, data, &context] {

@@ -73,7 +73,7 @@ void add_export(CommandLine& app, Context& context) {
   auto* command = app.add_subcommand(
       "export", "Write sessions as CSV or BIDS, or their signals, with one folder for each protocol");
   add_database(*command, options->database);
-  command->add_option("--out", options->out, "Folder to write to")->required();
+  command->add_option("--out", options->out, "Folder to write to")->value("FOLDER")->required();
   command->add_option("--session", options->selection.session_id, "Export only this session");
   command->add_option("--participant", options->selection.participant,
                       "Export only this participant: CODE or CODE@STATION");
@@ -86,9 +86,11 @@ void add_export(CommandLine& app, Context& context) {
   command->add_option("--separator", options->separator, "Column separator: , ; | or tab")
       ->capture_default_str();
   command->add_option("--decimal", options->decimal, "Decimal mark: . or ,")->capture_default_str();
-  command->add_option("--sign", options->sign,
-                      "SSH key file with which to sign the checksums of all exported files (writes "
-                      "SHA256SUMS and SHA256SUMS.sig)");
+  command
+      ->add_option("--sign", options->sign,
+                   "SSH key file with which to sign the checksums of all exported files (writes "
+                   "SHA256SUMS and SHA256SUMS.sig)")
+      ->value("FILE");
   add_json(*command, context);
   command->footer("Example: turnpoint export --db lab.sqlite --out export --separator ';' --decimal ,");
   command->callback([options, &context] { export_data(*options, context); });

@@ -71,7 +71,7 @@ void add_figures(CommandLine& app, Context& context) {
   auto options = std::make_shared<Options>();
   auto* command = app.add_subcommand(
       "figures", "Draw figures 3, 5, 8 and 10 of the 1998 paper next to the corrected theory");
-  command->add_option("--out", options->out, "Folder for the SVG and CSV files")->required();
+  command->add_option("--out", options->out, "Folder for the SVG and CSV files")->value("FOLDER")->required();
   add_json(*command, context);
   command->footer("Example: turnpoint figures --out figures");
   command->callback([options, &context] { figures(*options, context); });

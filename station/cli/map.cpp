@@ -234,8 +234,10 @@ void add_map(CommandLine& app, Context& context) {
   command->add_flag("--budget", options->budget,
                     "Also show how far each uncertain parameter of the rig moves each boundary, and which "
                     "measurement would help most");
-  command->add_option("--plot", options->plot,
-                      "With --budget: SVG file with the same for all boundaries that the rig can present");
+  command
+      ->add_option("--plot", options->plot,
+                   "With --budget: SVG file with the same for all boundaries that the rig can present")
+      ->value("FILE");
   add_json(*command, context);
   command->footer("Example: turnpoint map --boundary 150 200 --edge p50 --budget");
   command->callback([options, &context] { with_users_numbers([&] { map(*options, context); }); });

@@ -64,6 +64,7 @@ void add_merge(CommandLine& app, Context& context) {
   add_new_database(*command, options->database, "Database to merge into; created if missing");
   command
       ->add_option("source", options->sources, "Databases or backups of other stations; they are not changed")
+      ->value("FILE")
       ->required()
       ->check(database());
   add_json(*command, context);

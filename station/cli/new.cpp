@@ -119,7 +119,9 @@ void add_new(CommandLine& app, Context& context) {
   auto options = std::make_shared<Options>();
   auto* command = app.add_subcommand(
       "new", "Make a protocol file: asks what you want to measure and copies a suitable shipped protocol");
-  command->add_option("file", options->file, "The file to write, such as my-study.toml")->required();
+  command->add_option("file", options->file, "The file to write, such as my-study.toml")
+      ->value("FILE")
+      ->required();
   command->add_option("--measure", options->goal,
                       "What to measure, so that the command need not ask: " + goal_words());
   command->add_option("--id", options->id, "Id of the protocol; by default the name of the file");

@@ -244,14 +244,18 @@ void add_power(CommandLine& app, Context& context) {
           ->capture_default_str();
   auto* seed = command->add_option("--seed", options->seed, "Seed of the first session, 0 to 2^53")
                    ->check(range(0, 9007199254740992));
-  auto* out = command->add_option("--out", options->out, "Folder for the figure and the numbers");
+  auto* out =
+      command->add_option("--out", options->out, "Folder for the figure and the numbers")->value("FOLDER");
   auto* part = command
                    ->add_option("--part", options->part,
                                 "K/N: simulate only the K-th of N parts, and print it as a file for --join")
                    ->excludes(out);
-  auto* join = command->add_option(
-      "--join", options->join,
-      "Files of all parts, in any order: print what one machine would have found in all sessions");
+  auto* join =
+      command
+          ->add_option(
+              "--join", options->join,
+              "Files of all parts, in any order: print what one machine would have found in all sessions")
+          ->value("FILE");
   for (const auto* other : {protocol, rig, calibration, observers, intervals, observer, seed, part})
     join->excludes(other);
   add_progress(*command, options->progress);

@@ -73,8 +73,10 @@ void add_preview(CommandLine& app, Context& context) {
       "--set", options->set,
       "Value of a factor, as factor=value; by default its first level or the middle of its range");
   add_rig(*command, options->rig);
-  command->add_option("--out", options->out,
-                      "Folder in which to write SVG pictures, instead of showing a screen with sliders");
+  command
+      ->add_option("--out", options->out,
+                   "Folder in which to write SVG pictures, instead of showing a screen with sliders")
+      ->value("FOLDER");
   command->footer("Example: turnpoint preview demo --scene edge --set offset_mm=9 --out looks");
   command->callback([options, &context] {
     if (options->out.empty() && !context.screens) return become_ui(context, without_screen);

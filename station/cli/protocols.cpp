@@ -53,7 +53,7 @@ void add_protocols(CommandLine& app, Context& context) {
   using namespace protocols_command;
   auto folder = std::make_shared<std::string>();
   auto* command = app.add_subcommand("protocols", "Lists the protocols that come with the program");
-  command->add_option("--folder", *folder, "List the protocol files of this folder instead");
+  command->add_option("--folder", *folder, "List the protocol files of this folder instead")->value("FOLDER");
   add_json(*command, context);
   command->footer("Example: turnpoint protocols");
   command->callback(

@@ -53,8 +53,10 @@ void add_report(CommandLine& app, Context& context) {
                       "Report the newest session of this participant: CODE or CODE@STATION");
   command->add_option("--protocol", options->filter.protocol_id,
                       "Report the newest session of this protocol");
-  command->add_option("--out", options->out,
-                      "HTML file to write; by default report-SESSION.html, or no file with --json");
+  command
+      ->add_option("--out", options->out,
+                   "HTML file to write; by default report-SESSION.html, or no file with --json")
+      ->value("FILE");
   add_json(*command, context);
   command->footer("Example: turnpoint report --db lab.sqlite --participant P01 --out P01.html");
   command->callback([options, &context] { report_session(*options, context); });

@@ -132,8 +132,10 @@ std::shared_ptr<setup::RunRequest> add_run_options(Command& command) {
   command.add_flag(
       "--buttons-only", request->buttons_only,
       "Run without a screen: a person answers with the rig's buttons, and the operator types commands");
-  command.add_option("--calibration", request->calibration,
-                     "Calibration file; by default the newest one beside the rig file");
+  command
+      .add_option("--calibration", request->calibration,
+                  "Calibration file; by default the newest one beside the rig file")
+      ->value("FILE");
   return request;
 }
 

@@ -45,27 +45,30 @@ Check database() { return database(Missing::refused); }
 
 Option* add_protocol(Command& command, std::string& target) {
   return command.add_option("protocol", target, "Protocol file, or a name that `turnpoint protocols` lists")
+      ->value("PROTOCOL")
       ->transform([](const std::string& named) { return setup::file_or_shipped(named, "protocols"); });
 }
 
 Option* add_calibration(Command& command, std::string& target) {
-  return command.add_option(
-      "--calibration", target,
-      "Calibration file; by default the newest valid one beside the rig file, if there is one");
+  return command
+      .add_option("--calibration", target,
+                  "Calibration file; by default the newest valid one beside the rig file, if there is one")
+      ->value("FILE");
 }
 
 Option* add_rig(Command& command, std::string& target, const std::string& when) {
   return command
       .add_option("--rig", target, "Rig file, or the name of a rig that comes with the program; " + when)
+      ->value("RIG")
       ->transform([](const std::string& named) { return setup::file_or_shipped(named, "deploy/rigs"); });
 }
 
 void add_database(Command& command, std::string& target, const std::string& help) {
-  command.add_option("--db", target, help)->required()->check(database());
+  command.add_option("--db", target, help)->value("FILE")->required()->check(database());
 }
 
 void add_new_database(Command& command, std::string& target, const std::string& help) {
-  command.add_option("--db", target, help)->required()->check(database(Missing::allowed));
+  command.add_option("--db", target, help)->value("FILE")->required()->check(database(Missing::allowed));
 }
 
 }  // namespace turnpoint::cli

@@ -12,10 +12,13 @@ namespace turnpoint::cli {
 
 std::shared_ptr<setup::StationRequest> add_station_options(Command& command) {
   auto request = std::make_shared<setup::StationRequest>();
-  command.add_option("--protocols", request->protocols,
-                     "Folder with protocol files; by default the shipped protocols");
+  command
+      .add_option("--protocols", request->protocols,
+                  "Folder with protocol files; by default the shipped protocols")
+      ->value("FOLDER");
   add_rig(command, request->rig);
-  command.add_option("--db", request->database, "Database file; by default one in the user's data folder");
+  command.add_option("--db", request->database, "Database file; by default one in the user's data folder")
+      ->value("FILE");
   command.add_flag("--fullscreen", request->fullscreen, "Fill the screen, on a desktop too");
   command.add_flag("--locked", request->locked,
                    "Ask for the operator's code before showing the first page; use this if participants can "

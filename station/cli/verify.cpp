@@ -63,8 +63,10 @@ void add_verify(CommandLine& app, Context& context) {
   auto* command = app.add_subcommand("verify", "Check that the stored data are as they were recorded");
   add_database(*command, options->database, "Database or backup to check; it is not changed");
   command->add_option("--session", options->verify.session_id, "Check only this session");
-  command->add_option("--against", options->verify.against,
-                      "A sessions.csv exported earlier: its checksums must still be in the database");
+  command
+      ->add_option("--against", options->verify.against,
+                   "A sessions.csv exported earlier: its checksums must still be in the database")
+      ->value("FILE");
   add_json(*command, context);
   command->footer(
       "Example: turnpoint verify --db lab.sqlite\n"

@@ -110,9 +110,11 @@ void add_withdraw(CommandLine& app, Context& context) {
   command->add_option("--station", options->withdraw.station, "Withdraw only the sessions at this station");
   command->add_option("--session", options->withdraw.session_id,
                       "Withdraw only this session; the participant's code stays in use");
-  command->add_option("--backups", options->withdraw.backup_directory,
-                      "Folder with backups: make a new backup there and remove this database's backups that "
-                      "contain the data");
+  command
+      ->add_option("--backups", options->withdraw.backup_directory,
+                   "Folder with backups: make a new backup there and remove this database's backups that "
+                   "contain the data")
+      ->value("FOLDER");
   command->add_flag("--dry-run", options->dry_run, "List what would be deleted, and delete nothing");
   command->add_flag("--yes", options->yes, "Do not ask for confirmation (for scripts)");
   add_json(*command, context);

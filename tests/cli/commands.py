@@ -245,12 +245,12 @@ class Mistakes(Folder):
 
     def test_an_option_without_its_value(self):
         for name in self.names:
-            for option in re.findall(r"^  (--[a-z-]+) (?:TEXT|INT|UINT|FLOAT)", self.helps[name], re.MULTILINE):
+            for option in re.findall(r"^  (--[a-z-]+) [A-Z]+", self.helps[name], re.MULTILINE):
                 self.refused_in_one_sentence([name, option], f"{name}: {option} needs a value")
 
     def test_a_missing_argument(self):
         for name in self.names:
-            required = re.findall(r"^  (\S+) (?:TEXT|INT|FLOAT)\S* .*?REQUIRED", self.helps[name], re.MULTILINE)
+            required = re.findall(r"^  (\S+) [A-Z]+\S* .*?REQUIRED", self.helps[name], re.MULTILINE)
             if required:
                 self.refused_in_one_sentence([name], required[0], " missing; `turnpoint help " + name)
 
@@ -534,6 +534,53 @@ class LongWork(Folder):
         self.assertEqual(process.communicate(timeout=60)[0], whole)
         self.assertRegex(said.decode(), r"\rsimulated sessions: [0-9]+ of 30 \([0-9]+ %\), [0-9]+ s left\x1b\[K")
         self.assertTrue(said.endswith(b"\r\x1b[K"), said)  # the line is cleared at the end
+
+
+class Manual(Folder):
+    def test_every_command_has_a_manual_page_that_renders_without_warnings(self):
+        status, _, err = run(["help", "--man", "man"], self.folder)
+        self.assertEqual(status, 0, err)
+        pages = {f"turnpoint-{name}.1" for name in self.names} | {"turnpoint.1", "turnpoint-ui.1"}
+        folder = os.path.join(self.folder, "man")
+        self.assertEqual(set(os.listdir(folder)), pages)
+        for page in sorted(pages):
+            ran = subprocess.run(["man", "--warnings", "-l", page], cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+                                 text=True, check=False, env={**os.environ, "MANWIDTH": "100", "LC_ALL": "C.UTF-8"})
+            self.assertEqual((ran.returncode, ran.stderr), (0, ""), page)
+            name = page.removeprefix("turnpoint-").removesuffix(".1")
+            for option in re.findall(r"(--[a-z-]+)", self.helps.get(name, "")):
+                self.assertIn(option, ran.stdout, page)
+            if name in self.helps:
+                example = self.helps[name].split("Example: ")[1].split()[:3]
+                self.assertIn(" ".join(example), ran.stdout, page)
+        self.write("taken", b"")
+        self.refused(["help", "--man", "taken"], "taken", status=1)
+
+    def completed(self, line, program="turnpoint"):
+        """What bash offers for the last word of this line."""
+        script = os.path.join(SOURCE, "deploy/system/turnpoint.bash-completion")
+        status, out, err = run(f"source {script}; complete -p {program} >/dev/null || exit 3; COMP_WORDS=({program} {line}); "
+                               "COMP_CWORD=$((${#COMP_WORDS[@]} - 1)); _turnpoint turnpoint; printf '%s\\n' \"${COMPREPLY[@]}\"",
+                               self.folder)
+        self.assertEqual((status, err), (0, ""))
+        return out.split()
+
+    def test_bash_completes_what_the_program_knows(self):
+        for name in ("lab.sqlite", "study.toml"):
+            self.write(name, b"")
+        os.mkdir(os.path.join(self.folder, "locker"))
+        for line, wanted in (("ver", ["verify"]), ("run --par", ["--participant"]), ("help wi", ["withdraw"]),
+                             ("verify --db l", ["lab.sqlite", "locker"]), ("verify --db = la", ["lab.sqlite"]),
+                             ("export --db lab.sqlite --out l", ["locker"]), ("export --format b", ["bids"]),
+                             ("run friction-c", ["friction-confidence"]), ("check s", ["smoothness-line", "smoothness-points",
+                                                                                       "speed-accuracy", "study.toml"]),
+                             ("check demo --rig sim", ["simulated"]), ("power --join lab.sqlite s", ["study.toml"]),
+                             ("backup --db lab.sqlite --db", []), ("plan demo --scene x --j", ["--json"]),
+                             ("join P01 P02 x", []), ("run --participant lab", []), ("nonsense l", [])):
+            found = sorted(word for word in self.completed(line) if not word.startswith("--database"))
+            self.assertEqual(found, wanted, line)
+        self.assertEqual(sorted(self.completed("''")), sorted([*self.names, "help", "--help", "--version"]))
+        self.assertEqual(self.completed("ver", "turnpoint-ui"), ["verify"])
 
 
 class Surroundings(Folder):

@@ -1,0 +1,116 @@
+#include "station/cli/manual.hpp"
+
+#include <fmt/format.h>
+
+#include <cctype>
+#include <filesystem>
+
+#include "station/system/write_file.hpp"
+
+namespace turnpoint::cli {
+
+namespace {
+
+/// Text for roff: no character of it is taken for a command, and hyphens stay what a user can copy.
+std::string roff(const std::string& text) {
+  std::string safe;
+  for (const char c : text) {
+    if (c == '\\')
+      safe += "\\e";
+    else if (c == '-')
+      safe += "\\-";
+    else if ((c == '.' || c == '\'') && (safe.empty() || safe.back() == '\n'))
+      safe += std::string("\\&") + c;
+    else
+      safe += c;
+  }
+  return safe;
+}
+
+std::string head(const std::string& page, const std::string& summary) {
+  std::string upper;
+  for (const char c : page) upper += static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
+  auto first = summary;
+  if (first.size() > 1 && std::islower(static_cast<unsigned char>(first[1])))
+    first[0] = static_cast<char>(std::tolower(static_cast<unsigned char>(first[0])));
+  return fmt::format(".TH {} 1 \"\" \"Turnpoint {}\" \"Turnpoint manual\"\n.ad l\n.nh\n.SH NAME\n{} \\- {}\n",
+                     roff(upper), TURNPOINT_VERSION, roff(page), roff(first));
+}
+
+std::string tail(const std::string& see_also) {
+  return ".SH EXIT STATUS\n.TP\n0\ndone\n.TP\n1\nfailed at run time\n.TP\n2\nbad input or usage\n.TP\n70\na "
+         "fault of "
+         "the program itself; please report it\n.TP\n128 and the number of a signal\na signal stopped the "
+         "work, "
+         "and the output has what was done until then (power, check)\n.SH SEE ALSO\n" +
+         see_also + "\n.PP\nThe manuals in /usr/share/doc/turnpoint, README.md first.\n";
+}
+
+std::string item(const OptionText& option) {
+  auto kind = option.kind;
+  for (auto& c : kind) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  const std::string shown = option.positional ? option.name : kind;
+  std::string text = ".TP\n";
+  if (option.positional)
+    text += fmt::format("\\fI{}\\fR", roff(option.name));
+  else
+    text += fmt::format("\\fB{}\\fR{}", roff(option.name),
+                        option.kind.empty() ? "" : " \\fI" + roff(shown) + "\\fR");
+  if (option.many) text += " ...";
+  text += "\n" + roff(option.help);
+  std::vector<std::string> notes;
+  if (option.required) notes.emplace_back("required");
+  if (!option.allowed.empty()) notes.push_back("allowed: " + option.allowed);
+  if (!option.preset.empty()) notes.push_back("default: " + option.preset);
+  if (!notes.empty()) text += roff(fmt::format(" ({})", fmt::join(notes, "; ")));
+  return text + "\n";
+}
+
+std::string page_of(const CommandText& command) {
+  auto text = head("turnpoint-" + command.name, command.help);
+  text += fmt::format(".SH SYNOPSIS\n\\fBturnpoint {}\\fR [\\fIoptions\\fR]", roff(command.name));
+  std::string options, arguments;
+  for (const auto& option : command.options) {
+    (option.positional ? arguments : options) += item(option);
+    if (option.positional)
+      text += fmt::format(fmt::runtime(option.required ? " \\fI{}\\fR" : " [\\fI{}\\fR]"), roff(option.name));
+    if (option.positional && option.many) text += " ...";
+  }
+  text += "\n.SH DESCRIPTION\n" + roff(command.help) + ".\n";
+  if (!arguments.empty()) text += ".SH ARGUMENTS\n" + arguments;
+  text += ".SH OPTIONS\n" + options;
+  const std::string example = "Example: ";
+  if (const auto at = command.footer.find(example); at != std::string::npos)
+    text += ".SH EXAMPLE\n.EX\n" + roff(command.footer.substr(at + example.size())) + "\n.EE\n";
+  return text + tail(".BR turnpoint (1)");
+}
+
+}  // namespace
+
+void write_manual(const std::vector<CommandText>& commands, const std::string& description,
+                  const std::string& folder) {
+  system::make_folder(folder);
+  const auto write = [&](const std::string& page, const std::string& text) {
+    system::write_file((std::filesystem::path(folder) / (page + ".1")).string(), text);
+  };
+  std::string list, pages;
+  for (const auto& command : commands) {
+    write("turnpoint-" + command.name, page_of(command));
+    list += fmt::format(".TP\n\\fB{}\\fR\n{}\n", roff(command.name), roff(command.help));
+    pages += fmt::format("{}.BR turnpoint\\-{} (1)", pages.empty() ? "" : ",\n", roff(command.name));
+  }
+  const std::string synopsis =
+      ".SH SYNOPSIS\n\\fB{0}\\fR \\fIcommand\\fR [\\fIoptions\\fR]\n.br\n\\fB{0} help\\fR "
+      "[\\fIcommand\\fR]\n.SH "
+      "DESCRIPTION\n";
+  write("turnpoint", head("turnpoint", description) + fmt::format(fmt::runtime(synopsis), "turnpoint") +
+                         roff(description) + ".\n.SH COMMANDS\n" + list + tail(pages));
+  write("turnpoint-ui", head("turnpoint-ui", "Turnpoint with a screen") +
+                            fmt::format(fmt::runtime(synopsis), "turnpoint\\-ui") +
+                            "The same program as \\fBturnpoint\\fR, with a touchscreen: it has all its "
+                            "commands, and opens windows "
+                            "for run, resume, preview, calibrate and station.\n" +
+                            tail(".BR turnpoint (1)"));
+}
+
+}  // namespace turnpoint::cli

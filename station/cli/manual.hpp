@@ -1,0 +1,14 @@
+#pragma once
+#include <string>
+#include <vector>
+
+#include "station/cli/command_line.hpp"
+
+namespace turnpoint::cli {
+
+/// Writes the manual pages turnpoint.1, turnpoint-ui.1 and turnpoint-COMMAND.1 into a folder, which is
+/// created if missing. They say what --help says. Throws std::system_error.
+void write_manual(const std::vector<CommandText>& commands, const std::string& description,
+                  const std::string& folder);
+
+}  // namespace turnpoint::cli
