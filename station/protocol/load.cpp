@@ -22,6 +22,7 @@ Protocol parse(const std::string& source, const std::string& path) {
   read_plan(file, reading);
   read_analysis(file, reading);
   read_triggers(file, reading);
+  read_sensing(file, reading);
   read_resume(file, reading);
   check_whole(file, reading);
   file.finish();

@@ -265,6 +265,17 @@ struct Triggers {
   Place place;
 };
 
+/// The movement that the protocol asks for, on rigs that measure the finger.
+struct Sensing {
+  std::optional<std::pair<double, double>> normal_N, speed_mm_s;  ///< empty: any
+  double fraction = 0.8;  ///< of the strokes' time that force and speed must be in their range
+  int strokes = 2;        ///< least number of strokes in a trial
+  /// How often a trial with another movement is presented again. After that, and with 0, it counts, and its
+  /// row says what was wrong.
+  int repeats = 0;
+  Place place;
+};
+
 /// A complete and checked protocol file. Everything that it refers to by name exists.
 struct Protocol {
   std::string path, source, sha256;
@@ -282,6 +293,7 @@ struct Protocol {
   std::map<std::string, Instruction> instructions;
   Analysis analysis;
   Triggers triggers;
+  std::optional<Sensing> sensing;
   Resume resume;
   std::vector<std::string> defaults_used;
 };

@@ -30,6 +30,7 @@ void read_procedures(text::TableReader& file, Reading& reading);
 void read_plan(text::TableReader& file, Reading& reading);
 void read_analysis(text::TableReader& file, Reading& reading);
 void read_triggers(text::TableReader& file, Reading& reading);
+void read_sensing(text::TableReader& file, Reading& reading);
 void read_resume(text::TableReader& file, Reading& reading);
 
 /// Checks what can be checked only when the whole file has been read: values of factors in each trial,

@@ -327,6 +327,13 @@ void check_triggers(const Protocol& protocol, const rig::Rig& rig, Survey& surve
                                "shorten \"duration_ms\" in [marker] of the rig"});
 }
 
+void check_sensing(const Protocol& protocol, const rig::Rig& rig, Survey& survey) {
+  if (!protocol.sensing || (rig.capture && !rig.capture->bridges.empty())) return;
+  survey.problems.push_back({protocol.sensing->place,
+                             "the rig has no force cells, so the finger's movement is not known",
+                             "leave out [sensing], or use a rig with \"bridges\" in [capture]"});
+}
+
 void check_limits(const Protocol& protocol, const rig::Rig& rig, Survey& survey) {
   const double longest_s =
       protocol.task.duration_s ? *protocol.task.duration_s : protocol.timing.explore_s.value_or(0);
@@ -345,6 +352,7 @@ Survey survey(const Protocol& protocol, const rig::Rig& rig, const std::stop_tok
   Survey survey;
   check_devices(protocol, rig, survey);
   check_triggers(protocol, rig, survey);
+  check_sensing(protocol, rig, survey);
   check_limits(protocol, rig, survey);
   plan_scenes(protocol, rig, stop, progress, survey);
   for (auto& warning : advice(protocol)) survey.warnings.push_back(std::move(warning));

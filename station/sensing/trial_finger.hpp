@@ -34,6 +34,7 @@ struct TrialForces {
   ForcesState state = ForcesState::lost;
   double tare_moved_N = 0;  ///< change of the zero since the previous tare
   TrialSummary summary;     ///< friction and felt step are those of the last interval
+  Movement movement = Movement::ok;
   std::vector<FingerPoint> track;
   std::int64_t frames_per_point = 0;  ///< point k is at playback frame k * frames_per_point
 };

@@ -23,6 +23,7 @@ TrialSummary summarise(std::span<const FingerPoint> track, Band band, std::span<
     }
   if (normal_N.size() > 1) {
     const auto share = [](const std::vector<double>& values, double least, double most) {
+      if (most == MovementWindow::any) return TrialSummary::none;
       const auto inside =
           std::ranges::count_if(values, [&](double value) { return value >= least && value <= most; });
       return static_cast<double>(inside) / static_cast<double>(values.size());
@@ -41,6 +42,38 @@ TrialSummary summarise(std::span<const FingerPoint> track, Band band, std::span<
     summary.lag_mm = step->lag_mm;
   }
   return summary;
+}
+
+Movement judge(const TrialSummary& summary, const MovementWindow& window) {
+  if (summary.strokes < window.strokes) return Movement::strokes;
+  // what is NaN was not asked for, or needs a stroke
+  if (summary.normal_in_window < window.fraction) {
+    const double middle_N = (window.least_normal_N + window.most_normal_N) / 2;
+    return summary.normal_N < middle_N ? Movement::light : Movement::hard;
+  }
+  if (summary.speed_in_window < window.fraction) {
+    const double middle_mm_s = (window.least_speed_mm_s + window.most_speed_mm_s) / 2;
+    return summary.speed_mm_s < middle_mm_s ? Movement::slow : Movement::fast;
+  }
+  return Movement::ok;
+}
+
+const char* name(Movement movement) {
+  switch (movement) {
+    case Movement::ok:
+      return "ok";
+    case Movement::strokes:
+      return "strokes";
+    case Movement::light:
+      return "light";
+    case Movement::hard:
+      return "hard";
+    case Movement::slow:
+      return "slow";
+    case Movement::fast:
+      return "fast";
+  }
+  return "";
 }
 
 }  // namespace turnpoint::sensing

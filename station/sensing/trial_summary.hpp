@@ -7,11 +7,26 @@
 
 namespace turnpoint::sensing {
 
-/// The movement that the participant is asked to make: ranges of normal force and speed, ends included.
+/// The movement that the participant is asked to make.
 struct MovementWindow {
-  double least_normal_N = 0.35, most_normal_N = 0.65;
-  double least_speed_mm_s = 40, most_speed_mm_s = 120;
+  static constexpr double any = std::numeric_limits<double>::infinity();
+
+  double least_normal_N = 0, most_normal_N = any;      ///< ends included
+  double least_speed_mm_s = 0, most_speed_mm_s = any;  ///< ends included
+  double fraction = 0.8;  ///< of the strokes' time that force and speed each must be in their range
+  int strokes = 0;        ///< least number of strokes
 };
+
+/// Whether a movement was the one that was asked for, and if not, the first of these that it was.
+enum class Movement {
+  ok,
+  strokes,  ///< too few strokes
+  light,    ///< too little normal force
+  hard,     ///< too much
+  slow,
+  fast,
+};
+const char* name(Movement movement);
 
 /// What the finger did during one trial. Quantities that could not be measured are NaN.
 struct TrialSummary {
@@ -21,9 +36,10 @@ struct TrialSummary {
   int strokes = 0;
   /// Mean and standard deviation of normal force over all strokes.
   double normal_N = none, normal_sd_N = none;
-  double normal_in_window = none;  ///< fraction of the strokes' time with normal force in the window
+  /// fraction of the strokes' time with normal force in the window; NaN if any force is allowed
+  double normal_in_window = none;
   double speed_mm_s = none;        ///< mean absolute speed over all strokes
-  double speed_in_window = none;
+  double speed_in_window = none;   ///< likewise
   double mu_low = none, mu_high = none;  ///< friction on the two sides of the felt step
   double boundary_felt_mm = none, boundary_se_mm = none, lag_mm = none;
 };
@@ -31,5 +47,7 @@ struct TrialSummary {
 /// Summarises the track of one trial. `step` is the result of felt_step() for the trial's profile.
 TrialSummary summarise(std::span<const FingerPoint> track, Band band, std::span<const Stroke> strokes,
                        const std::optional<FeltStep>& step, const MovementWindow& window);
+
+Movement judge(const TrialSummary& summary, const MovementWindow& window);
 
 }  // namespace turnpoint::sensing

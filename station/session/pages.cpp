@@ -123,6 +123,15 @@ Page Pages::of_phase(Phase phase, int interval, const trial::TrialSpec& spec, co
   return page;
 }
 
+std::string Pages::movement(const std::string& word) const {
+  static const std::map<std::string, const char*> keys{{"strokes", "movement_strokes"},
+                                                       {"light", "movement_light"},
+                                                       {"hard", "movement_hard"},
+                                                       {"slow", "movement_slow"},
+                                                       {"fast", "movement_fast"}};
+  return texts::text(keys.at(word), setup_.language);
+}
+
 void Pages::add_value(Page& page, const protocol::Task& task) const {
   const auto& value = *task.value;
   page.kind = value.typed ? PageKind::number : PageKind::line;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 #include "station/store/signal_code.hpp"
 #include "station/text/number.hpp"
@@ -154,12 +155,22 @@ void add_measured(records::TrialRow& row, const sensing::IntervalResult& measure
   row.proof_cause = all.cause;
 }
 
+sensing::MovementWindow window_of(const protocol::Sensing& sensing) {
+  sensing::MovementWindow window;
+  if (sensing.normal_N) std::tie(window.least_normal_N, window.most_normal_N) = *sensing.normal_N;
+  if (sensing.speed_mm_s) std::tie(window.least_speed_mm_s, window.most_speed_mm_s) = *sensing.speed_mm_s;
+  window.fraction = sensing.fraction;
+  window.strokes = sensing.strokes;
+  return window;
+}
+
 void add_forces(records::TrialRow& row, const sensing::TrialForces& forces, int rate_Hz,
                 const FrameTime& at) {
   const auto known = [](double value) { return std::isfinite(value) ? std::optional(value) : std::nullopt; };
   auto& finger = row.finger;
-  finger.sensing = sensing::name(forces.state);
-  if (forces.state == sensing::ForcesState::ok) {
+  const bool known_forces = forces.state == sensing::ForcesState::ok;
+  finger.sensing = known_forces ? sensing::name(forces.movement) : sensing::name(forces.state);
+  if (known_forces) {
     const auto& summary = forces.summary;
     finger.contact_s = summary.contact_s;
     finger.strokes = summary.strokes;

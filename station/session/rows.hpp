@@ -33,6 +33,8 @@ struct FrameTime {
   std::int64_t frame = 0;
   double time_s = 0;
 };
+/// The movement that the protocol asks for.
+sensing::MovementWindow window_of(const protocol::Sensing& sensing);
 /// Adds what the force cells measured in a trial: the summary, and the signal of the finger.
 void add_forces(records::TrialRow& row, const sensing::TrialForces& forces, int rate_Hz, const FrameTime& at);
 

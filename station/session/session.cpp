@@ -15,6 +15,7 @@
 
 #include "station/limits/finger_account.hpp"
 #include "station/session/replay.hpp"
+#include "station/session/rows.hpp"
 #include "station/session/session_run.hpp"
 #include "station/session/simulated_room.hpp"
 #include "station/session/stage.hpp"
@@ -203,6 +204,7 @@ Summary run(const Setup& setup, Display* display, Inputs& inputs, Monitor* monit
 Summary run(const Setup& setup, Display* display, Inputs& inputs, std::unique_ptr<SimulatedRoom> room,
             Monitor* monitor) {
   const observer::Observer observer(observer::parse(setup.observer));
+  if (room && setup.protocol.sensing) room->ask_for(window_of(*setup.protocol.sensing));
   return run_on(setup, display,
                 virtual_stage(simulated_stream(setup.rig), observer, inputs, std::move(room),
                               trigger_setup_of(setup.rig)),

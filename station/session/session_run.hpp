@@ -38,6 +38,7 @@ class SessionRun {
     std::size_t begun = 0;                ///< number of intervals whose presentation has begun
     std::size_t measured = 0;             ///< number of intervals that pick-ups have measured
     bool decided = false;
+    bool outside = false;  ///< the finger did not move as the protocol asks for
     /// true if the answer came from a button, so that the touch panel's latency does not apply
     bool by_button = false;
   };
@@ -56,7 +57,7 @@ class SessionRun {
   Flow run_trial(const trial::TrialSpec& spec);
   Flow prepare_trial(const trial::TrialSpec& spec);
   Flow keep_limits(const trial::TrialSpec& spec);
-  Flow after_trial(const records::TrialRow& row);
+  Flow after_trial(const Running& trial);
   void check_plans(const trial::TrialSpec& spec);
   std::optional<trial::EventKind> open_amplifier();
   void drive_trial(Running& trial, std::optional<trial::EventKind> cut_by);
@@ -92,7 +93,7 @@ class SessionRun {
   OperatorGate gate_;
   Summary summary_;
   int scored_ = 0, right_ = 0;
-  int voids_in_a_row_ = 0, refused_in_a_row_ = 0;
+  int voids_in_a_row_ = 0, refused_in_a_row_ = 0, repeats_in_a_row_ = 0;
   std::int64_t started_ns_ = 0;
   std::vector<OnSurface> surface_;
 };

@@ -13,6 +13,8 @@ void SessionRun::show_phase(trial::Phase phase, const Running& trial) {
                               trial.machine.result(), director_);
   const bool adjusting = phase == trial::Phase::stimulus || phase == trial::Phase::response;
   if (trial.slider && adjusting) pages_.add_slider(page, *trial.spec.slider, trial.slider->setting());
+  if (phase == trial::Phase::late && trial.machine.result().outcome == terms::Outcome::fault)
+    page.text = pages_.movement(trial.row.finger.sensing);
   gate_.show(page);
 }
 

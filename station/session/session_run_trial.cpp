@@ -54,7 +54,7 @@ Flow SessionRun::run_trial(const trial::TrialSpec& spec) {
   gate_.keep([&] { log_.append(trial.row); });
   count(spec, trial.row);
   if (monitor_ != nullptr) monitor_->trial_ended(spec, trial.row);
-  return after_trial(trial.row);
+  return after_trial(trial);
 }
 
 /// Does everything that may take time or fail before a trial. It processes inputs since the previous trial,
@@ -115,9 +115,12 @@ void SessionRun::check_plans(const trial::TrialSpec& spec) {
     }
 }
 
-Flow SessionRun::after_trial(const records::TrialRow& row) {
+Flow SessionRun::after_trial(const Running& trial) {
   if (gate_.stop_asked()) return Flow::stop;
-  const bool is_void = row.outcome == terms::Outcome::fault;
+  const auto& row = trial.row;
+  const bool repeated = trial.outside && row.outcome == terms::Outcome::fault;
+  repeats_in_a_row_ = repeated ? repeats_in_a_row_ + 1 : 0;
+  const bool is_void = row.outcome == terms::Outcome::fault && !repeated;
   // One refused stimulus can be a coincidence and is presented again; two in a row are not.
   const bool refused = row.proof == terms::Proof::refused || row.proof == terms::Proof::stopped;
   refused_in_a_row_ = refused ? refused_in_a_row_ + 1 : 0;
@@ -161,6 +164,10 @@ void SessionRun::handle_in_trial(Input raw, Running& trial) {
     const auto& onset = trial.onsets.front();
     add_forces(trial.row, *input.forces, setup_.rig.output.rate_Hz,
                {onset.frame, 1e-9 * static_cast<double>(onset.time_ns - started_ns_)});
+    const bool asked = setup_.protocol.sensing && input.forces->state == sensing::ForcesState::ok;
+    trial.outside = asked && input.forces->movement != sensing::Movement::ok;
+    if (trial.outside && repeats_in_a_row_ < setup_.protocol.sensing->repeats)
+      perform(trial.machine.handle({input.time_ns, trial::EventKind::outside, 0}), trial);
   }
   const bool answers = input.kind == InputKind::answer || input.kind == InputKind::value ||
                        (trial.slider && input.kind == InputKind::next);

@@ -144,7 +144,10 @@ CaptureSetup SimulatedRoom::capture() const {
   made.channels = setup.capture.count;
   made.delay_frames = setup.loop_delay_frames;
   made.in_contact = false;
-  if (setup.capture.bridge_a) made.finger = finger_of(setup);
+  if (setup.capture.bridge_a) {
+    made.finger = finger_of(setup);
+    made.finger->window = window_;
+  }
   for (std::size_t p = 0; p < setup.pickups.size(); ++p) {
     auto& pick_up = made.pick_ups.emplace_back();
     pick_up.channel = setup.pickups[p].channel;

@@ -27,6 +27,8 @@ class SimulatedRoom {
   void touch(std::int64_t frames);
   void lift(std::int64_t frames) { plant_.lift(frames); }  ///< The participant lifts the finger after this.
 
+  /// The movement that the protocol asks for.
+  void ask_for(const sensing::MovementWindow& window) { window_ = window; }
   /// How the station judges what it captures here. The responses of the pick-ups are those of the plate.
   CaptureSetup capture() const;
   plant::Plant& plant() { return plant_; }
@@ -35,6 +37,7 @@ class SimulatedRoom {
 
  private:
   plant::Plant plant_;
+  sensing::MovementWindow window_;
   bool marker_broken_ = false;
   std::vector<double> played_, captured_;
   std::vector<std::int32_t> samples_;

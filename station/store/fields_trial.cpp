@@ -124,9 +124,12 @@ const Table<TrialRow>& trial_table() {
        since(3, field<&T::confidence_time_s>(
                     {"confidence_time_s", "confidence_time",
                      "Time from the answer to the participant's statement of confidence", "s"})),
-       finger<&F::sensing>({"sensing", "sensing",
-                            "What the force sensors measured in this trial; n/a without force sensors", "",
-                            "ok | lost | wire | tare | n/a"}),
+       finger<&F::sensing>(
+           {"sensing", "sensing",
+            "Whether the finger moved as [sensing] of the protocol asks for (ok, or too few "
+            "strokes, too light, too hard, too slow, too fast), or why that is not known; n/a "
+            "without force sensors",
+            "", "ok | strokes | light | hard | slow | fast | lost | wire | tare | n/a"}),
        finger<&F::contact_s>(
            {"contact_s", "contact_s", "Time during which a finger touched the surface", "s"}),
        finger<&F::strokes>({"strokes", "strokes", "Number of strokes along the surface"}),

@@ -301,7 +301,7 @@ ALTER TABLE trial ADD COLUMN confidence INTEGER
 ALTER TABLE trial ADD COLUMN confidence_time_s REAL
   CHECK ((confidence_time_s IS NULL) = (confidence IS NULL) AND coalesce(confidence_time_s, 0) >= 0);
 ALTER TABLE trial ADD COLUMN sensing TEXT NOT NULL DEFAULT ''
-  CHECK (sensing IN ('', 'ok', 'lost', 'wire', 'tare'));
+  CHECK (sensing IN ('', 'ok', 'strokes', 'light', 'hard', 'slow', 'fast', 'lost', 'wire', 'tare'));
 ALTER TABLE trial ADD COLUMN contact_s REAL CHECK (contact_s >= 0);
 ALTER TABLE trial ADD COLUMN strokes INTEGER CHECK (strokes >= 0);
 ALTER TABLE trial ADD COLUMN normal_N REAL;

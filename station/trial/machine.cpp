@@ -84,6 +84,9 @@ std::vector<Action> Machine::handle(const Event& event) {
     case EventKind::refuted:
       if (!decided()) end(Outcome::fault, event.time_ns);
       break;
+    case EventKind::outside:
+      repeat(event.time_ns);
+      break;
     case EventKind::fault:
       conclude(Outcome::fault, event.time_ns);
       break;
@@ -267,11 +270,27 @@ void Machine::conclude(Outcome outcome, std::int64_t at_ns) {
   settle(at_ns);
 }
 
+// Makes the trial void, and lets the page say why. A timeout or an anticipation remains one.
+void Machine::repeat(std::int64_t at_ns) {
+  if (decided() || (concluded_ && result_.outcome != Outcome::answered)) return;
+  if (phase_ == Phase::stimulus) actions_.push_back({ActionKind::silence, interval_, at_ns});
+  forget_response();
+  concluded_ = true;
+  result_.outcome = Outcome::fault;
+  settle(at_ns);
+}
+
 // Ends the trial at once, without a response.
 void Machine::end(Outcome outcome, std::int64_t at_ns) {
   if (phase_ == Phase::cue || phase_ == Phase::stimulus || phase_ == Phase::gap)
     actions_.push_back({ActionKind::silence, interval_, at_ns});
   result_.outcome = outcome;
+  forget_response();
+  result_.ended_ns = at_ns;
+  enter(Phase::done, kNever);
+}
+
+void Machine::forget_response() {
   result_.response.reset();
   result_.correct.reset();
   result_.response_time_ns.reset();
@@ -279,8 +298,6 @@ void Machine::end(Outcome outcome, std::int64_t at_ns) {
   result_.movement_time_ns.reset();
   result_.confidence.reset();
   result_.confidence_time_ns.reset();
-  result_.ended_ns = at_ns;
-  enter(Phase::done, kNever);
 }
 
 void Machine::settle(std::int64_t at_ns) {

@@ -65,6 +65,7 @@ enum class EventKind {
   contact,  ///< value 1: a finger is on the surface; 0: it was lifted
   xrun,     ///< the drive lost frames; value 1: in an interval of this trial, 0: in silence
   refuted,  ///< value: index of an interval in which the surface did not move as planned
+  outside,  ///< the finger did not move as the protocol asks for, and the trial is to be presented again
   fault,    ///< drive, amplifier or panel cannot continue
   abort,    ///< the participant or the operator stops the trial
 };
@@ -145,6 +146,8 @@ class Machine {
   void end_stimulus(std::int64_t at_ns);
   void set_zero(std::int64_t at_ns);
   void conclude(Outcome outcome, std::int64_t at_ns);
+  void repeat(std::int64_t at_ns);
+  void forget_response();
   void end(Outcome outcome, std::int64_t at_ns);
   void settle(std::int64_t at_ns);
   std::int64_t deadline_at() const;

@@ -192,7 +192,10 @@ TEST_CASE("the summary of a trial says what the finger did", "[sensing]") {
   Finger finger;
   finger.normal_noise = 0.05;
   const auto one = trial(finger, random);
-  const auto summary = summarise(one.track, Band::force, one.strokes, felt_step(one.profile), {});
+  MovementWindow usual;
+  usual.least_normal_N = 0.35, usual.most_normal_N = 0.65;
+  usual.least_speed_mm_s = 40, usual.most_speed_mm_s = 120;
+  const auto summary = summarise(one.track, Band::force, one.strokes, felt_step(one.profile), usual);
   CHECK(summary.contact_s == Approx(static_cast<double>(one.track.size()) / 1000));
   CHECK(summary.strokes == 12);
   CHECK(summary.normal_N == Approx(0.5).epsilon(0.05));
@@ -208,10 +211,36 @@ TEST_CASE("the summary of a trial says what the finger did", "[sensing]") {
   MovementWindow heavy;
   heavy.least_normal_N = 0.6, heavy.most_normal_N = 1;
   CHECK(summarise(one.track, Band::force, one.strokes, {}, heavy).normal_in_window < 0.1);
+  const auto any = summarise(one.track, Band::force, one.strokes, {}, {});
+  CHECK(std::isnan(any.normal_in_window));
+  CHECK(std::isnan(any.speed_in_window));
 
   const auto nothing = summarise({}, Band::force, {}, {}, {});
   CHECK(nothing.contact_s == 0);
   CHECK(nothing.strokes == 0);
   CHECK(std::isnan(nothing.normal_N));
   CHECK(std::isnan(nothing.boundary_felt_mm));
+}
+
+TEST_CASE("a movement is judged by strokes, then force, then speed", "[sensing]") {
+  TrialSummary summary;
+  summary.strokes = 4;
+  summary.normal_N = 0.5, summary.normal_in_window = 0.9;
+  summary.speed_mm_s = 80, summary.speed_in_window = 0.9;
+  MovementWindow window;
+  window.least_normal_N = 0.35, window.most_normal_N = 0.65;
+  window.least_speed_mm_s = 40, window.most_speed_mm_s = 120;
+  window.strokes = 4;
+  CHECK(judge(summary, window) == Movement::ok);
+  summary.speed_in_window = 0.7, summary.speed_mm_s = 110;
+  CHECK(judge(summary, window) == Movement::fast);
+  summary.speed_mm_s = 50;
+  CHECK(judge(summary, window) == Movement::slow);
+  summary.normal_in_window = 0.7, summary.normal_N = 0.6;
+  CHECK(judge(summary, window) == Movement::hard);
+  summary.normal_N = 0.4;
+  CHECK(judge(summary, window) == Movement::light);
+  summary.strokes = 3;
+  CHECK(judge(summary, window) == Movement::strokes);
+  CHECK(judge(TrialSummary{}, MovementWindow{}) == Movement::ok);
 }

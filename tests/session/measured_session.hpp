@@ -46,9 +46,11 @@ struct Saboteur : session::Monitor {
 
 /// Remembers the fault pages of a session.
 struct Pages : session::Display {
-  std::vector<std::string> faults;
+  std::vector<std::string> faults, messages;
   void show(const session::Page& page) override {
     if (page.kind == session::PageKind::fault) faults.push_back(page.detail);
+    if (page.kind == session::PageKind::feedback && !page.correct && !page.text.empty())
+      messages.push_back(page.text);
   }
 };
 
@@ -56,6 +58,7 @@ struct Ran {
   session::Summary summary;
   std::vector<records::TrialRow> trials;
   std::vector<std::string> faults;
+  std::vector<std::string> messages;  ///< of the pages after a trial, but not whether an answer was right
 };
 
 /// What may go wrong in a room before a trial.
@@ -92,6 +95,7 @@ inline Ran run(const std::string& protocol, const Sabotage& sabotage, const How&
   for (const auto& block : store::read_session(request.database, ran.summary.session_id).blocks)
     ran.trials.insert(ran.trials.end(), block.trials.begin(), block.trials.end());
   ran.faults = pages.faults;
+  ran.messages = pages.messages;
   return ran;
 }
 

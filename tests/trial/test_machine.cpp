@@ -436,3 +436,31 @@ TEST_CASE("no confidence is asked for after a timeout, and a void trial has none
   CHECK(stopped.result().outcome == Outcome::aborted);
   CHECK_FALSE(stopped.result().confidence);
 }
+
+TEST_CASE("a trial with another movement than the one asked for is void, and the page says why", "[trial]") {
+  auto machine = exploring();
+  machine.handle({1500 * ms, EventKind::answer, 1});
+  const auto actions = machine.handle({1600 * ms, EventKind::outside, 0});
+  CHECK(enters(actions, Phase::late));
+  CHECK(machine.result().outcome == Outcome::fault);
+  CHECK_FALSE(machine.result().response);
+  CHECK_FALSE(machine.decided());  // it still waits for `heard`
+  machine.handle({1610 * ms, EventKind::heard, 0});
+  CHECK(machine.decided());
+  machine.handle({9000 * ms, EventKind::tick, 0});
+  CHECK(machine.done());
+  CHECK(machine.result().outcome == Outcome::fault);
+}
+
+TEST_CASE("before the answer, such a trial ends the question; after a timeout it changes nothing",
+          "[trial]") {
+  auto waiting = exploring();
+  CHECK(enters(waiting.handle({1600 * ms, EventKind::outside, 0}), Phase::late));
+  waiting.handle({1700 * ms, EventKind::answer, 1});
+  CHECK(waiting.result().outcome == Outcome::fault);
+  CHECK_FALSE(waiting.result().response);
+  auto late = exploring();
+  late.handle({9000 * ms, EventKind::tick, 0});
+  late.handle({9001 * ms, EventKind::outside, 0});
+  CHECK(late.result().outcome == Outcome::timeout);
+}
