@@ -1,5 +1,7 @@
 #include "station/session/pages.hpp"
 
+#include <map>
+
 #include "station/protocol/answers.hpp"
 #include "station/scene/planner.hpp"
 #include "station/text/number.hpp"
