@@ -52,6 +52,18 @@ std::string proofs(const std::vector<store::BlockRecord>& blocks) {
   return text.empty() ? "none" : text;
 }
 
+/// Says in how many trials the forces are known, and why they are not known in others: "57 ok, 2 wire".
+std::string forces(const std::vector<store::BlockRecord>& blocks) {
+  std::map<std::string, int> counts;
+  for (const auto& block : blocks)
+    for (const auto& row : block.trials)
+      if (!row.finger.sensing.empty()) ++counts[row.finger.sensing];
+  std::string text;
+  for (const auto& [state, count] : counts)
+    text += (text.empty() ? "" : ", ") + std::to_string(count) + " " + state;
+  return text.empty() ? "none" : text;
+}
+
 /// Says how many trigger codes were given out, read back, missed or found without having been sent.
 std::string triggers(const std::vector<records::EventRow>& events) {
   int sent = 0, heard = 0, missed = 0, extra = 0;
@@ -102,6 +114,7 @@ void add_health(const store::StoredSession& stored, report::SessionData& data) {
   const auto& start = stored.session.start;
   data.health = {{"Trials stored", std::to_string(trials)},
                  {"Vibration of the surface", proofs(stored.blocks)},
+                 {"Force cells", forces(stored.blocks)},
                  {"Trigger codes", triggers(stored.events)},
                  {"Underruns and overruns", std::to_string(xruns)},
                  {"Touches that were not answers", std::to_string(extra)},

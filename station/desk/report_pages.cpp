@@ -97,6 +97,22 @@ void add_trade(const report::Summary& summary, ReportPages& pages) {
   for (const auto& statement : trade.statements) pages.statements.push_back(statement.text);
 }
 
+void add_finger(const report::Summary& summary, ReportPages& pages) {
+  if (!summary.finger) return;
+  for (const auto& entry : summary.finger->conditions) {
+    const auto prefix = entry.condition.empty() ? "" : entry.condition + ": ";
+    const auto line = [&](const char* what, const std::optional<Estimate>& estimate, const char* unit) {
+      if (estimate) pages.forces.emplace_back(prefix + what, with(estimate, unit));
+    };
+    line("normal force", entry.normal_N, "N");
+    line("speed", entry.speed_mm_s, "mm/s");
+    line("friction, smooth side", entry.mu_low, "");
+    line("friction, rough side", entry.mu_high, "");
+    line("felt \u2212 planned boundary", entry.shift_mm, "mm");
+  }
+  for (const auto& statement : summary.finger->statements) pages.statements.push_back(statement.text);
+}
+
 }  // namespace
 
 ReportPages report_pages(const report::Summary& summary) {
@@ -107,6 +123,7 @@ ReportPages report_pages(const report::Summary& summary) {
   add_fits(summary, pages);
   add_judgements(summary, pages);
   add_trade(summary, pages);
+  add_finger(summary, pages);
   pages.health = summary.data.health;
   if (summary.bias)
     for (const auto& statement : summary.bias->statements) pages.statements.push_back(statement.text);
@@ -116,6 +133,8 @@ ReportPages report_pages(const report::Summary& summary) {
                                                            : report::psychometric_figure(summary));
   pages.levels = drawing(report::trace_figure(summary));
   pages.times = drawing(report::response_time_figure(summary));
+  pages.finger = drawing(report::finger_figure(summary));
+  pages.friction = drawing(report::friction_figure(summary));
   return pages;
 }
 

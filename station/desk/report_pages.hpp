@@ -11,10 +11,10 @@ namespace turnpoint::desk {
 /// A session's report as pages of the screen: texts and figures.
 struct ReportPages {
   std::string title;
-  std::vector<std::pair<std::string, std::string>> outcomes, fit, speed_accuracy,
-      health;                           ///< pairs of a label and a value
-  std::vector<std::string> statements;  ///< remarks that must be shown with the numbers
-  Drawing trade, fits, levels, times;   ///< figures; empty if there are no data
+  std::vector<std::pair<std::string, std::string>> outcomes, fit, speed_accuracy, forces,
+      health;                                            ///< pairs of a label and a value
+  std::vector<std::string> statements;                   ///< remarks that must be shown with the numbers
+  Drawing trade, fits, levels, times, finger, friction;  ///< figures; empty if there are no data
 };
 
 /// Makes the report of a stored session with report_data() and report::summarise(). Takes about 0.3 s.

@@ -27,4 +27,11 @@ std::optional<plot::Figure> vibration_figure(const Summary& summary);
 /// the trials of each difficulty.
 std::optional<plot::Figure> trade_figure(const Summary& summary);
 
+/// Plots the normal force and the speed of the finger over the session, with one series for each condition.
+/// With more than 40 trials, a marker is the mean of several, with a bar from the smallest to the largest.
+std::optional<plot::Figure> finger_figure(const Summary& summary);
+/// Plots what the finger met against the planned boundary, in two panels: felt minus planned boundary, and
+/// the friction on both sides. Open markers are single trials.
+std::optional<plot::Figure> friction_figure(const Summary& summary);
+
 }  // namespace turnpoint::report

@@ -7,6 +7,7 @@
 
 #include "station/plot/svg.hpp"
 #include "station/report/figures.hpp"
+#include "station/report/html_parts.hpp"
 #include "station/text/number.hpp"
 
 namespace turnpoint::report {
@@ -14,7 +15,6 @@ namespace turnpoint::report {
 namespace {
 
 using analysis::Estimate;
-using analysis::Interval;
 using plot::escaped;
 
 const char* const kStyle = R"(
@@ -29,36 +29,6 @@ padding:0 .5rem;font-weight:600}.soft{color:#666}figure{margin:.5rem 0}svg{max-w
 @media print{body{margin:0;max-width:none;font-size:10pt}h2{break-after:avoid}figure,table,.note{break-inside:avoid}}
 @page{size:A4;margin:16mm}
 )";
-
-std::string minus(std::string text) {
-  if (!text.empty() && text[0] == '-') text = "\u2212" + text.substr(1);
-  return escaped(text);
-}
-
-std::string number(double value, int digits = 3) { return minus(text::number(value, digits)); }
-
-/// Formats a value and its interval. Both are rounded to the digits that the width of the interval justifies.
-std::string estimated(double value, const Interval& interval) {
-  const double error = text::uncertainty(value, interval.low, interval.high);
-  const auto shown = [error](double number) { return minus(text::estimated(number, error)); };
-  return shown(value) + " <span class=\"soft\">[" + shown(interval.low) + ", " + shown(interval.high) +
-         "]</span>";
-}
-
-std::string cell(const std::optional<Estimate>& estimate) {
-  if (!estimate) return "<td class=\"n soft\">not estimated</td>";
-  return "<td class=\"n\">" + estimated(estimate->value, estimate->interval) + "</td>";
-}
-
-std::string notes(const std::vector<analysis::Statement>& statements) {
-  std::string html;
-  for (const auto& statement : statements) html += "<p class=\"note\">" + escaped(statement.text) + "</p>\n";
-  return html;
-}
-
-std::string picture(const std::optional<plot::Figure>& figure) {
-  return figure ? "<figure>" + plot::render(*figure) + "</figure>\n" : "";
-}
 
 std::string facts(const std::vector<Fact>& list) {
   std::string html = "<table>";
@@ -167,8 +137,6 @@ std::string judgement_section(const Summary& summary) {
           "</p>\n";
   return html;
 }
-
-std::string name_of(const std::string& condition) { return condition.empty() ? "all trials" : condition; }
 
 /// A row of the table of speed and accuracy. The row appears only if the protocol shows the part of the
 /// report that `part` names.
@@ -398,7 +366,7 @@ std::string to_html(const Summary& summary) {
   } else {
     html += settings_section(summary);
   }
-  html += course_section(summary);
+  html += course_section(summary) + finger_section(summary);
   if (!data.measured.empty())
     html +=
         "<h2>Vibration of the surface</h2>\n<p class=\"soft\">Open markers: void, because the vibration was "

@@ -125,6 +125,36 @@ Json judgements_json(const analysis::Judgements& judged) {
   return json;
 }
 
+Json boundaries_json(const std::vector<analysis::AtBoundary>& values) {
+  Json list = Json::array();
+  for (const auto& at : values)
+    list.push_back({{"planned_mm", value(at.planned_mm)},
+                    {"value", value(at.value)},
+                    {"interval", at.interval ? value(*at.interval) : Json(nullptr)},
+                    {"trials", at.trials}});
+  return list;
+}
+
+Json finger_json(const std::optional<analysis::Finger>& finger) {
+  if (!finger) return nullptr;
+  Json json{{"conditions", Json::array()}};
+  for (const auto& entry : finger->conditions)
+    json["conditions"].push_back({{"condition", entry.condition},
+                                  {"trials", entry.trials},
+                                  {"measured", entry.measured},
+                                  {"felt", entry.felt},
+                                  {"normal_N", value(entry.normal_N)},
+                                  {"speed_mm_s", value(entry.speed_mm_s)},
+                                  {"mu_low", value(entry.mu_low)},
+                                  {"mu_high", value(entry.mu_high)},
+                                  {"felt_minus_planned_mm", value(entry.shift_mm)}});
+  json["felt_minus_planned_mm"] = boundaries_json(finger->boundaries.shift_mm);
+  json["mu_low"] = boundaries_json(finger->boundaries.mu_low);
+  json["mu_high"] = boundaries_json(finger->boundaries.mu_high);
+  json["statements"] = value(finger->statements);
+  return json;
+}
+
 Json trend_json(const std::optional<analysis::Trend>& trend) {
   if (!trend) return nullptr;
   return {{"per_100_trials", value(trend->per_100_trials)}, {"interval", value(trend->interval)}};
@@ -205,6 +235,7 @@ std::string to_json(const Summary& summary) {
     json["catch"] = {{"right", summary.catch_trials->right},
                      {"trials", summary.catch_trials->trials},
                      {"interval", value(summary.catch_trials->interval)}};
+  json["finger"] = finger_json(summary.finger);
   json["trend_response_time_s"] = trend_json(summary.fatigue.response_time_s);
   json["trend_proportion_correct"] = trend_json(summary.fatigue.proportion_correct);
   json["statements"] = value(summary.fatigue.statements);

@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "station/analysis/finger.hpp"
 #include "station/analysis/psychometric_fit.hpp"
 #include "station/analysis/speed_accuracy.hpp"
 #include "station/analysis/trial_record.hpp"
@@ -76,6 +77,8 @@ struct SessionData {
   std::optional<std::vector<std::string>> show;
   std::vector<ProcedureEstimate> estimates;
   std::vector<analysis::TrialRecord> trials;
+  /// answered trials in which force cells recorded, without practice; empty if the rig has none
+  std::vector<analysis::FingerTrial> finger;
   std::vector<MeasuredTrial> measured;  ///< empty if no pick-up measured the surface
   /// Set if the answers determined the levels: the intervals then come from the posterior under this prior.
   /// Empty if the levels were fixed before the session: the intervals then come from bootstraps.

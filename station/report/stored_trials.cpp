@@ -55,6 +55,26 @@ analysis::TrialRecord record_of(const records::TrialRow& row, const records::Blo
   return record;
 }
 
+/// Adds what force cells measured in a trial, if the trial counts.
+void add_finger(const records::TrialRow& row, const analysis::TrialRecord& trial, report::SessionData& data) {
+  const auto& finger = row.finger;
+  if (finger.sensing.empty() || trial.type == terms::TrialType::practice ||
+      trial.outcome != terms::Outcome::answered)
+    return;
+  analysis::FingerTrial added;
+  added.trial_index = row.trial_index;
+  added.condition = trial.instruction;
+  added.measured = finger.sensing == "ok";
+  added.normal_N = finger.normal_N;
+  added.speed_mm_s = finger.speed_mm_s;
+  added.mu_low = finger.mu_low;
+  added.mu_high = finger.mu_high;
+  added.planned_mm = row.boundary_mm;
+  added.felt_mm = finger.boundary_felt_mm;
+  added.felt_se_mm = finger.boundary_se_mm;
+  data.finger.push_back(std::move(added));
+}
+
 /// Returns the last attempt at each block. The trials of earlier attempts are not analysed.
 std::vector<const records::BlockRecord*> last_attempts(const std::vector<records::BlockRecord>& blocks) {
   std::map<int, const records::BlockRecord*> last;
@@ -206,7 +226,10 @@ void add_trials(const std::vector<records::BlockRecord>& blocks, const protocol:
                 report::SessionData& data) {
   const auto counted = last_attempts(blocks);
   for (const auto* block : counted)
-    for (const auto& row : block->trials) data.trials.push_back(record_of(row, block->start, protocol));
+    for (const auto& row : block->trials) {
+      data.trials.push_back(record_of(row, block->start, protocol));
+      add_finger(row, data.trials.back(), data);
+    }
   const auto level = protocol.procedures.empty() ? std::string() : protocol.procedures.front().level;
   const auto rule = protocol::answer_rule(protocol, level);
   data.positive = rule.positive;

@@ -207,6 +207,7 @@ Summary summarise(const SessionData& data) {
   summary.catch_trials = analysis::catch_accuracy(data.trials);
   summary.confidence = analysis::accuracy_by_confidence(data.trials);
   summary.fatigue = analysis::fatigue(data.trials);
+  summary.finger = analysis::finger(data.finger, data.conditions);
   if (data.design == Design::adjustment) {
     summary.settings = analysis::settings(data.trials, data.conditions);
     return summary;

@@ -37,6 +37,7 @@ struct Summary {
   std::vector<analysis::Settings> settings;
   /// for ratings and numbers: one entry for each condition
   std::vector<analysis::Judgements> judgements;
+  std::optional<analysis::Finger> finger;  ///< empty if no force cells recorded
 };
 
 /// Returns only the psychometric fits: one to all trials, or one per instruction if there are several

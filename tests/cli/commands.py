@@ -402,6 +402,11 @@ class Signals(Folder):
             points = list(csv.DictReader(table))
         self.assertEqual(len(points), sum(int(signal["points"]) for signal in signals))
         self.assertGreater(max(float(point["normal_n"]) for point in points), 0.3)
+        with open(os.path.join(self.folder, "P01.html"), encoding="utf-8") as page:
+            self.assertIn("<h2>The finger</h2>", page.read())
+        status, out, err = run(["report", "--db", "lab.sqlite", "--json"], self.folder)
+        self.assertEqual(is_like(json.loads(out)["finger"], SHAPES["report"]["finger"]), "", err)
+        self.assertEqual(json.loads(out)["finger"]["conditions"][0]["measured"], 10)
         runs = os.path.join(self.folder, "bids/demo/sub-P01/ses-01/beh")
         self.assertIn("sub-P01_ses-01_task-demo_run-01_recording-force_physio.tsv.gz", os.listdir(runs))
 

@@ -252,6 +252,25 @@ TEST_CASE("the report on the screen has the trade's numbers and pictures", "[ope
   CHECK_FALSE(pages.health.empty());
 }
 
+TEST_CASE("the report on the screen has the finger's forces and friction, if force cells recorded",
+          "[operator]") {
+  report::Summary summary;
+  summary.data.design = report::Design::ratings;
+  CHECK(desk::report_pages(summary).forces.empty());
+  CHECK_FALSE(desk::report_pages(summary).finger);
+  std::vector<analysis::FingerTrial> trials;
+  for (int i = 0; i < 4; ++i) {
+    analysis::FingerTrial trial{i, "speed", true, 0.5, 80.0 + i, 0.3, 0.8, 150.0, 150.5 + 0.1 * i, 0.2};
+    trials.push_back(trial);
+  }
+  summary.finger = analysis::finger(trials, {});
+  const auto pages = desk::report_pages(summary);
+  CHECK(value_of(pages.forces, "speed: speed").find("81.5 [") == 0);
+  CHECK(value_of(pages.forces, "speed: felt \u2212 planned boundary").find(" mm") != std::string::npos);
+  CHECK(pages.finger);
+  CHECK(pages.friction);
+}
+
 TEST_CASE("protocol files of a folder are listed with the ones that cannot be used", "[operator]") {
   const Folder folder;
   fs::copy_file(kSource + "/protocols/demo.toml", folder.path / "a.toml");

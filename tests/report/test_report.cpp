@@ -198,3 +198,93 @@ TEST_CASE("Where the answers chose the levels the report states the posterior an
   CHECK(to_html(cut).find("do not determine the slope") != std::string::npos);
   CHECK(nlohmann::json::parse(to_json(cut))["fits"][0]["slope"].is_null());
 }
+
+namespace {
+
+/// A session of two instructions with force cells. The finger meets the boundary 0.4 mm before its planned
+/// place.
+SessionData force_session() {
+  auto data = speed_accuracy(6);
+  data.conditions = {"speed", "accuracy"};
+  random::Draws draws({5, random::Stream::observer, 0, 0, 0});
+  for (const auto& trial : data.trials) {
+    analysis::FingerTrial finger;
+    finger.trial_index = trial.trial_index;
+    finger.condition = trial.instruction;
+    finger.measured = trial.trial_index % 17 != 16;
+    const bool fast = trial.instruction == "speed";
+    finger.planned_mm = 150 + 60 * *trial.level;
+    if (finger.measured) {
+      finger.normal_N = (fast ? 0.42 : 0.55) + 0.12 * (draws.uniform() - 0.5);
+      finger.speed_mm_s = (fast ? 118 : 82) + 30 * (draws.uniform() - 0.5);
+      if (trial.trial_index % 5 != 0) {
+        finger.mu_low = 0.35 + 0.06 * draws.uniform();
+        finger.mu_high = 0.75 + 0.1 * draws.uniform();
+        finger.felt_mm = *finger.planned_mm - 0.4 + 2 * (draws.uniform() - 0.5);
+        finger.felt_se_mm = 0.6;
+      }
+    }
+    data.finger.push_back(finger);
+  }
+  return data;
+}
+
+}  // namespace
+
+TEST_CASE("The report has the finger's force, speed and friction only if force cells recorded", "[report]") {
+  const auto without = summarise(speed_accuracy(6));
+  CHECK_FALSE(finger_figure(without));
+  CHECK_FALSE(friction_figure(without));
+  CHECK(to_html(without).find("The finger") == std::string::npos);
+  CHECK(nlohmann::json::parse(to_json(without))["finger"].is_null());
+
+  const auto summary = summarise(force_session());
+  const auto forces = finger_figure(summary), friction = friction_figure(summary);
+  REQUIRE((forces && friction));
+  REQUIRE(forces->charts.size() == 2);
+  const auto& accuracy = std::get<plot::Points>(forces->charts[0].layers[1]);
+  CHECK(accuracy.name == "accuracy");
+  // 72 trials are more than 40, so a marker is the mean of two
+  const double one = *summary.data.finger[36].normal_N, two = *summary.data.finger[37].normal_N;
+  CHECK(accuracy.y.front() == Approx((one + two) / 2));
+  CHECK(accuracy.high.front() == std::max(one, two));
+  CHECK(accuracy.low.front() == std::min(one, two));
+  CHECK(accuracy.x.front() == 37.5);
+  const auto& shifts = std::get<plot::Points>(friction->charts[0].layers.back());
+  CHECK(shifts.x == std::vector<double>{126, 138, 144, 156, 162, 174});
+  CHECK(shifts.low.front() < shifts.y.front());
+  CHECK(std::get<plot::Points>(friction->charts[1].layers[1]).name == "rough side");
+  const auto html = to_html(summary);
+  CHECK(html.find("<h2>The finger</h2>") != std::string::npos);
+  CHECK(html.find("Felt minus planned boundary (mm)") != std::string::npos);
+  const auto json = nlohmann::json::parse(to_json(summary))["finger"];
+  REQUIRE(json["conditions"].size() == 2);
+  CHECK(json["conditions"][0]["speed_mm_s"]["value"].get<double>() == Approx(118).margin(5));
+  CHECK(json["conditions"][1]["felt_minus_planned_mm"]["value"].get<double>() == Approx(-0.4).margin(0.5));
+  CHECK(json["felt_minus_planned_mm"].size() == 6);
+  keep("finger.svg", shown(forces));
+  keep("friction.svg", shown(friction));
+  keep("finger.html", html);
+  auto apart = force_session();
+  for (auto& trial : apart.finger) {
+    trial.condition = "speed";
+    trial.trial_index += trial.trial_index < 35 ? 0 : 100;  // an odd number of trials, then another block
+  }
+  const auto two_blocks = finger_figure(summarise(apart));
+  const auto& means = std::get<plot::Points>(two_blocks->charts[0].layers[0]);
+  for (const double x : means.x) CHECK((x <= 35 || x >= 136));
+
+  auto few = force_session();
+  few.finger.resize(12);
+  few.finger[11].trial_index = 30;
+  const auto each = finger_figure(summarise(few));
+  const auto& singles = std::get<plot::Points>(each->charts[0].layers[0]);
+  CHECK(singles.x.size() == 12);
+  CHECK(singles.x.back() == 31);
+  CHECK(singles.high == singles.y);
+  keep("friction-few.svg", shown(friction_figure(summarise(few))));
+  for (auto& trial : few.finger) trial.felt_mm.reset();
+  const auto unfelt = to_html(summarise(few));
+  CHECK(unfelt.find("In no trial did the finger cross a clear step") != std::string::npos);
+  CHECK(unfelt.find("Friction along the strip") == std::string::npos);
+}

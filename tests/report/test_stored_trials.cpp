@@ -243,3 +243,31 @@ TEST_CASE("the report counts right answers for each degree of confidence", "[rep
   CHECK(report["confidence"].back()["proportion"] > report["confidence"].front()["proportion"]);
   CHECK(report_of(data_of(shipped("friction-2ifc")))["confidence"].empty());
 }
+
+TEST_CASE("what force cells measured is taken from answered trials, with their condition", "[report]") {
+  const auto protocol = protocol::parse(shipped("speed-accuracy"), "p.toml");
+  auto rehearsal =
+      simulation::rehearse(protocol, 0, 5, simulation::rehearser(observer::Observer(observer::parse("sim"))));
+  report::SessionData none;
+  report::add_trials(rehearsal.blocks, protocol, none);
+  CHECK(none.finger.empty());
+  std::size_t expected = 0;
+  for (auto& block : rehearsal.blocks)
+    for (auto& row : block.trials) {
+      row.finger.sensing = row.trial_index % 2 == 0 ? "ok" : "wire";
+      if (row.finger.sensing == "ok") row.finger.normal_N = 0.5;
+      row.boundary_mm = 150;
+      row.finger.boundary_felt_mm = 151.5;
+      expected += !block.start.practice && row.outcome == terms::Outcome::answered ? 1 : 0;
+    }
+  report::SessionData data;
+  report::add_trials(rehearsal.blocks, protocol, data);
+  REQUIRE(data.finger.size() == expected);
+  REQUIRE(expected > 20);
+  for (const auto& trial : data.finger) {
+    CHECK(trial.measured == (trial.trial_index % 2 == 0));
+    CHECK(trial.normal_N.has_value() == trial.measured);
+    CHECK((trial.condition == "speed" || trial.condition == "accuracy"));
+    CHECK(*trial.felt_mm - *trial.planned_mm == 1.5);
+  }
+}

@@ -1,9 +1,11 @@
 #include "tests/ui/operator_gallery.hpp"
 
 #include <QTemporaryDir>
+#include <cmath>
 #include <condition_variable>
 #include <mutex>
 
+#include "station/desk/report_data.hpp"
 #include "station/setup/prepare.hpp"
 
 namespace turnpoint::ui {
@@ -80,6 +82,23 @@ desk::ReportPages report_exhibit(const std::string& protocol) {
   session::Inputs inputs;
   const auto summary = session::run(setup::prepare(request_for(protocol, database)), nullptr, inputs);
   return desk::report_pages(database, summary.session_id);
+}
+
+desk::ReportPages forces_exhibit(const std::string& protocol) {
+  const QTemporaryDir folder;
+  const auto database = folder.filePath("a.sqlite").toStdString();
+  session::Inputs inputs;
+  const auto session = session::run(setup::prepare(request_for(protocol, database)), nullptr, inputs);
+  auto data = desk::report_data(database, session.session_id);
+  for (const auto& trial : data.trials) {
+    const double wave = std::sin(2.1 * trial.trial_index), other = std::cos(1.3 * trial.trial_index);
+    const bool fast = trial.instruction == "speed";
+    const double planned_mm = 150 + 40 * trial.level.value_or(0);
+    data.finger.push_back({trial.trial_index, trial.instruction, true, (fast ? 0.42 : 0.55) + 0.06 * wave,
+                           (fast ? 118 : 82) + 12 * other, 0.35 + 0.03 * wave, 0.8 + 0.05 * other, planned_mm,
+                           planned_mm + 0.4 * wave - 0.3 * other, 0.4});
+  }
+  return desk::report_pages(report::summarise(data));
 }
 
 std::string interrupted_exhibit(const std::string& folder) {

@@ -11,6 +11,8 @@ desk::LiveState live_exhibit(const std::string& protocol, int trials);
 
 /// The report of a whole simulated session of that protocol.
 desk::ReportPages report_exhibit(const std::string& protocol);
+/// The same, as if force cells had recorded; their values are made up.
+desk::ReportPages forces_exhibit(const std::string& protocol);
 
 /// Creates a database in `folder` with an interrupted session of participant P03. Returns its path.
 std::string interrupted_exhibit(const std::string& folder);

@@ -157,10 +157,12 @@ class OperatorCamera {
           {{"live", QVariant::fromValue(&live_)}, {"bridge", QVariant::fromValue(&bridge_)}});
   }
 
-  void shoot_report(const turnpoint::desk::ReportPages& pages, const QString& name) {
+  /// `picture` is the number of the figure to show.
+  void shoot_report(const turnpoint::desk::ReportPages& pages, const QString& name, int picture = 0) {
     report_.take(pages);
     QGuiApplication::processEvents();
-    shoot("ReportPage.qml", name, {{"report", QVariant::fromValue(&report_)}, {"runMode", "pilot"}});
+    shoot("ReportPage.qml", name,
+          {{"report", QVariant::fromValue(&report_)}, {"runMode", "pilot"}, {"shown", picture}});
   }
 
   int count() const { return count_; }
@@ -186,7 +188,8 @@ int shoot_operator(const QString& out, const QStringList& sizes) {
   const QTemporaryDir folder;
   const std::string source = TURNPOINT_SOURCE_DIR;
   const auto database = ui::interrupted_exhibit(folder.path().toStdString());
-  ui::OperatorController operating({source + "/protocols", source + "/tests/support/thin_plate.toml", database});
+  ui::OperatorController operating(
+      {source + "/protocols", source + "/tests/support/thin_plate.toml", database});
   operating.select(9);
   wait_for([&] { return !operating.checking(); });
   ui::PreviewController preview(
@@ -196,7 +199,8 @@ int shoot_operator(const QString& out, const QStringList& sizes) {
   wait_for([&] { return !preview.busy() && !zones.busy(); });
   const auto live = ui::live_exhibit("boundary-adaptive", 40), live2 = ui::live_exhibit("friction-2ifc", 12);
   const auto live3 = ui::live_exhibit("two-spots-oddity", 12);
-  const auto report = ui::report_exhibit("speed-accuracy"), report2 = ui::report_exhibit("boundary-constant");
+  const auto report = ui::report_exhibit("speed-accuracy"), report2 = ui::report_exhibit("boundary-constant"),
+             report3 = ui::forces_exhibit("speed-accuracy");
   ui::LatencyController latency(calibration::LatencyReference::photodiode);
   int count = 0;
   for (const auto& size : sizes) {
@@ -209,6 +213,8 @@ int shoot_operator(const QString& out, const QStringList& sizes) {
     camera.shoot_live(live3, "live-oddity");
     camera.shoot_report(report, "report-trade");
     camera.shoot_report(report2, "report-boundary");
+    camera.shoot_report(report3, "report-forces", 3);
+    camera.shoot_report(report3, "report-friction", 4);
     camera.shoot("PreviewPage.qml", "preview", {{"controller", QVariant::fromValue(&preview)}});
     camera.shoot("PreviewPage.qml", "preview-zone", {{"controller", QVariant::fromValue(&zones)}});
     camera.shoot("LatencyPage.qml", "panel-latency", {{"controller", QVariant::fromValue(&latency)}});

@@ -103,6 +103,7 @@ Rectangle {
                 FactTable { width: parent.width; theme: look; heading: "Trials"; facts: root.report.outcomes; labelWidth: 0.5 * width }
                 FactTable { width: parent.width; theme: look; heading: "Speed and accuracy"; facts: root.report.trade; labelWidth: 0.5 * width }
                 FactTable { width: parent.width; theme: look; heading: "Fit"; facts: root.report.fit; labelWidth: 0.5 * width }
+                FactTable { width: parent.width; theme: look; heading: "Finger"; facts: root.report.forces; labelWidth: 0.5 * width }
                 Repeater {
                     model: root.report.statements
                     PlainText {

@@ -27,6 +27,7 @@ void ReportModel::clear() {
 QVariantList ReportModel::outcomes() const { return to_list(pages_.outcomes); }
 QVariantList ReportModel::fit() const { return to_list(pages_.fit); }
 QVariantList ReportModel::trade() const { return to_list(pages_.speed_accuracy); }
+QVariantList ReportModel::forces() const { return to_list(pages_.forces); }
 QVariantList ReportModel::health() const { return to_list(pages_.health); }
 QStringList ReportModel::statements() const { return to_list(pages_.statements); }
 
@@ -39,6 +40,8 @@ std::vector<std::pair<QString, desk::Drawing>> ReportModel::all_pictures() const
   add("Fit", pages_.fits);
   add("Levels", pages_.levels);
   add("Response times", pages_.times);
+  add("Finger", pages_.finger);
+  add("Friction", pages_.friction);
   return list;
 }
 

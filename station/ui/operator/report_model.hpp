@@ -16,6 +16,7 @@ class ReportModel : public QObject {
   Q_PROPERTY(QVariantList outcomes READ outcomes NOTIFY changed)
   Q_PROPERTY(QVariantList fit READ fit NOTIFY changed)
   Q_PROPERTY(QVariantList trade READ trade NOTIFY changed)
+  Q_PROPERTY(QVariantList forces READ forces NOTIFY changed)
   Q_PROPERTY(QVariantList health READ health NOTIFY changed)
   Q_PROPERTY(QStringList statements READ statements NOTIFY changed)
   /// Names and drawings of the existing figures, beginning with the speed-accuracy trade-off.
@@ -34,6 +35,7 @@ class ReportModel : public QObject {
   QVariantList outcomes() const;
   QVariantList fit() const;
   QVariantList trade() const;
+  QVariantList forces() const;
   QVariantList health() const;
   QStringList statements() const;
   QStringList picture_names() const;

@@ -1,0 +1,58 @@
+#pragma once
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "station/analysis/estimate.hpp"
+#include "station/analysis/trial_record.hpp"
+
+namespace turnpoint::analysis {
+
+/// What force cells measured of the finger in one trial. Values that were not measured are empty.
+struct FingerTrial {
+  int trial_index = 0;
+  std::string condition;                       ///< "" if there is only one
+  bool measured = false;                       ///< false: the forces of this trial are not known
+  std::optional<double> normal_N, speed_mm_s;  ///< means over the strokes
+  std::optional<double> mu_low, mu_high;  ///< friction on the smooth and the rough side of the felt boundary
+  /// Where the scene presented last was planned to change friction, and where the finger met the change, with
+  /// its standard error.
+  std::optional<double> planned_mm, felt_mm, felt_se_mm;
+};
+
+/// The finger in the trials of one condition. Estimates are means over trials, with 95 % intervals by
+/// Student's t; empty with fewer than 3 trials that have the value.
+struct FingerCondition {
+  std::string condition;
+  int trials = 0;    ///< trials in which force cells recorded
+  int measured = 0;  ///< those whose forces are known
+  int felt = 0;      ///< those with a felt boundary
+  std::optional<Estimate> normal_N, speed_mm_s, mu_low, mu_high;
+  std::optional<Estimate> shift_mm;  ///< felt minus planned boundary
+};
+
+/// A value at one planned boundary. The interval is empty if it is not known.
+struct AtBoundary {
+  double planned_mm = 0, value = 0;
+  int trials = 1;  ///< number of trials of which `value` is the mean
+  std::optional<Interval> interval;
+};
+
+/// The felt step of friction against the planned boundary. At a planned boundary (to 0.1 mm) with 3 or more
+/// trials, a value is their mean with its interval by Student's t. With fewer, each trial has a value of its
+/// own; the interval of a felt boundary is then 1.96 standard errors of the trial to both sides.
+struct FeltBoundaries {
+  std::vector<AtBoundary> shift_mm, mu_low, mu_high;  ///< in the order of planned boundaries
+};
+
+struct Finger {
+  std::vector<FingerTrial> trials;          ///< in the order given
+  std::vector<FingerCondition> conditions;  ///< those in `order` first
+  FeltBoundaries boundaries;                ///< of all conditions
+  std::vector<Statement> statements;
+};
+
+/// Summarises trials in which force cells recorded. Empty if there are none.
+std::optional<Finger> finger(const std::vector<FingerTrial>& trials, const std::vector<std::string>& order);
+
+}  // namespace turnpoint::analysis

@@ -1,0 +1,162 @@
+#include <algorithm>
+#include <span>
+
+#include "station/report/figures.hpp"
+
+namespace turnpoint::report {
+
+namespace {
+
+using analysis::AtBoundary;
+
+// In a longer session, a marker is the mean of several trials, so that markers do not cover each other.
+constexpr std::size_t kMostMarkers = 40;
+
+using Value = std::optional<double> analysis::FingerTrial::*;
+
+struct Reading {
+  double trial = 0, value = 0;
+};
+
+std::vector<Reading> readings(const analysis::Finger& finger, const std::string& condition, Value value) {
+  std::vector<Reading> list;
+  for (const auto& trial : finger.trials)
+    if (trial.condition == condition && trial.*value)
+      list.push_back({trial.trial_index + 1.0, *(trial.*value)});
+  return list;
+}
+
+/// Adds the mean of readings, with a bar from the smallest to the largest.
+void add_mean(plot::Points& points, std::span<const Reading> group) {
+  Reading mean;
+  double low = group.front().value, high = low;
+  for (const auto& [trial, value] : group) {
+    mean.trial += trial / static_cast<double>(group.size());
+    mean.value += value / static_cast<double>(group.size());
+    low = std::min(low, value), high = std::max(high, value);
+  }
+  points.x.push_back(mean.trial);
+  points.y.push_back(mean.value);
+  points.low.push_back(low);
+  points.high.push_back(high);
+}
+
+/// Forms groups of `size` readings that follow each other. A new group begins where another block came
+/// between.
+plot::Points grouped(const std::vector<Reading>& list, std::size_t size) {
+  plot::Points points;
+  std::size_t first = 0;
+  for (std::size_t i = 1; i <= list.size(); ++i) {
+    const bool apart =
+        i < list.size() && list[i].trial - list[i - 1].trial > 4 * static_cast<double>(size) + 1;
+    if (i < list.size() && i - first < size && !apart) continue;
+    add_mean(points, std::span(list).subspan(first, i - first));
+    first = i;
+  }
+  return points;
+}
+
+/// Draws one value over the session, with a series for each condition.
+plot::Chart over_session(const analysis::Finger& finger, const std::string& label, Value value) {
+  plot::Chart chart;
+  std::vector<double> all, trials;
+  const auto size = (finger.trials.size() + kMostMarkers - 1) / kMostMarkers;
+  for (std::size_t i = 0; i < finger.conditions.size(); ++i) {
+    auto points = grouped(readings(finger, finger.conditions[i].condition, value), size);
+    if (points.x.empty()) continue;
+    points.series = static_cast<int>(i);
+    if (finger.conditions.size() > 1) points.name = finger.conditions[i].condition;
+    all.insert(all.end(), points.high.begin(), points.high.end());
+    trials.insert(trials.end(), points.x.begin(), points.x.end());
+    chart.layers.push_back(std::move(points));
+  }
+  chart.x = plot::fitted("Trial (number in the session)", trials, 0.04);
+  chart.x.counts = true;
+  all.push_back(0);  // force and speed are shown from 0, so that conditions can be compared by their ratio
+  chart.y = plot::fitted(label, all, 0.12);
+  chart.y.low = 0;
+  return chart;
+}
+
+// The colours of the conditions are not used for what is pooled over conditions.
+constexpr int kSmoothSeries = 2, kRoughSeries = 3;
+// distance between single trials with the same planned boundary, as a share of the axis
+constexpr double kBeside = 0.02;
+
+/// Values with the same planned boundary stand side by side, so that their bars do not hide each other.
+plot::Points markers(const std::vector<AtBoundary>& values, const plot::Axis& along, int series,
+                     const std::string& name) {
+  plot::Points points;
+  points.series = series;
+  points.name = name;
+  for (auto group = values.begin(); group != values.end();) {
+    const auto end = std::find_if(group, values.end(),
+                                  [&](const AtBoundary& at) { return at.planned_mm != group->planned_mm; });
+    double x =
+        group->planned_mm - 0.5 * kBeside * (along.high - along.low) * static_cast<double>(end - group - 1);
+    for (; group != end; ++group, x += kBeside * (along.high - along.low)) {
+      points.x.push_back(x);
+      points.y.push_back(group->value);
+      points.low.push_back(group->interval ? group->interval->low : group->value);
+      points.high.push_back(group->interval ? group->interval->high : group->value);
+      points.open.push_back(group->trials == 1);
+    }
+  }
+  return points;
+}
+
+/// Every value, and both ends of its interval.
+std::vector<double> extent(const std::vector<AtBoundary>& values) {
+  std::vector<double> all;
+  for (const auto& at : values) {
+    all.push_back(at.value);
+    if (at.interval) all.insert(all.end(), {at.interval->low, at.interval->high});
+  }
+  return all;
+}
+
+}  // namespace
+
+std::optional<plot::Figure> finger_figure(const Summary& summary) {
+  if (!summary.finger) return std::nullopt;
+  plot::Figure figure;
+  figure.title = "Force and speed of the finger";
+  figure.columns = 2;
+  figure.chart_width_px = 400;
+  figure.chart_height_px = 260;
+  for (auto chart : {over_session(*summary.finger, "Normal force (N)", &analysis::FingerTrial::normal_N),
+                     over_session(*summary.finger, "Speed (mm/s)", &analysis::FingerTrial::speed_mm_s)})
+    if (!chart.layers.empty()) figure.charts.push_back(std::move(chart));
+  if (figure.charts.empty()) return std::nullopt;
+  return figure;
+}
+
+std::optional<plot::Figure> friction_figure(const Summary& summary) {
+  if (!summary.finger || summary.finger->boundaries.shift_mm.empty()) return std::nullopt;
+  const auto& [shift_mm, mu_low, mu_high] = summary.finger->boundaries;
+  std::vector<double> planned;
+  for (const auto& at : shift_mm) planned.push_back(at.planned_mm);
+  const auto along = plot::fitted("Planned boundary (mm)", planned, 0.08);
+  plot::Chart felt{"Where friction changes", along, {}, {}}, sides{"Friction on both sides", along, {}, {}};
+  auto shifts = extent(shift_mm);
+  shifts.push_back(0);
+  felt.y = plot::fitted("Felt minus planned boundary (mm)", shifts, 0.1);
+  felt.layers.push_back(plot::Rule{plot::Rule::Direction::horizontal, 0, ""});
+  felt.layers.push_back(markers(shift_mm, along, plot::kNeutral, ""));
+  auto friction = extent(mu_low);
+  for (const double value : extent(mu_high)) friction.push_back(value);
+  friction.push_back(0);
+  sides.y = plot::fitted("Coefficient of friction", friction, 0.1);
+  sides.y.low = 0;
+  sides.layers.push_back(markers(mu_low, along, kSmoothSeries, "smooth side"));
+  sides.layers.push_back(markers(mu_high, along, kRoughSeries, "rough side"));
+  plot::Figure figure;
+  figure.title = "Friction along the strip";
+  figure.columns = 2;
+  figure.chart_width_px = 400;
+  figure.chart_height_px = 300;
+  figure.charts = {std::move(felt), std::move(sides)};
+  return figure;
+}
+
+}  // namespace turnpoint::report

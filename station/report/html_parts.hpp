@@ -1,0 +1,30 @@
+#pragma once
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "station/analysis/estimate.hpp"
+#include "station/analysis/trial_record.hpp"
+#include "station/plot/chart.hpp"
+#include "station/report/summary.hpp"
+
+namespace turnpoint::report {
+
+// Pieces of the page that its sections share.
+
+/// Escapes a text, and writes its leading hyphen as a minus sign.
+std::string minus(std::string text);
+std::string number(double value, int digits = 3);
+/// Formats a value and its interval. Both are rounded to the digits that the width of the interval justifies.
+std::string estimated(double value, const analysis::Interval& interval);
+/// A cell of a table.
+std::string cell(const std::optional<analysis::Estimate>& estimate);
+std::string notes(const std::vector<analysis::Statement>& statements);
+std::string picture(const std::optional<plot::Figure>& figure);
+/// The name of a condition, or "all trials" if there is only one.
+std::string name_of(const std::string& condition);
+
+/// The section on the finger's force, speed and friction; "" if no force cells recorded.
+std::string finger_section(const Summary& summary);
+
+}  // namespace turnpoint::report
