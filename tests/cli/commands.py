@@ -542,6 +542,7 @@ class LongWork(Folder):
 
 
 class Manual(Folder):
+    @unittest.skipUnless(shutil.which("man"), "man-db is not installed")
     def test_every_command_has_a_manual_page_that_renders_without_warnings(self):
         status, _, err = run(["help", "--man", "man"], self.folder)
         self.assertEqual(status, 0, err)
