@@ -64,7 +64,7 @@ void add_finger(const records::TrialRow& row, const analysis::TrialRecord& trial
   analysis::FingerTrial added;
   added.trial_index = row.trial_index;
   added.condition = trial.instruction;
-  added.measured = finger.sensing == "ok";
+  added.measured = finger.contact_s.has_value();  // `sensing` also says that the finger moved too fast
   added.normal_N = finger.normal_N;
   added.speed_mm_s = finger.speed_mm_s;
   added.mu_low = finger.mu_low;

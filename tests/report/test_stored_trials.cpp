@@ -254,8 +254,8 @@ TEST_CASE("what force cells measured is taken from answered trials, with their c
   std::size_t expected = 0;
   for (auto& block : rehearsal.blocks)
     for (auto& row : block.trials) {
-      row.finger.sensing = row.trial_index % 2 == 0 ? "ok" : "wire";
-      if (row.finger.sensing == "ok") row.finger.normal_N = 0.5;
+      row.finger.sensing = row.trial_index % 2 != 0 ? "wire" : row.trial_index % 4 == 0 ? "ok" : "slow";
+      if (row.finger.sensing != "wire") row.finger.normal_N = 0.5, row.finger.contact_s = 2;
       row.boundary_mm = 150;
       row.finger.boundary_felt_mm = 151.5;
       expected += !block.start.practice && row.outcome == terms::Outcome::answered ? 1 : 0;
