@@ -53,6 +53,10 @@ std::optional<Bias> choice_bias(const std::vector<TrialRecord>& trials) {
   return bias;
 }
 
+Proportion proportion(int right, int trials) {
+  return {right, trials, static_cast<double>(right) / trials, clopper_pearson(right, trials)};
+}
+
 std::optional<Proportion> catch_accuracy(const std::vector<TrialRecord>& trials) {
   Proportion result;
   for (const auto& trial : trials) {
@@ -62,9 +66,7 @@ std::optional<Proportion> catch_accuracy(const std::vector<TrialRecord>& trials)
     result.right += *trial.correct;
   }
   if (result.trials == 0) return std::nullopt;
-  result.value = static_cast<double>(result.right) / result.trials;
-  result.interval = clopper_pearson(result.right, result.trials);
-  return result;
+  return proportion(result.right, result.trials);
 }
 
 std::map<int, Proportion> accuracy_by_confidence(const std::vector<TrialRecord>& trials) {
@@ -75,10 +77,7 @@ std::map<int, Proportion> accuracy_by_confidence(const std::vector<TrialRecord>&
     ++degree.trials;
     degree.right += *trial.correct;
   }
-  for (auto& [confidence, degree] : degrees) {
-    degree.value = static_cast<double>(degree.right) / degree.trials;
-    degree.interval = clopper_pearson(degree.right, degree.trials);
-  }
+  for (auto& [confidence, degree] : degrees) degree = proportion(degree.right, degree.trials);
   return degrees;
 }
 

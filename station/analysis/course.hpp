@@ -42,6 +42,9 @@ struct Proportion {
   double value = 0;
   Interval interval;  ///< Clopper-Pearson interval of right / trials
 };
+/// Returns right / trials with its interval; `trials` must be above 0.
+Proportion proportion(int right, int trials);
+
 /// Returns the proportion of catch trials answered correctly. Timeouts and anticipations do not count as
 /// answers. Empty if no catch trial was answered.
 std::optional<Proportion> catch_accuracy(const std::vector<TrialRecord>& trials);

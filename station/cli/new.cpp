@@ -41,6 +41,7 @@ constexpr Goal goals[] = {
     {"rating-line", "how smooth a surface feels, marked on a line", "smoothness-line"},
     {"magnitude", "how smoothness grows with vibration, in numbers (free modulus)", "magnitude-free"},
     {"magnitude-standard", "the same numbers against a standard", "magnitude-standard"},
+    {"identification", "which of five degrees of slipperiness people recognise", "friction-identification"},
     {"confidence", "friction differences, and how sure people are of their answers", "friction-confidence"},
     {"speed-accuracy", "noticing a change under the finger, answering fast or carefully", "speed-accuracy"},
     {"control", "whether the task can be done without touching the surface (control)", "no-touch-control"},

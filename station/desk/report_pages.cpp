@@ -80,6 +80,16 @@ void add_judgements(const report::Summary& summary, ReportPages& pages) {
   }
 }
 
+void add_confusions(const report::Summary& summary, ReportPages& pages) {
+  const auto& choices = summary.data.choices;
+  for (const auto& confusion : summary.confusions)
+    for (const auto& row : confusion.rows)
+      if (row.stimulus && row.right)
+        pages.fit.emplace_back((confusion.condition.empty() ? "" : confusion.condition + ": ") + "right, \"" +
+                                   choices.at(static_cast<std::size_t>(*row.stimulus)) + "\"",
+                               with(row.right->value, row.right->interval));
+}
+
 void add_trade(const report::Summary& summary, ReportPages& pages) {
   const auto& trade = summary.trade;
   for (const auto& result : trade.instructions) {
@@ -122,6 +132,7 @@ ReportPages report_pages(const report::Summary& summary) {
   add_outcomes(summary, pages);
   add_fits(summary, pages);
   add_judgements(summary, pages);
+  if (summary.data.design == report::Design::categories) add_confusions(summary, pages);
   add_trade(summary, pages);
   add_finger(summary, pages);
   pages.health = summary.data.health;
@@ -129,8 +140,10 @@ ReportPages report_pages(const report::Summary& summary) {
     for (const auto& statement : summary.bias->statements) pages.statements.push_back(statement.text);
   for (const auto& statement : summary.fatigue.statements) pages.statements.push_back(statement.text);
   pages.trade = drawing(report::trade_figure(summary));
-  pages.fits = drawing(report::judges(summary.data.design) ? report::judgement_figure(summary)
-                                                           : report::psychometric_figure(summary));
+  pages.fits =
+      drawing(report::judges(summary.data.design)                 ? report::judgement_figure(summary)
+              : summary.data.design == report::Design::categories ? report::confusion_figure(summary)
+                                                                  : report::psychometric_figure(summary));
   pages.levels = drawing(report::trace_figure(summary));
   pages.times = drawing(report::response_time_figure(summary));
   pages.finger = drawing(report::finger_figure(summary));

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <limits>
 #include <map>
 
 #include "station/observer/first_passage.hpp"
@@ -54,6 +55,26 @@ double mean_over_drift(double drift, double sd, Function function) {
   return sum / weights;
 }
 
+/// Returns the levels between which a level seems to belong to the category of this answer: halfway to the
+/// neighbouring categories, or to infinity.
+std::pair<double, double> ends_of_category(const Question& q, int choice) {
+  const double own = q.categories.at(static_cast<std::size_t>(choice));
+  double low = -std::numeric_limits<double>::infinity(), high = -low;
+  for (const double other : q.categories) {
+    if (other < own) low = std::max(low, 0.5 * (other + own));
+    if (other > own) high = std::min(high, 0.5 * (other + own));
+  }
+  return {low, high};
+}
+
+int category_of(const Question& q, double level) {
+  int choice = 0;
+  while (choice + 1 < q.answers &&
+         !(level >= ends_of_category(q, choice).first && level < ends_of_category(q, choice).second))
+    ++choice;
+  return choice;
+}
+
 /// Returns the criterion between rating `rating` and the next higher one, in SDs from the mean of noise. The
 /// criteria of the ratings lie symmetrically around `centre`.
 double rating_criterion(double centre, int rating, int ratings) {
@@ -88,6 +109,11 @@ double Observer::centre(const Question& q) const {
   return q.middle == Middle::criterion ? parameters_.criterion : 0;
 }
 
+/// The SD of the level that is felt.
+double Observer::category_sd(const Question& q) const {
+  return std::fabs(parameters_.threshold.value_or(q.default_threshold)) / (2 * kZ75);
+}
+
 /// The number that the observer gives. A line is as wide as a scale of kLinePoints points.
 double Observer::value(const Question& q, random::Draws& draws) const {
   const auto& v = *q.value;
@@ -113,7 +139,8 @@ int Observer::confidence(const Question& q, int choice, random::Draws& draws) co
 }
 
 /// Returns the drift (1 / square root of a second). A positive drift leads to the right answer
-/// (right_answer), to the answer for levels above the bias (side), or to "yes" (presence).
+/// (right_answer), to the answer for levels above the bias (side), to "yes" (presence), or away from the
+/// nearest end of the category (category).
 double Observer::drift(const Question& q) const {
   double half_logit = 0;
   switch (q.decides) {
@@ -126,6 +153,10 @@ double Observer::drift(const Question& q) const {
       break;
     case Decides::presence:
       half_logit = half_logit_of_normal(sensitivity(q) - parameters_.criterion);
+      break;
+    case Decides::category:
+      const auto [low, high] = ends_of_category(q, category_of(q, q.level));
+      half_logit = half_logit_of_normal(std::min(q.level - low, high - q.level) / category_sd(q));
       break;
   }
   return half_logit / parameters_.bound;
@@ -156,6 +187,10 @@ double Observer::share(const Question& q, int choice) const {
       return random::normal_cdf(rating_criterion(centre(q), rating, q.answers) - sensitivity(q));
     };
     share = below(choice) - below(choice - 1);
+  } else if (q.decides == Decides::category) {
+    const auto [low, high] = ends_of_category(q, choice);
+    const double sd = category_sd(q);
+    share = random::normal_cdf((high - q.level) / sd) - random::normal_cdf((low - q.level) / sd);
   } else if (q.decides != Decides::right_answer) {
     const double positive = mean(upper);
     share = choice == q.positive ? positive : 1 - positive;
@@ -190,6 +225,8 @@ Reply Observer::answer(const Question& q) const {
     int rating = 0;
     while (rating < q.answers - 1 && seems > rating_criterion(centre(q), rating, q.answers)) ++rating;
     reply.choice = rating;
+  } else if (q.decides == Decides::category) {
+    reply.choice = category_of(q, q.level + category_sd(q) * felt);
   } else {
     reply.choice = passage.upper ? q.positive : 1 - q.positive;
   }

@@ -2,6 +2,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "station/random/draws.hpp"
@@ -15,6 +16,8 @@ namespace turnpoint::observer {
 /// - If the sign of the level decides, a normal distribution function of |level - bias|^slope, with the sign
 ///   of level - bias.
 /// - For yes/no and ratings, d' grows as level^slope, and the criterion lies at `criterion`.
+/// - For categories, the level that is felt has a normal distribution around the level presented. The answer
+///   is the category whose level is nearest; of two categories one threshold apart, 75 % are told apart.
 /// The threshold is in the unit of the level. In a lapse the observer gives a random answer.
 struct Parameters {
   /// The |level| at which 75 % of answers between two alternatives are right; for a signed level, its
@@ -53,6 +56,7 @@ enum class Decides {
   right_answer,  ///< one of the answers is right; a stronger level makes it easier to find
   side,          ///< there are two answers, one for each side of the bias
   presence,      ///< yes or no, whether there was a signal; or ratings, from the surest no to the surest yes
+  category,      ///< each answer stands for a level; the nearest one is chosen
 };
 
 /// An answer that is a number from `low` to `high`, a multiple of 10^-decimals.
@@ -77,6 +81,7 @@ struct Question {
   int positive = 1;
   bool absent = false;         ///< for `presence`: true if the trial has no signal, whatever its level
   std::optional<int> correct;  ///< for `right_answer`: the right answer; empty if no answer is right
+  std::vector<double> categories = {};  ///< for `category`: the level for which each answer stands
   int answers = 2;
   bool rating = false;  ///< the answers are the points of a scale, from low to high levels
   Middle middle = Middle::criterion;
@@ -136,6 +141,7 @@ class Observer {
   double drift(const Question& question) const;
   double sensitivity(const Question& question) const;
   double centre(const Question& question) const;
+  double category_sd(const Question& question) const;
   double value(const Question& question, random::Draws& draws) const;
   int confidence(const Question& question, int choice, random::Draws& draws) const;
   Parameters parameters_;

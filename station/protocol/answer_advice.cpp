@@ -112,9 +112,15 @@ void check_block(AdviceList& advice, const std::variant<Block, Sequence>& part) 
 void check_followed(AdviceList& advice, const Source& source) {
   const auto* spec = source.spec;
   if (!spec || !spec->tracks.empty() || !spec->values.empty()) return;
+  const auto kind = answer_rule(advice.protocol, spec->level).kind;
+  if (kind == AnswerKind::category)
+    return advice.add(key_of(*spec, "level"),
+                      "\"" + spec->name + "\" follows right answers, but \"" + spec->level +
+                          "\" decides which answer is right, not how easy it is to find",
+                      "use kind = \"constant-stimuli\"");
   const auto& levels = source.levels;
   if (levels.empty() || levels.front() >= 0 || levels.back() <= 0) return;
-  if (answer_rule(advice.protocol, spec->level).kind == AnswerKind::side)
+  if (kind == AnswerKind::side)
     advice.add(
         key_of(*spec, "level"),
         "\"" + spec->name +
@@ -177,8 +183,9 @@ void check_catch(AdviceList& advice, const std::variant<Block, Sequence>& part) 
                         "the catch trials of \"" + block_of(part).name + "\" have " +
                             (right.times.empty() ? "no right answer" : "only one right answer"),
                         easy_on_both_sides(protocol, trials->factor));
-    // catch trials without a signal are easy as well
-    if (answer_rule(protocol, trials->factor).kind == AnswerKind::presence) return;
+    // catch trials without a signal are easy as well, and of categories none is easy
+    const auto kind = answer_rule(protocol, trials->factor).kind;
+    if (kind == AnswerKind::presence || kind == AnswerKind::category) return;
   }
   // The larger a level, the easier the trial. For levels in dB the value itself counts, for all others the
   // magnitude.

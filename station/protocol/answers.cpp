@@ -36,23 +36,59 @@ std::vector<double> levels_of(const Source& source) {
   return levels;
 }
 
+/// The mean of the presented levels at which each choice is right. Empty if the right choice depends on other
+/// factors too, if a choice is never right, or if two choices have the same mean.
+std::vector<double> categories(const Protocol& protocol, const std::string& level) {
+  const auto& task = protocol.task;
+  for (const auto& [id, comparison] : task.correct_answer)
+    for (const auto* side : {&comparison.left, &comparison.right})
+      for (const auto& [name, coefficient] : side->terms)
+        if (name != level) return {};
+  std::vector<double> sums(task.choices.size(), 0.0), counts = sums;
+  for (const auto& source : sources_of(protocol)) {
+    if (source.level != level) continue;
+    for (const double value : source.levels)
+      if (const int right = right_at(protocol, level, value); right >= 0) {
+        const auto choice = static_cast<std::size_t>(right);
+        sums[choice] += value, counts[choice] += 1;
+      }
+  }
+  for (std::size_t i = 0; i < sums.size(); ++i) {
+    if (counts[i] == 0) return {};
+    sums[i] /= counts[i];
+    if (std::find(sums.begin(), sums.begin() + static_cast<std::ptrdiff_t>(i), sums[i]) !=
+        sums.begin() + static_cast<std::ptrdiff_t>(i))
+      return {};
+  }
+  return sums;
+}
+
+/// The rule for two answers; empty if the sign of the level does not decide.
+std::optional<AnswerRule> two_answers(const Protocol& protocol, const std::string& level, double low,
+                                      double high) {
+  const int below = low < 0 ? right_at(protocol, level, low) : -1;
+  const int above = high > 0 ? right_at(protocol, level, high) : -1;
+  const int at_zero = low <= 0 && high >= 0 ? right_at(protocol, level, 0) : -1;
+  if (below >= 0 && above >= 0 && below != above) return AnswerRule{AnswerKind::side, above};
+  const int off = std::max(below, above);
+  if (at_zero >= 0 && off >= 0 && off != at_zero) return AnswerRule{AnswerKind::presence, off};
+  return std::nullopt;
+}
+
 }  // namespace
 
 AnswerRule answer_rule(const Protocol& protocol, const std::string& level) {
   const auto& task = protocol.task;
   if (task.kind == TaskKind::same_different) return {AnswerKind::presence, index_of(task, "different")};
   const auto* factor = find_factor(protocol.factors, level);
-  if (task.kind != TaskKind::single_interval || task.correct_answer.size() != 2 || !factor) return {};
+  if (task.kind != TaskKind::single_interval || task.correct_answer.size() < 2 || !factor) return {};
   const auto ends = span(*factor);
   if (!ends) return {};
-  const auto [low, high] = *ends;
-  const int below = low < 0 ? right_at(protocol, level, low) : -1;
-  const int above = high > 0 ? right_at(protocol, level, high) : -1;
-  const int at_zero = low <= 0 && high >= 0 ? right_at(protocol, level, 0) : -1;
-  if (below >= 0 && above >= 0 && below != above) return {AnswerKind::side, above};
-  const int off = std::max(below, above);
-  if (at_zero >= 0 && off >= 0 && off != at_zero) return {AnswerKind::presence, off};
-  return {};
+  if (task.correct_answer.size() == 2)
+    if (const auto rule = two_answers(protocol, level, ends->first, ends->second)) return *rule;
+  auto found = categories(protocol, level);
+  if (found.empty()) return {};
+  return {AnswerKind::category, 1, std::move(found)};
 }
 
 bool two_sided(const Protocol& protocol, const std::string& level) {

@@ -1,6 +1,7 @@
 #pragma once
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "station/protocol/protocol.hpp"
 
@@ -13,6 +14,7 @@ enum class AnswerKind {
   /// two answers: one is right if the level is zero, the other if it is not (for same-different: zero means
   /// that both scenes are the same)
   presence,
+  category,  ///< the level decides which of the answers is right (identification)
 };
 
 struct AnswerRule {
@@ -20,10 +22,12 @@ struct AnswerRule {
   /// index of a choice. For `side`: the answer that is right for levels above zero. For `presence`: the
   /// answer that is right for every level except zero
   int positive = 1;
+  /// for `category`: for each choice, the mean of the presented levels at which it is right
+  std::vector<double> categories = {};
 };
 
-/// Finds out how the answers relate to this factor by evaluating the comparisons of `correct` at zero and at
-/// the ends of the factor's range.
+/// Finds out how the answers relate to this factor by evaluating the comparisons of `correct` at zero, at the
+/// ends of the factor's range, and at the levels that are presented.
 AnswerRule answer_rule(const Protocol& protocol, const std::string& level);
 
 /// True if the participant may answer while the surface moves.

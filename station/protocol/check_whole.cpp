@@ -41,10 +41,11 @@ void check_answers(const std::vector<Source>& sources, const Reading& reading) {
       factors[source.level] = level;
       const auto right = [&](const auto& answer) { return holds(answer.second, factors); };
       if (std::count_if(answers.begin(), answers.end(), right) < 2) continue;
-      return reading.findings.add(
-          answers.back().second.left.place,
-          "at " + source.level + " = " + text::number(level) + " both answers are right",
-          "write comparisons that cannot both be true");
+      const auto last = std::find_if(answers.rbegin(), answers.rend(), right);
+      return reading.findings.add(last->second.left.place,
+                                  "at " + source.level + " = " + text::number(level) + " " +
+                                      (answers.size() > 2 ? "two" : "both") + " answers are right",
+                                  "write comparisons that cannot both be true");
     }
   }
 }

@@ -112,6 +112,9 @@ enum class Device { touch, buttons, either };
 enum class Sound { none, masking_noise };
 enum class Odd { target, standard, either };
 
+/// The largest number of answers to one question.
+constexpr int most_choices = 9;
+
 struct Choice {
   std::string id;
   Localised label;

@@ -44,10 +44,16 @@ void read_by(TableReader& reader, Reading& reading) {
 /// Why a value of `show` would add nothing to the report of this protocol; "" if it would add something.
 std::string without_effect(const std::string& word, const Protocol& protocol) {
   const auto& task = protocol.task;
+  const auto level = protocol.procedures.empty() ? std::string() : protocol.procedures.front().level;
   // the reader of [task] reports a task without choices
   if (word == "trace" || task.choices.empty()) return "";
   if (task.kind == TaskKind::adjustment) return "an adjustment task has settings instead of answers";
   if (judges(task)) return "ratings and numbers are neither right nor wrong";
+  if ((word == "psychometric" || word == "dprime") &&
+      answer_rule(protocol, level).kind == AnswerKind::category)
+    return "the level decides which answer is right, not how easy that is";
+  if (word == "ez" && task.choices.size() > 2 && task.kind != TaskKind::oddity)
+    return "EZ-diffusion is a model of two answers";
   if (word == "psychometric") return "";
   if (task.kind == TaskKind::single_interval && task.correct_answer.empty())
     return "without \"correct\" in [task], no answer is right or wrong";

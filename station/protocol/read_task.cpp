@@ -90,8 +90,6 @@ void read_times(TableReader& reader, Task& task) {
   }
 }
 
-constexpr int most_choices = 9;
-
 /// Reads texts at values of a scale. Both ends must have one.
 std::vector<Anchor> read_anchors(TableReader& reader, double low, double high, const Reading& reading) {
   std::vector<Anchor> anchors;
@@ -208,6 +206,22 @@ void read_confidence(TableReader& reader, Task& task, const Reading& reading) {
   task.confidence = std::move(confidence);
 }
 
+/// The smallest and the largest number of choices of a task.
+std::pair<std::size_t, std::size_t> choices_of(TaskKind kind) {
+  switch (kind) {
+    case TaskKind::single_interval:
+      return {2, most_choices};
+    case TaskKind::oddity:
+      return {3, 3};
+    case TaskKind::adjustment:
+      return {1, 1};
+    case TaskKind::two_interval:
+    case TaskKind::same_different:
+      break;
+  }
+  return {2, 2};
+}
+
 void read_choices(TableReader& reader, Task& task, const Reading& reading) {
   reader.require("choices", "list the answers: [ { id = \"left\", label = { en = \"Left\" } }, ... ]");
   std::set<std::string> seen;
@@ -222,12 +236,14 @@ void read_choices(TableReader& reader, Task& task, const Reading& reading) {
     inner.finish();
     task.choices.push_back(std::move(choice));
   }
-  const std::size_t needed = task.kind == TaskKind::oddity ? 3 : task.kind == TaskKind::adjustment ? 1 : 2;
+  const auto [fewest, most] = choices_of(task.kind);
   const auto* list = reader.take("choices");
-  if (list && list->kind == Value::Kind::array && list->items.size() != needed)
-    reading.findings.add(list->items.size() > needed ? list->items[needed].place : list->place,
-                         "\"choices\" has " + std::to_string(list->items.size()),
-                         std::to_string(needed) + " must be given for this kind of task");
+  if (const auto given = list && list->kind == Value::Kind::array ? list->items.size() : fewest;
+      given < fewest || given > most)
+    reading.findings.add(given > most ? list->items[most].place : list->place,
+                         "\"choices\" has " + std::to_string(given),
+                         (fewest < most ? "from " + std::to_string(fewest) + " to " : "") +
+                             std::to_string(most) + " must be given for this kind of task");
   if (task.kind == TaskKind::same_different && task.choices.size() == 2 &&
       seen != std::set<std::string>{"same", "different"})
     reader.problem("choices", "these are not the ids of the answers in a same-different task",

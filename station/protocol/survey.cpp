@@ -281,9 +281,13 @@ void check_devices(const Protocol& protocol, const rig::Rig& rig, Survey& survey
         "use a rig with [touch] or [buttons]");
   const bool two_lines = rig.buttons_uri && rig.buttons_uri->rfind("gpio:", 0) == 0 &&
                          rig.buttons_uri->find("third=") == std::string::npos;
-  if (task.device == Device::buttons && task.choices.size() > 2 && two_lines)
-    add(task.device_place, "the task has three answers, but the rig has only two buttons",
-        "add a line \"third\" to [buttons], or set device = \"touch\"");
+  const std::size_t answers = task.choices.size(), buttons = two_lines ? 2 : 3;
+  if (task.device == Device::buttons && answers > buttons && rig.buttons_uri)
+    add(task.device_place,
+        "the task has " + std::to_string(answers) + " answers, but the rig has only " +
+            std::to_string(buttons) + " buttons",
+        answers == 3 ? "add a line \"third\" to [buttons], or set device = \"touch\""
+                     : "set device = \"touch\"");
   if (task.sound == Sound::masking_noise && !rig.noise)
     add(task.sound_place, "the task needs masking noise, but the rig has none",
         "use a rig with [noise] (headphones on a spare channel), or leave out \"sound\"");

@@ -216,6 +216,33 @@ std::optional<plot::Figure> judgement_figure(const Summary& summary) {
   return figure;
 }
 
+std::optional<plot::Figure> confusion_figure(const Summary& summary) {
+  const auto edges = [](std::size_t count) {
+    std::vector<double> all;
+    for (std::size_t i = 0; i <= count; ++i) all.push_back(static_cast<double>(i) + 0.5);
+    return all;
+  };
+  plot::Figure figure;
+  figure.title = "Answers to each stimulus";
+  figure.chart_width_px = 620;
+  figure.chart_height_px = 380;
+  for (const auto& confusion : summary.confusions) {
+    if (confusion.rows.empty()) continue;
+    plot::HeatMap shares{edges(summary.data.choices.size()),       edges(confusion.rows.size()), {}, 0, 1,
+                         "Share of the stimulus's trials (0 to 1)"};
+    for (const auto& row : confusion.rows)
+      for (const int count : row.answers) shares.values.push_back(static_cast<double>(count) / row.trials);
+    plot::Chart chart;
+    chart.title = or_default(confusion.condition, "all trials");
+    chart.x = {"Answer (number of the choice)", 0.5, shares.x_edges.back(), plot::AxisScale::linear, true};
+    chart.y = {"Stimulus (number of the row)", 0.5, shares.y_edges.back(), plot::AxisScale::linear, true};
+    chart.layers.push_back(std::move(shares));
+    figure.charts.push_back(std::move(chart));
+  }
+  if (figure.charts.empty()) return std::nullopt;
+  return figure;
+}
+
 std::optional<plot::Figure> vibration_figure(const Summary& summary) {
   if (summary.data.measured.empty()) return std::nullopt;
   plot::Points points;

@@ -25,6 +25,8 @@ std::optional<plot::Figure> judgement_figure(const Summary& summary);
 std::optional<plot::Figure> vibration_figure(const Summary& summary);
 /// Plots accuracy against response time in two panels: the conditional accuracy functions, and one point for
 /// the trials of each difficulty.
+/// One chart for each condition: the share of each answer, by stimulus.
+std::optional<plot::Figure> confusion_figure(const Summary& summary);
 std::optional<plot::Figure> trade_figure(const Summary& summary);
 
 /// Plots the normal force and the speed of the finger over the session, with one series for each condition.

@@ -7,6 +7,7 @@
 
 #include "station/plot/svg.hpp"
 #include "station/report/figures.hpp"
+#include "station/report/html_choices.hpp"
 #include "station/report/html_parts.hpp"
 #include "station/text/number.hpp"
 
@@ -228,7 +229,8 @@ std::string trade_section(const Summary& summary) {
   const bool several = summary.trade.instructions.size() > 1;
   std::string html = several ? "<h2>Speed-accuracy trade-off</h2>\n" : "<h2>Speed and accuracy</h2>\n";
   html += instruction_table(summary) + difference_table(summary) + picture(trade_figure(summary)) +
-          picture(response_time_figure(summary)) + difficulty_table(summary);
+          picture(response_time_figure(summary));
+  if (summary.data.design != Design::categories) html += difficulty_table(summary);
   for (const auto& entry : summary.trade.instructions) {
     for (auto statement : entry.statements) {
       if (!entry.instruction.empty()) statement.text = entry.instruction + ": " + statement.text;
@@ -362,7 +364,8 @@ std::string to_html(const Summary& summary) {
     if (!summary.fits.empty())
       html += "<h2>Psychometric function</h2>\n" + picture(psychometric_figure(summary));
     for (const auto& named : summary.fits) html += fit_table(named, data);
-    html += estimate_section(data) + detection_section(summary) + trade_section(summary);
+    html += confusion_section(summary) + estimate_section(data) + detection_section(summary) +
+            trade_section(summary);
   } else {
     html += settings_section(summary);
   }

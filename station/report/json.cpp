@@ -155,6 +155,30 @@ Json finger_json(const std::optional<analysis::Finger>& finger) {
   return json;
 }
 
+Json proportion_json(const std::optional<analysis::Proportion>& proportion) {
+  if (!proportion) return nullptr;
+  return {{"right", proportion->right},
+          {"trials", proportion->trials},
+          {"proportion", value(proportion->value)},
+          {"interval", value(proportion->interval)}};
+}
+
+Json confusion_json(const analysis::Confusion& confusion, const SessionData& data) {
+  Json json{{"condition", confusion.condition}, {"rows", Json::array()}};
+  for (const auto& row : confusion.rows) {
+    Json entry;
+    entry["stimulus"] =
+        row.stimulus ? Json(data.choices.at(static_cast<std::size_t>(*row.stimulus))) : Json(nullptr);
+    entry["level"] = value(row.level);
+    entry["answers"] = row.answers;  // in the order of "choices"
+    entry["trials"] = row.trials;
+    entry["correct"] = proportion_json(row.right);
+    json["rows"].push_back(std::move(entry));
+  }
+  json["correct"] = proportion_json(confusion.right);
+  return json;
+}
+
 Json trend_json(const std::optional<analysis::Trend>& trend) {
   if (!trend) return nullptr;
   return {{"per_100_trials", value(trend->per_100_trials)}, {"interval", value(trend->interval)}};
@@ -189,6 +213,9 @@ std::string to_json(const Summary& summary) {
                                 {"start_slope", value(settings.start_slope)},
                                 {"statements", value(settings.statements)}});
   for (const auto& judged : summary.judgements) json["judgements"].push_back(judgements_json(judged));
+  json["confusion"] = Json::array();
+  for (const auto& confusion : summary.confusions)
+    json["confusion"].push_back(confusion_json(confusion, data));
   json["instructions"] = Json::array();
   for (const auto& entry : summary.trade.instructions)
     json["instructions"].push_back(instruction_json(entry));

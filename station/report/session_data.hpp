@@ -21,6 +21,7 @@ enum class Design {
   yes_no,  ///< "yes" becomes more frequent as |level| rises; trials at level 0 have no signal
   /// like yes_no: "different" counts as "yes", and pairs of identical stimuli have no signal
   same_different,
+  categories,  ///< the level decides which of several answers is right, or no answer is right
   ratings,     ///< on points or on a line; the report has their mean at each level
   numbers,     ///< magnitude estimation: geometric means, and the exponent of Stevens' law
   adjustment,  ///< the participant sets a slider; no psychometric function is fitted
@@ -89,7 +90,8 @@ struct SessionData {
 };
 
 /// True if the report contains this part: "psychometric", "ez", "bis", "lisas", "ies", "caf", "dprime" or
-/// "trace". If the protocol does not choose, the report contains all parts, but d' only for yes/no tasks.
+/// "trace". If the protocol does not choose, the report contains all parts, but d' only for yes/no tasks, and
+/// EZ-diffusion only for two answers.
 bool shows(const SessionData& data, const std::string& part);
 
 }  // namespace turnpoint::report

@@ -94,13 +94,18 @@ report::Design design_of(const protocol::Protocol& protocol, const protocol::Ans
   if (protocol::judges(protocol.task)) return report::Design::ratings;
   if (protocol.task.kind == protocol::TaskKind::same_different) return report::Design::same_different;
   if (rule.kind == protocol::AnswerKind::presence) return report::Design::yes_no;
+  if (rule.kind == protocol::AnswerKind::category ||
+      (protocol.task.choices.size() > 2 && protocol.task.kind == protocol::TaskKind::single_interval &&
+       protocol.task.correct_answer.empty()))
+    return report::Design::categories;
   bool below = false, above = false;
   for (const auto& trial : trials) {
     below = below || trial.level.value_or(0) < 0;
     above = above || trial.level.value_or(0) > 0;
   }
-  const bool single = protocol.task.kind == protocol::TaskKind::single_interval;
-  return single && below && above ? report::Design::two_sided : report::Design::forced_choice;
+  const bool sides =
+      protocol.task.kind == protocol::TaskKind::single_interval && protocol.task.choices.size() == 2;
+  return sides && below && above ? report::Design::two_sided : report::Design::forced_choice;
 }
 
 /// Chooses the function to fit: the one that the protocol's procedure assumes. If no procedure assumes one,
@@ -237,7 +242,7 @@ void add_trials(const std::vector<records::BlockRecord>& blocks, const protocol:
   data.scored =
       protocol.task.kind != protocol::TaskKind::single_interval || !protocol.task.correct_answer.empty();
   set_level_words(level, data);
-  data.alternatives = protocol.task.kind == protocol::TaskKind::oddity ? 3 : 2;
+  data.alternatives = std::max(2, static_cast<int>(protocol.task.choices.size()));
   choose_function(protocol, data);
   data.prior = prior_of(protocol, data);
   for (const auto& choice : protocol.task.choices) data.choices.push_back(choice.id);

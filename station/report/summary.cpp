@@ -113,7 +113,7 @@ void hide(const SessionData& data, analysis::Trade& trade) {
 }
 
 std::vector<analysis::Detection> detections_of(const SessionData& data) {
-  if (!data.scored || !shows(data, "dprime")) return {};
+  if (!data.scored || data.choices.size() > 2 || !shows(data, "dprime")) return {};
   if (data.design == Design::yes_no)
     return analysis::detect(data.trials, data.conditions, analysis::Detecting::presence, data.positive);
   if (data.design == Design::two_sided)
@@ -144,6 +144,10 @@ std::vector<analysis::Judgements> judgements_of(const SessionData& data) {
                               data.design == Design::ratings ? Judged::ratings
                               : data.level_unit == "dB"      ? Judged::magnitudes_dB
                                                              : Judged::magnitudes);
+}
+
+bool has_confusions(const SessionData& data) {
+  return !judges(data.design) && (data.choices.size() > 2 || data.design == Design::categories);
 }
 
 bool slope_estimated(const NamedFit& named) {
@@ -187,6 +191,7 @@ std::string describe_intervals(const NamedFit& named, const SessionData& data) {
 
 bool shows(const SessionData& data, const std::string& part) {
   if (data.show) return std::find(data.show->begin(), data.show->end(), part) != data.show->end();
+  if (part == "ez") return data.choices.size() <= 2;
   return part != "dprime" || data.design == Design::yes_no;
 }
 
@@ -216,11 +221,14 @@ Summary summarise(const SessionData& data) {
     summary.judgements = judgements_of(data);
     return summary;
   }
-  summary.bias = analysis::choice_bias(data.trials);
+  if (data.choices.size() <= 2) summary.bias = analysis::choice_bias(data.trials);
+  if (has_confusions(data))
+    summary.confusions =
+        analysis::confusions(data.trials, data.conditions, static_cast<int>(data.choices.size()));
   summary.trade = analysis::trade(data.trials, trade_options(data));
   hide(data, summary.trade);
   summary.detections = detections_of(data);
-  if (shows(data, "psychometric")) summary.fits = fits_of(data);
+  if (data.design != Design::categories && shows(data, "psychometric")) summary.fits = fits_of(data);
   return summary;
 }
 

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "station/analysis/confusion.hpp"
 #include "station/analysis/course.hpp"
 #include "station/analysis/judgements.hpp"
 #include "station/analysis/settings.hpp"
@@ -27,7 +28,8 @@ struct Summary {
   analysis::OutcomeCounts outcomes;
   std::vector<NamedFit> fits;
   std::vector<analysis::Trace> traces;
-  std::optional<analysis::Bias> bias;
+  std::optional<analysis::Bias> bias;           ///< for two answers
+  std::vector<analysis::Confusion> confusions;  ///< for three answers or more, and for categories
   std::optional<analysis::Proportion> catch_trials;
   std::map<int, analysis::Proportion> confidence;  ///< right answers by degree of confidence
   analysis::Fatigue fatigue;
@@ -43,6 +45,9 @@ struct Summary {
 /// Returns only the psychometric fits: one to all trials, or one per instruction if there are several
 /// instructions. If data.replicates is 0, there are no bootstraps and no bands.
 std::vector<NamedFit> fits_of(const SessionData& data);
+
+/// True if the report has confusion matrices.
+bool has_confusions(const SessionData& data);
 
 /// Returns only the analysis of ratings or numbers; empty for other designs.
 std::vector<analysis::Judgements> judgements_of(const SessionData& data);

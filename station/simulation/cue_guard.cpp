@@ -1,7 +1,6 @@
 #include "station/simulation/cue_guard.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -100,7 +99,7 @@ struct OwnSessions {
   /// expected score of one trial in each cell that occurred
   std::map<const std::vector<Presentation>*, Score> scores;
   Cells visited;
-  std::vector<std::array<double, 3>> answers;  ///< the observer's answers in each cell of `visited`
+  std::vector<Shares> answers;  ///< the observer's answers in each cell of `visited`
   Reached reached;
 };
 
@@ -124,7 +123,11 @@ class Guard {
  public:
   Guard(const Protocol& protocol, const rig::Rig& rig, const protocol::Survey& survey,
         const std::stop_token& stop, const Steps& steps)
-      : protocol_(protocol), stop_(stop), steps_(steps), table_(protocol, rig, survey) {}
+      : protocol_(protocol),
+        stop_(stop),
+        steps_(steps),
+        asked_(asked_by(protocol.task)),
+        table_(protocol, rig, survey) {}
 
   void add_reports(CueGuard& guard);
 
@@ -136,19 +139,19 @@ class Guard {
   std::vector<Look> looks(const CueKind& kind, Feature feature, const Cells& cells, Draws draws) const;
   Score score(const CueKind& kind, const Strategy& strategy, const Cells& cells) const;
   int answer(const CueKind& kind, const Strategy& strategy, const TrialSpec& trial, std::uint64_t seed);
-  std::vector<std::array<double, 3>> answers_to(const Cells& cells, const CueKind& kind,
-                                                const Strategy& strategy) const;
+  std::vector<Shares> answers_to(const Cells& cells, const CueKind& kind, const Strategy& strategy) const;
   void run_sessions(const CueKind& kind, const Strategy& strategy, int count, OwnSessions& own);
   std::optional<Reached> same_everywhere(const CueKind& kind, const Strategy& strategy,
                                          const Cells& all) const;
   Reached by_itself(const CueKind& kind, const Strategy& strategy, const Cells& all);
   CueReport report(const CueKind& kind, const Cells& all);
-  double guessing() const { return 1.0 / static_cast<double>(protocol_.task.choices.size()); }
+  double guessing() const { return 1.0 / static_cast<double>(asked_.answers); }
   double chance(const Score& score) const { return std::max(guessing(), score.one_key()); }
 
   const Protocol& protocol_;
   const std::stop_token& stop_;
   const Steps& steps_;
+  Asked asked_;
   CueTable table_;
   int points_ = 256;
   double turn_ = 0.5;
@@ -237,31 +240,31 @@ Score Guard::score(const CueKind& kind, const Strategy& strategy, const Cells& c
   for (const auto& look : looks(kind, strategy.feature, cells, Draws::to_judge)) {
     const auto correct = static_cast<std::size_t>(look.correct);
     score.trials += look.weight, score.keys[correct] += look.weight;
-    score.right += look.weight * shares(strategy.rule, protocol_.task.kind, look.x)[correct];
+    score.right += look.weight * shares(strategy.rule, asked_, look.x)[correct];
   }
   return score;
 }
 
 int Guard::answer(const CueKind& kind, const Strategy& strategy, const TrialSpec& trial, std::uint64_t seed) {
   const auto& intervals = intervals_of(trial);
-  std::array<double, 3> x{};
+  CueValues x{};
   for (std::size_t i = 0; i < intervals.size(); ++i)
     x[i] = number_of(kind, intervals[i], strategy.feature, trial.rove_dB[i]);
-  const auto answers = shares(strategy.rule, protocol_.task.kind, x);
+  const auto answers = shares(strategy.rule, asked_, x);
   random::Draws draws(
       {seed, random::Stream::observer, trial.block_index, trial.attempt, trial.trial_in_block});
   double left = draws.uniform();
   int choice = 0;
-  while (choice < 2 && left >= answers[static_cast<std::size_t>(choice)])
+  while (choice + 1 < static_cast<int>(asked_.answers) && left >= answers[static_cast<std::size_t>(choice)])
     left -= answers[static_cast<std::size_t>(choice++)];
-  return std::min(choice, static_cast<int>(protocol_.task.choices.size()) - 1);
+  return choice;
 }
 
-std::vector<std::array<double, 3>> Guard::answers_to(const Cells& cells, const CueKind& kind,
-                                                     const Strategy& strategy) const {
-  std::vector<std::array<double, 3>> answers;
+std::vector<Shares> Guard::answers_to(const Cells& cells, const CueKind& kind,
+                                      const Strategy& strategy) const {
+  std::vector<Shares> answers;
   for (const auto& look : looks(kind, strategy.feature, cells, Draws::to_judge))
-    answers.push_back(shares(strategy.rule, protocol_.task.kind, look.x));
+    answers.push_back(shares(strategy.rule, asked_, look.x));
   return answers;
 }
 
@@ -331,14 +334,13 @@ CueReport Guard::report(const CueKind& kind, const Cells& all) {
   for (const auto feature : features) {
     const auto looked = looks(kind, feature, all, Draws::to_choose);
     if (feature == Feature::last) {
-      std::tie(report.low, report.high) =
-          range_of(looked, trial::orders_of(protocol_.task).front().intervals.size());
+      std::tie(report.low, report.high) = range_of(looked, asked_.intervals);
       if (std::string(kind.unit) != "dB")
         grain = {smallest_difference * std::max(std::fabs(report.low), std::fabs(report.high)),
                  smallest_difference};
     }
-    const Strategy strategy{feature, best_rule(task, looked, grain)};
-    const double right = accuracy(strategy.rule, task, looked);
+    const Strategy strategy{feature, best_rule(asked_, looked, grain)};
+    const double right = accuracy(strategy.rule, asked_, looked);
     if (right > most) most = right, best = strategy;
   }
   const auto reached = score(kind, best, all);

@@ -63,7 +63,8 @@ struct CueGuard {
 /// sets of at most 256 draws per trial: the first set chooses the rule, the second measures its accuracy.
 ///
 /// The observer knows the task and the best rule for these trials:
-/// - One interval: a criterion or a band of the cue at the end of the interval. If the interval has two
+/// - One interval: a criterion or a band of the cue at the end of the interval; with more than two answers,
+///   neighbouring ranges of the cue, at most one more than there are answers. If the interval has two
 ///   scenes, the cue at its start and the change of the cue are tried as well.
 /// - Two intervals: the observer chooses the larger or the smaller cue, or the cue that differs more, or
 ///   less, from its usual value.

@@ -1,15 +1,16 @@
 #pragma once
 #include <algorithm>
-#include <array>
 #include <cstddef>
 #include <vector>
+
+#include "station/simulation/one_cue.hpp"
 
 namespace turnpoint::simulation {
 
 /// Counts trials, right answers, and for each key the trials in which that key is right.
 struct Score {
   double trials = 0, right = 0;
-  std::array<double, 3> keys{};
+  Shares keys{};
 
   void add(const Score& other, double times) {
     trials += times * other.trials, right += times * other.right;

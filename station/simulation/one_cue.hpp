@@ -1,24 +1,34 @@
 #pragma once
 #include <array>
+#include <cstddef>
 #include <vector>
 
 #include "station/protocol/protocol.hpp"
 
 namespace turnpoint::simulation {
 
+constexpr std::size_t most_intervals = 4;
+using CueValues = std::array<double, most_intervals>;
+using Shares = std::array<double, protocol::most_choices>;
+
 /// The values of one cue in the intervals of a trial, the right answer, and the weight of such trials in an
-/// average. `x` has one value per interval, at most three.
+/// average. `x` has one value per interval.
 struct Look {
-  std::array<double, 3> x{};
+  CueValues x{};
   int correct = 0;
   double weight = 1;
 };
 
+/// What the observer is asked to decide.
+struct Asked {
+  protocol::TaskKind kind = protocol::TaskKind::single_interval;
+  std::size_t intervals = 1, answers = 2;
+};
+Asked asked_by(const protocol::Task& task);
+
 /// How an observer derives an answer from the values of one cue.
 enum class Statistic {
-  /// one interval: the observer gives one answer if the cue lies inside a band, and the other answer
-  /// otherwise
-  value,
+  value,   ///< one interval: the range of values in which the cue lies decides
   change,  ///< same or different: like `value`, applied to the difference between the two intervals
   most,    ///< which interval: the observer chooses the interval with the largest cue
   least,   ///< which interval: the observer chooses the interval with the smallest cue
@@ -29,28 +39,35 @@ enum class Statistic {
 };
 
 /// Resolution for cue values: values that differ by less count as equal. To compare two intervals, `relative`
-/// (a fraction of the larger value) is used, or `absolute` if `relative` is 0. A band may end only between
+/// (a fraction of the larger value) is used, or `absolute` if `relative` is 0. A range may end only between
 /// two neighbouring values, of all trials, that differ by more than `absolute`.
 struct Grain {
   double absolute = 0, relative = 0;
 };
 
+/// The answer that an observer gives if the cue is below `end` and not in an earlier range.
+struct CueRange {
+  double end = 0;  ///< infinity for the last range
+  int answer = 0;
+};
+
 struct Rule {
   Statistic statistic = Statistic::value;
-  double low = 0, high = 0;  ///< the band: from low (inclusive) to high; may extend to infinity
-  int inside = 0;
+  /// for `value` and `change`, in ascending order: at most one range more than there are answers, so with two
+  /// answers a criterion or a band
+  std::vector<CueRange> ranges;
   double usual = 0;  ///< mean cue of the intervals that are wrong answers
   Grain grain = {};
 };
 
 /// The probability of each answer from an observer with this rule. Between intervals with equal cues, the
 /// observer guesses.
-std::array<double, 3> shares(const Rule& rule, protocol::TaskKind task, const std::array<double, 3>& x);
+Shares shares(const Rule& rule, const Asked& asked, const CueValues& x);
 
 /// The proportion correct over these looks; 0 if there are none.
-double accuracy(const Rule& rule, protocol::TaskKind task, const std::vector<Look>& looks);
+double accuracy(const Rule& rule, const Asked& asked, const std::vector<Look>& looks);
 
 /// The rule with the highest proportion correct over these looks.
-Rule best_rule(protocol::TaskKind task, const std::vector<Look>& looks, const Grain& grain);
+Rule best_rule(const Asked& asked, const std::vector<Look>& looks, const Grain& grain);
 
 }  // namespace turnpoint::simulation

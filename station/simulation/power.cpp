@@ -44,6 +44,9 @@ class Truths {
         add(source_of("numbers", condition), "exponent", options.observer.slope);
     GeneratingValues generating;
     for (const auto& outcome : outcomes) generating.add(outcome.generating);
+    if (outcomes.front().design == report::Design::categories)
+      for (const auto& condition : with_none(protocol::conditions(protocol)))
+        add(source_of("answers", condition), "proportion correct", generating.share_correct(condition));
     add_fits(generating, observer, outcomes);
     add_differences(generating, observer, protocol::conditions(protocol));
   }

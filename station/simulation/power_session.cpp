@@ -50,6 +50,14 @@ void add_fits(const report::SessionData& data, const std::string& unit, SessionO
                                     "PSE", unit, settings.mean->value, settings.mean->interval});
     return;
   }
+  if (data.design == report::Design::categories) {
+    for (const auto& confusion :
+         analysis::confusions(data.trials, data.conditions, static_cast<int>(data.choices.size())))
+      if (confusion.right)
+        outcome.findings.push_back({source_of("answers", confusion.condition), "proportion correct", "",
+                                    confusion.right->value, confusion.right->interval});
+    return;
+  }
   for (const auto& named : report::fits_of(data)) {
     outcome.fits.emplace_back(named.name, named.fit.options);
     if (!named.fit.parameters) continue;

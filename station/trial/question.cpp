@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <vector>
 
 #include "station/protocol/answers.hpp"
 #include "station/protocol/sources.hpp"
@@ -18,6 +19,15 @@ std::string level_factor(const TrialSpec& spec, const protocol::Protocol& protoc
   if (!protocol.procedures.empty()) return protocol.procedures.front().level;
   const auto sources = protocol::sources_of(protocol);
   return sources.empty() ? "" : sources.front().level;
+}
+
+/// The median distance between neighbouring categories.
+double median_step(std::vector<double> categories) {
+  std::sort(categories.begin(), categories.end());
+  for (std::size_t i = 0; i + 1 < categories.size(); ++i) categories[i] = categories[i + 1] - categories[i];
+  categories.pop_back();
+  std::sort(categories.begin(), categories.end());
+  return categories[categories.size() / 2];
 }
 
 }  // namespace
@@ -49,6 +59,11 @@ observer::Question question_of(const TrialSpec& spec, const protocol::Protocol& 
   question.positive = rule.positive;
   switch (rule.kind) {
     case protocol::AnswerKind::right_answer:
+      break;
+    case protocol::AnswerKind::category:
+      question.decides = observer::Decides::category;
+      question.categories = rule.categories;
+      question.default_threshold = median_step(rule.categories);
       break;
     case protocol::AnswerKind::side:
       question.decides = observer::Decides::side;

@@ -120,6 +120,7 @@ constexpr Recorded kSessions[] = {
     {"magnitude-free", "e896a54b91f9083a", "5820a77bdc8728a7"},
     {"magnitude-standard", "e896a54b91f9083a", "20f24ce4e08d1d1d"},
     {"friction-confidence", "bdf1f5fe2278e9cb", "6dfc0cdffeb0ca19"},
+    {"friction-identification", "159c20d40d282069", "e21434fc588e8d9e"},
     {"two-spots-oddity", "d84ae5fc63983e76", "b2d2fee42b03d1aa"},
 };
 

@@ -213,3 +213,26 @@ TEST_CASE("an observer that is not understood is refused with what is allowed", 
   CHECK(parse("sim").lapse == 0.02);
   CHECK(parse("sim:criterion=-0.3,drift_sd=0.2").criterion == -0.3);
 }
+
+TEST_CASE("an observer of categories confuses neighbours as a normal distribution over criteria halfway says",
+          "[observer]") {
+  Question question;
+  question.decides = Decides::category;
+  question.categories = {30, 10, 20, 60};
+  question.answers = 4;
+  question.default_threshold = 10;
+  const Observer observer(parse("sim:lapse=0"));
+  // Of two categories one threshold apart, 75 % are told apart: z(0.75) = 0.67449, so the SD is 7.41301.
+  const auto below = [](double x, double level) {
+    return 0.5 * std::erfc((level - x) / 7.41301 / std::sqrt(2.0));
+  };
+  for (const double level : {10.0, 20.0, 33.0, 60.0}) {
+    question.level = level;
+    CHECK(observer.share(question, 1) == Approx(below(15, level)).margin(1e-6));
+    CHECK(observer.share(question, 2) == Approx(below(25, level) - below(15, level)).margin(1e-6));
+    CHECK(observer.share(question, 0) == Approx(below(45, level) - below(25, level)).margin(1e-6));
+    CHECK(observer.share(question, 3) == Approx(1 - below(45, level)).margin(1e-6));
+    check_shares(observer, question);
+    check_shares(Observer(parse("sim:lapse=0.1,threshold=4")), question);
+  }
+}

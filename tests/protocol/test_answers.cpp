@@ -49,6 +49,14 @@ TEST_CASE("what the answers say of the level is read from their comparisons", "[
   CHECK(rule(shipped("friction-same-different")).kind == AnswerKind::presence);
   CHECK(rule(yes_no()).kind == AnswerKind::presence);
   CHECK(rule(yes_no()).positive == 1);
+  const auto five = rule(shipped("friction-identification"));
+  CHECK(five.kind == AnswerKind::category);
+  CHECK(five.categories == std::vector<double>{-24, -19, -14, -9, -4});
+  // If another factor decides which answer is right, the level may decide how easy the trial is.
+  const auto marks = replaced(source_of("boundary-constant"),
+                              "correct = { left = \"offset_mm < 0\", right = \"offset_mm > 0\" }",
+                              "correct = { left = \"mark_mm < 155\", right = \"mark_mm > 155\" }");
+  CHECK(rule(protocol::parse(marks, "marks")).kind == AnswerKind::right_answer);
 }
 
 TEST_CASE("the middle of a protocol's levels is known for every procedure", "[protocol]") {

@@ -234,6 +234,28 @@ TEST_CASE("ratings and numbers are reported by level, and right and wrong are le
   CHECK(html.find("Proportion correct") == std::string::npos);
 }
 
+TEST_CASE("identification is reported as a confusion matrix, without a curve and without d'", "[report]") {
+  const auto data = data_of(shipped("friction-identification"), "sim:lapse=0");
+  const auto report = report_of(data);
+  REQUIRE(report["confusion"].size() == 1);
+  const auto& rows = report["confusion"][0]["rows"];
+  REQUIRE(rows.size() == 5);
+  for (std::size_t i = 0; i < 5; ++i) {
+    CHECK(rows[i]["stimulus"] == std::to_string(i + 1));
+    CHECK(rows[i]["trials"] == 15);  // practice is left out
+    CHECK(rows[i]["answers"][i] == rows[i]["correct"]["right"]);
+  }
+  CHECK(report["confusion"][0]["correct"]["trials"] == 75);
+  CHECK(report["fits"].empty());
+  CHECK(report["bias"].is_null());
+  CHECK(report["detection"].empty());
+  const auto html = report::to_html(report::summarise(data));
+  CHECK(html.find("Answers to each stimulus") != std::string::npos);
+  CHECK(html.find("EZ boundary") == std::string::npos);
+  CHECK(report_of(data_of(shipped("friction-2ifc")))["confusion"].empty());
+  CHECK(report_of(data_of(shipped("two-spots-oddity")))["confusion"][0]["rows"].size() == 3);
+}
+
 TEST_CASE("the report counts right answers for each degree of confidence", "[report]") {
   const auto report = report_of(data_of(shipped("friction-confidence"), "sim:lapse=0"));
   REQUIRE(report["confidence"].size() >= 3);

@@ -44,11 +44,11 @@ struct Seen {
 /// would give, for each key.
 struct Count {
   double trials = 0, right = 0;
-  std::array<double, 3> keys{};
+  std::array<double, 9> keys{};
 
   void add(const Count& other) {
     trials += other.trials, right += other.right;
-    for (std::size_t i = 0; i < 3; ++i) keys[i] += other.keys[i];
+    for (std::size_t i = 0; i < keys.size(); ++i) keys[i] += other.keys[i];
   }
 };
 
@@ -175,6 +175,41 @@ Strategy best_cuts(const Shown& shown, double grain, bool distance) {
         if (right > most + 1e-9) most = right, low = a, high = b, inside = answer;
       }
   return band(cuts[low], cuts[high], inside, distance);
+}
+
+// Finds the best ranges of a cue for more than two answers: it tries all places for the end of each further
+// range, and all answers in it.
+Strategy best_parts(const Shown& shown, double grain, int answers) {
+  const auto cuts = cuts_of(shown, grain, false);
+  std::vector<std::vector<double>> below(cuts.size(), std::vector<double>(static_cast<std::size_t>(answers)));
+  for (std::size_t c = 0; c < cuts.size(); ++c)
+    for (const auto& [trial, count] : shown)
+      if (trial.first[0] < cuts[c]) below[c][static_cast<std::size_t>(trial.second)] += count;
+  struct Part {
+    double right = -1;
+    std::vector<std::pair<double, int>> ends;
+  };
+  std::vector<Part> parts(cuts.size());  // the best division of the values below each cut
+  parts[0].right = 0;
+  for (int count = 0; count <= answers; ++count) {
+    auto longer = parts;
+    for (std::size_t b = 1; b < cuts.size(); ++b)
+      for (std::size_t a = 0; a < b; ++a)
+        for (int answer = 0; parts[a].right >= 0 && answer < answers; ++answer) {
+          const auto i = static_cast<std::size_t>(answer);
+          const double right = parts[a].right + below[b][i] - below[a][i];
+          if (right <= longer[b].right + 1e-9) continue;
+          longer[b] = parts[a];
+          longer[b].right = right;
+          longer[b].ends.emplace_back(cuts[b], answer);
+        }
+    parts = std::move(longer);
+  }
+  return [ends = parts.back().ends](const std::vector<double>& x) {
+    for (const auto& [end, answer] : ends)
+      if (x[0] < end) return std::vector<int>{answer};
+    return std::vector<int>{ends.back().second};
+  };
 }
 
 std::vector<int> extremes(const std::vector<double>& score) {
@@ -308,7 +343,7 @@ OwnSessions do_sessions(const protocol::Protocol& protocol, World& world, std::s
 }
 
 double one_key(const std::vector<Seen>& seen) {
-  std::array<double, 3> keys{};
+  std::array<double, 9> keys{};
   for (const auto& trial : seen) keys[static_cast<std::size_t>(trial.correct)] += 1;
   return *std::max_element(keys.begin(), keys.end()) / static_cast<double>(seen.size());
 }
@@ -336,8 +371,12 @@ std::vector<BruteForce> cue_brute_force(const protocol::Protocol& protocol, cons
     int best_feature = 0;
     for (int feature = 0; feature < (two_scenes && cue < 6 ? 3 : 1); ++feature) {
       const auto looked = shown(seen, cue, feature);
-      const auto strategy = kind == TaskKind::single_interval || distance ? best_cuts(looked, grain, distance)
-                                                                          : best_choice(looked, cue);
+      const auto answers = static_cast<int>(protocol.task.choices.size());
+      const bool several = kind == TaskKind::single_interval && answers > 2;
+      const auto strategy = several ? best_parts(looked, grain, answers)
+                            : kind == TaskKind::single_interval || distance
+                                ? best_cuts(looked, grain, distance)
+                                : best_choice(looked, cue);
       const double here = expected(strategy, looked);
       if (here <= chosen + 1e-9) continue;
       chosen = here, best = strategy, best_feature = feature;

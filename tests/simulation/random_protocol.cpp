@@ -25,6 +25,7 @@ class Maker {
   }
 
  private:
+  bool three_answers() const { return single_ && seed_ % 3 == 0; }
   bool chance(double p) { return std::uniform_real_distribution<>(0, 1)(random_) < p; }
   int below(int n) { return std::uniform_int_distribution<>(0, n - 1)(random_); }
   std::string pick(const std::vector<std::string>& all) {
@@ -79,9 +80,9 @@ class Maker {
     if (task_ == "oddity") text += "odd = " + quoted(pick({"either", "target", "standard"})) + "\n";
     if (!single_) text += "duration_s = 1.0\ngap_s = 0.5\n";
     text += "device = \"touch\"\nquestion = { en = \"Which?\" }\nchoices = [";
-    const auto ids = task_ == "oddity"           ? std::vector<std::string>{"a", "b", "c"}
-                     : task_ == "same-different" ? std::vector<std::string>{"same", "different"}
-                                                 : std::vector<std::string>{"a", "b"};
+    const auto ids = task_ == "oddity" || three_answers() ? std::vector<std::string>{"a", "b", "c"}
+                     : task_ == "same-different"          ? std::vector<std::string>{"same", "different"}
+                                                          : std::vector<std::string>{"a", "b"};
     for (const auto& id : ids) text += "{ id = " + quoted(id) + ", label = { en = " + quoted(id) + " } },";
     text += "]\n";
     if (single_) text += correct();
@@ -97,6 +98,11 @@ class Maker {
 
   std::string correct() {
     const auto rule = pick({"side", "side", "distance", "criterion"});
+    // Not drawn from random_, so that this feature changes nothing else of the file.
+    if (three_answers()) {
+      use("three answers about one interval");
+      return "correct = { a = \"level_mm < -7\", b = \"abs(level_mm) < 7\", c = \"level_mm > 7\" }\n";
+    }
     use("right answer by " + rule);
     if (rule == "side") return "correct = { a = \"level_mm < 0\", b = \"level_mm > 0\" }\n";
     if (rule == "criterion") return "correct = { a = \"level_mm <= 4\", b = \"level_mm > 4\" }\n";

@@ -204,3 +204,15 @@ TEST_CASE("the exponent that sessions find is the observer's own slope, and rati
   CHECK_THROWS_WITH(simulation::power(shipped("smoothness-line"), options("sim", 2)),
                     Catch::Matchers::Contains("ratings have no threshold"));
 }
+
+TEST_CASE("the proportion correct of an identification is the observer's own, and its intervals hold it",
+          "[power]") {
+  const auto power = simulation::power(shipped("friction-identification"), options("sim:lapse=0", 200, 200));
+  const auto& right = find(power, "answers", "proportion correct");
+  // Neighbours are told apart in 75 %: the three inner strips are right in 50 %, the two outer ones in 75 %.
+  REQUIRE(right.truth.has_value());
+  CHECK(*right.truth == Approx(0.6).margin(1e-9));
+  CHECK(std::fabs(*right.bias) < 4 * right.sd / std::sqrt(200.0));
+  REQUIRE(right.coverage);
+  CHECK(right.coverage->value >= 0.92);
+}

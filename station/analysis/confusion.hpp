@@ -1,0 +1,32 @@
+#pragma once
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "station/analysis/course.hpp"
+#include "station/analysis/trial_record.hpp"
+
+namespace turnpoint::analysis {
+
+/// How often each answer was given to one kind of stimulus.
+struct ConfusionRow {
+  std::optional<int> stimulus;      ///< the choice that is right; empty if no choice is right
+  std::optional<double> level;      ///< the level, if no choice is right
+  std::vector<int> answers;         ///< number of trials by index of the choice
+  int trials = 0;                   ///< sum of `answers`
+  std::optional<Proportion> right;  ///< proportion correct; empty if no choice is right
+};
+
+/// The confusion matrix of one condition.
+struct Confusion {
+  std::string condition;
+  std::vector<ConfusionRow> rows;   ///< in the order of the choices, or in ascending order of the level
+  std::optional<Proportion> right;  ///< of all trials with a right answer
+};
+
+/// Counts the answers in answered experimental trials: by the right choice, or by the level in trials without
+/// one. Returns one matrix for each condition; conditions in `order` come first.
+std::vector<Confusion> confusions(const std::vector<TrialRecord>& trials,
+                                  const std::vector<std::string>& order, int choices);
+
+}  // namespace turnpoint::analysis

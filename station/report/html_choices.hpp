@@ -1,0 +1,11 @@
+#pragma once
+#include <string>
+
+#include "station/report/summary.hpp"
+
+namespace turnpoint::report {
+
+/// The confusion matrices of a report; "" if there are none.
+std::string confusion_section(const Summary& summary);
+
+}  // namespace turnpoint::report
