@@ -22,6 +22,8 @@ constexpr double kSurest_sd = 6;
 constexpr double kRatingStep_sd = 0.5;  // distance between the criteria of neighbouring ratings
 constexpr double kLinePoints = 9;
 constexpr double kConfidenceSd = 0.2;
+constexpr double kSqrt2 = 1.4142135623730951, kSqrt6 = 2.4494897427831779;
+constexpr double kNormalPeak = 0.39894228040143268;  // density of the standard normal distribution at 0
 constexpr double kLn10 = 2.302585092994046;
 constexpr int kMoves = 5;
 constexpr double kLook_s = 1.6;       // typical time to slide the finger across the surface and back
@@ -35,11 +37,45 @@ double half_logit_of_normal(double x) {
   return inside < 0 ? -half : half;
 }
 
-/// Returns the proportion correct for a task with `answers` answers, if a diffusion ends at its upper
-/// boundary with probability `upper`. Above the guessing rate, the psychometric function has the same shape
-/// (Weibull's) for any number of answers.
-double share_right(double upper, int answers) {
-  const double chance = 1.0 / answers;
+/// Returns the proportion correct of the largest of `answers` observations, one of which is d' higher: the
+/// integral of phi(x) Phi(x + d')^(answers - 1), by the trapezoidal rule.
+double largest_is_right(double d_prime, int answers) {
+  constexpr double step = 0.125;
+  double sum = 0;
+  for (int i = -64; i <= 64; ++i) {
+    const double x = step * i;
+    double below = random::exp(-0.5 * x * x);
+    for (int other = 1; other < answers; ++other) below *= random::normal_cdf(x + d_prime);
+    sum += below;
+  }
+  return sum * step * kNormalPeak;
+}
+
+/// Returns the proportion correct in ABX by differencing (Macmillan & Creelman 2005, eq. 9.7). An observer
+/// who feels the difference the wrong way round is as often wrong as two intervals would be.
+double nearest_is_right(double d_prime, double of_two) {
+  if (d_prime <= 0) return of_two;
+  const double apart = random::normal_cdf(d_prime / kSqrt2), beside = random::normal_cdf(d_prime / kSqrt6);
+  return apart * beside + (1 - apart) * (1 - beside);
+}
+
+/// Returns d' of an observer who is right this often with two intervals.
+double d_prime_of_two(double right) {
+  double low = -kSurest_sd, high = kSurest_sd;
+  for (int i = 0; i < 50; ++i) {
+    const double middle = 0.5 * (low + high);
+    (random::normal_cdf(middle) < right ? low : high) = middle;
+  }
+  return kSqrt2 * 0.5 * (low + high);
+}
+
+/// Returns the proportion correct, if a diffusion ends at its upper boundary with probability `upper`: the
+/// proportion correct with two answers. Above the guessing rate, a psychometric function of Weibull's has the
+/// same shape for any number of answers.
+double share_right(double upper, const Question& q) {
+  if (q.finding == Finding::largest) return largest_is_right(d_prime_of_two(upper), q.answers);
+  if (q.finding == Finding::nearest) return nearest_is_right(d_prime_of_two(upper), upper);
+  const double chance = 1.0 / q.answers;
   return std::max(0.0, chance + (1 - chance) * (2 * upper - 1));
 }
 
@@ -178,7 +214,7 @@ double Observer::share(const Question& q, int choice) const {
   const double chance = 1.0 / q.answers;
   double share = chance;
   if (q.decides == Decides::right_answer && q.correct) {
-    const double right = mean([&](double drift) { return share_right(upper(drift), q.answers); });
+    const double right = mean([&](double drift) { return share_right(upper(drift), q); });
     share = choice == *q.correct ? right : (1 - right) / std::max(1, q.answers - 1);
   } else if (q.rating) {
     const auto below = [&](int rating) {
@@ -214,10 +250,11 @@ Reply Observer::answer(const Question& q) const {
   const auto passage = first_passage(pull, limit, start, draws);
   Reply reply;
   if (q.decides == Decides::right_answer) {
-    // With three or more answers, guessing is right less often than with two. Some walks that end at the
-    // upper boundary must therefore give a wrong answer, so that the proportion correct equals share_right().
+    // With three or more answers, and in ABX, fewer answers are right than with two intervals. Some walks
+    // that end at the upper boundary must therefore give a wrong answer, so that the proportion correct
+    // equals share_right().
     const double upper = upper_probability(pull, limit, p.start_range);
-    const bool found = passage.upper && u * upper < share_right(upper, q.answers);
+    const bool found = passage.upper && u * upper < share_right(upper, q);
     const int right = q.correct.value_or(any);
     reply.choice = found ? right : (right + 1 + other) % q.answers;
   } else if (q.rating) {

@@ -12,7 +12,10 @@ namespace turnpoint::observer {
 /// The parameters of a simulated observer. Each answer is the first passage of a diffusion
 /// (first_passage.hpp). The drift is chosen so that, with the full bound, the answers follow a psychometric
 /// function of the level:
-/// - If one answer is right, a Weibull function with the exponent `slope`.
+/// - If one answer is right, a Weibull function with the exponent `slope`. If one of several intervals
+/// differs,
+///   or one of two matches a third, this is the function for two intervals; it gives d', and d' gives the
+///   proportion correct of an observer who makes one noisy observation of each interval (Finding).
 /// - If the sign of the level decides, a normal distribution function of |level - bias|^slope, with the sign
 ///   of level - bias.
 /// - For yes/no and ratings, d' grows as level^slope, and the criterion lies at `criterion`.
@@ -59,6 +62,13 @@ enum class Decides {
   category,      ///< each answer stands for a level; the nearest one is chosen
 };
 
+/// How the observer finds the right answer.
+enum class Finding {
+  weibull,  ///< Weibull's function, from the guess rate 1 / answers
+  largest,  ///< the interval with the largest of independent observations
+  nearest,  ///< ABX: of two observations the one that is nearer to a third (differencing)
+};
+
 /// An answer that is a number from `low` to `high`, a multiple of 10^-decimals.
 struct ValueQuestion {
   /// true: a magnitude, which follows Stevens' power law with the exponent `slope`; false: a place on a line
@@ -81,6 +91,7 @@ struct Question {
   int positive = 1;
   bool absent = false;         ///< for `presence`: true if the trial has no signal, whatever its level
   std::optional<int> correct;  ///< for `right_answer`: the right answer; empty if no answer is right
+  Finding finding = Finding::weibull;   ///< for `right_answer`
   std::vector<double> categories = {};  ///< for `category`: the level for which each answer stands
   int answers = 2;
   bool rating = false;  ///< the answers are the points of a scale, from low to high levels

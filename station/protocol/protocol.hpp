@@ -107,7 +107,16 @@ struct Distribution {
   double low = 0, high = 0;
 };
 
-enum class TaskKind { single_interval, two_interval, same_different, oddity, adjustment };
+enum class TaskKind {
+  single_interval,
+  two_interval,
+  several_intervals,  ///< 3ifc and 4ifc: one of the intervals presents the target, the others the standard
+  same_different,
+  oddity,
+  abx,              ///< standard and target in either order, then one of them again: which was it?
+  match_to_sample,  ///< the same, but the one to be matched comes first
+  adjustment
+};
 enum class Device { touch, buttons, either };
 enum class Sound { none, masking_noise };
 enum class Odd { target, standard, either };
@@ -143,7 +152,7 @@ struct Confidence {
 struct Task {
   TaskKind kind = TaskKind::single_interval;
   std::vector<std::vector<std::string>> intervals;  ///< scene names; an interval is a sequence of scenes
-  std::string standard, target;                     ///< scenes of an oddity or same-different task
+  std::string standard, target;                     ///< scenes of a task with `standard` and `target`
   Odd odd = Odd::either;
   std::optional<double> duration_s, gap_s;
   std::optional<Distribution> foreperiod_s;  ///< time from the start of an interval to its second scene

@@ -57,8 +57,8 @@ std::string without_effect(const std::string& word, const Protocol& protocol) {
   if (word == "psychometric") return "";
   if (task.kind == TaskKind::single_interval && task.correct_answer.empty())
     return "without \"correct\" in [task], no answer is right or wrong";
-  if (word == "dprime" && task.kind != TaskKind::single_interval && task.kind != TaskKind::two_interval)
-    return "d' is estimated for \"single-interval\" and \"2ifc\" only";
+  if (word == "dprime" && (task.kind == TaskKind::oddity || task.kind == TaskKind::same_different))
+    return "d' is not estimated for \"oddity\" and \"same-different\"";
   if (word == "bis" && protocol.analysis.by.empty() && protocol.instructions.size() < 2)
     return "BIS compares conditions, and there is only one";
   return "";

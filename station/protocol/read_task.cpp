@@ -15,7 +15,26 @@ using text::Value;
 
 namespace {
 
-const std::vector<std::string> kinds{"single-interval", "2ifc", "same-different", "oddity", "adjustment"};
+/// The kinds of task and the smallest and largest number of choices of each.
+struct Kind {
+  const char* name;
+  TaskKind kind;
+  std::size_t fewest, most;
+};
+constexpr Kind kinds[] = {{"single-interval", TaskKind::single_interval, 2, most_choices},
+                          {"2ifc", TaskKind::two_interval, 2, 2},
+                          {"3ifc", TaskKind::several_intervals, 3, 3},
+                          {"4ifc", TaskKind::several_intervals, 4, 4},
+                          {"same-different", TaskKind::same_different, 2, 2},
+                          {"oddity", TaskKind::oddity, 3, 3},
+                          {"abx", TaskKind::abx, 2, 2},
+                          {"match-to-sample", TaskKind::match_to_sample, 2, 2},
+                          {"adjustment", TaskKind::adjustment, 1, 1}};
+
+/// True if the task presents a `standard` and a `target`.
+bool compares(TaskKind kind) {
+  return kind != TaskKind::single_interval && kind != TaskKind::two_interval && kind != TaskKind::adjustment;
+}
 
 void check_scene(const std::string& name, const text::Place& place, const Reading& reading) {
   const auto& known = reading.declared_scenes;
@@ -44,8 +63,7 @@ std::vector<std::string> read_interval(const Value& item, const Reading& reading
 }
 
 void read_intervals(TableReader& reader, Task& task, const Reading& reading) {
-  const bool pair = task.kind == TaskKind::same_different || task.kind == TaskKind::oddity;
-  if (pair) {
+  if (compares(task.kind)) {
     task.standard = reader.string("standard", "name the scene that most intervals present");
     task.target = reader.string("target", "name the scene that differs");
     for (const auto* key : {"standard", "target"})
@@ -206,23 +224,7 @@ void read_confidence(TableReader& reader, Task& task, const Reading& reading) {
   task.confidence = std::move(confidence);
 }
 
-/// The smallest and the largest number of choices of a task.
-std::pair<std::size_t, std::size_t> choices_of(TaskKind kind) {
-  switch (kind) {
-    case TaskKind::single_interval:
-      return {2, most_choices};
-    case TaskKind::oddity:
-      return {3, 3};
-    case TaskKind::adjustment:
-      return {1, 1};
-    case TaskKind::two_interval:
-    case TaskKind::same_different:
-      break;
-  }
-  return {2, 2};
-}
-
-void read_choices(TableReader& reader, Task& task, const Reading& reading) {
+void read_choices(TableReader& reader, Task& task, const Kind& kind, const Reading& reading) {
   reader.require("choices", "list the answers: [ { id = \"left\", label = { en = \"Left\" } }, ... ]");
   std::set<std::string> seen;
   for (const auto* table : reader.tables("choices")) {
@@ -236,7 +238,7 @@ void read_choices(TableReader& reader, Task& task, const Reading& reading) {
     inner.finish();
     task.choices.push_back(std::move(choice));
   }
-  const auto [fewest, most] = choices_of(task.kind);
+  const auto [fewest, most] = std::pair(kind.fewest, kind.most);
   const auto* list = reader.take("choices");
   if (const auto given = list && list->kind == Value::Kind::array ? list->items.size() : fewest;
       given < fewest || given > most)
@@ -309,7 +311,10 @@ void read_correct(TableReader& reader, Task& task, const Reading& reading) {
       }
       task.step = reader.number("step", {0, 1e6, Range::Ends::open_low});
       return;
+    case TaskKind::several_intervals:
     case TaskKind::same_different:
+    case TaskKind::abx:
+    case TaskKind::match_to_sample:
       return;
   }
 }
@@ -321,8 +326,14 @@ void read_task(TableReader& file, Reading& reading) {
   if (!table) return;
   TableReader reader(*table, "task", reading.findings);
   auto& task = reading.protocol.task;
-  const auto kind = reader.word("kind", kinds);
-  task.kind = static_cast<TaskKind>(std::find(kinds.begin(), kinds.end(), kind) - kinds.begin());
+  std::vector<std::string> words;
+  for (const auto& known : kinds) words.emplace_back(known.name);
+  const auto word = reader.word("kind", words);
+  // An unknown kind is an error already; what follows then reads the keys of the first one.
+  const auto* kind = std::find_if(std::begin(kinds), std::end(kinds),
+                                  [&word](const Kind& known) { return known.name == word; });
+  if (kind == std::end(kinds)) kind = std::begin(kinds);
+  task.kind = kind->kind;
   read_intervals(reader, task, reading);
   const auto device = reader.word("device", {"touch", "buttons", "either"});
   task.device_place = reader.place("device");
@@ -337,7 +348,7 @@ void read_task(TableReader& file, Reading& reading) {
   read_confidence(reader, task, reading);
   read_times(reader, task);
   if (!judges(task) && !reader.has("rating") && !reader.has("number")) {
-    read_choices(reader, task, reading);
+    read_choices(reader, task, *kind, reading);
     read_correct(reader, task, reading);
   }
   reader.finish();

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+
 #include "station/plot/svg.hpp"
 #include "station/report/html_parts.hpp"
 
@@ -54,6 +56,57 @@ std::string confusion_section(const Summary& summary) {
   }
   return html +
          "<p class=\"soft\">Number of trials with each answer. 95 % intervals: Clopper and Pearson.</p>\n";
+}
+
+namespace {
+
+/// An estimate whose interval may be open at either end.
+std::string open_cell(const analysis::Estimate& estimate) {
+  const auto& ends = estimate.interval;
+  if (std::isfinite(ends.low) && std::isfinite(ends.high)) return cell(estimate);
+  const auto end = [](double value) {
+    return std::isfinite(value) ? number(value) : std::string(value < 0 ? "\u2212" : "") + "\u221e";
+  };
+  return "<td class=\"n\">" + number(estimate.value) + " <span class=\"soft\">[" + end(ends.low) + ", " +
+         end(ends.high) + "]</span></td>";
+}
+
+const char* explanation(analysis::Deciding model) {
+  switch (model) {
+    case analysis::Deciding::largest:
+      return "d\u2032 of an observer who chooses the interval with the largest of independent observations. ";
+    case analysis::Deciding::independent:
+      return "Independent observations: A and B are compared, and X is classified by a criterion. ";
+    case analysis::Deciding::differencing:
+      break;
+  }
+  return "Differencing: X is the one of A and B that is nearer. ";
+}
+
+}  // namespace
+
+std::string discrimination_section(const Summary& summary) {
+  if (summary.discriminations.empty()) return "";
+  const auto& data = summary.data;
+  std::string html = "<h2>Sensitivity</h2>\n<table><tr><th>Condition</th><th>" + escaped(data.level_label) +
+                     "</th><th>Proportion correct</th>",
+              notes;
+  for (const auto model : data.deciding) {
+    html += std::string("<th>d\u2032, ") + analysis::name(model) + " (standard deviations)</th>";
+    notes += explanation(model);
+  }
+  html += "</tr>";
+  for (const auto& entry : summary.discriminations) {
+    html += "<tr><td>" + (entry.condition.empty() ? "all trials" : escaped(entry.condition)) +
+            "</td><td class=\"n\">" + (entry.level ? number(*entry.level, 4) : "all") + "</td>" +
+            proportion_cell(entry.right);
+    for (const auto& [model, estimate] : entry.d_primes) html += open_cell(estimate);
+    html += "</tr>";
+  }
+  return html + "</table>\n<p class=\"soft\">" + notes +
+         "No preference for an answer is assumed. 95 % intervals: Clopper and Pearson for the proportion "
+         "correct, "
+         "with both ends turned into d\u2032. The value itself has the log-linear correction.</p>\n";
 }
 
 }  // namespace turnpoint::report

@@ -179,6 +179,17 @@ Json confusion_json(const analysis::Confusion& confusion, const SessionData& dat
   return json;
 }
 
+Json discrimination_json(const analysis::Discrimination& entry) {
+  Json json{{"condition", entry.condition}, {"level", value(entry.level)}};
+  json["correct"] = proportion_json(entry.right);
+  json["d_prime"] = Json::array();
+  for (const auto& [model, estimate] : entry.d_primes)
+    json["d_prime"].push_back({{"model", analysis::name(model)},
+                               {"value", value(estimate.value)},
+                               {"interval", value(estimate.interval)}});
+  return json;
+}
+
 Json trend_json(const std::optional<analysis::Trend>& trend) {
   if (!trend) return nullptr;
   return {{"per_100_trials", value(trend->per_100_trials)}, {"interval", value(trend->interval)}};
@@ -236,6 +247,9 @@ std::string to_json(const Summary& summary) {
                                  {"correct_rejections", entry.counts.correct_rejections},
                                  {"d_prime", value(entry.d_prime)},
                                  {"criterion", value(entry.criterion)}});
+  json["discrimination"] = Json::array();
+  for (const auto& entry : summary.discriminations)
+    json["discrimination"].push_back(discrimination_json(entry));
   json["estimates"] = Json::array();
   for (const auto& estimate : data.estimates)
     json["estimates"].push_back({{"procedure", estimate.procedure},

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "station/analysis/finger.hpp"
+#include "station/analysis/forced_choice.hpp"
 #include "station/analysis/psychometric_fit.hpp"
 #include "station/analysis/speed_accuracy.hpp"
 #include "station/analysis/trial_record.hpp"
@@ -63,6 +64,8 @@ struct SessionData {
   std::vector<Fact> health;
   Design design = Design::forced_choice;
   int alternatives = 2;
+  /// for 3ifc, 4ifc, ABX and match-to-sample: the models by which the report computes d'
+  std::vector<analysis::Deciding> deciding;
   terms::Function function = terms::Function::weibull;
   analysis::Scale scale = analysis::Scale::linear;
   std::string level_label;           ///< with the unit, for an axis: "Contrast (dB)"
@@ -90,8 +93,8 @@ struct SessionData {
 };
 
 /// True if the report contains this part: "psychometric", "ez", "bis", "lisas", "ies", "caf", "dprime" or
-/// "trace". If the protocol does not choose, the report contains all parts, but d' only for yes/no tasks, and
-/// EZ-diffusion only for two answers.
+/// "trace". If the protocol does not choose, the report contains all parts, but d' only for yes/no tasks and
+/// where `deciding` has a model, and EZ-diffusion only for two answers.
 bool shows(const SessionData& data, const std::string& part);
 
 }  // namespace turnpoint::report

@@ -108,6 +108,14 @@ report::Design design_of(const protocol::Protocol& protocol, const protocol::Ans
   return sides && below && above ? report::Design::two_sided : report::Design::forced_choice;
 }
 
+std::vector<analysis::Deciding> deciding_in(protocol::TaskKind kind) {
+  using analysis::Deciding;
+  if (kind == protocol::TaskKind::several_intervals) return {Deciding::largest};
+  if (kind == protocol::TaskKind::abx || kind == protocol::TaskKind::match_to_sample)
+    return {Deciding::independent, Deciding::differencing};
+  return {};
+}
+
 /// Chooses the function to fit: the one that the protocol's procedure assumes. If no procedure assumes one,
 /// chooses a function that suits the levels.
 void choose_function(const protocol::Protocol& protocol, report::SessionData& data) {
@@ -243,6 +251,7 @@ void add_trials(const std::vector<records::BlockRecord>& blocks, const protocol:
       protocol.task.kind != protocol::TaskKind::single_interval || !protocol.task.correct_answer.empty();
   set_level_words(level, data);
   data.alternatives = std::max(2, static_cast<int>(protocol.task.choices.size()));
+  data.deciding = deciding_in(protocol.task.kind);
   choose_function(protocol, data);
   data.prior = prior_of(protocol, data);
   for (const auto& choice : protocol.task.choices) data.choices.push_back(choice.id);

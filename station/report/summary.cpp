@@ -113,7 +113,7 @@ void hide(const SessionData& data, analysis::Trade& trade) {
 }
 
 std::vector<analysis::Detection> detections_of(const SessionData& data) {
-  if (!data.scored || data.choices.size() > 2 || !shows(data, "dprime")) return {};
+  if (!data.scored || data.choices.size() > 2 || !data.deciding.empty() || !shows(data, "dprime")) return {};
   if (data.design == Design::yes_no)
     return analysis::detect(data.trials, data.conditions, analysis::Detecting::presence, data.positive);
   if (data.design == Design::two_sided)
@@ -192,7 +192,7 @@ std::string describe_intervals(const NamedFit& named, const SessionData& data) {
 bool shows(const SessionData& data, const std::string& part) {
   if (data.show) return std::find(data.show->begin(), data.show->end(), part) != data.show->end();
   if (part == "ez") return data.choices.size() <= 2;
-  return part != "dprime" || data.design == Design::yes_no;
+  return part != "dprime" || data.design == Design::yes_no || !data.deciding.empty();
 }
 
 analysis::TradeOptions trade_options(const SessionData& data) {
@@ -228,6 +228,9 @@ Summary summarise(const SessionData& data) {
   summary.trade = analysis::trade(data.trials, trade_options(data));
   hide(data, summary.trade);
   summary.detections = detections_of(data);
+  if (!data.deciding.empty() && shows(data, "dprime"))
+    summary.discriminations =
+        analysis::discriminate(data.trials, data.conditions, data.deciding, data.alternatives);
   if (data.design != Design::categories && shows(data, "psychometric")) summary.fits = fits_of(data);
   return summary;
 }

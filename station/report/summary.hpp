@@ -34,7 +34,8 @@ struct Summary {
   std::map<int, analysis::Proportion> confidence;  ///< right answers by degree of confidence
   analysis::Fatigue fatigue;
   analysis::Trade trade;
-  std::vector<analysis::Detection> detections;  ///< d' and criterion, if the report shows them
+  std::vector<analysis::Detection> detections;            ///< d' and criterion, if the report shows them
+  std::vector<analysis::Discrimination> discriminations;  ///< d' where data.deciding has a model
   /// for an adjustment task: one entry for each procedure and condition
   std::vector<analysis::Settings> settings;
   /// for ratings and numbers: one entry for each condition

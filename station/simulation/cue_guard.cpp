@@ -210,8 +210,8 @@ Cells Guard::cells_of(const TrialCensus& census) {
 // Roving draws strengths from a uniform distribution. Here a low-discrepancy sequence (Roberts 2018), with
 // one dimension per interval, replaces the random draws, because fewer points are then enough.
 std::vector<Look> Guard::looks(const CueKind& kind, Feature feature, const Cells& cells, Draws draws) const {
-  constexpr double g = 1.2207440846057596;
-  constexpr double steps[] = {1 / g, 1 / (g * g), 1 / (g * g * g)};
+  const double g = asked_.intervals > 3 ? 1.1673039782614187 : 1.2207440846057596;
+  const double steps[] = {1 / g, 1 / (g * g), 1 / (g * g * g), 1 / (g * g * g * g)};
   const auto moves = [&](const Interval& interval) {
     const bool by_edge = interval.first.low || interval.last.low;
     return interval.first.rove_dB > 0 && kind.source == Source::surface && (kind.follows_strength || by_edge);

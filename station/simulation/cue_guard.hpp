@@ -68,7 +68,9 @@ struct CueGuard {
 ///   scenes, the cue at its start and the change of the cue are tried as well.
 /// - Two intervals: the observer chooses the larger or the smaller cue, or the cue that differs more, or
 ///   less, from its usual value.
-/// - Three intervals: the observer chooses the odd one.
+/// - Three or four intervals: the observer chooses the largest or smallest cue, or the one that is most or
+///   least unlike the others.
+/// - ABX and match-to-sample: the observer chooses the interval that is most or least like X.
 /// - Same or different: a criterion or a band of the difference.
 ///
 /// Cues that differ by less than a thousandth (0.01 dB of loudness) count as equal. The last report is for an

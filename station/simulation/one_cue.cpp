@@ -17,12 +17,17 @@ double banded(Statistic statistic, const CueValues& x) {
   return statistic == Statistic::value ? x[0] : std::fabs(x[1] - x[0]);
 }
 
-// The intervals among which the observer chooses are `first` and those after it, as many as there are
-// answers.
+/// The statistics by which an observer can choose one of several intervals.
+std::vector<Statistic> choosing(TaskKind task) {
+  if (task == TaskKind::abx || task == TaskKind::match_to_sample)
+    return {Statistic::nearest, Statistic::farthest};
+  return {Statistic::most, Statistic::least, Statistic::odd, Statistic::even};
+}
+
 struct Comparison {
   const Rule& rule;
   const CueValues& x;
-  std::size_t intervals = 0;
+  const Asked& asked;
 
   double difference(double a, double b) const {
     const auto& grain = rule.grain;
@@ -31,8 +36,14 @@ struct Comparison {
     return std::fabs(a - b) <= none ? 0.0 : a - b;
   }
 
-  // Scores an interval; the observer chooses the interval with the highest score.
+  // Scores an answer; the observer chooses the answer with the highest score.
   double score(std::size_t i) const {
+    const std::size_t intervals = asked.intervals;
+    if (rule.statistic == Statistic::nearest || rule.statistic == Statistic::farthest) {
+      const bool sample_first = asked.kind == TaskKind::match_to_sample;
+      const double distance = std::fabs(difference(x[sample_first ? i + 1 : i], x[sample_first ? 0 : 2]));
+      return rule.statistic == Statistic::farthest ? distance : -distance;
+    }
     const bool unlike = rule.statistic == Statistic::odd || rule.statistic == Statistic::even;
     const double sign = rule.statistic == Statistic::most || rule.statistic == Statistic::odd ? 1 : -1;
     if (unlike && intervals == 2) return sign * std::fabs(difference(x[i], rule.usual));
@@ -70,7 +81,7 @@ Shares shares(const Rule& rule, const Asked& asked, const CueValues& x) {
     shares[range == rule.ranges.end() ? 0 : static_cast<std::size_t>(range->answer)] = 1;
     return shares;
   }
-  const Comparison comparison{rule, x, asked.intervals};
+  const Comparison comparison{rule, x, asked};
   Shares scores{};
   for (std::size_t i = 0; i < asked.answers; ++i) scores[i] = comparison.score(i);
   const double best =
@@ -103,7 +114,7 @@ Rule best_rule(const Asked& asked, const std::vector<Look>& looks, const Grain& 
     return best;
   }
   double most = -1;
-  for (const auto statistic : {Statistic::most, Statistic::least, Statistic::odd, Statistic::even}) {
+  for (const auto statistic : choosing(asked.kind)) {
     Rule rule;
     rule.statistic = statistic, rule.grain = grain;
     if (asked.kind == TaskKind::two_interval) rule.usual = usual_of(looks);

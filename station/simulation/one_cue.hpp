@@ -35,7 +35,9 @@ enum class Statistic {
   /// which interval: the observer chooses the interval that differs most from the other intervals; of two
   /// intervals, the one that differs most from `usual`
   odd,
-  even,  ///< which interval: the observer chooses the interval that differs least (see `odd`)
+  even,      ///< which interval: the observer chooses the interval that differs least (see `odd`)
+  nearest,   ///< ABX and match-to-sample: the observer chooses the interval that is most like X
+  farthest,  ///< ABX and match-to-sample: the observer chooses the interval that is least like X
 };
 
 /// Resolution for cue values: values that differ by less count as equal. To compare two intervals, `relative`

@@ -184,7 +184,7 @@ FitTruth GeneratingValues::fit(const std::string& condition, const analysis::Fit
   const bool own_function =
       observer.bound(question.deadline_s) == p.bound && p.drift_sd == 0 && p.start_range == 0;
   if (own_function && decides == observer::Decides::right_answer &&
-      options.function == terms::Function::weibull)
+      question.finding == observer::Finding::weibull && options.function == terms::Function::weibull)
     truth.slope = p.slope;
   if (own_function && decides == observer::Decides::side && p.slope == 1 &&
       options.function == terms::Function::normal && options.scale == analysis::Scale::linear)

@@ -53,6 +53,30 @@ std::vector<IntervalOrder> oddity_orders(const protocol::Task& task) {
   return orders;
 }
 
+std::vector<IntervalOrder> target_orders(const protocol::Task& task) {
+  std::vector<IntervalOrder> orders;
+  for (std::size_t position = 0; position < task.choices.size(); ++position) {
+    IntervalOrder order{{task.choices.size(), {task.standard}}, static_cast<int>(position)};
+    order.intervals[position] = {task.target};
+    orders.push_back(std::move(order));
+  }
+  return orders;
+}
+
+// The two scenes in either order. X, which is one of them again, comes last or first.
+std::vector<IntervalOrder> matching_orders(const protocol::Task& task) {
+  std::vector<IntervalOrder> orders;
+  for (const bool swapped : {false, true})
+    for (const int same : {0, 1}) {
+      IntervalOrder order{{{task.standard}, {task.target}}, same};
+      if (swapped) std::reverse(order.intervals.begin(), order.intervals.end());
+      const auto x = order.intervals[static_cast<std::size_t>(same)];
+      order.intervals.insert(task.kind == TaskKind::abx ? order.intervals.end() : order.intervals.begin(), x);
+      orders.push_back(std::move(order));
+    }
+  return orders;
+}
+
 }  // namespace
 
 std::vector<IntervalOrder> orders_of(const protocol::Task& task) {
@@ -61,8 +85,13 @@ std::vector<IntervalOrder> orders_of(const protocol::Task& task) {
       return two_interval_orders(task);
     case TaskKind::same_different:
       return same_different_orders(task);
+    case TaskKind::several_intervals:
+      return target_orders(task);
     case TaskKind::oddity:
       return oddity_orders(task);
+    case TaskKind::abx:
+    case TaskKind::match_to_sample:
+      return matching_orders(task);
     case TaskKind::single_interval:
       if (!task.standard.empty()) return {{{{task.standard}, task.intervals.front()}, {}}};
       break;

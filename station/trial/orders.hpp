@@ -14,9 +14,9 @@ struct IntervalOrder {
   std::optional<int> correct;
 };
 
-/// Returns all orders of intervals that a task can have: 2 for two intervals, 2 or 4 for same-different, 3 or
-/// 6 for oddity, otherwise 1. `correct` is empty if the right choice depends on the factors (tasks with one
-/// interval).
+/// Returns all orders of intervals that a task can have: 2 for two intervals, 3 or 4 for 3ifc and 4ifc, 4 for
+/// same-different, ABX and match-to-sample, 3 or 6 for oddity, otherwise 1. `correct` is empty if the right
+/// choice depends on the factors (tasks with one interval).
 std::vector<IntervalOrder> orders_of(const protocol::Task& task);
 
 /// Returns the order for a trial. Trials are divided into runs of equal length, and each run contains every

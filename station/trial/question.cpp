@@ -21,6 +21,18 @@ std::string level_factor(const TrialSpec& spec, const protocol::Protocol& protoc
   return sources.empty() ? "" : sources.front().level;
 }
 
+observer::Finding finding_of(protocol::TaskKind kind) {
+  switch (kind) {
+    case protocol::TaskKind::several_intervals:
+      return observer::Finding::largest;
+    case protocol::TaskKind::abx:
+    case protocol::TaskKind::match_to_sample:
+      return observer::Finding::nearest;
+    default:
+      return observer::Finding::weibull;
+  }
+}
+
 /// The median distance between neighbouring categories.
 double median_step(std::vector<double> categories) {
   std::sort(categories.begin(), categories.end());
@@ -59,6 +71,7 @@ observer::Question question_of(const TrialSpec& spec, const protocol::Protocol& 
   question.positive = rule.positive;
   switch (rule.kind) {
     case protocol::AnswerKind::right_answer:
+      question.finding = finding_of(task.kind);
       break;
     case protocol::AnswerKind::category:
       question.decides = observer::Decides::category;

@@ -1,6 +1,7 @@
 #include "station/observer/observer.hpp"
 
 #include <cmath>
+#include <random>
 #include <vector>
 
 #include "station/analysis/diffusion.hpp"
@@ -234,5 +235,42 @@ TEST_CASE("an observer of categories confuses neighbours as a normal distributio
     CHECK(observer.share(question, 3) == Approx(1 - below(45, level)).margin(1e-6));
     check_shares(observer, question);
     check_shares(Observer(parse("sim:lapse=0.1,threshold=4")), question);
+  }
+}
+
+TEST_CASE("with several intervals, and in ABX, the observer is as good as its noisy observations are",
+          "[observer]") {
+  // An observer of two intervals who is right in 1 - 2^-(1 + level) of the trials has this d'. The
+  // proportions that follow from it are found here by drawing the observations.
+  std::mt19937_64 random(7);
+  std::normal_distribution<> noise;
+  constexpr int trials = 200'000;
+  const Observer observer(parse("sim:threshold=1,lapse=0"));
+  for (const double level : {0.4, 1.0, 2.0}) {
+    auto question = at_level(level);
+    double low = 0, high = 10;
+    for (int i = 0; i < 50; ++i) {
+      const double d = 0.5 * (low + high);
+      (0.5 * std::erfc(-d / 2) < 1 - std::pow(2, -1 - level) ? low : high) = d;
+    }
+    int of_three = 0, of_four = 0, abx = 0;
+    for (int i = 0; i < trials; ++i) {
+      const double signal = low + noise(random), others = std::max(noise(random), noise(random));
+      of_three += signal > others;
+      of_four += signal > std::max(others, noise(random));
+      const double x = noise(random), a = noise(random), b = low + noise(random);
+      abx += std::fabs(x - a) < std::fabs(x - b);
+    }
+    const auto check = [&](Finding finding, int answers, int right) {
+      question.finding = finding, question.answers = answers;
+      const double p = static_cast<double>(right) / trials;
+      INFO(answers << " answers at level " << level);
+      CHECK(observer.share(question, 0) == Approx(p).margin(4 * std::sqrt(p * (1 - p) / trials)));
+      check_shares(observer, question);
+      check_shares(Observer(parse("sim:lapse=0.1,threshold=1,start_range=0.3")), question);
+    };
+    check(Finding::largest, 3, of_three);
+    check(Finding::largest, 4, of_four);
+    check(Finding::nearest, 2, abx);
   }
 }

@@ -67,6 +67,8 @@ TEST_CASE("what show could not show is an error that says why", "[protocol]") {
   CHECK(refused("friction-2ifc") == Words{"bis"});
   CHECK(refused("demo", "by = \"mark_mm\"\n") == Words{});
   CHECK(refused("two-spots-oddity") == Words{"bis", "dprime"});
+  CHECK(refused("friction-3ifc") == Words{"ez", "bis"});
+  CHECK(refused("friction-abx") == Words{"bis"});
   CHECK(refused("friction-identification") == Words{"psychometric", "ez", "bis", "dprime"});
   CHECK(refused("boundary-adjustment") ==
         Words{"psychometric", "ez", "bis", "lisas", "ies", "caf", "dprime"});

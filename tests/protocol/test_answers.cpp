@@ -38,6 +38,8 @@ TEST_CASE("what the answers say of the level is read from their comparisons", "[
   };
   CHECK(rule(shipped("friction-2ifc")).kind == AnswerKind::right_answer);
   CHECK(rule(shipped("two-spots-oddity")).kind == AnswerKind::right_answer);
+  CHECK(rule(shipped("friction-3ifc")).kind == AnswerKind::right_answer);
+  CHECK(rule(shipped("friction-abx")).kind == AnswerKind::right_answer);
   CHECK(rule(shipped("boundary-constant")).kind == AnswerKind::side);
   CHECK(rule(shipped("boundary-constant")).positive == 1);
   const auto turned =

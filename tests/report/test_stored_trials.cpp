@@ -256,6 +256,27 @@ TEST_CASE("identification is reported as a confusion matrix, without a curve and
   CHECK(report_of(data_of(shipped("two-spots-oddity")))["confusion"][0]["rows"].size() == 3);
 }
 
+TEST_CASE("d' of three intervals and of ABX is reported by model, and the guess rate is known", "[report]") {
+  const auto three = report_of(data_of(shipped("friction-3ifc"), "sim:lapse=0"));
+  CHECK(three["fits"][0]["guess"].get<double>() == Approx(1.0 / 3));
+  REQUIRE(three["discrimination"].size() == 1);  // an adaptive procedure presents too many levels
+  CHECK(three["discrimination"][0]["d_prime"][0]["model"] == "largest of m");
+  CHECK(three["confusion"][0]["rows"].size() == 3);
+  CHECK(three["detection"].empty());
+  const auto data = data_of(shipped("friction-abx"), "sim:threshold=-20,slope=2,lapse=0");
+  const auto abx = report_of(data);
+  CHECK(abx["fits"][0]["guess"].get<double>() == Approx(0.5));
+  REQUIRE(abx["discrimination"].size() == 5);
+  REQUIRE(abx["discrimination"][3]["d_prime"].size() == 2);
+  CHECK(abx["discrimination"][3]["level"] == -5.0);
+  CHECK(abx["discrimination"][3]["correct"]["proportion"] == 1.0);
+  CHECK(abx["discrimination"][3]["d_prime"][1]["interval"]["high"].is_null());  // has no upper end
+  CHECK(abx["confusion"].empty());
+  const auto html = report::to_html(report::summarise(data));
+  CHECK(html.find("differencing") != std::string::npos);
+  CHECK(html.find("\u221e") != std::string::npos);
+}
+
 TEST_CASE("the report counts right answers for each degree of confidence", "[report]") {
   const auto report = report_of(data_of(shipped("friction-confidence"), "sim:lapse=0"));
   REQUIRE(report["confidence"].size() >= 3);

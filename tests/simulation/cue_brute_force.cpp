@@ -246,10 +246,30 @@ std::vector<Strategy> choices(const Shown& shown, std::size_t cue) {
   return strategies;
 }
 
-Strategy best_choice(const Shown& shown, std::size_t cue) {
+/// Chooses by likeness to X, which is interval `x_at`; the other two intervals are the answers.
+std::vector<Strategy> likenesses(std::size_t cue, std::size_t x_at) {
+  std::vector<Strategy> strategies;
+  for (const bool alike : {true, false})
+    strategies.emplace_back([=](const std::vector<double>& x) {
+      std::vector<double> score;
+      for (std::size_t i = 0; i < x.size(); ++i) {
+        if (i == x_at) continue;
+        const double none = cue == loudness ? 0.01 : 1e-3 * std::max(std::fabs(x[i]), std::fabs(x[x_at]));
+        const double gap = std::fabs(x[i] - x[x_at]) > none ? std::fabs(x[i] - x[x_at]) : 0.0;
+        score.push_back(alike ? -gap : gap);
+      }
+      return extremes(score);
+    });
+  return strategies;
+}
+
+Strategy best_choice(const Shown& shown, std::size_t cue, TaskKind kind) {
   Strategy best;
   double most = -1;
-  for (const auto& strategy : choices(shown, cue)) {
+  const auto all = kind == TaskKind::abx               ? likenesses(cue, 2)
+                   : kind == TaskKind::match_to_sample ? likenesses(cue, 0)
+                                                       : choices(shown, cue);
+  for (const auto& strategy : all) {
     const double right = expected(strategy, shown);
     if (right > most + 1e-9) most = right, best = strategy;
   }
@@ -376,7 +396,7 @@ std::vector<BruteForce> cue_brute_force(const protocol::Protocol& protocol, cons
       const auto strategy = several ? best_parts(looked, grain, answers)
                             : kind == TaskKind::single_interval || distance
                                 ? best_cuts(looked, grain, distance)
-                                : best_choice(looked, cue);
+                                : best_choice(looked, cue, kind);
       const double here = expected(strategy, looked);
       if (here <= chosen + 1e-9) continue;
       chosen = here, best = strategy, best_feature = feature;

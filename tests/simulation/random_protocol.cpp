@@ -15,6 +15,9 @@ class Maker {
 
   std::string text() {
     task_ = pick({"single-interval", "2ifc", "same-different", "oddity"});
+    // Not drawn from random_, so that these tasks change nothing else of the files.
+    if (seed_ % 4 == 3 && task_ == "2ifc") task_ = seed_ % 8 == 3 ? "3ifc" : "4ifc";
+    if (seed_ % 4 == 3 && task_ == "same-different") task_ = seed_ % 8 == 3 ? "abx" : "match-to-sample";
     use("task " + task_);
     single_ = task_ == "single-interval";
     two_scenes_ = single_ && chance(0.25);
@@ -75,14 +78,15 @@ class Maker {
                   ? "intervals = [[\"standard\", \"target\"]]\nforeperiod_s = 1.0\ntransition_ms = 20\n"
                   : "intervals = [\"target\"]\n";
     if (task_ == "2ifc") text += "intervals = [\"standard\", \"target\"]\ncorrect = \"target\"\n";
-    if (task_ == "same-different" || task_ == "oddity")
-      text += "standard = \"standard\"\ntarget = \"target\"\n";
+    if (!single_ && task_ != "2ifc") text += "standard = \"standard\"\ntarget = \"target\"\n";
     if (task_ == "oddity") text += "odd = " + quoted(pick({"either", "target", "standard"})) + "\n";
     if (!single_) text += "duration_s = 1.0\ngap_s = 0.5\n";
     text += "device = \"touch\"\nquestion = { en = \"Which?\" }\nchoices = [";
-    const auto ids = task_ == "oddity" || three_answers() ? std::vector<std::string>{"a", "b", "c"}
-                     : task_ == "same-different"          ? std::vector<std::string>{"same", "different"}
-                                                          : std::vector<std::string>{"a", "b"};
+    const auto ids = task_ == "4ifc" ? std::vector<std::string>{"a", "b", "c", "d"}
+                     : task_ == "oddity" || task_ == "3ifc" || three_answers()
+                         ? std::vector<std::string>{"a", "b", "c"}
+                     : task_ == "same-different" ? std::vector<std::string>{"same", "different"}
+                                                 : std::vector<std::string>{"a", "b"};
     for (const auto& id : ids) text += "{ id = " + quoted(id) + ", label = { en = " + quoted(id) + " } },";
     text += "]\n";
     if (single_) text += correct();
@@ -126,9 +130,10 @@ class Maker {
           "function = \"normal\"\nstimuli = { from = " + low +
           ", to = 20.0, step = " + (single_ ? "4.0" : "2.375") + " }\ngrid.threshold = { from = " + low +
           ", to = 20.0, count = 9 }\ngrid.slope = { values = [2.0, 5.0, 10.0] }\ngrid.guess = { values = [" +
-          (single_             ? "0.02"
-           : task_ == "oddity" ? "0.3333333"
-                               : "0.5") +
+          (single_                                ? "0.02"
+           : task_ == "oddity" || task_ == "3ifc" ? "0.3333333"
+           : task_ == "4ifc"                      ? "0.25"
+                                                  : "0.5") +
           "] }\ngrid.lapse = { values = [0.02] }\nstop = { trials = 40 }\n";
     else
       text += "start = " + pick({"12.0", "18.0"}) + "\nmin = " + low + "\nmax = 20.0\n" +

@@ -54,3 +54,39 @@ TEST_CASE("same-different is balanced over its four pairs", "[session]") {
   for (int trial = 0; trial < 24; ++trial) different += *order_for(task, 1, 0, 0, trial).correct;
   CHECK(different == 12);
 }
+
+TEST_CASE("of three or four intervals the target is in each equally often", "[session]") {
+  for (const std::size_t m : {3, 4}) {
+    auto task = task_of(protocol::TaskKind::several_intervals);
+    task.choices.assign(m, {"x", {}});
+    std::map<int, int> counts;
+    for (int trial = 0; trial < 48; ++trial) {
+      const auto order = order_for(task, 9, 1, 0, trial);
+      REQUIRE(order.intervals.size() == m);
+      for (std::size_t i = 0; i < m; ++i)
+        CHECK(order.intervals[i].front() == (static_cast<int>(i) == *order.correct ? "wider" : "standard"));
+      ++counts[*order.correct];
+    }
+    CHECK(counts.size() == m);
+    for (const auto& [position, count] : counts) CHECK(count == 48 / static_cast<int>(m));
+  }
+}
+
+TEST_CASE("X is one of A and B, in all four orders, and comes last in ABX and first in match-to-sample",
+          "[session]") {
+  for (const auto kind : {protocol::TaskKind::abx, protocol::TaskKind::match_to_sample}) {
+    const bool first = kind == protocol::TaskKind::match_to_sample;
+    std::map<std::vector<std::vector<std::string>>, int> counts;
+    for (int trial = 0; trial < 24; ++trial) {
+      const auto order = order_for(task_of(kind), 9, 1, 0, trial);
+      REQUIRE(order.intervals.size() == 3);
+      const auto& x = order.intervals[first ? 0 : 2];
+      const auto right = static_cast<std::size_t>(*order.correct);
+      CHECK(order.intervals[right + (first ? 1 : 0)] == x);
+      CHECK(order.intervals[1 - right + (first ? 1 : 0)] != x);
+      ++counts[order.intervals];
+    }
+    CHECK(counts.size() == 4);
+    for (const auto& [intervals, count] : counts) CHECK(count == 6);
+  }
+}

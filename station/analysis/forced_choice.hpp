@@ -1,0 +1,51 @@
+#pragma once
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "station/analysis/course.hpp"
+#include "station/analysis/estimate.hpp"
+#include "station/analysis/trial_record.hpp"
+
+namespace turnpoint::analysis {
+
+/// How an unbiased observer of signal detection theory derives the answer from one observation for each
+/// interval. The observations have normal distributions, one SD wide and d' apart.
+enum class Deciding {
+  largest,  ///< one of m intervals has the signal: the largest observation (Green & Swets 1966)
+  /// ABX and match-to-sample: which of A and B is the larger, and on which side of the criterion X lies,
+  /// are decided independently (Macmillan & Creelman 2005, eq. 9.6)
+  independent,
+  differencing,  ///< ABX and match-to-sample: X is the one that is nearer (Macmillan & Creelman 2005,
+                 ///< eq. 9.7)
+};
+
+/// The name in reports: "largest of m", "independent observations", "differencing".
+const char* name(Deciding deciding);
+
+/// The proportion correct at this d'. `intervals` is the m of `largest`, at least 2; the others ignore it.
+double proportion_correct(Deciding deciding, double d_prime, int intervals);
+
+/// The d' at which the proportion correct is this. For ABX, 0 for proportions up to 0.5. Infinite for a
+/// proportion of 1, and minus infinity for 0 of `largest`. Throws std::invalid_argument outside of 0 to 1.
+double d_prime(Deciding deciding, double proportion, int intervals);
+
+/// The sensitivity in one condition, at one level or over all levels.
+struct Discrimination {
+  std::string condition;
+  std::optional<double> level;  ///< empty for all levels together
+  Proportion right;
+  /// d' at the proportion correct with the log-linear correction. The 95 % interval is that of Clopper and
+  /// Pearson for the proportion correct, with both ends turned into d'; an end may be infinite.
+  std::vector<std::pair<Deciding, Estimate>> d_primes;
+};
+
+/// Analyses answered experimental trials with a score, one result for each of `models`. Results come in the
+/// order of detect() (signal_detection.hpp), without levels if there are more than `most_levels`.
+std::vector<Discrimination> discriminate(const std::vector<TrialRecord>& trials,
+                                         const std::vector<std::string>& order,
+                                         const std::vector<Deciding>& models, int intervals,
+                                         std::size_t most_levels = 8);
+
+}  // namespace turnpoint::analysis
