@@ -16,20 +16,20 @@ using text::Value;
 namespace {
 
 /// The kinds of task and the smallest and largest number of choices of each.
-struct Kind {
+struct TaskForm {
   const char* name;
   TaskKind kind;
   std::size_t fewest, most;
 };
-constexpr Kind kinds[] = {{"single-interval", TaskKind::single_interval, 2, most_choices},
-                          {"2ifc", TaskKind::two_interval, 2, 2},
-                          {"3ifc", TaskKind::several_intervals, 3, 3},
-                          {"4ifc", TaskKind::several_intervals, 4, 4},
-                          {"same-different", TaskKind::same_different, 2, 2},
-                          {"oddity", TaskKind::oddity, 3, 3},
-                          {"abx", TaskKind::abx, 2, 2},
-                          {"match-to-sample", TaskKind::match_to_sample, 2, 2},
-                          {"adjustment", TaskKind::adjustment, 1, 1}};
+constexpr TaskForm task_forms[] = {{"single-interval", TaskKind::single_interval, 2, most_choices},
+                                   {"2ifc", TaskKind::two_interval, 2, 2},
+                                   {"3ifc", TaskKind::several_intervals, 3, 3},
+                                   {"4ifc", TaskKind::several_intervals, 4, 4},
+                                   {"same-different", TaskKind::same_different, 2, 2},
+                                   {"oddity", TaskKind::oddity, 3, 3},
+                                   {"abx", TaskKind::abx, 2, 2},
+                                   {"match-to-sample", TaskKind::match_to_sample, 2, 2},
+                                   {"adjustment", TaskKind::adjustment, 1, 1}};
 
 /// True if the task presents a `standard` and a `target`.
 bool compares(TaskKind kind) {
@@ -224,7 +224,7 @@ void read_confidence(TableReader& reader, Task& task, const Reading& reading) {
   task.confidence = std::move(confidence);
 }
 
-void read_choices(TableReader& reader, Task& task, const Kind& kind, const Reading& reading) {
+void read_choices(TableReader& reader, Task& task, const TaskForm& kind, const Reading& reading) {
   reader.require("choices", "list the answers: [ { id = \"left\", label = { en = \"Left\" } }, ... ]");
   std::set<std::string> seen;
   for (const auto* table : reader.tables("choices")) {
@@ -327,12 +327,12 @@ void read_task(TableReader& file, Reading& reading) {
   TableReader reader(*table, "task", reading.findings);
   auto& task = reading.protocol.task;
   std::vector<std::string> words;
-  for (const auto& known : kinds) words.emplace_back(known.name);
+  for (const auto& known : task_forms) words.emplace_back(known.name);
   const auto word = reader.word("kind", words);
   // An unknown kind is an error already; what follows then reads the keys of the first one.
-  const auto* kind = std::find_if(std::begin(kinds), std::end(kinds),
-                                  [&word](const Kind& known) { return known.name == word; });
-  if (kind == std::end(kinds)) kind = std::begin(kinds);
+  const auto* kind = std::find_if(std::begin(task_forms), std::end(task_forms),
+                                  [&word](const TaskForm& known) { return known.name == word; });
+  if (kind == std::end(task_forms)) kind = std::begin(task_forms);
   task.kind = kind->kind;
   read_intervals(reader, task, reading);
   const auto device = reader.word("device", {"touch", "buttons", "either"});

@@ -306,6 +306,8 @@ std::optional<plot::Figure> trade_figure(const Summary& summary) {
   plot::Chart caf{"Conditional accuracy", {}, {}, {}}, cells{"Within equal difficulty", {}, {}, {}};
   std::vector<double> caf_times, cell_times, accuracies;
   int series = 0;
+  // the level of an identification is no difficulty
+  const bool categories = summary.data.design == Design::categories;
   for (const auto& entry : summary.trade.instructions) {
     plot::Points bins, by_difficulty;
     plot::Line bin_line, cell_line;
@@ -318,7 +320,7 @@ std::optional<plot::Figure> trade_figure(const Summary& summary) {
       accuracies.push_back(interval.low);
     }
     for (const auto& cell : entry.cells) {
-      if (!cell.mean_correct_s || cell.answered < kFewestOfCell) continue;
+      if (!cell.mean_correct_s || cell.answered < kFewestOfCell || categories) continue;
       by_difficulty.x.push_back(*cell.mean_correct_s);
       by_difficulty.y.push_back(cell.proportion_correct);
       by_difficulty.low.push_back(cell.accuracy.low);
@@ -337,7 +339,7 @@ std::optional<plot::Figure> trade_figure(const Summary& summary) {
     if (cell_line.x.size() <= kMostJoined) cells.layers.push_back(cell_line);
     cells.layers.push_back(by_difficulty);
   }
-  if (cell_times.empty()) return std::nullopt;
+  if (cell_times.empty() && caf_times.empty()) return std::nullopt;
   const double lowest = std::min(0.45, *std::min_element(accuracies.begin(), accuracies.end()) - 0.03);
   caf.x = plot::fitted("Response time, mean of bin (s)", caf_times, 0.12);
   cells.x = plot::fitted("Mean correct response time (s)", cell_times, 0.12);
@@ -348,7 +350,7 @@ std::optional<plot::Figure> trade_figure(const Summary& summary) {
   figure.chart_width_px = 400;
   figure.chart_height_px = 330;
   if (!caf_times.empty()) figure.charts.push_back(std::move(caf));
-  figure.charts.push_back(std::move(cells));
+  if (!cell_times.empty()) figure.charts.push_back(std::move(cells));
   return figure;
 }
 
