@@ -16,7 +16,8 @@ class Maker {
   std::string text() {
     task_ = pick({"single-interval", "2ifc", "same-different", "oddity"});
     // Not drawn from random_, so that these tasks change nothing else of the files.
-    if (seed_ % 4 == 3 && task_ == "2ifc") task_ = seed_ % 8 == 3 ? "3ifc" : "4ifc";
+    if (seed_ % 4 == 3 && task_ == "2ifc") task_ = "3ifc";
+    if (seed_ % 4 == 1 && task_ == "2ifc") task_ = "4ifc";
     if (seed_ % 4 == 3 && task_ == "same-different") task_ = seed_ % 8 == 3 ? "abx" : "match-to-sample";
     use("task " + task_);
     single_ = task_ == "single-interval";
