@@ -109,26 +109,26 @@ TEST_CASE("a trial with another movement than the protocol asks for is repeated,
   const auto protocol = demo_with(folder, {{"repeats = 2\n", "repeats = 1\n"},
                                            {"[timing]",
                                             "[sensing]\nspeed_mm_s = [200, 300]\nstrokes = 1\n"
-                                            "outside = \"repeat\"\nrepeats = 2\n[timing]"},
+                                            "outside = \"repeat\"\nrepeats = 4\n[timing]"},
                                            {"explore_s = 4.0", "explore_s = 20.0"},
                                            {"deadline_s = 6.0", "deadline_s = 25.0"}});
   How how{kCells};
   how.observer = "sim:residual=4";
   const auto ran = run(
       protocol, [](int, plant::Plant&) {}, how);
-  REQUIRE(ran.trials.size() == 15);
+  REQUIRE(ran.trials.size() == 25);
   CHECK(ran.summary.answered == 5);
   for (std::size_t i = 0; i < ran.trials.size(); ++i) {
     const auto& trial = ran.trials[i];
     CHECK(trial.finger.sensing == "slow");
     CHECK(trial.finger.speed_in_window.value() < 0.1);
     CHECK_FALSE(trial.finger.normal_in_window.has_value());
-    CHECK(trial.outcome == (i % 3 == 2 ? terms::Outcome::answered : terms::Outcome::fault));
-    CHECK(trial.response.has_value() == (i % 3 == 2));
-    CHECK(trial.level == ran.trials[i / 3 * 3].level);
+    CHECK(trial.outcome == (i % 5 == 4 ? terms::Outcome::answered : terms::Outcome::fault));
+    CHECK(trial.response.has_value() == (i % 5 == 4));
+    CHECK(trial.level == ran.trials[i / 5 * 5].level);
   }
   for (const auto& said : ran.messages) CHECK(said == "Slide a little faster");
-  CHECK(ran.messages.size() == 10);
+  CHECK(ran.messages.size() == 20);
 }
 
 TEST_CASE("a trial with the movement that the protocol asks for counts", "[session][forces]") {
