@@ -20,7 +20,7 @@ OperatorDesk::OperatorDesk(SessionBridge& bridge, QObject* parent) : QObject(par
     const auto& setup = session.setup;
     chosen_ = QString::fromStdString(setup.protocol.id + " " + setup.participant + " " + setup.language +
                                      " " + store::name(setup.run_mode));
-    emit chosenChanged();
+    Q_EMIT chosenChanged();
   });
 }
 

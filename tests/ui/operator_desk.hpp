@@ -34,7 +34,7 @@ class OperatorDesk : public QObject {
   Q_INVOKABLE double keptLatencyMs() const;
   Q_INVOKABLE void tellLive(const QString& heading);
 
- signals:
+ Q_SIGNALS:
   void chosenChanged();
 
  private:

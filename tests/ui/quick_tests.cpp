@@ -16,7 +16,7 @@ Q_IMPORT_QML_PLUGIN(TurnpointPlugin)
 class Setup : public QObject {
   Q_OBJECT
 
- public slots:
+ public Q_SLOTS:
   // The application owns these objects, because their timers and pending calls must end before it does.
   void applicationAvailable() {
     script_ = new turnpoint::ui::ScriptedSession(QCoreApplication::instance());

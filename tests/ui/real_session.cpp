@@ -50,7 +50,7 @@ void RealSession::start(const QString& protocol) {
       if (number != sessions_) return;  // this comes from an earlier session, so ignore it
       over_ = true;
       failure_ = failure;
-      emit ended();
+      Q_EMIT ended();
     });
   });
 }

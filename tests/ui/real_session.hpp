@@ -42,7 +42,7 @@ class RealSession : public QObject {
   /// Returns the values of all events of a kind, in the same form as column().
   Q_INVOKABLE QString events(const QString& kind) const;
 
- signals:
+ Q_SIGNALS:
   void ended();
 
  private:

@@ -42,7 +42,7 @@ QStringList ScriptedSession::pages() {
 void ScriptedSession::forget() {
   inputs_.clear();
   touches_ = 0;
-  emit inputsChanged();
+  Q_EMIT inputsChanged();
 }
 
 void ScriptedSession::setKernelLead(double ms) {
@@ -108,7 +108,7 @@ void ScriptedSession::take(const session::Input& input) {
     case InputKind::sync:
       qFatal("the screen cannot send this input");
   }
-  emit inputsChanged();
+  Q_EMIT inputsChanged();
 }
 
 }  // namespace turnpoint::ui

@@ -35,7 +35,7 @@ class ScriptedSession : public QObject {
   /// Milliseconds since the last answer's time stamp.
   Q_INVOKABLE double answerAgeMs() const;
 
- signals:
+ Q_SIGNALS:
   void inputsChanged();
 
  private:

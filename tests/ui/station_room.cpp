@@ -75,19 +75,19 @@ void StationRoom::start(const QString& digits, Begins begins) {
       StationWindow::Place{5.9, QSize(1280, 800), false},
       StationWindow::Operator{operating_.get(), desk::OperatorCode::of_digits(digits.toStdString()), locked},
       path("lab.sqlite"));
-  emit opened();
+  Q_EMIT opened();
 }
 
 void StationRoom::close() {
   second_ = nullptr;
   station_.reset();
   operating_.reset();
-  emit opened();
+  Q_EMIT opened();
 }
 
 void StationRoom::addSecondScreen() {
   second_ = &station_->show_live_window(*QGuiApplication::primaryScreen());
-  emit opened();
+  Q_EMIT opened();
 }
 
 void StationRoom::calibrate() {

@@ -74,7 +74,7 @@ class StationRoom : public QObject {
   Q_INVOKABLE QStringList column(const QString& file, const QString& name, const QString& where = {},
                                  const QString& is = {}) const;
 
- signals:
+ Q_SIGNALS:
   void opened();
 
  private:

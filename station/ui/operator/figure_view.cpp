@@ -20,7 +20,7 @@ FigureView::FigureView(QQuickItem* parent) : QQuickPaintedItem(parent) { setAnti
 
 void FigureView::set_picture(const QVariant& picture) {
   picture_ = picture.value<Picture>();
-  emit pictureChanged();
+  Q_EMIT pictureChanged();
   update();
 }
 

@@ -30,7 +30,7 @@ class FigureView : public QQuickPaintedItem {
   void set_picture(const QVariant& picture);  // the setter of a QML property must have this name (NOLINT)
   void paint(QPainter* painter) override;
 
- signals:
+ Q_SIGNALS:
   void pictureChanged();
 
  private:

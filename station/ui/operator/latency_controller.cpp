@@ -44,7 +44,7 @@ void LatencyController::claim() {
 
 void LatencyController::measure() {
   delay_ = calibration::pair_delays(touches_ns_, edges_ns_, reference_);
-  emit changed();
+  Q_EMIT changed();
 }
 
 QString LatencyController::result() const {
@@ -68,7 +68,7 @@ void LatencyController::keep() {
   panel.quality = quality().toStdString();
   (by_button() ? panel.touch : panel.flash) = delay_;
   kept_ = panel;
-  emit finished();
+  Q_EMIT finished();
 }
 
 }  // namespace turnpoint::ui

@@ -54,7 +54,7 @@ class LatencyController : public QObject {
   Q_INVOKABLE void keep();
   std::optional<calibration::PanelLatency> kept() const { return kept_; }
 
- signals:
+ Q_SIGNALS:
   void changed();
   /// Emitted when the page is finished.
   void finished();

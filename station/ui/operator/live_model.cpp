@@ -26,18 +26,18 @@ void LiveModel::hold_or_show() {
                     kind == PageModel::Kind::Response || kind == PageModel::Kind::Adjust;
   if (hold != held_) {
     held_ = hold;
-    emit heldChanged();
+    Q_EMIT heldChanged();
   }
   if (!waiting_ || (held_ && kind != PageModel::Kind::Adjust)) return;
   state_.heading = waiting_->heading;
   state_.scene = waiting_->scene;
   state_.course = waiting_->course;
   state_.limits = waiting_->limits;
-  emit wordsChanged();
+  Q_EMIT wordsChanged();
   if (held_) return;
   state_ = std::move(*waiting_);
   waiting_.reset();
-  emit picturesChanged();
+  Q_EMIT picturesChanged();
 }
 
 QVariantList LiveModel::scene() const { return to_list(state_.scene); }

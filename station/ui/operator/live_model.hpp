@@ -50,7 +50,7 @@ class LiveModel : public QObject {
   Q_INVOKABLE void arm() { bridge_.arm(); }
   Q_INVOKABLE void annotate(const QString& text) { bridge_.annotate(text); }
 
- signals:
+ Q_SIGNALS:
   void wordsChanged();
   void picturesChanged();
   void heldChanged();

@@ -63,7 +63,7 @@ void OperatorController::refresh() {
   } catch (const std::exception& error) {
     words_.problems = lines_of(error);
   }
-  emit changed();
+  Q_EMIT changed();
   if (selected_ < 0 && !protocols_.empty()) return select(0);
   if (checking_) check_selected();  // the check was stopped when the session began
 }
@@ -71,7 +71,7 @@ void OperatorController::refresh() {
 void OperatorController::look_at_backup() {
   const auto now = desk::backup_note(request_.database);
   if (now == std::exchange(backup_, now)) return;
-  emit changed();
+  Q_EMIT changed();
 }
 
 /// Starts a job on the worker thread. The job returns a function, which then runs on the GUI thread unless a
@@ -92,7 +92,7 @@ void OperatorController::work(std::function<Then(const std::stop_token&)> job,
 void OperatorController::fail(std::vector<std::string> problems) {
   words_.problems = std::move(problems);
   checking_ = preparing_ = false;
-  emit changed();
+  Q_EMIT changed();
 }
 
 /// Shows why no session can begin with the current settings. With other settings, the protocol may still be
@@ -106,7 +106,7 @@ void OperatorController::refuse(std::vector<std::string> reasons) {
 void OperatorController::stay() {
   preparing_ = false;
   if (checking_) check_selected();  // preparing the session had stopped the check, so start it again
-  emit changed();
+  Q_EMIT changed();
 }
 
 const desk::ProtocolEntry* OperatorController::entry() const {
@@ -125,7 +125,7 @@ void OperatorController::select(int index) {
   worker_.abandon();
   if (!entry()->problems.empty()) return fail(entry()->problems);
   checking_ = true;
-  emit changed();
+  Q_EMIT changed();
   check_selected();
 }
 
@@ -137,7 +137,7 @@ void OperatorController::check_selected() {
         return [this, words = std::move(words)] {
           words_ = words;
           checking_ = false;
-          emit changed();
+          Q_EMIT changed();
           if (live_) check_live();
         };
       },
@@ -158,7 +158,7 @@ setup::RunRequest OperatorController::request_for(const char* mode) const {
 void OperatorController::check_live() {
   if (!may_begin()) return;
   preparing_ = true;
-  emit changed();
+  Q_EMIT changed();
   work(
       [this, request = request_for("live")](const std::stop_token& stop) -> Then {
         return [this, reasons = setup::live_problems(request, stop)] { refuse_live(reasons); };
@@ -176,13 +176,13 @@ void OperatorController::chooseLanguage(int index) {
   if (index < -1 || index >= languages().size()) return;
   language_ = index;
   refused_.clear();
-  emit changed();
+  Q_EMIT changed();
 }
 
 void OperatorController::enterParticipant(const QString& code) {
   participant_ = code;
   refused_.clear();
-  emit changed();
+  Q_EMIT changed();
 }
 
 void OperatorController::setLive(bool live) {
@@ -190,13 +190,13 @@ void OperatorController::setLive(bool live) {
   live_ = live;
   refused_.clear();
   not_live_.clear();
-  emit changed();
+  Q_EMIT changed();
   if (live_) check_live();
 }
 
 void OperatorController::setArmed(bool armed) {
   armed_ = armed;
-  emit changed();
+  Q_EMIT changed();
 }
 
 bool OperatorController::may_begin() const {
@@ -212,14 +212,14 @@ void OperatorController::begin() {
   if (language_ >= 0) request.language = languages()[language_].toStdString();
   preparing_ = true;
   refused_.clear();
-  emit changed();
+  Q_EMIT changed();
   work(
       [this, request, ask_code, ask_language, arm = armed_](const std::stop_token& stop) -> Then {
         ChosenSession session{setup::prepare(request, stop), ask_language, ask_code, arm};
         return [this, session] {
           preparing_ = false;
-          emit changed();
-          emit chosen(session);
+          Q_EMIT changed();
+          Q_EMIT chosen(session);
         };
       },
       &OperatorController::refuse);
@@ -229,7 +229,7 @@ void OperatorController::resume() {
   if (preparing_ || !interrupted_) return;
   preparing_ = true;
   refused_.clear();
-  emit changed();
+  Q_EMIT changed();
   work(
       [this, arm = armed_](const std::stop_token&) -> Then {
         std::ostringstream messages;
@@ -240,8 +240,8 @@ void OperatorController::resume() {
         return [this, setup, arm] {
           if (!setup) return stay();
           preparing_ = false;
-          emit changed();
-          emit chosen({*setup, false, false, arm});
+          Q_EMIT changed();
+          Q_EMIT chosen({*setup, false, false, arm});
         };
       },
       &OperatorController::refuse);

@@ -102,7 +102,7 @@ class OperatorController : public QObject {
   Q_INVOKABLE void begin();
   Q_INVOKABLE void resume();
 
- signals:
+ Q_SIGNALS:
   void changed();
   void chosen(const turnpoint::ui::ChosenSession& session);
 

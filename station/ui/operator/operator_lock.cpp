@@ -19,7 +19,7 @@ OperatorLock::OperatorLock(desk::OperatorCode code, Clock clock, QObject* parent
   second_.setInterval(1000);
   connect(&second_, &QTimer::timeout, this, [this] {
     if (wait_s() == 0) second_.stop();
-    emit changed();
+    Q_EMIT changed();
   });
 }
 
@@ -28,7 +28,7 @@ int OperatorLock::wait_s() const { return static_cast<int>(std::ceil(back_off_.w
 void OperatorLock::enter(const QString& typed) {
   if (checking_ || wait_s() > 0 || typed.isEmpty()) return;
   checking_ = true;
-  emit changed();
+  Q_EMIT changed();
   job_.start([this, code = code_, text = typed.toStdString()](const std::stop_token&) {
     bool right = false;
     try {
@@ -44,16 +44,16 @@ void OperatorLock::judge(bool right) {
   checking_ = false;
   if (right) {
     back_off_.right();
-    emit changed();
-    emit opened();
+    Q_EMIT changed();
+    Q_EMIT opened();
     return;
   }
   back_off_.wrong(clock_());
   qWarning("operator's code: %d wrong codes in a row; the next code is accepted in %d s",
            back_off_.wrong_tries(), wait_s());
   if (wait_s() > 0) second_.start();
-  emit changed();
-  emit refused();
+  Q_EMIT changed();
+  Q_EMIT refused();
 }
 
 }  // namespace turnpoint::ui

@@ -35,7 +35,7 @@ class OperatorLock : public QObject {
   /// waiting time has not ended.
   Q_INVOKABLE void enter(const QString& typed);
 
- signals:
+ Q_SIGNALS:
   void opened();
   void refused();
   void changed();

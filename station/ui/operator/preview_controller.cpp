@@ -61,7 +61,7 @@ QVariantList PreviewController::knobs() const {
 void PreviewController::choose(int scene) {
   if (scene < 0 || scene >= static_cast<int>(scenes_.size()) || scene == scene_) return;
   scene_ = scene;
-  emit sceneChanged();
+  Q_EMIT sceneChanged();
   plan();
 }
 
@@ -75,7 +75,7 @@ void PreviewController::set(const QString& factor, double value) {
 
 void PreviewController::plan() {
   busy_ = true;
-  emit changed();
+  Q_EMIT changed();
   {
     const std::lock_guard lock(mutex_);
     wanted_ = Wanted{scenes_[static_cast<std::size_t>(scene_)], factors_};
@@ -118,7 +118,7 @@ void PreviewController::take(Drawn drawn) {
     const std::lock_guard lock(mutex_);
     busy_ = wanted_.has_value();
   }
-  emit changed();
+  Q_EMIT changed();
 }
 
 }  // namespace turnpoint::ui

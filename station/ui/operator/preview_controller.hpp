@@ -55,7 +55,7 @@ class PreviewController : public QObject {
   Q_INVOKABLE void choose(int scene);
   Q_INVOKABLE void set(const QString& factor, double value);
 
- signals:
+ Q_SIGNALS:
   void sceneChanged();
   void changed();
 

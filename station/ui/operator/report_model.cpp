@@ -13,7 +13,7 @@ void ReportModel::take(desk::ReportPages pages) {
       [this, pages = std::move(pages)]() mutable {
         pages_ = std::move(pages);
         ready_ = true;
-        emit changed();
+        Q_EMIT changed();
       },
       Qt::QueuedConnection);
 }
@@ -21,7 +21,7 @@ void ReportModel::take(desk::ReportPages pages) {
 void ReportModel::clear() {
   pages_ = {};
   ready_ = false;
-  emit changed();
+  Q_EMIT changed();
 }
 
 QVariantList ReportModel::outcomes() const { return to_list(pages_.outcomes); }

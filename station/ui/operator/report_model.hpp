@@ -41,7 +41,7 @@ class ReportModel : public QObject {
   QStringList picture_names() const;
   QVariantList pictures() const;
 
- signals:
+ Q_SIGNALS:
   void changed();
 
  private:

@@ -4,7 +4,7 @@ namespace turnpoint::ui {
 
 void PageModel::set(session::Page page) {
   page_ = std::move(page);
-  emit changed();
+  Q_EMIT changed();
 }
 
 PageModel::Kind PageModel::kind() const {

@@ -129,7 +129,7 @@ class PageModel : public QObject {
   QStringList summary_labels() const;
   QStringList summary_values() const;
 
- signals:
+ Q_SIGNALS:
   void changed();
 
  private:

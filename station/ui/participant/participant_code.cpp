@@ -8,19 +8,19 @@ void ParticipantCode::type(const QString& character) {
   const bool letter = (c >= u'A' && c <= u'Z') || (c >= u'0' && c <= u'9');
   if (!letter && (c != u'-' || text_.isEmpty())) return;
   text_ += c;
-  emit changed();
+  Q_EMIT changed();
 }
 
 void ParticipantCode::erase() {
   if (text_.isEmpty()) return;
   text_.chop(1);
-  emit changed();
+  Q_EMIT changed();
 }
 
 void ParticipantCode::clear() {
   if (text_.isEmpty()) return;
   text_.clear();
-  emit changed();
+  Q_EMIT changed();
 }
 
 }  // namespace turnpoint::ui

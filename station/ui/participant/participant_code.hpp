@@ -25,7 +25,7 @@ class ParticipantCode : public QObject {
   Q_INVOKABLE void erase();
   Q_INVOKABLE void clear();
 
- signals:
+ Q_SIGNALS:
   void changed();
 
  private:

@@ -23,7 +23,7 @@ void SessionBridge::show(const session::Page& page) {
       [this, page] {
         left_ = false;
         page_.set(page);
-        emit shown();
+        Q_EMIT shown();
       },
       Qt::QueuedConnection);
 }

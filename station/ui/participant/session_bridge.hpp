@@ -55,7 +55,7 @@ class SessionBridge : public QObject, public session::Display {
   std::int64_t began_ns(int touch_id) const;
 
   /// Reports that a touch has just pressed an answer's button. The next frame must show the pressed button.
-  void pressed() { emit acknowledged(); }
+  void pressed() { Q_EMIT acknowledged(); }
 
   /// Reports an answer that the touch field accepted: the touch that began at `time_ns` chose the answer
   /// `index`.
@@ -75,7 +75,7 @@ class SessionBridge : public QObject, public session::Display {
   /// Reports by how many frames the screen was late during the finished trial; 0 is not reported.
   void frames_lost(int frames);
 
- signals:
+ Q_SIGNALS:
   /// Emitted when a page has been applied, even if nothing changed.
   void shown();
   void acknowledged();

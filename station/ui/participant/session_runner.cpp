@@ -93,7 +93,7 @@ void SessionRunner::run() {
     pages.statements = {error.what()};
     report_.take(pages);
   }
-  emit over();
+  Q_EMIT over();
 }
 
 /// Opens the reader for the kernel's time stamps of touches, if the rig names its panel.

@@ -48,7 +48,7 @@ class SessionRunner : public QObject {
   /// that ended the session, if any.
   std::optional<session::Summary> finish();
 
- signals:
+ Q_SIGNALS:
   /// Emitted when the session is over and its end page is on the screen.
   void over();
 

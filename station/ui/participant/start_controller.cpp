@@ -10,7 +10,7 @@ StartController::StartController(Known known, QObject* parent) : QObject(parent)
 void StartController::await_operator() {
   with_operator_ = true;
   questions_ = {};
-  emit changed();
+  Q_EMIT changed();
 }
 
 void StartController::ask(Questions questions) {
@@ -57,12 +57,12 @@ void StartController::consent() {
 
 bool StartController::back() {
   if (std::exchange(consented_, false)) {
-    emit changed();
+    Q_EMIT changed();
     return true;
   }
   if (questions_.language == asked_.language) return false;
   questions_.language = asked_.language;
-  emit changed();
+  Q_EMIT changed();
   return true;
 }
 
@@ -73,8 +73,8 @@ void StartController::enterCode(const QString& code) {
 }
 
 void StartController::proceed() {
-  emit changed();
-  if (stage() == Stage::Session) emit ready();
+  Q_EMIT changed();
+  if (stage() == Stage::Session) Q_EMIT ready();
 }
 
 }  // namespace turnpoint::ui

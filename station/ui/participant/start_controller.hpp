@@ -53,12 +53,12 @@ class StartController : public QObject {
   Q_INVOKABLE bool isKnown(const QString& code) const { return known_(code); }
   Q_INVOKABLE void consent();
   /// Call this if the participant does not consent, or leaves the last page.
-  Q_INVOKABLE void close() { emit closed(); }
+  Q_INVOKABLE void close() { Q_EMIT closed(); }
   /// Goes back to the previous question. Returns false if this is the first one.
   Q_INVOKABLE bool back();
   Q_INVOKABLE void enterCode(const QString& code);
 
- signals:
+ Q_SIGNALS:
   void changed();
   /// Emitted when everything has been answered and the session may begin.
   void ready();

@@ -26,7 +26,7 @@ class SurfaceDrawing : public QQuickPaintedItem {
   explicit SurfaceDrawing(QQuickItem* parent = nullptr);
   void paint(QPainter* painter) override;
 
- signals:
+ Q_SIGNALS:
   void changed();
 
  private:

@@ -22,7 +22,7 @@ void TouchField::set_open(bool open) {
   }
   timer_.stop();
   update_pressed();
-  emit openChanged();
+  Q_EMIT openChanged();
 }
 
 int TouchField::target_at(QPointF position) const {
@@ -62,7 +62,7 @@ void TouchField::update_pressed() {
   if (pressed == pressed_) return;
   pressed_ = pressed;
   if (pressed_ >= 0) bridge_->pressed();
-  emit pressedChanged();
+  Q_EMIT pressedChanged();
 }
 
 void TouchField::touchEvent(QTouchEvent* event) {

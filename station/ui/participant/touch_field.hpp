@@ -29,7 +29,7 @@ class TouchField : public QQuickItem {
   void set_open(bool open);  // the setter of a QML property must have this name (NOLINT)
   int pressed() const { return pressed_; }
 
- signals:
+ Q_SIGNALS:
   void openChanged();
   void pressedChanged();
 

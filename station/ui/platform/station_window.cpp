@@ -106,7 +106,7 @@ QQuickWindow& StationWindow::show_live_window(QScreen& screen) {
 void StationWindow::begin() {
   setup_.participant = start_.participant().toStdString();
   if (!start_.language().isEmpty()) setup_.language = start_.language().toStdString();
-  emit beginning();
+  Q_EMIT beginning();
   runner_.begin(setup_);
   if (arm_) runner_.bridge().arm();
 }

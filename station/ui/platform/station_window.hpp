@@ -48,7 +48,7 @@ class StationWindow : public QObject {
   QQuickWindow& window() { return *window_; }
   SessionRunner& runner() { return runner_; }
 
- signals:
+ Q_SIGNALS:
   /// Emitted when a session is about to begin.
   void beginning();
 

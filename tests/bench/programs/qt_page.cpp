@@ -30,7 +30,7 @@ Rectangle {
 
 class Printer : public QObject {
   Q_OBJECT
- public slots:
+ public Q_SLOTS:
   void tapped(const QString& name) { std::printf("tapped %s\n", qPrintable(name)), std::fflush(stdout); }
 };
 
