@@ -7,6 +7,7 @@
 
 #include "station/procedure/psychometric.hpp"
 #include "station/random/elementary.hpp"
+#include "station/random/instruction_sets.hpp"
 
 namespace turnpoint::procedure {
 
@@ -41,14 +42,7 @@ double binary_entropy(double p) {
 /// Number of partial sums, computed in parallel, of which a sum of products consists.
 constexpr std::size_t kLanes = 8;
 
-// A function with this attribute is compiled for several kinds of processor, if compiler and C library
-// support that. Its results are the same on all of them.
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__) && \
-    !defined(__SANITIZE_THREAD__)
-#define TURNPOINT_CLONES __attribute__((target_clones("avx2", "default")))
-#else
-#define TURNPOINT_CLONES
-#endif
+using Quad = double __attribute__((vector_size(32)));
 
 /// A sum of products. It always uses the same kLanes partial sums, so that the result does not depend on the
 /// compiler.
@@ -67,7 +61,6 @@ struct Products {
 TURNPOINT_CLONES
 void add(Products& first, Products& second, const double* x, const double* y, const double* z,
          std::size_t n) {
-  using Quad = double __attribute__((vector_size(32)));
   Quad one_low, one_high, two_low, two_high, value, by;
   std::memcpy(&one_low, &first.lane[0], sizeof one_low);
   std::memcpy(&one_high, &first.lane[4], sizeof one_high);
@@ -93,6 +86,57 @@ void add(Products& first, Products& second, const double* x, const double* y, co
   std::memcpy(&second.lane[0], &two_low, sizeof two_low);
   std::memcpy(&second.lane[4], &two_high, sizeof two_high);
   first.rest = one_rest, second.rest = two_rest;
+}
+
+/// The expected entropies are computed for this many stimuli side by side. Each has its own sums, with the
+/// same order of additions as if it were computed alone.
+constexpr std::size_t kAbreast = 4;
+/// The number of groups whose logarithms are computed together
+constexpr std::size_t kBatch = 128;
+
+/// Adds to the sums of each point's group the point's weight times its range times the value of the function,
+/// for kAbreast stimuli. `values` has kAbreast values for each slope.
+TURNPOINT_CLONES
+void add_to_groups(double* __restrict sums, const std::uint32_t* __restrict groups,
+                   const double* __restrict weights, const double* __restrict ranges,
+                   const double* __restrict values, std::size_t slopes, std::size_t ends) {
+  Quad value, sum;
+  for (std::size_t s = 0; s < slopes; ++s) {
+    std::memcpy(&value, values + s * kAbreast, sizeof value);
+    for (std::size_t e = 0; e < ends; ++e, ++weights, ++groups) {
+      double* group = sums + *groups * kAbreast;
+      std::memcpy(&sum, group, sizeof sum);
+      sum += *weights * (ranges[e] * value);
+      std::memcpy(group, &sum, sizeof sum);
+    }
+  }
+}
+
+/// Adds to `totals` the weighted entropies of the answer in `n` groups, at most kBatch, for kAbreast stimuli.
+/// `ones` are the groups' weights of answer 1.
+TURNPOINT_CLONES
+void add_entropies(double* __restrict totals, const double* __restrict ones, const double* __restrict weights,
+                   std::size_t n) {
+  std::array<double, kBatch * kAbreast> one, zero, log_one, log_zero;
+  for (std::size_t i = 0; i < n * kAbreast; ++i) {
+    const double weight = weights[i / kAbreast], p = ones[i] / (weight > 0 ? weight : 1);
+    const bool certain = p <= 0 || p >= 1;
+    one[i] = certain ? 1 : p;  // an entropy of 0
+    zero[i] = certain ? 1 : 1 - p;
+  }
+  random::logs({one.data(), n * kAbreast}, log_one);
+  random::logs({zero.data(), n * kAbreast}, log_zero);
+  Quad total, p, q, log_p, log_q;
+  std::memcpy(&total, totals, sizeof total);
+  for (std::size_t g = 0; g < n; ++g) {
+    if (!(weights[g] > 0)) continue;
+    std::memcpy(&p, &one[g * kAbreast], sizeof p);
+    std::memcpy(&q, &zero[g * kAbreast], sizeof q);
+    std::memcpy(&log_p, &log_one[g * kAbreast], sizeof log_p);
+    std::memcpy(&log_q, &log_zero[g * kAbreast], sizeof log_q);
+    total += weights[g] * (-p * log_p - q * log_q);
+  }
+  std::memcpy(totals, &total, sizeof total);
 }
 
 std::vector<double> prior_weights(const Prior& prior, const std::vector<double>& values) {
@@ -246,24 +290,30 @@ std::vector<double> Posterior::predictives() const {
 /// the nuisance parameters), and returns the weighted mean of the groups' entropies. A group's weight, and
 /// the part of its probability that comes from guessing, do not depend on the stimulus.
 std::vector<double> Posterior::kept_entropies() const {
-  std::vector<double> weight(groups_), guess_part(groups_), ones(groups_), entropies;
-  for (std::size_t i = 0; i < size(); ++i) {
-    weight[kept_[i]] += weights_[i];
-    guess_part[kept_[i]] += weights_[i] * guesses_[i % ends_];
-  }
-  for (std::size_t x = 0; x < stimuli_.size(); ++x) {
-    ones = guess_part;
-    for (std::size_t t = 0; t < values_[threshold].size(); ++t)
-      for (std::size_t s = 0; s < slopes_; ++s) {
-        const double f = core_[row(x, t) * padded_slopes_ + s];
-        const std::size_t first = (t * slopes_ + s) * ends_;
-        for (std::size_t e = 0; e < ends_; ++e)
-          ones[kept_[first + e]] += weights_[first + e] * (ranges_[e] * f);
+  std::vector<double> weight(groups_), guess_part(groups_), entropies;
+  for (std::size_t i = 0; i < size();)
+    for (std::size_t e = 0; e < ends_; ++e, ++i) {
+      weight[kept_[i]] += weights_[i];
+      guess_part[kept_[i]] += weights_[i] * guesses_[e];
+    }
+  std::vector<double> values(slopes_ * kAbreast), ones(groups_ * kAbreast);
+  for (std::size_t first = 0; first < stimuli_.size(); first += kAbreast) {
+    for (std::size_t i = 0; i < ones.size(); ++i) ones[i] = guess_part[i / kAbreast];
+    for (std::size_t t = 0; t < values_[threshold].size(); ++t) {
+      for (std::size_t x = 0; x < kAbreast; ++x) {
+        const double* core = &core_[row(std::min(first + x, stimuli_.size() - 1), t) * padded_slopes_];
+        for (std::size_t s = 0; s < slopes_; ++s) values[s * kAbreast + x] = core[s];
       }
-    double sum = 0;
-    for (std::size_t g = 0; g < groups_; ++g)
-      if (weight[g] > 0) sum += weight[g] * binary_entropy(ones[g] / weight[g]);
-    entropies.push_back(sum);
+      const std::size_t point = t * slopes_ * ends_;
+      add_to_groups(ones.data(), &kept_[point], &weights_[point], ranges_.data(), values.data(), slopes_,
+                    ends_);
+    }
+    std::array<double, kAbreast> totals{};
+    for (std::size_t g = 0; g < groups_; g += kBatch)
+      add_entropies(totals.data(), &ones[g * kAbreast], &weight[g], std::min(kBatch, groups_ - g));
+    entropies.insert(
+        entropies.end(), totals.begin(),
+        totals.begin() + static_cast<std::ptrdiff_t>(std::min(kAbreast, stimuli_.size() - first)));
   }
   return entropies;
 }

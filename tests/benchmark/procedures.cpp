@@ -43,9 +43,9 @@ procedure::Spec spec_of(const Shape& shape) {
   return spec;
 }
 
-std::vector<Cell> own(const Shape& shape) {
+std::vector<Cell> own(const std::string& name, const procedure::Spec& spec, const Shape& shape) {
   using clock = std::chrono::steady_clock;
-  procedure::Posterior posterior(spec_of(shape));
+  procedure::Posterior posterior(spec);
   std::vector<double> times;
   for (int trial = 0; trial < shape.trials; ++trial) {
     const auto start = clock::now();
@@ -54,7 +54,7 @@ std::vector<Cell> own(const Shape& shape) {
     times.push_back(std::chrono::duration<double, std::milli>(clock::now() - start).count());
   }
   std::sort(times.begin(), times.end());
-  return {std::string("turnpoint"),
+  return {name,
           static_cast<double>(shape.stimuli),
           static_cast<double>(posterior.size()),
           times[times.size() / 2],
@@ -118,7 +118,10 @@ Report bench_procedures() {
                 {{"program", "stimuli", "parameters", "median_ms", "p99_ms", "memory_MB"}, {}},
                 {}};
   for (const auto& shape : kShapes) {
-    report.table.rows.push_back(own(shape));
+    auto spec = spec_of(shape);
+    report.table.rows.push_back(own("turnpoint", spec, shape));
+    spec.nuisance = {"lapse"};
+    report.table.rows.push_back(own("turnpoint, lapse as nuisance", spec, shape));
     for (auto& row : peer("questplus", shape, run_peer("questplus_trial.py", arguments_of(shape))))
       report.table.rows.push_back(std::move(row));
     for (auto& row : peer("jsQuestPlus", shape, run_peer("jsquestplus_trial.js", arguments_of(shape))))

@@ -2,6 +2,7 @@
 #include <sstream>
 
 #include "station/drive/synth.hpp"
+#include "station/procedure/posterior.hpp"
 #include "station/setup/prepare.hpp"
 #include "station/store/read.hpp"
 #include "station/text/number.hpp"
@@ -102,6 +103,27 @@ std::string driven(const std::vector<records::TrialRow>& trials) {
   return text::sha256(text.str()).substr(0, 16);
 }
 
+/// A hash of the mutual information of every stimulus, to the last bit, over 20 answers, if these parameters
+/// are of no interest.
+std::string informed(const std::vector<std::string>& nuisance) {
+  procedure::Spec spec;
+  spec.kind = procedure::Kind::psi_marginal;
+  spec.nuisance = nuisance;
+  for (int i = 0; i < 7; ++i) spec.stimuli.values.push_back(-30 + 5 * i);
+  for (int i = 0; i < 21; ++i) spec.threshold.values.push_back(-35 + 2 * i);
+  spec.slope.values = {0.5, 1, 1.5, 2, 3, 4, 5};
+  spec.guess.values = {0, 0.25, 0.5};
+  spec.lapse.values = {0, 0.01, 0.02, 0.04};
+  procedure::Posterior posterior(spec);
+  std::vector<double> all;
+  for (int trial = 0; trial < 20; ++trial) {
+    const auto information = posterior.information();
+    all.insert(all.end(), information.begin(), information.end());
+    posterior.update(posterior.best_stimulus(), trial % 3 != 1);
+  }
+  return hash_of(all);
+}
+
 struct Recorded {
   const char *protocol, *decided, *driven;
 };
@@ -134,6 +156,14 @@ TEST_CASE("a burst has the same samples on every machine, bit for bit", "[everyw
   auto other = burst();
   other.tones.tones[0].frequency_Hz += 1e-9;  // negative control: the hash detects a change of the last digit
   CHECK(rendered<double>(other) != rendered<double>(burst()));
+}
+
+TEST_CASE("the information of a stimulus is the same on every machine, bit for bit", "[everywhere]") {
+  CHECK(informed({}) == "e6b554c77b9065c0");
+  CHECK(informed({"lapse"}) == "5a163edd989ec276");
+  CHECK(informed({"guess", "lapse"}) == "4cca3d50ab4d6231");
+  CHECK(informed({"slope", "guess"}) == "e8e5f1bdc0cd250d");
+  CHECK(informed({"threshold"}) == "25837370ab8fb0eb");
 }
 
 TEST_CASE("the same seed gives the same session on every machine", "[everywhere]") {

@@ -1,4 +1,5 @@
 #include <cmath>
+#include <limits>
 #include <map>
 #include <set>
 
@@ -69,6 +70,44 @@ TEST_CASE("log and exp agree with libm to the last bits and refuse what they can
   CHECK(turnpoint::random::exp(-1000) == 0);
   CHECK_THROWS_AS(turnpoint::random::log(0), std::domain_error);
   CHECK_THROWS_AS(turnpoint::random::exp(710), std::domain_error);
+}
+
+namespace {
+
+/// The same series as log(), with the exponent from libm.
+double log_by_frexp(double x) {
+  int exponent = 0;
+  double m = std::frexp(x, &exponent);
+  if (m < 0.70710678118654752) m *= 2, --exponent;
+  const double z = (m - 1) / (m + 1), z2 = z * z;
+  double sum = 0;
+  for (int k = 11; k >= 1; --k) sum = z2 * (1.0 / (2 * k + 1) + sum);
+  return exponent * 6.93147180369123816490e-01 +
+         (2 * z + (2 * z * sum + exponent * 1.90821492927058770002e-10));
+}
+
+}  // namespace
+
+TEST_CASE("log and logs have the bits of the series, for every kind of number", "[random]") {
+  std::vector<double> numbers{5e-324, 2.2250738585072009e-308, 2.2250738585072014e-308,
+                              1.7976931348623157e308};
+  Draws draws({10, Stream::bootstrap, 0, 0, 0});
+  for (int exponent = -1074; exponent < 1024; ++exponent)
+    for (const double m : {1.0, std::sqrt(2.0), draws.uniform(1, 2), draws.uniform(1, 2)}) {
+      const double x = std::ldexp(m, exponent);
+      for (const double near : {std::nextafter(x, 0), x, std::nextafter(x, 2 * x)})
+        if (near > 0 && std::isfinite(near)) numbers.push_back(near);
+    }
+  std::vector<double> expected, one_by_one, together(numbers.size());
+  for (const double x : numbers)
+    expected.push_back(log_by_frexp(x)), one_by_one.push_back(turnpoint::random::log(x));
+  turnpoint::random::logs(numbers, together);
+  CHECK(one_by_one == expected);
+  CHECK(together == expected);
+  for (const double without : {0.0, -1.0, std::numeric_limits<double>::infinity(), std::nan("")}) {
+    numbers[17] = without;
+    CHECK_THROWS_AS(turnpoint::random::logs(numbers, together), std::domain_error);
+  }
 }
 
 TEST_CASE("the normal distribution function agrees with another to 1e-15", "[random]") {
