@@ -31,6 +31,8 @@ constexpr Goal goals[] = {
     {"boundary-quick", "the end of the smooth part, with an even zone and fewer trials (adaptive)",
      "boundary-adaptive"},
     {"setting", "where people set the boundary themselves with a slider", "boundary-adjustment"},
+    {"boundary-limits", "the end of the smooth part, in series from both sides (method of limits)",
+     "limits-boundary"},
     {"contrast", "the smallest noticeable friction difference (two intervals, QUEST+)", "friction-2ifc"},
     {"contrast-staircase", "the smallest noticeable friction difference (3-down-1-up staircases)",
      "friction-staircase"},

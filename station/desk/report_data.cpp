@@ -152,8 +152,8 @@ report::SessionData report_data(const std::string& database, const std::string& 
                 {"Seed", std::to_string(start.seed)},
                 {"Error of the boundaries", boundary_errors(stored.blocks)}};
   for (const auto& note : stored.session.annotations) data.facts.emplace_back("Note", note);
-  report::add_trials(stored.blocks, protocol, data);
   data.seed = start.seed;
+  report::add_trials(stored.blocks, protocol, data);
   add_health(stored, data);
   data.measured = measured_trials(stored.blocks);
   return data;

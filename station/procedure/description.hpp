@@ -14,6 +14,9 @@ enum class Choice {
   /// the level moves up and down in steps that depend on the answers; the report prints the procedure's own
   /// estimate
   track,
+  /// the level runs from a start in one direction until the answer changes, several times; the report prints
+  /// the procedure's own estimates
+  series,
   /// the answers update a posterior for an assumed psychometric function, and the posterior determines the
   /// levels; the report prints the procedure's own estimate and fits the psychometric function again
   posterior,

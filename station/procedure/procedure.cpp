@@ -17,6 +17,7 @@ extern const Description psi;
 extern const Description psi_marginal;
 extern const Description adjustment;
 extern const Description accelerated_stochastic_approximation;
+extern const Description limits;
 
 namespace {
 
@@ -29,6 +30,7 @@ constexpr std::array kDescriptions{
     &psi_marginal,
     &adjustment,
     &accelerated_stochastic_approximation,
+    &limits,
 };
 
 }  // namespace
@@ -62,6 +64,10 @@ std::vector<Problem> validate(const Spec& spec) {
 
 void Procedure::record_setting(double) {
   throw std::logic_error("procedure: only an adjustment can record a setting");
+}
+
+random::Key key_of(std::uint64_t seed, int block, std::size_t place, int attempt) {
+  return {seed, random::Stream::level_order, block * 64 + static_cast<int>(place), attempt, 0};
 }
 
 std::unique_ptr<Procedure> make_procedure(const Spec& spec, const Context& context, const random::Key& key) {

@@ -64,6 +64,10 @@ class Procedure {
   virtual std::uint64_t state_hash() const = 0;
 };
 
+/// The key of a procedure in a session. `block` is the number of the block, `place` that of the procedure
+/// within it, so that interleaved procedures draw different numbers.
+random::Key key_of(std::uint64_t seed, int block, std::size_t place, int attempt);
+
 /// Makes the procedure. Throws std::invalid_argument with the first problem of validate(). `key` needs seed,
 /// block and attempt; the procedure sets stream and trial itself.
 std::unique_ptr<Procedure> make_procedure(const Spec& spec, const Context& context, const random::Key& key);

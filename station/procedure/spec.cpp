@@ -4,6 +4,12 @@
 
 namespace turnpoint::procedure {
 
+std::pair<double, double> SeriesStarts::ends() const {
+  if (uniform) return *uniform;
+  const auto [low, high] = std::minmax_element(values.begin(), values.end());
+  return {*low, *high};
+}
+
 std::vector<Problem> advise(const Spec& spec) {
   std::vector<Problem> advice;
   if (spec.stimuli.values.size() == 1)

@@ -17,7 +17,8 @@ enum class Kind {
   psi,
   psi_marginal,
   adjustment,
-  accelerated_stochastic_approximation
+  accelerated_stochastic_approximation,
+  limits
 };
 using terms::Function;
 enum class Scale { linear, log10, dB };
@@ -25,6 +26,11 @@ enum class Shuffle { within_repeat, within_block, none };
 enum class StopRule {
   any,  ///< "or": the procedure ends when one rule is met
   all   ///< "and": the procedure ends when all rules are met
+};
+/// The order of the ascending and descending series of the method of limits.
+enum class Directions {
+  alternate,  ///< the first direction is drawn
+  random      ///< shuffled, each direction equally often
 };
 enum class Select { min_expected_entropy };
 
@@ -45,6 +51,16 @@ struct Stop {
   std::optional<int> trials, reversals, min_trials;
   std::optional<double> threshold_sd, entropy_nats;
   StopRule rule = StopRule::any;
+};
+
+/// Starting levels of the series of one direction: a list of which each is used equally often, or an interval
+/// from which each series draws one. Without both there are no series of this direction.
+struct SeriesStarts {
+  std::vector<double> values;
+  std::optional<std::pair<double, double>> uniform;
+  bool empty() const { return values.empty() && !uniform; }
+  /// The lowest and the highest level; must not be called if it is empty.
+  std::pair<double, double> ends() const;
 };
 
 /// The content of a [[procedure]] table, including the keys that it copies from another procedure. Members
@@ -75,6 +91,12 @@ struct Spec {
   std::optional<int> initial_down;
   int discard_reversals = 0;  ///< number of reversals at the start that the estimate leaves out
 
+  // The following members are for the method of limits, in addition to `step` (one step), `min` and `max`.
+  SeriesStarts ascending, descending;
+  int series = 0;    ///< number of series, of both directions together
+  int n_change = 1;  ///< number of new answers in a row that end a series
+  Directions directions = Directions::alternate;
+
   // The following members are for procedures with a posterior.
   Function function = Function::weibull;
   Grid stimuli, threshold, slope, guess, lapse;
@@ -89,6 +111,11 @@ struct Spec {
 const char* name(Kind kind);  ///< the kind's name in a protocol: "constant-stimuli", "up-down", ...
 std::optional<Kind> parse_kind(const std::string& text);
 std::vector<std::string> kind_names();
+
+/// Returns about how many trials the method of limits takes, if the answers change in the middle between the
+/// ascending and the descending starts (with series of one direction, in the middle of what is left of the
+/// range).
+double series_trials(const Spec& spec);
 
 /// One problem of a specification: the key, what is wrong, and what is allowed.
 struct Problem {

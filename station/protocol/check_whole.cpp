@@ -79,6 +79,34 @@ void check_scored(text::TableReader& file, const Reading& reading) {
   }
 }
 
+// The method of limits needs one answer that becomes more frequent as the level rises.
+void check_limits(const Reading& reading) {
+  const auto& protocol = reading.protocol;
+  const auto& task = protocol.task;
+  for (const auto& spec : protocol.procedures) {
+    if (spec.kind != procedure::Kind::limits) continue;
+    const auto report = [&](const char* key, const std::string& what, const std::string& allowed) {
+      reading.findings.add(reading.places.of(key_of(spec, key)), "procedure \"" + spec.name + "\": " + what,
+                           allowed);
+    };
+    if (task.kind != TaskKind::single_interval && task.kind != TaskKind::same_different) {
+      report("kind", "in this kind of task no answer becomes more frequent as the level rises",
+             "use kind = \"single-interval\" or \"same-different\" in [task]");
+      continue;
+    }
+    const auto rule = answer_rule(protocol, spec.level);
+    if (rule.kind != AnswerKind::side && rule.kind != AnswerKind::presence) continue;
+    const auto& risen = task.choices.at(static_cast<std::size_t>(rule.positive)).id;
+    if (!spec.tracks.empty() && spec.tracks != risen)
+      report("tracks", "the answer \"" + spec.tracks + "\" does not become more frequent as the level rises",
+             "tracks = \"" + risen + "\"");
+    const bool magnitude = task.kind == TaskKind::single_interval && rule.kind == AnswerKind::presence;
+    if (magnitude && spec.min && *spec.min < 0)
+      report("min", "below 0 the answer \"" + risen + "\" becomes more frequent as the level falls",
+             "use levels of 0 and above");
+  }
+}
+
 void check_adjustment(const Reading& reading) {
   const auto& protocol = reading.protocol;
   const bool adjusting = protocol.task.kind == TaskKind::adjustment;
@@ -164,6 +192,7 @@ void check_timing(text::TableReader& file, const Reading& reading) {
 void check_whole(text::TableReader& file, Reading& reading) {
   check_timing(file, reading);
   check_scored(file, reading);
+  check_limits(reading);
   check_adjustment(reading);
   const auto sources = sources_of(reading.protocol);
   const auto needed = factors_used(reading.protocol);

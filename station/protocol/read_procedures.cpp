@@ -81,6 +81,9 @@ void check_levels(TableReader& reader, const Spec& spec, const Factor& factor) {
   };
   check_all(spec.kind == Kind::adjustment ? "start" : "values", spec.values);
   check_all("stimuli", spec.stimuli.values);
+  for (const auto& [key, starts] :
+       {std::pair("start_ascending", &spec.ascending), std::pair("start_descending", &spec.descending)})
+    if (!starts->empty() && check(key, starts->ends().first)) check(key, starts->ends().second);
   if (spec.start) check("start", *spec.start);
   if (spec.min) check("min", *spec.min);
   if (spec.max) check("max", *spec.max);

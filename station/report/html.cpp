@@ -266,11 +266,12 @@ std::string detection_section(const Summary& summary) {
 
 /// Says why a procedure's own estimate differs from the fit.
 std::string why_estimates_differ(const SessionData& data) {
-  bool posterior = false, track = false;
+  bool posterior = false, track = false, series = false;
   std::set<std::string> settles_at;
   for (const auto& estimate : data.estimates) {
     posterior |= estimate.choice == procedure::Choice::posterior;
     track |= estimate.choice == procedure::Choice::track;
+    series |= estimate.choice == procedure::Choice::series;
     if (estimate.choice == procedure::Choice::track && estimate.settles_at)
       settles_at.insert(number(100 * *estimate.settles_at) + " %");
   }
@@ -282,6 +283,14 @@ std::string why_estimates_differ(const SessionData& data) {
         "protocol. The fit uses the same answers, but a prior of its own, which is nearly flat, and shows "
         "medians. The fewer answers there are, the further the two are apart. ";
   if (track) why += "A staircase estimates from the last levels that it tried; the fit uses all answers. ";
+  if (series)
+    why +=
+        "The method of limits takes the middle between the last level with the old answer and the first with "
+        "the new one, in each series. If ascending series change at higher levels than descending ones, the "
+        "participant tended to repeat answers (habituation); if at lower levels, to expect the change, or "
+        "some "
+        "answers changed by chance. The "
+        "fit uses all answers, as if neither happened. ";
   if (!settles_at.empty())
     why += fmt::format(
         "A staircase settles where {} of the answers are right (or are the tracked answer), which need not "
@@ -299,7 +308,7 @@ std::string estimate_section(const SessionData& data) {
   for (const auto& estimate : data.estimates) {
     const auto mean =
         estimate.sd ? text::estimated(estimate.mean, *estimate.sd) : text::number(estimate.mean, 3);
-    const bool level = estimate.parameter == "threshold" || estimate.parameter == "pse";
+    const bool level = estimate.parameter.starts_with("threshold") || estimate.parameter == "pse";
     html += "<tr><td>" + escaped(estimate.procedure) + "</td><td>" + escaped(estimate.block) + "</td><td>" +
             escaped(level ? in_unit(estimate.parameter, data) : estimate.parameter) +
             "</td><td class=\"n\">" + minus(mean) + "</td><td class=\"n\">" +

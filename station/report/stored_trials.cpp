@@ -9,6 +9,7 @@
 #include "station/procedure/description.hpp"
 #include "station/protocol/answers.hpp"
 #include "station/protocol/conditions.hpp"
+#include "station/protocol/sources.hpp"
 #include "station/text/number.hpp"
 
 namespace turnpoint::report {
@@ -206,28 +207,47 @@ void set_level_words(const std::string& level, report::SessionData& data) {
   data.level_label = name + " (" + (words.unit.empty() ? "no unit" : words.unit) + ")";
 }
 
+/// Returns the place of a procedure among those of its block, which is part of the key of its draws.
+std::size_t place_in_block(const procedure::Spec& spec, const std::string& block,
+                           const protocol::Protocol& protocol) {
+  for (const auto& part : protocol.plan) {
+    const auto& names = protocol::block_of(part).procedures;
+    if (protocol::block_of(part).name == block)
+      return static_cast<std::size_t>(std::find(names.begin(), names.end(), spec.name) - names.begin());
+  }
+  return 0;
+}
+
 /// Recomputes the final estimates of adaptive procedures from the stored answers.
 void add_estimates(const std::vector<const records::BlockRecord*>& blocks, const protocol::Protocol& protocol,
                    report::SessionData& data) {
   for (const auto& spec : protocol.procedures) {
     if (!procedure::follows_answers(spec)) continue;
     const auto& kind = procedure::description(spec.kind);
-    const bool track = kind.choice == procedure::Choice::track;
+    const bool posterior = kind.choice == procedure::Choice::posterior;
     const double least = spec.tracks.empty() ? 1.0 / data.alternatives : 0;
     for (const auto* block : blocks) {
       if (block->start.practice) continue;
-      const auto replayed = procedure::make_procedure(spec, {}, {});
+      const auto key =
+          procedure::key_of(data.seed, block->start.block_index,
+                            place_in_block(spec, block->start.name, protocol), block->start.attempt);
+      const auto replayed = procedure::make_procedure(spec, {}, key);
       for (const auto& row : block->trials) {
         if (row.procedure != spec.name || row.type != terms::TrialType::experimental ||
-            row.outcome != terms::Outcome::answered)
+            row.outcome == terms::Outcome::fault || row.outcome == terms::Outcome::aborted ||
+            !replayed->next())
           continue;
+        if (row.outcome != terms::Outcome::answered) {
+          replayed->record(procedure::Answer::none);
+          continue;
+        }
         const bool one = spec.tracks.empty() ? row.correct.value_or(false) : row.response == spec.tracks;
         replayed->record(one ? procedure::Answer::one : procedure::Answer::zero);
       }
       if (replayed->recorded() == 0) continue;
       for (const auto& [parameter, estimate] : replayed->estimates())
         data.estimates.push_back({block->start.name, spec.name, parameter, estimate.mean, estimate.sd,
-                                  track ? estimate.basis : "mean of its posterior", kind.choice,
+                                  posterior ? "mean of its posterior" : estimate.basis, kind.choice,
                                   kind.settles_at(spec, least, 1)});
     }
   }

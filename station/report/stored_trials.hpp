@@ -11,7 +11,7 @@ namespace turnpoint::report {
 /// Fills in a session's trials, from the last attempt at each block, with what force cells measured. Also
 /// fills in the settings that determine their analysis: design, conditions, function, scale, ids of the
 /// answers, the parts of the report, and the rule that excludes response times. Used for both stored and
-/// simulated sessions.
+/// simulated sessions. Needs `data.seed`, the session's seed.
 void add_trials(const std::vector<records::BlockRecord>& blocks, const protocol::Protocol& protocol,
                 report::SessionData& data);
 

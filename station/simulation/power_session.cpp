@@ -18,10 +18,11 @@ std::optional<analysis::Interval> interval_of(const std::optional<analysis::Para
   return found ? std::optional(found->interval) : std::nullopt;
 }
 
-/// Adds the procedures' own threshold estimates. A report prints no intervals for them.
+/// Adds the procedures' own threshold estimates; of the method of limits also those of each direction. A
+/// report prints no intervals for them.
 void add_estimates(const Rehearsal& rehearsal, const std::string& unit, std::vector<Finding>& findings) {
   for (const auto& estimate : rehearsal.estimates)
-    if (estimate.parameter == "threshold")
+    if (estimate.parameter.starts_with("threshold"))
       findings.push_back({"procedure " + estimate.procedure, estimate.parameter, unit, estimate.mean, {}});
 }
 
@@ -122,8 +123,8 @@ SessionOutcome simulate_session(const protocol::Protocol& protocol, const PowerO
   };
   const auto rehearsal = rehearse(protocol, session, seed, sits);
   report::SessionData data;
-  report::add_trials(rehearsal.blocks, protocol, data);
   data.seed = seed;
+  report::add_trials(rehearsal.blocks, protocol, data);
   data.replicates = session < options.interval_sessions ? options.replicates : 0;
   const auto& unit = data.level_unit;
   add_estimates(rehearsal, unit, outcome.findings);

@@ -80,7 +80,12 @@ std::optional<double> settled_level(const protocol::Protocol& protocol, const pr
   const auto crosses = [&, low = low, high = high](double value) {
     return without_rounding(crossing(share, low, high, value), threshold);
   };
-  const auto target = procedure::description(spec.kind).settles_at(spec, share(low), share(high));
+  const auto& kind = procedure::description(spec.kind);
+  // The method of limits looks for the level at which both answers are equally likely. It does not converge
+  // on that level, so its bias is a property of the design.
+  const auto target = kind.choice == procedure::Choice::series
+                          ? std::optional(0.5)
+                          : kind.settles_at(spec, share(low), share(high));
   return target ? crosses(*target) : std::nullopt;
 }
 

@@ -18,6 +18,7 @@ constexpr int most_trials_of_a_block = 20'000, enough_trials = 40'000;
 
 double trials_of(const procedure::Spec& spec) {
   if (!follows_answers(spec)) return static_cast<double>(spec.values.size()) * spec.repeats;
+  if (spec.kind == procedure::Kind::limits) return procedure::series_trials(spec);
   return spec.stop.trials.value_or(spec.stop.reversals ? 6 * *spec.stop.reversals : 60);
 }
 

@@ -25,9 +25,7 @@ void Director::State::enter_block() {
   if (b == nullptr) return;
   for (const auto& name : b->procedures) {
     specs.push_back(find_spec(name));
-    // The key contains the number of the procedure within its block, so that interleaved procedures draw
-    // different numbers.
-    random::Key key{seed, Stream::level_order, static_cast<int>(block * 64 + procedures.size()), attempt, 0};
+    const auto key = procedure::key_of(seed, static_cast<int>(block), procedures.size(), attempt);
     procedures.push_back(procedure::make_procedure(*specs.back(), context_for(*specs.back()), key));
   }
   if (!b->levels.empty()) {
@@ -80,7 +78,9 @@ int Director::State::block_expected(const Block& b) const {
   double trials = 0;
   for (const auto& name : b.procedures) {
     const auto& spec = *find_spec(name);
-    if (procedure::follows_answers(spec))
+    if (spec.kind == procedure::Kind::limits)
+      trials += procedure::series_trials(spec);
+    else if (procedure::follows_answers(spec))
       trials += spec.stop.trials.value_or(6 * spec.stop.reversals.value_or(8));
     else
       trials += static_cast<double>(spec.values.size()) * spec.repeats;

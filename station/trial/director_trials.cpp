@@ -122,6 +122,8 @@ TrialSpec Director::State::warmup_trial() const {
     factor = specs.front()->level;
     levels = specs.front()->values.empty() ? specs.front()->stimuli.values : specs.front()->values;
     if (levels.empty() && specs.front()->start) levels = {*specs.front()->start};
+    if (levels.empty() && specs.front()->min && specs.front()->max)
+      levels = {*specs.front()->min, *specs.front()->max};
   }
   const auto easy = easy_levels(levels);
   if (!easy.empty()) {

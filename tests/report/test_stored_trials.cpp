@@ -314,3 +314,35 @@ TEST_CASE("what force cells measured is taken from answered trials, with their c
     CHECK(*trial.felt_mm - *trial.planned_mm == 1.5);
   }
 }
+
+TEST_CASE("the report recomputes the estimates of the method of limits from the stored trials", "[report]") {
+  auto source = replaced(shipped("limits-boundary"), "procedures = [\"series\"]",
+                         "procedures = [\"series\", \"drawn\"]\ninterleave = \"random\"");
+  source = replaced(source, "[[block]]",
+                    "[[procedure]]\nname = \"drawn\"\ncopy = \"series\"\n"
+                    "start_ascending = { uniform = [-30.0, -20.0] }\n\n[[block]]");
+  const auto protocol = protocol::parse(source, "p.toml");
+  // many trials without an answer: some series end without a midpoint
+  const observer::Observer observer(observer::parse("sim:threshold=5,anticipation=0.4"));
+  for (const std::uint64_t seed : {1, 2, 3}) {
+    const auto rehearsal = simulation::rehearse(protocol, 0, seed, simulation::rehearser(observer));
+    report::SessionData data;
+    data.seed = seed;
+    report::add_trials(rehearsal.blocks, protocol, data);
+    REQUIRE(rehearsal.estimates.size() == 8);
+    REQUIRE(data.estimates.size() == 8);
+    for (std::size_t i = 0; i < 8; ++i) {
+      const auto& stored = data.estimates[i];
+      const auto& made = rehearsal.estimates[i];
+      CHECK(stored.procedure == made.procedure);
+      CHECK(stored.parameter == made.parameter);
+      CHECK(stored.mean == made.mean);
+      CHECK(stored.sd == made.sd);
+      CHECK(stored.basis == made.basis);
+    }
+    const auto html = report::to_html(report::summarise(data));
+    CHECK(html.find("habituation") != std::string::npos);
+    CHECK(html.find("threshold ascending (mm)") != std::string::npos);
+    CHECK(html.find("A staircase") == std::string::npos);
+  }
+}

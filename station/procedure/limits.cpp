@@ -1,0 +1,289 @@
+#include "station/procedure/limits.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "station/procedure/description.hpp"
+#include "station/procedure/keys.hpp"
+#include "station/procedure/state_hash.hpp"
+#include "station/random/elementary.hpp"
+
+namespace turnpoint::procedure {
+
+namespace {
+
+constexpr int kMostUnanswered = 3;
+/// Levels that are beyond a limit by less than this fraction of a step are rounding errors.
+constexpr double kSlack = 1e-6;
+constexpr double kLogOf10 = 2.302585092994045684;
+
+/// The number of steps of size 1 on a scale for which the level grows by a factor of e.
+double per_e(Scale scale) { return scale == Scale::dB ? 20 / kLogOf10 : 1 / kLogOf10; }
+
+/// Returns the position of a level on the scale on which the steps are counted.
+double position_of(double level, Scale scale) {
+  return scale == Scale::linear ? level : per_e(scale) * random::log(level);
+}
+
+double level_at(double position, Scale scale) {
+  return scale == Scale::linear ? position : random::exp(position / per_e(scale));
+}
+
+double gap(double low, double high, Scale scale) {
+  return position_of(high, scale) - position_of(low, scale);
+}
+
+}  // namespace
+
+Limits::Limits(const Spec& spec, const random::Key& key) : spec_(spec) {
+  random::Draws draws({key.seed, random::Stream::level_order, key.block, key.attempt, 0});
+  const bool up = !spec.ascending.empty(), down = !spec.descending.empty();
+  std::vector<Direction> order;
+  const bool down_first = !up || (down && draws.below(2) == 1);
+  for (int i = 0; i < spec.series; ++i)
+    order.push_back((up && down ? (i % 2 == 1) != down_first : down) ? Direction::down : Direction::up);
+  if (spec.directions == Directions::random) draws.shuffle(order);
+  for (const auto direction : order) series_.push_back({direction, 0, {}});
+  set_starts(Direction::up, spec.ascending, draws);
+  set_starts(Direction::down, spec.descending, draws);
+}
+
+/// Uses each listed start equally often, in shuffled order. If the number of series is no multiple of the
+/// number of starts, the starts that are used once more are drawn.
+void Limits::set_starts(Direction direction, const SeriesStarts& starts, random::Draws& draws) {
+  std::vector<double> bag;
+  for (auto& series : series_) {
+    if (series.direction != direction) continue;
+    if (starts.uniform) {
+      series.start = draws.uniform(starts.uniform->first, starts.uniform->second);
+      continue;
+    }
+    if (bag.empty()) {
+      bag = starts.values;
+      draws.shuffle(bag);
+    }
+    series.start = bag.back();
+    bag.pop_back();
+  }
+}
+
+double Limits::position_after(int steps) const {
+  const auto& series = series_[current_];
+  const double way = steps * spec_.step.front() * (series.direction == Direction::up ? 1 : -1);
+  return position_of(series.start, spec_.scale) + way;
+}
+
+bool Limits::inside(double position) const {
+  const double slack = kSlack * spec_.step.front();
+  return position >= position_of(*spec_.min, spec_.scale) - slack &&
+         position <= position_of(*spec_.max, spec_.scale) + slack;
+}
+
+std::optional<Proposal> Limits::next() const {
+  if (current_ >= series_.size()) return std::nullopt;
+  const double level = steps_ == 0 ? series_[current_].start : level_at(position_after(steps_), spec_.scale);
+  return Proposal{std::clamp(level, *spec_.min, *spec_.max), {}};
+}
+
+void Limits::end_series(const std::optional<double>& midpoint) {
+  series_[current_].midpoint = midpoint;
+  ++current_;
+  steps_ = changed_ = unanswered_ = 0;
+}
+
+void Limits::record(Answer answer) {
+  if (current_ >= series_.size()) return;
+  if (answer == Answer::none) {
+    if (++unanswered_ > kMostUnanswered) end_series(std::nullopt);
+    return;
+  }
+  unanswered_ = 0;
+  answers_.push_back(answer);
+  const bool going_up = series_[current_].direction == Direction::up;
+  changed_ = (answer == Answer::one) == going_up ? changed_ + 1 : 0;
+  if (changed_ >= spec_.n_change) {
+    const int first_new = steps_ - spec_.n_change + 1;
+    if (first_new == 0) return end_series(std::nullopt);
+    return end_series(0.5 * (position_after(first_new - 1) + position_after(first_new)));
+  }
+  if (!inside(position_after(++steps_))) end_series(std::nullopt);
+}
+
+int Limits::expected() const {
+  if (current_ >= series_.size()) return recorded();
+  const auto left = static_cast<double>(series_.size() - current_) / static_cast<double>(series_.size());
+  return recorded() + std::max(1, static_cast<int>(std::lround(left * series_trials(spec_))) - steps_);
+}
+
+Limits::Mean Limits::mean_of(Direction direction) const {
+  Mean mean;
+  double squares = 0;
+  for (std::size_t i = 0; i < current_; ++i) {
+    if (series_[i].direction != direction) continue;
+    ++mean.ended;
+    if (!series_[i].midpoint) continue;
+    // Welford's recursion
+    const double off = *series_[i].midpoint - mean.position;
+    mean.position += off / ++mean.used;
+    squares += off * (*series_[i].midpoint - mean.position);
+  }
+  if (mean.used > 1) mean.variance = squares / (mean.used - 1) / mean.used;
+  return mean;
+}
+
+Estimate Limits::estimate_of(const Mean& mean, const std::string& kind) const {
+  Estimate estimate;
+  estimate.mean = estimate.mode = level_at(mean.position, spec_.scale);
+  if (mean.variance) {
+    const double error = std::sqrt(*mean.variance);
+    estimate.sd = spec_.scale == Scale::linear ? error : estimate.mean * error / per_e(spec_.scale);
+  }
+  estimate.basis = "midpoints of " + std::to_string(mean.used);
+  if (mean.used < mean.ended) estimate.basis += " of " + std::to_string(mean.ended);
+  estimate.basis += " " + kind + "series";
+  if (mean.variance) estimate.basis += "; SD is the standard error";
+  return estimate;
+}
+
+std::map<std::string, Estimate> Limits::estimates() const {
+  const auto up = mean_of(Direction::up), down = mean_of(Direction::down);
+  std::map<std::string, Estimate> all;
+  if (spec_.descending.empty() || spec_.ascending.empty()) {
+    const bool ascends = spec_.descending.empty();
+    const auto& only = ascends ? up : down;
+    if (only.used > 0) all["threshold"] = estimate_of(only, ascends ? "ascending " : "descending ");
+    return all;
+  }
+  if (up.used > 0) all["threshold ascending"] = estimate_of(up, "ascending ");
+  if (down.used > 0) all["threshold descending"] = estimate_of(down, "descending ");
+  if (up.used == 0 || down.used == 0) return all;
+  Mean both{0.5 * (up.position + down.position), {}, up.used + down.used, up.ended + down.ended};
+  if (up.variance && down.variance) both.variance = 0.25 * (*up.variance + *down.variance);
+  all["threshold"] = estimate_of(both, "");
+  auto difference = all["threshold"];  // for its basis
+  const auto& above = all["threshold ascending"];
+  const auto& below = all["threshold descending"];
+  difference.mean = difference.mode = above.mean - below.mean;
+  difference.sd = above.sd && below.sd
+                      ? std::optional(std::sqrt(*above.sd * *above.sd + *below.sd * *below.sd))
+                      : std::nullopt;
+  all["threshold ascending - descending"] = difference;
+  return all;
+}
+
+std::vector<double> Limits::reversals() const {
+  std::vector<double> midpoints;
+  for (const auto& series : series_)
+    if (series.midpoint) midpoints.push_back(level_at(*series.midpoint, spec_.scale));
+  return midpoints;
+}
+
+std::uint64_t Limits::state_hash() const {
+  StateHash hash;
+  for (const auto answer : answers_) hash.add(static_cast<std::uint64_t>(answer));
+  for (const auto word : {static_cast<int>(current_), steps_, changed_, unanswered_})
+    hash.add(static_cast<std::uint64_t>(word));
+  for (std::size_t i = current_; i < series_.size(); ++i)
+    hash.add(static_cast<std::uint64_t>(series_[i].direction));
+  return hash.value();
+}
+
+double series_trials(const Spec& spec) {
+  const auto reach = [](const SeriesStarts& starts) {
+    return 0.5 * (starts.ends().first + starts.ends().second);
+  };
+  const double low = spec.ascending.empty() ? *spec.min : reach(spec.ascending);
+  const double high = spec.descending.empty() ? *spec.max : reach(spec.descending);
+  const double steps = 0.5 * gap(low, high, spec.scale) / spec.step.front();
+  return spec.series * (std::max(1.0, steps) + spec.n_change);
+}
+
+namespace {
+
+SeriesStarts read_starts(text::TableReader& reader, const std::string& key) {
+  const auto* value = reader.take(key);
+  if (!value) return {};
+  SeriesStarts starts;
+  if (value->kind != text::Value::Kind::table) {
+    starts.values = reader.numbers(key, any_level);
+    return starts;
+  }
+  text::TableReader inner(*value, reader.path(key), reader.findings());
+  inner.require("uniform", "give the lowest and the highest start: { uniform = [2.0, 4.0] }");
+  starts.uniform = inner.maybe_interval("uniform", any_level);
+  inner.finish();
+  return starts;
+}
+
+void read_limits(text::TableReader& reader, Spec& spec) {
+  spec.tracks = reader.string("tracks", "write the id of the answer that is more frequent at higher levels");
+  read_scale(reader, spec);
+  spec.ascending = read_starts(reader, "start_ascending");
+  spec.descending = read_starts(reader, "start_descending");
+  if (!reader.has("start_ascending") && !reader.has("start_descending"))
+    reader.problem("start_ascending", reader.title() + " says nowhere at which levels series start",
+                   "give \"start_ascending\", \"start_descending\" or both: a list of levels, or { uniform = "
+                   "[low, high] }");
+  spec.min = reader.number("min", any_level);
+  spec.max = reader.number("max", any_level);
+  spec.step = {reader.number("step", {0, 1e6, text::Range::Ends::open_low})};
+  spec.series = reader.integer("series", 1, 1000);
+  spec.n_change = reader.integer("n_change", 1, 20, 1);
+  spec.directions = reader.word("directions", {"alternate", "random"}, "alternate") == "random"
+                        ? Directions::random
+                        : Directions::alternate;
+}
+
+void validate_starts(const Spec& spec, std::vector<Problem>& problems) {
+  const auto check = [&](const char* key, const SeriesStarts& starts, double end) {
+    if (starts.empty()) return;
+    const auto [low, high] = starts.ends();
+    if (low < *spec.min || high > *spec.max)
+      problems.push_back({key, "a series starts outside of min to max", "write levels between min and max"});
+    else if (std::fabs(gap(end == *spec.max ? high : low, end, spec.scale)) <
+             spec.step.front() * (spec.n_change - kSlack))
+      problems.push_back({key, "a series reaches its end before the answer can change",
+                          "start at least n_change steps before the end"});
+  };
+  check("start_ascending", spec.ascending, *spec.max);
+  check("start_descending", spec.descending, *spec.min);
+  if (!spec.ascending.empty() && !spec.descending.empty() &&
+      spec.ascending.ends().second >= spec.descending.ends().first)
+    problems.push_back({"start_ascending", "an ascending series starts above a descending one",
+                        "ascending series start below the threshold, descending series above it"});
+}
+
+void validate_limits(const Spec& spec, std::vector<Problem>& problems) {
+  if (spec.tracks.empty()) problems.push_back({"tracks", "missing", "the id of an answer"});
+  if (spec.ascending.empty() && spec.descending.empty())
+    problems.push_back({"start_ascending", "no series has a starting level", "give levels to start from"});
+  if (spec.step.size() != 1 || !positive(spec.step))
+    problems.push_back({"step", "missing or not above 0", "one number above 0"});
+  if (!spec.min || !spec.max || !(*spec.min < *spec.max))
+    problems.push_back({"min", "\"min\" is not less than \"max\"", "min < max"});
+  if (spec.scale != Scale::linear && spec.min && !(*spec.min > 0))
+    problems.push_back({"min", "on a logarithmic scale all levels must be above 0", "write a level above 0"});
+  if (spec.n_change < 1) problems.push_back({"n_change", "below 1", "write a whole number of 1 or more"});
+  const bool both = !spec.ascending.empty() && !spec.descending.empty();
+  if (spec.series < 1 || (both && spec.series % 2 != 0))
+    problems.push_back({"series", "there must be as many ascending as descending series",
+                        "write an even number; each direction has half of it"});
+  if (problems.empty()) validate_starts(spec, problems);
+}
+
+}  // namespace
+
+extern const Description limits{
+    Kind::limits,
+    "limits",
+    Choice::series,
+    read_limits,
+    validate_limits,
+    [](const Spec& spec, const Context&, const random::Key& key) -> std::unique_ptr<Procedure> {
+      return std::make_unique<Limits>(spec, key);
+    },
+    [](const Spec&, double, double) -> std::optional<double> { return std::nullopt; },
+};
+
+}  // namespace turnpoint::procedure
