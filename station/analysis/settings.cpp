@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <boost/math/distributions/chi_squared.hpp>
 #include <cmath>
+#include <map>
 #include <numeric>
+#include <utility>
 
 #include "station/analysis/student.hpp"
 #include "station/text/number.hpp"
@@ -30,25 +32,35 @@ std::optional<Estimate> slope_on_starts(const Settings& s) {
   return s.values.size() < 5 ? std::nullopt : student_slope(s.starts, s.values);
 }
 
-void estimate(Settings& s) {
+/// Returns the standard deviation with its interval; empty with fewer than 3 values, or if all are equal.
+std::optional<Estimate> scatter_of(const std::vector<double>& values) {
+  if (values.size() < kFewest) return std::nullopt;
+  const double degrees = static_cast<double>(values.size()) - 1;
+  const double squares = squares_about(values, mean_of(values));
+  if (squares <= 0) return std::nullopt;
+  const boost::math::chi_squared law(degrees);
+  return Estimate{std::sqrt(squares / degrees),
+                  {std::sqrt(squares / boost::math::quantile(law, 1 - kTail)),
+                   std::sqrt(squares / boost::math::quantile(law, kTail)), 0.95}};
+}
+
+SideSettings side_of(const std::vector<double>& values) {
+  return {static_cast<int>(values.size()), student_mean(values), scatter_of(values)};
+}
+
+void estimate(Settings& s, const std::vector<double>& below, const std::vector<double>& above) {
+  s.from_below = side_of(below), s.from_above = side_of(above);
+  s.side_difference = student_difference(below, above);
   if (s.values.size() < kFewest) {
     s.statements.push_back({"few-settings", std::to_string(s.values.size()) +
                                                 " settings are too few for a mean with an interval; at "
                                                 "least 3 are needed."});
     return;
   }
-  const double n = static_cast<double>(s.values.size());
-  const double mean = mean_of(s.values), squares = squares_about(s.values, mean);
-  const double sd = std::sqrt(squares / (n - 1));
   s.mean = student_mean(s.values);
-  if (sd > 0) {
-    const boost::math::chi_squared law(n - 1);
-    s.sd = Estimate{sd,
-                    {std::sqrt(squares / boost::math::quantile(law, 1 - kTail)),
-                     std::sqrt(squares / boost::math::quantile(law, kTail)), 0.95}};
-  } else {
+  s.sd = scatter_of(s.values);
+  if (!s.sd)
     s.statements.push_back({"equal-settings", "All settings are equal: their scatter cannot be estimated."});
-  }
   s.start_slope = slope_on_starts(s);
   if (s.start_slope && s.start_slope->interval.low > 0)
     s.statements.push_back(
@@ -61,6 +73,10 @@ void estimate(Settings& s) {
 
 std::vector<Settings> settings(const std::vector<TrialRecord>& trials,
                                const std::vector<std::string>& order) {
+  struct Sides {
+    std::vector<double> below, above;
+  };
+  std::map<std::pair<std::string, std::string>, Sides> sides;
   std::vector<Settings> all;
   for (const auto& trial : trials) {
     if (trial.type != TrialType::experimental || trial.outcome != Outcome::answered || !trial.setting)
@@ -69,16 +85,23 @@ std::vector<Settings> settings(const std::vector<TrialRecord>& trials,
       return s.procedure == trial.procedure && s.condition == trial.instruction;
     });
     if (found == all.end())
-      found = all.insert(all.end(), Settings{trial.procedure, trial.instruction, {}, {}, {}, {}, {}, {}});
+      found = all.insert(all.end(),
+                         Settings{trial.procedure, trial.instruction, {}, {}, {}, {}, {}, {}, {}, {}, {}});
     found->starts.push_back(trial.level.value_or(0));
     found->values.push_back(*trial.setting);
+    auto& by_side = sides[{trial.procedure, trial.instruction}];
+    if (trial.start_side == StartSide::below) by_side.below.push_back(*trial.setting);
+    if (trial.start_side == StartSide::above) by_side.above.push_back(*trial.setting);
   }
   const auto place = [&order](const Settings& s) {
     return std::find(order.begin(), order.end(), s.condition) - order.begin();
   };
   std::stable_sort(all.begin(), all.end(),
                    [&](const Settings& a, const Settings& b) { return place(a) < place(b); });
-  for (auto& s : all) estimate(s);
+  for (auto& s : all) {
+    const auto& by_side = sides.at({s.procedure, s.condition});
+    estimate(s, by_side.below, by_side.above);
+  }
   return all;
 }
 

@@ -8,6 +8,12 @@
 
 namespace turnpoint::analysis {
 
+/// The settings of one side of the starting positions, with intervals as below.
+struct SideSettings {
+  int settings = 0;
+  std::optional<Estimate> mean, sd;
+};
+
 /// A participant's settings of a slider. Their mean is the point of subjective equality, and their scatter is
 /// a measure of the just noticeable difference (method of adjustment; Gescheider, Psychophysics: The
 /// Fundamentals, ch. 3).
@@ -20,6 +26,10 @@ struct Settings {
   /// slope of the settings over the slider's starting positions: 0 if the start has no influence, 1 if the
   /// slider was not moved
   std::optional<Estimate> start_slope;
+  /// the same by the side from which the slider started; without sides in the protocol both are empty
+  SideSettings from_below, from_above;
+  /// mean from below minus mean from above, with a 95 % interval by Welch's t
+  std::optional<Estimate> side_difference;
   std::vector<Statement> statements;
 };
 

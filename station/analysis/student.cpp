@@ -28,6 +28,20 @@ std::optional<Estimate> student_mean(const std::vector<double>& values) {
   return student(mean, std::sqrt(squares / (n - 1) / n), n - 1);
 }
 
+std::optional<Estimate> student_difference(const std::vector<double>& a, const std::vector<double>& b) {
+  if (a.size() < 3 || b.size() < 3) return std::nullopt;
+  double error = 0, weights = 0;
+  for (const auto* sample : {&a, &b}) {
+    const double n = static_cast<double>(sample->size()), mean = average(*sample);
+    double squares = 0;
+    for (const double value : *sample) squares += (value - mean) * (value - mean);
+    const double of_mean = squares / (n - 1) / n;
+    error += of_mean, weights += of_mean * of_mean / (n - 1);
+  }
+  if (error <= 0) return std::nullopt;
+  return student(average(a) - average(b), std::sqrt(error), error * error / weights);
+}
+
 std::optional<Estimate> student_slope(const std::vector<double>& x, const std::vector<double>& y) {
   if (x.size() < 3) return std::nullopt;
   const double n = static_cast<double>(x.size()), x_mean = average(x), y_mean = average(y);

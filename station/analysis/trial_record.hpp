@@ -10,6 +10,9 @@ namespace turnpoint::analysis {
 using terms::Outcome;
 using terms::TrialType;
 
+/// On which side of the others a slider's starting position was.
+enum class StartSide { none, below, above };
+
 /// One presented trial as the analysis sees it; times in seconds. Missing values are std::nullopt: a timeout
 /// has no response, response time or score.
 struct TrialRecord {
@@ -32,6 +35,7 @@ struct TrialRecord {
   std::string instruction;
   /// equal for trials of equal difficulty; usually the absolute value of the level
   std::optional<double> difficulty;
+  StartSide start_side = StartSide::none;
 };
 
 /// Returns the conditions of the experimental trials: first those in `order`, then the others in the order in

@@ -38,17 +38,53 @@ std::uint64_t Adjustment::state_hash() const {
   return hash.value();
 }
 
+namespace {
+
+/// Reads "start", or "start_below" and "start_above". In a list "start", the two sides are those of the
+/// middle between its lowest and its highest level.
+void read_starts(text::TableReader& reader, Spec& spec) {
+  auto &below = spec.ascending.values, &above = spec.descending.values;
+  below = reader.maybe_numbers("start_below", any_level);
+  above = reader.maybe_numbers("start_above", any_level);
+  if (!reader.has("start_below") && !reader.has("start_above")) {
+    spec.values = reader.numbers("start", any_level);
+    if (spec.values.empty()) return;
+    const auto [low, high] = std::minmax_element(spec.values.begin(), spec.values.end());
+    const double middle = 0.5 * (*low + *high);
+    for (const double level : spec.values) {
+      if (level < middle) below.push_back(level);
+      if (level > middle) above.push_back(level);
+    }
+    return;
+  }
+  if (reader.has("start"))
+    reader.problem("start", "there are starts from below or above as well",
+                   "give either \"start\", or \"start_below\" and \"start_above\"");
+  if (below.size() != above.size())
+    reader.problem(reader.has("start_below") ? "start_below" : "start_above",
+                   "there must be as many starts from below as from above",
+                   "list equally many levels in \"start_below\" and \"start_above\"");
+  spec.values = below;
+  spec.values.insert(spec.values.end(), above.begin(), above.end());
+}
+
+}  // namespace
+
 extern const Description adjustment{
     Kind::adjustment,
     "adjustment",
     Choice::listed,
     [](text::TableReader& reader, Spec& spec) {
-      spec.values = reader.numbers("start", any_level);
+      read_starts(reader, spec);
       read_list(reader, spec);
     },
     [](const Spec& spec, std::vector<Problem>& problems) {
       if (spec.values.empty())
         problems.push_back({"start", "missing", "list one or more levels to start from"});
+      const auto &below = spec.ascending.values, &above = spec.descending.values;
+      if (!below.empty() && !above.empty() && spec.ascending.ends().second >= spec.descending.ends().first)
+        problems.push_back({"start_below", "a start from below lies above a start from above",
+                            "all of them below all of \"start_above\""});
       if (spec.repeats < 1) problems.push_back({"repeats", "below 1", "write a whole number of 1 or more"});
     },
     [](const Spec& spec, const Context& context, const random::Key& key) -> std::unique_ptr<Procedure> {

@@ -91,6 +91,7 @@ struct Spec {
   std::optional<int> initial_down;
   int discard_reversals = 0;  ///< number of reversals at the start that the estimate leaves out
 
+  // The first two members are also for adjustments: the starts from below and from above.
   // The following members are for the method of limits, in addition to `step` (one step), `min` and `max`.
   SeriesStarts ascending, descending;
   int series = 0;    ///< number of series, of both directions together

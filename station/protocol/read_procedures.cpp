@@ -79,7 +79,12 @@ void check_levels(TableReader& reader, const Spec& spec, const Factor& factor) {
     for (const double level : levels)
       if (!check(key, level)) break;  // report only one problem per list
   };
-  check_all(spec.kind == Kind::adjustment ? "start" : "values", spec.values);
+  if (spec.kind == Kind::adjustment) {
+    check_all("start_below", spec.ascending.values), check_all("start_above", spec.descending.values);
+    check_all("start", spec.values);
+  } else {
+    check_all("values", spec.values);
+  }
   check_all("stimuli", spec.stimuli.values);
   for (const auto& [key, starts] :
        {std::pair("start_ascending", &spec.ascending), std::pair("start_descending", &spec.descending)})

@@ -96,6 +96,19 @@ std::string fit_table(const NamedFit& named, const SessionData& data) {
   return html + notes(named.fit.statements) + notes(named.intervals.statements);
 }
 
+/// Rows for the settings by the side from which the slider started.
+std::string side_rows(const analysis::Settings& settings, const SessionData& data) {
+  std::string html;
+  for (const auto& [name, side] :
+       {std::pair("from below", &settings.from_below), std::pair("from above", &settings.from_above)}) {
+    const auto counted = std::string(", ") + name + " (" + std::to_string(side->settings) + " settings)";
+    html += "<tr><td>" + escaped(in_unit("Mean", data) + counted) + "</td>" + cell(side->mean) + "</tr>";
+    html += "<tr><td>" + escaped(in_unit("Scatter", data) + counted) + "</td>" + cell(side->sd) + "</tr>";
+  }
+  return html + "<tr><td>" + escaped(in_unit("Mean from below \u2212 mean from above", data)) + "</td>" +
+         cell(settings.side_difference) + "</tr>";
+}
+
 std::string settings_section(const Summary& summary) {
   std::string html = "<h2>Settings</h2>\n" + picture(settings_figure(summary));
   if (summary.settings.empty())
@@ -108,10 +121,13 @@ std::string settings_section(const Summary& summary) {
             cell(settings.mean) + "</tr>";
     html += "<tr><td>" + escaped(in_unit("Scatter, standard deviation", summary.data)) + "</td>" +
             cell(settings.sd) + "</tr>";
+    if (settings.from_below.settings > 0 && settings.from_above.settings > 0)
+      html += side_rows(settings, summary.data);
     html += "<tr><td>Influence of the starting position (0: none, 1: full)</td>" +
             cell(settings.start_slope) + "</tr></table>\n" + notes(settings.statements);
   }
-  return html + "<p class=\"soft\">95 % intervals: Student's t, chi squared.</p>\n";
+  return html +
+         "<p class=\"soft\">95 % intervals: Student's t (Welch's for the difference), chi squared.</p>\n";
 }
 
 std::string judgement_section(const Summary& summary) {

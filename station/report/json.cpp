@@ -195,6 +195,10 @@ Json trend_json(const std::optional<analysis::Trend>& trend) {
   return {{"per_100_trials", value(trend->per_100_trials)}, {"interval", value(trend->interval)}};
 }
 
+Json side_json(const analysis::SideSettings& side) {
+  return {{"settings", side.settings}, {"mean", value(side.mean)}, {"sd", value(side.sd)}};
+}
+
 Json facts_json(const std::vector<Fact>& facts) {
   Json json = Json::object();
   for (const auto& [name, text] : facts) json[name] = text;
@@ -222,6 +226,9 @@ std::string to_json(const Summary& summary) {
                                 {"mean", value(settings.mean)},
                                 {"sd", value(settings.sd)},
                                 {"start_slope", value(settings.start_slope)},
+                                {"from_below", side_json(settings.from_below)},
+                                {"from_above", side_json(settings.from_above)},
+                                {"side_difference", value(settings.side_difference)},
                                 {"statements", value(settings.statements)}});
   for (const auto& judged : summary.judgements) json["judgements"].push_back(judgements_json(judged));
   json["confusion"] = Json::array();

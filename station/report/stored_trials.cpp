@@ -31,6 +31,18 @@ protocol::Factors factors_of(const records::TrialRow& row) {
   return factors;
 }
 
+/// Returns the side from which a slider started.
+analysis::StartSide side_of(const records::TrialRow& row, const protocol::Protocol& protocol) {
+  const auto* spec = protocol::find_procedure(protocol, row.procedure);
+  if (!spec || spec->kind != procedure::Kind::adjustment || !row.level) return analysis::StartSide::none;
+  const auto has = [&](const std::vector<double>& starts) {
+    return std::find(starts.begin(), starts.end(), *row.level) != starts.end();
+  };
+  return has(spec->ascending.values)    ? analysis::StartSide::below
+         : has(spec->descending.values) ? analysis::StartSide::above
+                                        : analysis::StartSide::none;
+}
+
 analysis::TrialRecord record_of(const records::TrialRow& row, const records::BlockStart& block,
                                 const protocol::Protocol& protocol) {
   analysis::TrialRecord record;
@@ -46,6 +58,7 @@ analysis::TrialRecord record_of(const records::TrialRow& row, const records::Blo
   if (row.response &&
       (protocol.task.kind == protocol::TaskKind::adjustment || protocol::judges(protocol.task)))
     record.setting = text::read_number(*row.response);
+  record.start_side = side_of(row, protocol);
   record.confidence = row.confidence;
   record.outcome = row.outcome;
   record.response_time_s = row.response_time_s;

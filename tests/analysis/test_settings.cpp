@@ -69,3 +69,28 @@ TEST_CASE("Too few settings, equal settings and void trials give statements inst
   CHECK(equal.statements.at(0).code == "equal-settings");
   CHECK(analysis::settings({timeout}).empty());
 }
+
+TEST_CASE("Settings by the side of the start: means, scatters, and the difference by Welch's t",
+          "[analysis]") {
+  // Welch (1947) by hand: variances 2.5 / 5 and 10 / 5 of the means, error sqrt(2.5), degrees of freedom
+  // 2.5^2 / (0.5^2 / 4 + 2^2 / 4) = 5.882353, and t(.975) = 2.458824 (integrated by Simpson's rule).
+  std::vector<analysis::TrialRecord> trials;
+  for (const double v : {1, 2, 3, 4, 5}) {
+    trials.push_back(set_to(v, -20)), trials.back().start_side = analysis::StartSide::below;
+    trials.push_back(set_to(2 * v, 20)), trials.back().start_side = analysis::StartSide::above;
+  }
+  trials.push_back(set_to(100, 0));  // of neither side
+  const auto s = analysis::settings(trials).front();
+  CHECK(s.values.size() == 11);
+  CHECK(s.from_below.settings == 5);
+  CHECK(s.from_above.settings == 5);
+  CHECK(s.from_below.mean->value == 3);
+  CHECK(s.from_above.mean->value == 6);
+  CHECK(s.from_below.sd->value == Approx(std::sqrt(2.5)));
+  CHECK(s.from_above.sd->value == Approx(std::sqrt(10.0)));
+  CHECK(s.side_difference->value == -3);
+  CHECK(s.side_difference->interval.high == Approx(-3 + 2.458824 * std::sqrt(2.5)).epsilon(1e-6));
+  const auto none = analysis::settings({set_to(1), set_to(2), set_to(4)}).front();
+  CHECK(none.from_below.settings == 0);
+  CHECK_FALSE(none.side_difference);
+}

@@ -346,3 +346,25 @@ TEST_CASE("the report recomputes the estimates of the method of limits from the 
     CHECK(html.find("A staircase") == std::string::npos);
   }
 }
+
+TEST_CASE("settings are reported by the side from which the slider started", "[report]") {
+  const auto sides = [](const std::string& source) {
+    const auto json = report_of(data_of(source, "sim:threshold=4,bias=3"));
+    return json["settings"][0];
+  };
+  const auto shipped_file = shipped("boundary-adjustment");
+  const auto settings = sides(shipped_file);
+  CHECK(settings["from_below"]["settings"] == 9);
+  CHECK(settings["from_above"]["settings"] == 9);
+  const double below = settings["from_below"]["mean"]["value"],
+               above = settings["from_above"]["mean"]["value"];
+  CHECK(settings["mean"]["value"].get<double>() == Approx(0.5 * (below + above)));
+  CHECK(settings["side_difference"]["value"].get<double>() == Approx(below - above));
+  // one list of starts has the same sides
+  const auto list = replaced(shipped_file, "start_below = [-20.0]", "start = [-20.0, 20.0]");
+  CHECK(sides(replaced(list, "start_above", "# start_above")) == settings);
+  const auto one = replaced(shipped_file, "start_below = [-20.0]", "start = [-20.0]");
+  CHECK(sides(replaced(one, "start_above", "# start_above"))["from_below"]["settings"] == 0);
+  const auto html = report::to_html(report::summarise(data_of(shipped_file)));
+  CHECK(html.find("from below (9 settings)") != std::string::npos);
+}
