@@ -16,10 +16,8 @@ double minimum_jerk_speed(double share) {
   return 30 * s * s * (1 - s) * (1 - s);
 }
 
-FingerModel::FingerModel(const Finger& finger, const physics::FrictionMap& map, double step_s,
-                         int frames_per_step, std::uint64_t seed)
+FingerModel::FingerModel(const Finger& finger, double step_s, int frames_per_step, std::uint64_t seed)
     : finger_(finger),
-      map_(map),
       step_s_(step_s),
       rate_Hz_(frames_per_step / step_s),
       film_(1 - std::exp(-2 * std::numbers::pi * finger.film_Hz * step_s)),
@@ -56,7 +54,7 @@ void FingerModel::move(std::int64_t frame) {
   state_.speed_m_s = (back ? -length_m : length_m) * speed;
 }
 
-const FingerState& FingerModel::step(std::int64_t frame, double amplitude_m, bool lifted) {
+const FingerState& FingerModel::step(std::int64_t frame, double relative_friction, bool lifted) {
   const double before_m = state_.finger_m;
   const bool touches = scheduled(frame);
   if (touches)
@@ -70,7 +68,7 @@ const FingerState& FingerModel::step(std::int64_t frame, double amplitude_m, boo
   const double roughness = 1 + finger_.friction_noise * friction_noise_.next();
   const double time_s = static_cast<double>(steps_++) * step_s_;
   state_.normal_N = finger_.normal_N * minimum_jerk(pressed_) * std::max(0.0, normal);
-  state_.relative_friction += film_ * (map_.relative_friction(amplitude_m) - state_.relative_friction);
+  state_.relative_friction += film_ * (relative_friction - state_.relative_friction);
   state_.friction = finger_.friction * std::exp(finger_.friction_drift_per_s * time_s) *
                     state_.relative_friction * std::max(0.0, roughness);
 

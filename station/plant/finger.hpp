@@ -1,7 +1,6 @@
 #pragma once
 #include <cstdint>
 
-#include "physics/friction.hpp"
 #include "station/plant/noise.hpp"
 #include "station/plant/setup.hpp"
 
@@ -26,25 +25,23 @@ struct FingerState {
 /// Simulates the finger in equal time steps.
 class FingerModel {
  public:
-  FingerModel(const Finger& finger, const physics::FrictionMap& map, double step_s, int frames_per_step,
-              std::uint64_t seed);
+  FingerModel(const Finger& finger, double step_s, int frames_per_step, std::uint64_t seed);
 
   /// Replaces all touches by this one. Its frames are those of step().
   void touch(const Touch& touch);
   /// No touch lasts beyond this frame.
   void lift(std::int64_t frame);
-  /// Position at which the finger touches before the next step. step() needs the amplitude at this position.
+  /// Position at which the finger touches before the next step. step() needs the friction at this position.
   double contact_m() const { return state_.contact_m; }
-  /// Advances to the step that begins at frame `frame` of the laboratory. `amplitude_m` is the surface's
-  /// amplitude at contact_m().
-  const FingerState& step(std::int64_t frame, double amplitude_m, bool lifted);
+  /// Advances to the step that begins at frame `frame` of the laboratory. `relative_friction` is the factor
+  /// by which a steady vibration reduces friction at contact_m(); the film follows it with a lag.
+  const FingerState& step(std::int64_t frame, double relative_friction, bool lifted);
 
  private:
   void move(std::int64_t frame);
   bool scheduled(std::int64_t frame);
 
   Finger finger_;
-  physics::FrictionMap map_;
   double step_s_;
   double rate_Hz_;
   double film_;

@@ -17,6 +17,17 @@ std::vector<double> places_of(const std::vector<Pickup>& pickups) {
   return x_m;
 }
 
+// The friction under the fingertip is the mean of this many equal parts.
+constexpr int kFingertipParts = 10;
+
+/// Interpolates values at positions that are `step_m` apart.
+double between(const std::vector<double>& values, double step_m, double x_m) {
+  const double place = std::clamp(x_m / step_m, 0.0, static_cast<double>(values.size() - 1));
+  const auto k = std::min(static_cast<std::size_t>(place), values.size() - 2);
+  const double part = place - static_cast<double>(k);
+  return (1 - part) * values[k] + part * values[k + 1];
+}
+
 // There are 8000 steps a second (one every eighth of a ms).
 int frames_per_step(int rate_Hz) { return static_cast<int>(std::lround(rate_Hz / 8000.0)); }
 
@@ -30,8 +41,7 @@ Plant::Plant(const Setup& setup)
           surface_response(setup.surface, places_of(setup.pickups), setup.band_low_Hz, setup.band_high_Hz)),
       wires_(setup.wires, setup.cells.volt_per_volt_N, setup.rate_Hz, setup.seed),
       cells_(setup.cells, setup.rate_Hz),
-      finger_(setup.finger, setup.friction, static_cast<double>(step_frames_) / setup.rate_Hz, step_frames_,
-              setup.seed) {
+      finger_(setup.finger, static_cast<double>(step_frames_) / setup.rate_Hz, step_frames_, setup.seed) {
   const double fraction = setup.loop_delay_frames - static_cast<double>(whole_delay_);
   // The fault drive_late can delay the drive by up to a second.
   const Delay delay(whole_delay_ + setup.rate_Hz, fraction);
@@ -73,8 +83,8 @@ const Plant::Gains& Plant::gains_for(double frequency_Hz) {
   const auto field = physics::evaluate_tones(setup_.surface, {&tone, 1}, x_m, physics::Model::mode,
                                              physics::Normalise::none);
   for (const auto& v : field[0].v) squares.push_back(std::norm(v));
-  return gains_.emplace(frequency_Hz, physics::fingertip_average(x_m, squares, setup_.finger.fingertip_m))
-      .first->second;
+  auto under = physics::fingertip_average(x_m, squares, setup_.finger.fingertip_m);
+  return gains_.emplace(frequency_Hz, Gains{std::move(squares), std::move(under)}).first->second;
 }
 
 std::size_t Plant::filter_for(double resonance) {
@@ -176,11 +186,7 @@ double Plant::shifted_edge_um() const {
 }
 
 double Plant::gain_at(std::size_t tone, double x_m) const {
-  const Gains& gains = *tones_.at(tone).gains;
-  const double place = std::clamp(x_m / kGain_m, 0.0, static_cast<double>(gains.size() - 1));
-  const auto k = std::min(static_cast<std::size_t>(place), gains.size() - 2);
-  const double part = place - static_cast<double>(k);
-  return std::sqrt((1 - part) * gains[k] + part * gains[k + 1]);
+  return std::sqrt(between(tones_.at(tone).gains->under_fingertip, kGain_m, x_m));
 }
 
 double Plant::amplitude_um(double x_m) const {
@@ -192,12 +198,33 @@ double Plant::amplitude_um(double x_m) const {
   return std::sqrt(sum);
 }
 
+double Plant::amplitude_um_at_point(double x_m) const {
+  double sum = 0;
+  for (const auto& tone : tones_)
+    sum += between(tone.gains->squares, kGain_m, x_m) * std::norm(tone.lock_in.amplitude());
+  return std::sqrt(sum);
+}
+
+/// The factor by which a steady vibration would reduce the friction of a fingertip at x. Parts of the
+/// fingertip beyond an end of the surface do not count.
+double Plant::relative_friction(double x_m) const {
+  double sum = 0;
+  int parts = 0;
+  for (int k = 0; k < kFingertipParts; ++k) {
+    const double at_m = x_m + setup_.finger.fingertip_m * ((k + 0.5) / kFingertipParts - 0.5);
+    if (at_m < 0 || at_m > setup_.surface.length_m) continue;
+    sum += setup_.friction.relative_friction(1e-6 * amplitude_um_at_point(at_m));
+    ++parts;
+  }
+  return parts > 0 ? sum / parts : 1;
+}
+
 /// Computes the finger's forces at the end of the next step. Within a step, forces change linearly.
 void Plant::begin_step() {
   for (auto& tone : tones_) tone.lock_in.begin_step(world_);
   from_ = to_;
   amplitude_um_ = amplitude_um(finger_.contact_m());
-  truth_.finger = finger_.step(world_, amplitude_um_ * 1e-6, now_.lifted);
+  truth_.finger = finger_.step(world_, relative_friction(finger_.contact_m()), now_.lifted);
   to_ = forces_on(setup_.cells, {truth_.finger.normal_N, truth_.finger.lateral_N, truth_.finger.contact_m});
 }
 

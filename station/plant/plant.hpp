@@ -34,7 +34,8 @@ struct Truth {
 ///
 /// The pick-ups respond to any played signal. The finger feels only the tones that set_tones() named. Their
 /// amplitudes at the drive edge are measured in the played signal, and the model `mode` gives the amplitudes
-/// under the finger.
+/// under the finger. Each part of the fingertip has the friction of the amplitude below it, and all parts
+/// press equally, so the finger's friction is their mean.
 ///
 /// Deterministic: the same setup, samples and calls give the same captured samples, however they are divided
 /// into blocks. Not thread-safe.
@@ -80,9 +81,11 @@ class Plant {
   double pickup_error() const { return filters_.front().second.fit_error(); }
 
  private:
-  /// Mean square displacement over the fingertip, per squared displacement of the drive edge, at positions
-  /// kGain_m apart.
-  using Gains = std::vector<double>;
+  /// Squared displacement, and its mean over the fingertip, per squared displacement of the drive edge, at
+  /// positions kGain_m apart.
+  struct Gains {
+    std::vector<double> squares, under_fingertip;
+  };
   static constexpr double kGain_m = 0.5e-3;
   struct Tone {
     LockIn lock_in;
@@ -98,6 +101,8 @@ class Plant {
   void begin_step();
   void next_frame(std::span<double> out);
   double amplitude_um(double x_m) const;
+  double amplitude_um_at_point(double x_m) const;
+  double relative_friction(double x_m) const;
   void write(std::span<double> out);
 
   Setup setup_;

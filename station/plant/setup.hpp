@@ -88,7 +88,7 @@ struct Finger {
   double friction_noise = 0.08;     ///< relative standard deviation; pink from 0.1 to 400 Hz
   double film_Hz = 300;             ///< cut-off with which friction follows the amplitude
   double contact_N_per_m = 1000;
-  double fingertip_m = 0.010;  ///< length over which the rms of the amplitude is taken
+  double fingertip_m = 0.010;  ///< length over which friction is averaged
 };
 
 /// A dead weight and a lateral force on the surface at x, in addition to the finger.

@@ -4,8 +4,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <vector>
 
+#include "station/analysis/proportion.hpp"
 #include "station/analysis/quantile.hpp"
 
 namespace turnpoint::sensing {
@@ -15,17 +17,23 @@ constexpr std::size_t fewest_strokes = 3, fewest_bins = 6;
 // The fit finds the largest step that fits the noise. Therefore a step counts only if it exceeds the
 // half-width of its 95 % interval by this factor.
 constexpr double certain_rise = 2;
-constexpr double narrowest_mm = 0.3, widest_mm = 10;
+// The final fit uses the bins within this distance of the step. Farther away, friction changes again, because
+// the vibration has nodes.
+constexpr double least_reach_mm = 20, reach_widths = 2.5;
+constexpr double narrowest_mm = 0.5, widest_mm = 17;
 
 struct Bin {
   double position_mm, friction;
 };
 
-/// The model: friction = below + rise / (1 + exp(-(x - place) / width)), where x is the position.
+/// The model: friction = below + rise * Phi((x - place) / width), where x is the position and Phi is the
+/// normal distribution function. Friction under a fingertip is a mean over its length, so it approaches its
+/// values on both sides faster than a logistic function does.
 struct Step {
   double place_mm = 0, width_mm = 1, below = 0, rise = 0;
 
-  double share(double x) const { return 1 / (1 + std::exp(-(x - place_mm) / width_mm)); }
+  double z(double x) const { return (x - place_mm) / width_mm; }
+  double share(double x) const { return 0.5 * std::erfc(-z(x) / std::numbers::sqrt2); }
   double miss(const Bin& bin) const { return bin.friction - below - rise * share(bin.position_mm); }
 };
 
@@ -52,7 +60,7 @@ Step with_levels(Step step, const std::vector<Bin>& bins) {
 Step search(const std::vector<Bin>& bins) {
   Step best;
   double least = std::numeric_limits<double>::infinity();
-  for (const double width_mm : {0.5, 1.0, 2.0, 4.0})
+  for (const double width_mm : {1.0, 2.0, 4.0, 7.0})
     for (const Bin& bin : bins) {
       const Step step = with_levels({bin.position_mm, width_mm}, bins);
       const double sum = square_sum(step, bins);
@@ -83,7 +91,9 @@ Step refine(Step step, const std::vector<Bin>& bins, double scale) {
     Eigen::Vector4d right = Eigen::Vector4d::Zero();
     for (const Bin& bin : bins) {
       const double share = step.share(bin.position_mm), miss = step.miss(bin);
-      const double slope = step.rise * share * (1 - share) / step.width_mm;
+      const double z = step.z(bin.position_mm);
+      const double slope =
+          step.rise * std::exp(-0.5 * z * z) / (step.width_mm * std::sqrt(2 * std::numbers::pi));
       // derivatives by place, logarithm of width, `below` and `rise`
       const Eigen::Vector4d by(-slope, -slope * (bin.position_mm - step.place_mm), 1, share);
       const double weight = 1 / std::sqrt(1 + std::pow(miss / scale, 2));
@@ -111,6 +121,23 @@ Step refine(Step step, const std::vector<Bin>& bins, double scale) {
   return step;
 }
 
+std::vector<Bin> near(const Step& step, const std::vector<Bin>& bins) {
+  const double within_mm = std::max(least_reach_mm, reach_widths * step.width_mm);
+  std::vector<Bin> close;
+  for (const Bin& bin : bins)
+    if (std::abs(bin.position_mm - step.place_mm) <= within_mm) close.push_back(bin);
+  return close;
+}
+
+/// The position at which friction is `level` times the friction at larger positions, or half-way up the step
+/// without a level. NaN if friction does not rise through that level.
+double crossing_mm(const Step& step, std::optional<double> level) {
+  if (!level) return step.place_mm;
+  const double share = (*level * (step.below + step.rise) - step.below) / step.rise;
+  if (!(step.rise > 0 && share > 0 && share < 1)) return std::numeric_limits<double>::quiet_NaN();
+  return step.place_mm + step.width_mm * analysis::normal_quantile(share);
+}
+
 std::vector<Bin> usable(const FrictionProfile& profile, int direction) {
   const auto mean = profile.mean(direction).friction;
   std::vector<Bin> bins;
@@ -122,17 +149,22 @@ std::vector<Bin> usable(const FrictionProfile& profile, int direction) {
 /// The step in one direction of movement, and the squared deviations of its jackknife pseudo-values.
 struct OneWay {
   Step step;
+  double felt_mm = 0;
   double place_squares = 0, rise_squares = 0;
   int strokes = 0;
 };
 
-std::optional<OneWay> one_way(const FrictionProfile& profile, int direction) {
+std::optional<OneWay> one_way(const FrictionProfile& profile, int direction, std::optional<double> level) {
   const auto bins = usable(profile, direction);
   if (bins.size() < fewest_bins) return std::nullopt;
   const Step rough = search(bins);
   const double scale = scale_of(rough, bins);
-  OneWay result{refine(rough, bins, scale)};
-  if (!(result.step.place_mm > bins.front().position_mm && result.step.place_mm < bins.back().position_mm))
+  const Step whole = refine(rough, bins, scale);
+  const auto close = near(whole, bins);
+  if (close.size() < fewest_bins) return std::nullopt;
+  OneWay result{refine(whole, close, scale)};
+  result.felt_mm = crossing_mm(result.step, level);
+  if (!(result.felt_mm > close.front().position_mm && result.felt_mm < close.back().position_mm))
     return std::nullopt;
   std::vector<double> places, rises;
   for (std::size_t i = 0; i < profile.strokes.size(); ++i) {
@@ -140,10 +172,12 @@ std::optional<OneWay> one_way(const FrictionProfile& profile, int direction) {
     ++result.strokes;
     FrictionProfile others{profile.bins, profile.strokes};
     others.strokes.erase(others.strokes.begin() + static_cast<std::ptrdiff_t>(i));
-    const auto rest = usable(others, direction);
+    const auto rest = near(whole, usable(others, direction));
     if (rest.size() < fewest_bins) continue;
     const Step without = refine(result.step, rest, scale);
-    places.push_back(without.place_mm);
+    const double place_mm = crossing_mm(without, level);
+    if (std::isnan(place_mm)) continue;
+    places.push_back(place_mm);
     rises.push_back(without.rise);
   }
   if (places.size() > 1) {
@@ -156,9 +190,9 @@ std::optional<OneWay> one_way(const FrictionProfile& profile, int direction) {
 
 }  // namespace
 
-std::optional<FeltStep> felt_step(const FrictionProfile& profile) {
+std::optional<FeltStep> felt_step(const FrictionProfile& profile, std::optional<double> level) {
   if (profile.strokes.size() < fewest_strokes) return std::nullopt;
-  const auto up = one_way(profile, 1), down = one_way(profile, -1);
+  const auto up = one_way(profile, 1, level), down = one_way(profile, -1, level);
   if (!up || !down) return std::nullopt;
   const int degrees = up->strokes + down->strokes - 2;
   const auto se = [&](double squares) {
@@ -167,8 +201,8 @@ std::optional<FeltStep> felt_step(const FrictionProfile& profile) {
   const double t = analysis::student_t_975(degrees), rise = (up->step.rise + down->step.rise) / 2;
   if (!(std::abs(rise) > certain_rise * t * se(up->rise_squares + down->rise_squares))) return std::nullopt;
   FeltStep felt;
-  felt.boundary_mm = (up->step.place_mm + down->step.place_mm) / 2;
-  felt.lag_mm = (up->step.place_mm - down->step.place_mm) / 2;
+  felt.boundary_mm = (up->felt_mm + down->felt_mm) / 2;
+  felt.lag_mm = (up->felt_mm - down->felt_mm) / 2;
   felt.se_mm = se(up->place_squares + down->place_squares);
   felt.half_interval_mm = t * felt.se_mm;
   felt.friction_below = (up->step.below + down->step.below) / 2;

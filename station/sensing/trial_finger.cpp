@@ -156,8 +156,8 @@ TrialForces TrialFinger::result() {
     if (in_trial[stroke.first].index >= last) of_last.push_back(stroke);
   Bins bins;
   bins.count = static_cast<std::size_t>(setup_.length_mm / bins.width_mm);
-  const auto step = felt_step(friction_profile(in_trial, of_last, bins));
-  forces.summary = summarise(in_trial, setup_.bridges.band, strokes, step, setup_.window);
+  forces.profile = friction_profile(in_trial, of_last, bins);
+  forces.summary = summarise(in_trial, setup_.bridges.band, strokes, setup_.window);
   forces.movement = judge(forces.summary, setup_.window);
   return forces;
 }

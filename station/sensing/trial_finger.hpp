@@ -8,6 +8,7 @@
 #include "station/sensing/carrier.hpp"
 #include "station/sensing/finger_track.hpp"
 #include "station/sensing/force_calibration.hpp"
+#include "station/sensing/friction_profile.hpp"
 #include "station/sensing/trial_summary.hpp"
 
 namespace turnpoint::sensing {
@@ -33,7 +34,8 @@ const char* name(ForcesState state);
 struct TrialForces {
   ForcesState state = ForcesState::lost;
   double tare_moved_N = 0;  ///< change of the zero since the previous tare
-  TrialSummary summary;     ///< friction and felt step are those of the last interval
+  TrialSummary summary;
+  FrictionProfile profile;  ///< friction along the strip during the last interval
   Movement movement = Movement::ok;
   std::vector<FingerPoint> track;
   std::int64_t frames_per_point = 0;  ///< point k is at playback frame k * frames_per_point

@@ -9,7 +9,7 @@
 namespace turnpoint::sensing {
 
 TrialSummary summarise(std::span<const FingerPoint> track, Band band, std::span<const Stroke> strokes,
-                       const std::optional<FeltStep>& step, const MovementWindow& window) {
+                       const MovementWindow& window) {
   TrialSummary summary;
   const auto contacts = std::ranges::count_if(track, [](const FingerPoint& point) { return point.contact; });
   summary.contact_s = static_cast<double>(contacts) / points_per_second(band);
@@ -33,13 +33,6 @@ TrialSummary summarise(std::span<const FingerPoint> track, Band band, std::span<
     summary.normal_in_window = share(normal_N, window.least_normal_N, window.most_normal_N);
     summary.speed_mm_s = analysis::mean(speed_mm_s);
     summary.speed_in_window = share(speed_mm_s, window.least_speed_mm_s, window.most_speed_mm_s);
-  }
-  if (step) {
-    summary.mu_low = std::min(step->friction_below, step->friction_above);
-    summary.mu_high = std::max(step->friction_below, step->friction_above);
-    summary.boundary_felt_mm = step->boundary_mm;
-    summary.boundary_se_mm = step->se_mm;
-    summary.lag_mm = step->lag_mm;
   }
   return summary;
 }

@@ -1,9 +1,8 @@
 #pragma once
 #include <limits>
-#include <optional>
 #include <span>
 
-#include "station/sensing/felt_step.hpp"
+#include "station/sensing/strokes.hpp"
 
 namespace turnpoint::sensing {
 
@@ -38,15 +37,13 @@ struct TrialSummary {
   double normal_N = none, normal_sd_N = none;
   /// fraction of the strokes' time with normal force in the window; NaN if any force is allowed
   double normal_in_window = none;
-  double speed_mm_s = none;        ///< mean absolute speed over all strokes
-  double speed_in_window = none;   ///< likewise
-  double mu_low = none, mu_high = none;  ///< friction on the two sides of the felt step
-  double boundary_felt_mm = none, boundary_se_mm = none, lag_mm = none;
+  double speed_mm_s = none;       ///< mean absolute speed over all strokes
+  double speed_in_window = none;  ///< likewise
 };
 
-/// Summarises the track of one trial. `step` is the result of felt_step() for the trial's profile.
+/// Summarises the track of one trial.
 TrialSummary summarise(std::span<const FingerPoint> track, Band band, std::span<const Stroke> strokes,
-                       const std::optional<FeltStep>& step, const MovementWindow& window);
+                       const MovementWindow& window);
 
 Movement judge(const TrialSummary& summary, const MovementWindow& window);
 

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <tuple>
 
+#include "station/sensing/felt_step.hpp"
 #include "station/store/signal_code.hpp"
 #include "station/text/number.hpp"
 
@@ -164,8 +165,13 @@ sensing::MovementWindow window_of(const protocol::Sensing& sensing) {
   return window;
 }
 
-void add_forces(records::TrialRow& row, const sensing::TrialForces& forces, int rate_Hz,
-                const FrameTime& at) {
+std::optional<double> friction_level(const scene::Scene& scene) {
+  const bool at_level = scene.boundary_m && scene.edge.kind == physics::Edge::Kind::friction;
+  return at_level ? std::optional(scene.edge.level) : std::nullopt;
+}
+
+void add_forces(records::TrialRow& row, const sensing::TrialForces& forces, std::optional<double> level,
+                int rate_Hz, const FrameTime& at) {
   const auto known = [](double value) { return std::isfinite(value) ? std::optional(value) : std::nullopt; };
   auto& finger = row.finger;
   const bool known_forces = forces.state == sensing::ForcesState::ok;
@@ -179,11 +185,13 @@ void add_forces(records::TrialRow& row, const sensing::TrialForces& forces, int 
     finger.normal_in_window = known(summary.normal_in_window);
     finger.speed_mm_s = known(summary.speed_mm_s);
     finger.speed_in_window = known(summary.speed_in_window);
-    finger.mu_low = known(summary.mu_low);
-    finger.mu_high = known(summary.mu_high);
-    finger.boundary_felt_mm = known(summary.boundary_felt_mm);
-    finger.boundary_se_mm = known(summary.boundary_se_mm);
-    finger.lag_mm = known(summary.lag_mm);
+    if (const auto step = sensing::felt_step(forces.profile, level)) {
+      finger.mu_low = std::min(step->friction_below, step->friction_above);
+      finger.mu_high = std::max(step->friction_below, step->friction_above);
+      finger.boundary_felt_mm = step->boundary_mm;
+      finger.boundary_se_mm = step->se_mm;
+      finger.lag_mm = step->lag_mm;
+    }
   }
   finger.tare_mN = 1e3 * forces.tare_moved_N;
   if (forces.track.empty()) return;

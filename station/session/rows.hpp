@@ -35,8 +35,13 @@ struct FrameTime {
 };
 /// The movement that the protocol asks for.
 sensing::MovementWindow window_of(const protocol::Sensing& sensing);
-/// Adds what the force cells measured in a trial: the summary, and the signal of the finger.
-void add_forces(records::TrialRow& row, const sensing::TrialForces& forces, int rate_Hz, const FrameTime& at);
+/// The friction, relative to the surface at rest, at which the scene's boundary is planned; empty if the
+/// boundary is not an edge of friction.
+std::optional<double> friction_level(const scene::Scene& scene);
+/// Adds what the force cells measured in a trial: the summary, the boundary felt at the friction `level`
+/// (without one, half-way up the step), and the signal of the finger.
+void add_forces(records::TrialRow& row, const sensing::TrialForces& forces, std::optional<double> level,
+                int rate_Hz, const FrameTime& at);
 
 /// Says what a pick-up found wrong with a trial, with figures: "the surface does not move (-62.1 dB)".
 std::string describe_proof(const records::TrialRow& row);

@@ -38,7 +38,8 @@ class SessionRun {
     std::size_t begun = 0;                ///< number of intervals whose presentation has begun
     std::size_t measured = 0;             ///< number of intervals that pick-ups have measured
     bool decided = false;
-    bool outside = false;  ///< the finger did not move as the protocol asks for
+    bool outside = false;                       ///< the finger did not move as the protocol asks for
+    std::optional<double> friction_level = {};  ///< relative friction at which the last boundary is planned
     /// true if the answer came from a button, so that the touch panel's latency does not apply
     bool by_button = false;
   };

@@ -162,7 +162,7 @@ void SessionRun::handle_in_trial(Input raw, Running& trial) {
   if (input.measured) add_measured(trial.row, *input.measured, input.value, trial.measured++ == 0);
   if (input.forces && !trial.onsets.empty()) {
     const auto& onset = trial.onsets.front();
-    add_forces(trial.row, *input.forces, setup_.rig.output.rate_Hz,
+    add_forces(trial.row, *input.forces, trial.friction_level, setup_.rig.output.rate_Hz,
                {onset.frame, 1e-9 * static_cast<double>(onset.time_ns - started_ns_)});
     const bool asked = setup_.protocol.sensing && input.forces->state == sensing::ForcesState::ok;
     trial.outside = asked && input.forces->movement != sensing::Movement::ok;
@@ -228,6 +228,7 @@ void SessionRun::interval_begins(Running& trial) {
   const auto i = trial.begun++;
   const auto& planned = plans_.take(trial.spec);
   add_tones(trial.row, planned.plans[i], static_cast<int>(i), trial.onsets[i].frame, planned.bursts[i]);
+  trial.friction_level = friction_level(planned.plans[i].back().scene);
 }
 
 void SessionRun::ask_observer(const Running& trial, std::int64_t onset_ns) {

@@ -40,6 +40,7 @@ plant::Setup room_of(const rig::Rig& rig) {
     room.finger.to_m = kStrokeTo * rig.surface.length_m;
     room.finger.stroke_s = (room.finger.to_m - room.finger.from_m) / kStroke_m_s;
     room.finger.pause_s = kPause_s;
+    room.finger.fingertip_m = rig.friction.fingertip_m;
   } else {
     room.capture.reference = room.capture.bridge_a = room.capture.bridge_b = room.capture.lateral =
         std::nullopt;

@@ -150,7 +150,8 @@ const Table<TrialRow>& trial_table() {
                             "Measured coefficient of friction on the rough side of the felt boundary, in the "
                             "scene presented last"}),
        finger<&F::boundary_felt_mm>({"boundary_felt_mm", "boundary_felt_mm",
-                                     "Measured position of the step in friction, in the scene presented "
+                                     "Measured position at which friction crosses the planned edge's level "
+                                     "(for other edges: half-way up the step), in the scene presented "
                                      "last, from the wide end of the surface",
                                      "mm"}),
        finger<&F::boundary_se_mm>(

@@ -101,6 +101,30 @@ TEST_CASE("the finger feels the rms of the model's displacement over the fingert
     }
 }
 
+TEST_CASE("the finger's friction is the mean over the fingertip of the friction below each part", "[plant]") {
+  double largest = 0;
+  for (const double x : {0.05, 0.1, 0.13, 0.15, 0.155}) {
+    Setup setup = quiet_setup();
+    setup.finger.touches = {{}};
+    setup.finger.to_m = setup.finger.from_m = x;
+    Plant plant(setup);
+    plant.set_tones({30e3});
+    run(plant, 3 * 19200,
+        [](std::int64_t n, int channel) { return channel == 0 ? 0.2 * cosine(30e3, n) : 0; });
+    double mean = 0, square = 0;
+    for (int k = 0; k < 200; ++k) {
+      const auto v = model(setup.surface, 30e3, x - 0.005 + 0.01 * (k + 0.5) / 200);
+      mean += setup.friction.relative_friction(0.8e-6 * std::abs(v)) / 200;
+      square += std::norm(v) / 200;
+    }
+    CAPTURE(x);
+    CHECK(plant.truth().finger.relative_friction == Approx(mean).epsilon(5e-3));
+    const double of_rms = setup.friction.relative_friction(0.8e-6 * std::sqrt(square));
+    largest = std::max(largest, std::abs(mean - of_rms));
+  }
+  CHECK(largest > 0.015);  // negative control: the friction of the rms displacement is another
+}
+
 TEST_CASE("the amplitudes of tones under the finger add as squares, and follow what was played", "[plant]") {
   Setup setup = quiet_setup();
   setup.finger.touches = {{}};
