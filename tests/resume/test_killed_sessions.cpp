@@ -4,10 +4,12 @@
 
 #include <chrono>
 #include <cstdlib>
+#include <fstream>
 #include <random>
 
 #include "station/setup/prepare.hpp"
 #include "station/store/read.hpp"
+#include "station/system/read_file.hpp"
 #include "tests/store/sample.hpp"
 #include "tests/support/catch.hpp"
 
@@ -18,11 +20,64 @@ namespace {
 /// TURNPOINT_KILLS=1000 makes a long run with that many kills, and with an adaptive protocol in addition.
 const char* const kLong = std::getenv("TURNPOINT_KILLS");
 
-int kills_wanted() { return kLong != nullptr ? std::atoi(kLong) : 10; }
+/// A shipped protocol, with texts that are replaced, and the number of kills without TURNPOINT_KILLS.
+struct Case {
+  std::string file;
+  std::vector<std::pair<std::string, std::string>> edits = {};
+  int kills = 4;
+};
+
+int kills_wanted(const Case& wanted) { return kLong != nullptr ? std::atoi(kLong) : wanted.kills; }
+
+/// Every kind of task, with few trials. The first three sessions are whole.
+std::vector<Case> cases() {
+  const std::pair<std::string, std::string> three_each{"repeats = 15", "repeats = 3"};
+  const std::pair<std::string, std::string> few{"repeats = 8", "repeats = 3"};
+  const std::pair<std::string, std::string> twelve{"stop = { trials = 70", "stop = { trials = 12"};
+  const std::pair<std::string, std::string> at_least{"min_trials = 30", "min_trials = 12"};
+  std::vector<Case> all{
+      {"demo.toml", {}, 10},
+      {"magnitude-standard.toml", {}, 10},
+      {"friction-confidence.toml", {}, 10},
+      {"friction-identification.toml", {three_each}},
+      {"friction-3ifc.toml", {twelve, at_least}},
+      {"friction-3ifc.toml",
+       {twelve,
+        at_least,
+        {"kind = \"3ifc\"", "kind = \"4ifc\""},
+        {"{ id = \"third\",",
+         "{ id = \"fourth\", label = { en = \"4th\", de = \"4.\", ja = \"四\" } },\n{ id = \"third\","},
+        {"0.3333333333333333", "0.25"}}},
+      {"friction-abx.toml", {three_each}},
+      {"friction-abx.toml", {three_each, {"kind = \"abx\"", "kind = \"match-to-sample\""}}},
+      {"smoothness-points.toml", {few}},
+      {"smoothness-line.toml", {few}},
+      {"magnitude-free.toml", {few}},
+      {"limits-boundary.toml", {{"series = 12", "series = 4"}}},
+      {"limits-boundary.toml",
+       {{"series = 12", "series = 4"},
+        {"n_change = 1", "n_change = 2"},
+        {"[22.0, 26.0, 30.0]", "{ uniform = [20.0, 30.0] }"}}},
+      {"boundary-adjustment.toml", {{"repeats = 9", "repeats = 4"}}}};
+  if (kLong != nullptr) all.push_back({"boundary-adaptive.toml"});
+  return all;
+}
+
+/// Writes the protocol with its edits into the folder, and returns its path.
+std::string written(const Case& wanted, const TemporaryFolder& folder) {
+  auto source = system::read_file(std::string(TURNPOINT_SOURCE_DIR) + "/protocols/" + wanted.file);
+  for (const auto& [from, to] : wanted.edits) {
+    REQUIRE(source.find(from) != std::string::npos);
+    source.replace(source.find(from), from.size(), to);
+  }
+  const auto path = folder / wanted.file;
+  std::ofstream(path) << source;
+  return path;
+}
 
 session::Setup setup_for(const std::string& protocol, const std::string& db) {
   setup::RunRequest request;
-  request.protocol = std::string(TURNPOINT_SOURCE_DIR) + "/protocols/" + protocol;
+  request.protocol = protocol;
   request.rig = std::string(TURNPOINT_SOURCE_DIR) + "/tests/support/thin_plate.toml";
   request.participant = "P01";
   request.database = db;
@@ -96,10 +151,10 @@ void check_equal(const records::TrialRow& a, const records::TrialRow& b) {
 
 TEST_CASE("sessions killed at random moments and gone on with equal the unbroken one, trial by trial",
           "[resume]") {
-  const std::string protocol =
-      GENERATE("demo.toml", "magnitude-standard.toml", "friction-confidence.toml", "boundary-adaptive.toml");
-  if (kLong == nullptr && protocol == "boundary-adaptive.toml") return;
+  const auto wanted = GENERATE(from_range(cases()));
   TemporaryFolder folder;
+  const auto protocol = written(wanted, folder);
+  INFO(wanted.file << (wanted.edits.empty() ? "" : ", " + wanted.edits.back().second));
   const auto whole = folder / "whole.sqlite";
   const auto start = std::chrono::steady_clock::now();
   run_to_end(setup_for(protocol, whole));
@@ -111,7 +166,7 @@ TEST_CASE("sessions killed at random moments and gone on with equal the unbroken
   std::uniform_int_distribution<useconds_t> moment(0, static_cast<useconds_t>(1.2 * whole_us.count()));
   int kills = 0, finished = 0, resumed = 0;
   // If the unbroken session ran while the machine was busy, most kills come too late: then try more often.
-  while (kills < kills_wanted() || finished == 0 || (resumed == 0 && finished < 100)) {
+  while (kills < kills_wanted(wanted) || finished == 0 || (resumed == 0 && finished < 100)) {
     const auto db = folder / ("broken" + std::to_string(finished) + ".sqlite");
     const auto setup = setup_for(protocol, db);
     while (killed_on_the_way(setup, moment(random))) ++kills;
