@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ostream.h>
 
+#include <algorithm>
 #include <charconv>
 #include <filesystem>
 #include <memory>
@@ -99,9 +100,14 @@ void print(std::ostream& out, const simulation::Power& power) {
              power.observers < power.asked ? fmt::format(" of {}", power.asked) : "", number(power.trials, 4),
              number(power.minutes, 3),
              power.accuracy ? fmt::format(", {} % right", number(100 * *power.accuracy, 3)) : "");
-  constexpr auto line = "{:<22} {:<34} {:>9} {:>9} {:>9} {:>9} {:>9} {:>20} {:>9} {:>9}  {}\n";
-  fmt::print(out, line, "source", "number", "truth", "mean", "bias", "SD", "median", "quartiles", "width",
-             "coverage", "sessions");
+  const auto named = [](const simulation::Recovery& r) {
+    return fmt::format("{} ({})", r.parameter, r.unit.empty() ? "no unit" : r.unit);
+  };
+  std::size_t widest = 34;
+  for (const auto& r : power.recoveries) widest = std::max(widest, named(r).size());
+  constexpr auto line = "{:<22} {:<{}} {:>9} {:>9} {:>9} {:>9} {:>9} {:>20} {:>9} {:>9}  {}\n";
+  fmt::print(out, line, "source", "number", widest, "truth", "mean", "bias", "SD", "median", "quartiles",
+             "width", "coverage", "sessions");
   for (const auto& r : power.recoveries) {
     // Print no more digits than the spread between the simulated sessions justifies.
     const double spread = r.upper_quartile - r.lower_quartile;
@@ -110,9 +116,9 @@ void print(std::ostream& out, const simulation::Power& power) {
     };
     const auto moment = [&](double value) { return r.heavy_tailed ? std::string("-") : shown(value); };
     const auto quartiles = shown(r.lower_quartile) + " to " + shown(r.upper_quartile);
-    fmt::print(out, line, r.source, fmt::format("{} ({})", r.parameter, r.unit.empty() ? "no unit" : r.unit),
-               shown(r.truth), moment(r.mean), shown(r.bias), moment(r.sd), shown(r.median), quartiles,
-               shown(r.interval_width), r.coverage ? fmt::format("{:.3f}", r.coverage->value) : "n/a",
+    fmt::print(out, line, r.source, named(r), widest, shown(r.truth), moment(r.mean), shown(r.bias),
+               moment(r.sd), shown(r.median), quartiles, shown(r.interval_width),
+               r.coverage ? fmt::format("{:.3f}", r.coverage->value) : "n/a",
                fmt::format("{} of {}", r.estimates.size(), r.sessions));
   }
   fmt::print(out,

@@ -122,14 +122,6 @@ report::Design design_of(const protocol::Protocol& protocol, const protocol::Ans
   return sides && below && above ? report::Design::two_sided : report::Design::forced_choice;
 }
 
-std::vector<analysis::Deciding> deciding_in(protocol::TaskKind kind) {
-  using analysis::Deciding;
-  if (kind == protocol::TaskKind::several_intervals) return {Deciding::largest};
-  if (kind == protocol::TaskKind::abx || kind == protocol::TaskKind::match_to_sample)
-    return {Deciding::independent, Deciding::differencing};
-  return {};
-}
-
 /// Chooses the function to fit: the one that the protocol's procedure assumes. If no procedure assumes one,
 /// chooses a function that suits the levels.
 void choose_function(const protocol::Protocol& protocol, report::SessionData& data) {
@@ -267,6 +259,14 @@ void add_estimates(const std::vector<const records::BlockRecord*>& blocks, const
 }
 
 }  // namespace
+
+std::vector<analysis::Deciding> deciding_in(protocol::TaskKind kind) {
+  using analysis::Deciding;
+  if (kind == protocol::TaskKind::several_intervals) return {Deciding::largest};
+  if (kind == protocol::TaskKind::abx || kind == protocol::TaskKind::match_to_sample)
+    return {Deciding::independent, Deciding::differencing};
+  return {};
+}
 
 void add_trials(const std::vector<records::BlockRecord>& blocks, const protocol::Protocol& protocol,
                 report::SessionData& data) {

@@ -8,6 +8,9 @@
 
 namespace turnpoint::report {
 
+/// The models by which the report computes d' in this kind of task; empty if it computes none.
+std::vector<analysis::Deciding> deciding_in(protocol::TaskKind kind);
+
 /// Fills in a session's trials, from the last attempt at each block, with what force cells measured. Also
 /// fills in the settings that determine their analysis: design, conditions, function, scale, ids of the
 /// answers, the parts of the report, and the rule that excludes response times. Used for both stored and

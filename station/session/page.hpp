@@ -70,6 +70,8 @@ struct Page {
   bool wide_end_left = true;
   /// number of the current interval, counted from 1, and total number of intervals
   int interval = 0, intervals = 0;
+  /// what the intervals are called, such as A, B, X; if empty, they are numbered
+  std::vector<std::string> interval_names;
   /// number of trials done in the session, and in total; the total may be an estimate
   int trials_done = 0, trials_total = 0;
   double remaining_s = 0;  ///< remaining time of a break

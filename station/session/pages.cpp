@@ -48,6 +48,14 @@ PageKind kind_of(Phase phase) {
   }
 }
 
+/// The letters by which the questions of these tasks refer to the intervals. They are the same in every
+/// language.
+std::vector<std::string> interval_names(protocol::TaskKind kind) {
+  if (kind == protocol::TaskKind::abx) return {"A", "B", "X"};
+  if (kind == protocol::TaskKind::match_to_sample) return {"X", "A", "B"};
+  return {};
+}
+
 }  // namespace
 
 Pages::Pages(const Setup& setup) : setup_(setup) {}
@@ -97,6 +105,7 @@ Page Pages::of_phase(Phase phase, int interval, const trial::TrialSpec& spec, co
   page.mark_mm = mark_of(spec);
   page.interval = interval + 1;
   page.intervals = static_cast<int>(spec.intervals.size());
+  page.interval_names = interval_names(task.kind);
   page.text = text(setup_.protocol.task.question);
   page.answers_open = phase == Phase::response || (phase == Phase::stimulus && explored);
   for (const auto& choice : task.choices)

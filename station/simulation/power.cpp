@@ -3,11 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <set>
 #include <utility>
 
 #include "station/analysis/proportion.hpp"
 #include "station/analysis/quantile.hpp"
 #include "station/protocol/conditions.hpp"
+#include "station/report/stored_trials.hpp"
 #include "station/simulation/power_session.hpp"
 
 namespace turnpoint::simulation {
@@ -47,6 +49,7 @@ class Truths {
     if (outcomes.front().design == report::Design::categories)
       for (const auto& condition : with_none(protocol::conditions(protocol)))
         add(source_of("answers", condition), "proportion correct", generating.share_correct(condition));
+    add_d_primes(protocol, generating, observer);
     add_fits(generating, observer, outcomes);
     add_differences(generating, observer, protocol::conditions(protocol));
   }
@@ -65,6 +68,29 @@ class Truths {
   static std::vector<std::string> with_none(std::vector<std::string> names) {
     names.emplace_back();
     return names;
+  }
+
+  /// The true d' is the one at which the model has the observer's own proportion correct.
+  void add_d_primes(const protocol::Protocol& protocol, const GeneratingValues& generating,
+                    const observer::Observer& observer) {
+    std::set<double> levels;
+    for (const auto& spec : protocol.procedures) levels.insert(spec.values.begin(), spec.values.end());
+    const auto unit = protocol.procedures.empty()
+                          ? std::string()
+                          : protocol::words_of(protocol.procedures.front().level).unit;
+    const auto intervals = static_cast<int>(protocol.task.choices.size());
+    const auto add_at = [&](const std::string& condition, const std::optional<double>& level,
+                            const std::optional<double>& share) {
+      for (const auto model : report::deciding_in(protocol.task.kind))
+        if (share)
+          add(source_of("answers", condition), d_prime_name(model, level, unit),
+              analysis::d_prime(model, *share, intervals));
+    };
+    for (const auto& condition : with_none(protocol::conditions(protocol))) {
+      add_at(condition, std::nullopt, generating.share_correct(condition));
+      for (const double level : levels)
+        add_at(condition, level, generating.share_correct_at(condition, level, observer));
+    }
   }
 
   void add_fits(const GeneratingValues& generating, const observer::Observer& observer,
@@ -117,7 +143,9 @@ void finish(Recovery& entry, const std::vector<analysis::Interval>& intervals) {
     if (entry.truth && interval.low <= *entry.truth && *entry.truth <= interval.high) ++hold;
   }
   const auto count = static_cast<int>(intervals.size());
-  entry.interval_width = analysis::quantile(std::move(widths), 0.5);
+  // d' has no upper end if all answers are right
+  const double width = analysis::quantile(std::move(widths), 0.5);
+  if (std::isfinite(width)) entry.interval_width = width;
   if (entry.truth)
     entry.coverage =
         analysis::Proportion{hold, count, static_cast<double>(hold) / count, analysis::wilson(hold, count)};

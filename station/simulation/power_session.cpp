@@ -1,5 +1,6 @@
 #include "station/simulation/power_session.hpp"
 
+#include <algorithm>
 #include <stdexcept>
 
 #include "station/analysis/trade.hpp"
@@ -9,6 +10,7 @@
 #include "station/simulation/parallel.hpp"
 #include "station/simulation/rehearsal.hpp"
 #include "station/terms/usage_error.hpp"
+#include "station/text/number.hpp"
 
 namespace turnpoint::simulation {
 
@@ -80,6 +82,22 @@ void add_fits(const report::SessionData& data, const std::string& unit, SessionO
   }
 }
 
+/// Adds d' in each condition over all trials and, if the levels are fixed, at each level.
+void add_discriminations(const protocol::Protocol& protocol, const report::SessionData& data,
+                         std::vector<Finding>& findings) {
+  if (data.deciding.empty() || !report::shows(data, "dprime")) return;
+  const bool fixed = std::none_of(protocol.procedures.begin(), protocol.procedures.end(),
+                                  [](const auto& spec) { return procedure::follows_answers(spec); });
+  for (const auto& entry :
+       analysis::discriminate(data.trials, data.conditions, data.deciding, data.alternatives)) {
+    if (entry.level && !fixed) continue;
+    for (const auto& [model, estimate] : entry.d_primes)
+      findings.push_back({source_of("answers", entry.condition),
+                          d_prime_name(model, entry.level, data.level_unit), "SD", estimate.value,
+                          estimate.interval});
+  }
+}
+
 void add_differences(const analysis::Trade& trade, std::vector<Finding>& findings) {
   for (const auto& difference : trade.differences)
     if (difference.estimate)
@@ -107,6 +125,12 @@ std::string source_of(const std::string& what, const std::string& instruction) {
   return instruction.empty() ? what : what + " " + instruction;
 }
 
+std::string d_prime_name(analysis::Deciding model, const std::optional<double>& level,
+                         const std::string& unit) {
+  std::string name = std::string("d', ") + analysis::name(model);
+  return level ? name + ", at " + text::number(*level, 4) + (unit.empty() ? "" : " ") + unit : name;
+}
+
 const char* spread_name(const analysis::FitOptions& options) {
   return options.function == terms::Function::normal ? "spread" : "slope";
 }
@@ -129,6 +153,7 @@ SessionOutcome simulate_session(const protocol::Protocol& protocol, const PowerO
   const auto& unit = data.level_unit;
   add_estimates(rehearsal, unit, outcome.findings);
   add_fits(data, unit, outcome);
+  add_discriminations(protocol, data, outcome.findings);
   if (data.replicates > 0)
     add_differences(analysis::trade(data.trials, report::trade_options(data)), outcome.findings);
   outcome.design = data.design;

@@ -50,6 +50,9 @@ void complete(const protocol::Protocol& protocol, const PowerOptions& options,
 
 /// The source of a finding: `what`, or `what` and the condition if there is one.
 std::string source_of(const std::string& what, const std::string& condition);
+/// The parameter of a finding: d' by this model at this level, whose unit is given, or over all levels.
+std::string d_prime_name(analysis::Deciding model, const std::optional<double>& level,
+                         const std::string& unit);
 /// "spread" or "slope", whichever the fitted function has.
 const char* spread_name(const analysis::FitOptions& options);
 

@@ -156,6 +156,16 @@ std::optional<double> GeneratingValues::share_correct(const std::string& conditi
   return made->correct / made->trials;
 }
 
+std::optional<double> GeneratingValues::share_correct_at(const std::string& condition, double level,
+                                                         const observer::Observer& observer) const {
+  const auto* made = find(condition);
+  if (!made || !made->one_deadline || made->question.decides != observer::Decides::right_answer)
+    return std::nullopt;
+  auto question = made->question;
+  question.level = level, question.correct = 0;
+  return observer.share(question, 0);
+}
+
 std::optional<double> GeneratingValues::boundary(const std::string& condition,
                                                  const observer::Observer& observer) const {
   const auto* made = find(condition);

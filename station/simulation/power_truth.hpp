@@ -50,6 +50,10 @@ class GeneratingValues {
   FitTruth fit(const std::string& condition, const analysis::FitOptions& options,
                const observer::Observer& observer) const;
   std::optional<double> share_correct(const std::string& condition) const;
+  /// The observer's probability of a right answer at one level; only for tasks in which the level decides how
+  /// easy the right answer is to find.
+  std::optional<double> share_correct_at(const std::string& condition, double level,
+                                         const observer::Observer& observer) const;
   /// EZ's boundary separation for s = 0.1.
   std::optional<double> boundary(const std::string& condition, const observer::Observer& observer) const;
 

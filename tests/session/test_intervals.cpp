@@ -9,6 +9,7 @@
 #include "station/session/stage.hpp"
 #include "station/setup/prepare.hpp"
 #include "station/store/read.hpp"
+#include "station/system/read_file.hpp"
 #include "tests/session/many_tones.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/temporary_folder.hpp"
@@ -161,5 +162,38 @@ TEST_CASE("on the virtual clock, a trial that follows an aborted one waits until
     REQUIRE(second.size() == 3);
     CHECK(second[0].time_ns >= silent_ns);
     CHECK(second[2].frame - second[0].frame == 2 * 288000);
+  }
+}
+
+TEST_CASE("pages of ABX and match-to-sample call the intervals by the letters of the question", "[session]") {
+  struct Pages : session::Display {
+    std::vector<std::string> names;
+    void show(const session::Page& page) override {
+      if (page.kind == session::PageKind::stimulus) names = page.interval_names;
+    }
+  };
+  using Words = std::vector<std::string>;
+  for (const auto& [kind, names] : {std::pair<std::string, Words>{"abx", {"A", "B", "X"}},
+                                    {"match-to-sample", {"X", "A", "B"}},
+                                    {"oddity", {}}}) {
+    const TemporaryFolder folder;
+    auto source = system::read_file(shipped("friction-abx"));
+    source.replace(source.find("\"abx\""), 5, '"' + kind + '"');
+    if (kind == "oddity")
+      source.replace(source.find("{ id = \"second\""), 0,
+                     "{ id = \"x\", label = { en = \"X\", de = \"X\", ja = \"X\" } },\n");
+    std::ofstream(folder / "p.toml") << source;
+    setup::RunRequest request;
+    request.protocol = folder / "p.toml";
+    request.rig = std::string(TURNPOINT_SOURCE_DIR) + "/tests/support/thin_plate.toml";
+    request.participant = "P01";
+    request.database = folder / "a.sqlite";
+    request.observer = "sim";
+    request.headless = true;
+    const auto setup = setup::prepare(request);
+    Pages pages;
+    session::Inputs nobody;
+    session::run(setup, &pages, nobody);
+    CHECK(pages.names == names);
   }
 }

@@ -226,3 +226,32 @@ TEST_CASE("the proportion correct of an identification is the observer's own, an
   REQUIRE(right.coverage);
   CHECK(right.coverage->value >= 0.92);
 }
+
+TEST_CASE("d' of ABX and of three intervals is found where the report has it, and its intervals hold it",
+          "[power]") {
+  auto long_abx = shipped("friction-abx");
+  long_abx.procedures.front().repeats = 150;  // of few trials, the estimate is biased
+  const auto abx = simulation::power(long_abx, options("sim:threshold=-12,lapse=0", 100, 0));
+  for (const auto* model : {"d', independent observations", "d', differencing"}) {
+    const auto& all = find(abx, "answers", model);
+    REQUIRE(all.truth);
+    CHECK(std::abs(*all.bias) < 0.03);
+    CHECK(all.estimates.size() == 100);
+  }
+  // The observer decides by differencing; its probability at one level has no spread over levels.
+  double last = 0;
+  for (const auto* level : {"-20", "-15", "-10", "-5"}) {
+    const auto& at = find(abx, "answers", std::string("d', differencing, at ") + level + " dB");
+    REQUIRE(at.truth);
+    CHECK(*at.truth > last);
+    last = *at.truth;
+    REQUIRE(at.coverage);
+    CHECK(at.coverage->value > 0.9);  // Clopper and Pearson's intervals are too long, if anything
+  }
+  // Adaptive levels differ from session to session: only d' over all trials can be compared.
+  const auto three = simulation::power(shipped("friction-3ifc"), options("sim:threshold=-12,lapse=0", 20, 0));
+  CHECK(find(three, "answers", "d', largest of m").truth);
+  int rows = 0;
+  for (const auto& entry : three.recoveries) rows += entry.source == "answers";
+  CHECK(rows == 1);
+}

@@ -70,6 +70,16 @@ Page oddity(const Words& words, PageKind kind, int interval) {
   return page;
 }
 
+Page abx(const Words& words, PageKind kind) {
+  Page page = oddity(words, kind, 3);
+  page.interval_names = {"A", "B", "X"};
+  page.text =
+      words.pick("Was X like A or like B?", "War X wie A oder wie B?", "Xは、AとBのどちらと同じでしたか?");
+  page.answers = {{"a", words.pick("Like A", "Wie A", "Aと同じ")},
+                  {"b", words.pick("Like B", "Wie B", "Bと同じ")}};
+  return page;
+}
+
 Page smoothness(const Words& words, PageKind kind) {
   Page page = base(words, kind);
   page.text = words.pick("How smooth does the strip feel?", "Wie glatt fühlt sich der Streifen an?",
@@ -138,6 +148,9 @@ void add_trials(std::vector<Exhibit>& all, const Words& words) {
   all.push_back({"response", boundary(words, PageKind::response)});
   all.push_back({"explore-speed", instructed(boundary(words, PageKind::stimulus), words, "speed")});
   all.push_back({"explore-accuracy", instructed(boundary(words, PageKind::stimulus), words, "accuracy")});
+  all.push_back({"abx-cue", abx(words, PageKind::cue)});
+  all.push_back({"abx-x", abx(words, PageKind::stimulus)});
+  all.push_back({"abx-answers", abx(words, PageKind::response)});
   all.push_back({"interval-2-of-3", oddity(words, PageKind::stimulus, 2)});
   all.push_back({"gap", oddity(words, PageKind::pause, 2)});
   all.push_back({"response-3", oddity(words, PageKind::response, 3)});

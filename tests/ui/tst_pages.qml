@@ -66,6 +66,21 @@ Item {
 
         SignalSpy { id: shown; target: script.bridge; signalName: "shown" }
 
+        function test_the_intervals_of_abx_are_called_a_b_and_x_all_others_are_numbered() {
+            for (const page of ["abx-cue", "abx-x", "abx-answers"]) {
+                show(page)
+                compare(intervalNames(), ["A", "B", "X"], page)
+            }
+            show("interval-2-of-3")
+            compare(intervalNames(), ["1", "2", "3"])
+        }
+
+        function intervalNames() {
+            const all = []
+            collect(view, "intervalName", all)
+            return all.map(name => name.text)
+        }
+
         function test_an_answer_goes_out_once_with_the_time_of_the_touch() {
             show("explore")
             const button = item("answer1")

@@ -60,8 +60,9 @@ Item {
                 color: running ? root.theme.ink : "transparent"
                 border { color: running ? root.theme.ink : root.theme.line; width: root.theme.stroke }
                 PlainText {
+                    objectName: "intervalName"
                     anchors.centerIn: parent
-                    text: place.index + 1
+                    text: root.page.intervalNames.length > place.index ? root.page.intervalNames[place.index] : place.index + 1
                     color: place.running ? root.theme.actionText : root.theme.quiet
                     font { pixelSize: root.theme.textHuge; weight: Font.DemiBold }
                 }

@@ -69,6 +69,12 @@ QStringList PageModel::anchor_texts() const {
   return texts;
 }
 
+QStringList PageModel::interval_names() const {
+  QStringList names;
+  for (const auto& name : page_.interval_names) names += QString::fromStdString(name);
+  return names;
+}
+
 QStringList PageModel::summary_labels() const {
   QStringList labels;
   for (const auto& line : page_.summary) labels += QString::fromStdString(line.label);

@@ -38,6 +38,7 @@ class PageModel : public QObject {
   Q_PROPERTY(bool wideEndLeft READ wide_end_left NOTIFY changed)
   Q_PROPERTY(int interval READ interval NOTIFY changed)
   Q_PROPERTY(int intervals READ intervals NOTIFY changed)
+  Q_PROPERTY(QStringList intervalNames READ interval_names NOTIFY changed)
   Q_PROPERTY(int trialsDone READ trials_done NOTIFY changed)
   Q_PROPERTY(int trialsTotal READ trials_total NOTIFY changed)
   Q_PROPERTY(double remainingSeconds READ remaining_s NOTIFY changed)
@@ -107,6 +108,7 @@ class PageModel : public QObject {
   bool wide_end_left() const { return page_.wide_end_left; }
   int interval() const { return page_.interval; }
   int intervals() const { return page_.intervals; }
+  QStringList interval_names() const;
   int trials_done() const { return page_.trials_done; }
   int trials_total() const { return page_.trials_total; }
   double remaining_s() const { return page_.remaining_s; }
