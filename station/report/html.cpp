@@ -276,8 +276,7 @@ std::string detection_section(const Summary& summary) {
   return html + "</table>\n<p class=\"soft\">A hit is the answer \u201c" + escaped(answer) +
          "\u201d in a trial in which this answer is right. A false alarm is the same answer in a trial "
          "in which it is wrong. A positive criterion means that the participant avoids this answer. Rates "
-         "have the "
-         "log-linear correction; 95 % intervals are those of Gourevitch and Galanter.</p>\n";
+         "have the log-linear correction; 95 % intervals are those of Gourevitch and Galanter.</p>\n";
 }
 
 /// Says why a procedure's own estimate differs from the fit.
@@ -295,23 +294,19 @@ std::string why_estimates_differ(const SessionData& data) {
   if (posterior)
     why +=
         "A procedure with a posterior estimates the mean of that posterior, with the prior and the grid of "
-        "the "
-        "protocol. The fit uses the same answers, but a prior of its own, which is nearly flat, and shows "
-        "medians. The fewer answers there are, the further the two are apart. ";
+        "the protocol. The fit uses the same answers, but a prior of its own, which is nearly flat, and "
+        "shows medians. The fewer answers there are, the further the two are apart. ";
   if (track) why += "A staircase estimates from the last levels that it tried; the fit uses all answers. ";
   if (series)
     why +=
-        "The method of limits takes the middle between the last level with the old answer and the first with "
-        "the new one, in each series. If ascending series change at higher levels than descending ones, the "
-        "participant tended to repeat answers (habituation); if at lower levels, to expect the change, or "
-        "some "
-        "answers changed by chance. The "
-        "fit uses all answers, as if neither happened. ";
+        "The method of limits takes the middle between the last level with the old answer and the first "
+        "with the new one, in each series. If ascending series change at higher levels than descending "
+        "ones, the participant tended to repeat answers (habituation); if at lower levels, to expect the "
+        "change, or some answers changed by chance. The fit uses all answers, as if neither happened. ";
   if (!settles_at.empty())
     why += fmt::format(
         "A staircase settles where {} of the answers are right (or are the tracked answer), which need not "
-        "be "
-        "the threshold of the fit.",
+        "be the threshold of the fit.",
         fmt::join(settles_at, " or "));
   return why;
 }
