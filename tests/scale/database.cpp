@@ -115,8 +115,10 @@ void fill(Database& database, const std::string& id, int session, int trials) {
     rows.event(place, event++, {at_ns, "presented", "", i, 1});
     chain.accept(chain.add());
     rows.trial(place, trial_of(session, i), kMidday_ns + at_ns);
-    for (const auto* kind : {"stimulus", "go", "touch", "answer"})
-      rows.event(place, event++, {at_ns + event * 1'000'000, kind, "4", i, 1});
+    for (const auto* kind : {"stimulus", "go", "touch", "answer"}) {
+      rows.event(place, event, {at_ns + event * 1'000'000, kind, "4", i, 1});
+      ++event;
+    }
     chain.accept(chain.add());
   }
   Statement(database, "UPDATE session SET status = 'completed' WHERE session_id = ?").bind(id).run();
