@@ -186,7 +186,7 @@ void check_killed(const Case& wanted) {
 
 }  // namespace
 
-TEST_CASE("sessions killed at random moments and gone on with equal the unbroken one, trial by trial",
+TEST_CASE("a session that is killed at random moments and resumed equals one that was never interrupted, trial by trial",
           "[resume]") {
   check_killed(GENERATE(from_range(shipped())));
 }
