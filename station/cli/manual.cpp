@@ -11,7 +11,8 @@ namespace turnpoint::cli {
 
 namespace {
 
-/// Text for roff: no character of it is taken for a command, and hyphens stay what a user can copy.
+/// Escapes a text for roff, so that no character is taken for a command, and hyphens remain hyphens that a
+/// user can copy.
 std::string roff(const std::string& text) {
   std::string safe;
   for (const char c : text) {

@@ -14,7 +14,8 @@
 
 namespace turnpoint::drive {
 
-/// Some captured frames, the channels of a frame side by side, full scale 2^31.
+/// Some captured frames. The samples are interleaved (the channels of a frame side by side); full scale is
+/// 2^31.
 struct CapturedBlock {
   static constexpr int kSamples = 1024;
   std::int64_t first_frame = 0;  ///< counted from 0 at the opening; lost frames are counted too
@@ -34,7 +35,7 @@ struct CaptureCounters {
   std::int64_t overruns = 0;      ///< losses of frames whose number is known
   std::int64_t lost_frames = 0;   ///< frames lost in `overruns`
   std::int64_t unknown_gaps = 0;  ///< losses of an unknown number of frames: the device was restarted or lost
-  std::uint32_t numbering = 0;    ///< that of the newest frame (see CapturedBlock)
+  std::uint32_t numbering = 0;    ///< numbering of the newest frame (see CapturedBlock)
   bool present = true;            ///< false while the device is lost
 };
 

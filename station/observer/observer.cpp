@@ -51,8 +51,9 @@ double largest_is_right(double d_prime, int answers) {
   return sum * step * kNormalPeak;
 }
 
-/// Returns the proportion correct in ABX by differencing (Macmillan & Creelman 2005, eq. 9.7). An observer
-/// who feels the difference the wrong way round is as often wrong as two intervals would be.
+/// Returns the proportion correct in ABX by differencing (Macmillan & Creelman 2005, eq. 9.7). For a negative
+/// d' (an observer who feels the difference the wrong way round), returns the proportion correct with two
+/// intervals.
 double nearest_is_right(double d_prime, double of_two) {
   if (d_prime <= 0) return of_two;
   const double apart = random::normal_cdf(d_prime / kSqrt2), beside = random::normal_cdf(d_prime / kSqrt6);
@@ -69,9 +70,9 @@ double d_prime_of_two(double right) {
   return kSqrt2 * 0.5 * (low + high);
 }
 
-/// Returns the proportion correct, if a diffusion ends at its upper boundary with probability `upper`: the
-/// proportion correct with two answers. Above the guessing rate, a psychometric function of Weibull's has the
-/// same shape for any number of answers.
+/// Returns the proportion correct of a task, given the probability `upper` that a diffusion ends at its upper
+/// boundary. That probability is the proportion correct with two answers. For any number of answers, a
+/// Weibull function has the same shape above the guess rate.
 double share_right(double upper, const Question& q) {
   if (q.finding == Finding::largest) return largest_is_right(d_prime_of_two(upper), q.answers);
   if (q.finding == Finding::nearest) return nearest_is_right(d_prime_of_two(upper), upper);

@@ -45,7 +45,7 @@ struct Parameters {
   double start_range = 0;
   /// range of the non-decision time (uniform around residual_s); at most twice residual_s
   double residual_range_s = 0;
-  /// spread of judgements: of numbers, the SD of their decimal logarithm
+  /// spread of judgements; for numbers, the SD of their decimal logarithm
   double scatter = 0.1;
   double anticipation = 0;  ///< fraction of trials answered before anything can be felt
 };
@@ -66,7 +66,7 @@ enum class Decides {
 enum class Finding {
   weibull,  ///< Weibull's function, from the guess rate 1 / answers
   largest,  ///< the interval with the largest of independent observations
-  nearest,  ///< ABX: of two observations the one that is nearer to a third (differencing)
+  nearest,  ///< ABX: the one of two observations that is nearer to a third (differencing)
 };
 
 /// An answer that is a number from `low` to `high`, a multiple of 10^-decimals.
@@ -78,8 +78,9 @@ struct ValueQuestion {
   double modulus = 10;  ///< the magnitude of the threshold
 };
 
-/// The level that is rated in the middle of a scale. Sensation grows with the level from the bias, with the
-/// logarithm of its ratio to the threshold, or, as in yes/no tasks, from noise to the criterion and beyond.
+/// The level that gets the middle of a rating scale, which determines how the sensation grows with the level.
+/// bias: in proportion to the distance from the bias. threshold: with the logarithm of the ratio to the
+/// threshold. criterion: as in yes/no tasks, from noise through the criterion and beyond.
 enum class Middle { criterion, threshold, bias };
 
 /// The question that a trial asks: everything in the trial on which a simulated observer's answer depends.

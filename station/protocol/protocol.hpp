@@ -280,10 +280,11 @@ struct Triggers {
 /// The movement that the protocol asks for, on rigs that measure the finger.
 struct Sensing {
   std::optional<std::pair<double, double>> normal_N, speed_mm_s;  ///< empty: any
-  double fraction = 0.8;  ///< of the strokes' time that force and speed must be in their range
-  int strokes = 2;        ///< least number of strokes in a trial
-  /// How often a trial with another movement is presented again. After that, and with 0, it counts, and its
-  /// row says what was wrong.
+  /// fraction of the strokes' time during which force and speed must be in their range
+  double fraction = 0.8;
+  int strokes = 2;  ///< least number of strokes in a trial
+  /// How often a trial whose movement was wrong is presented again. After that, and with 0, the trial counts,
+  /// and its row says what was wrong.
   int repeats = 0;
   Place place;
 };

@@ -51,7 +51,7 @@ std::string without_effect(const std::string& word, const Protocol& protocol) {
   if (judges(task)) return "ratings and numbers are neither right nor wrong";
   if ((word == "psychometric" || word == "dprime") &&
       answer_rule(protocol, level).kind == AnswerKind::category)
-    return "the level decides which answer is right, not how easy that is";
+    return "the level decides which answer is right, not how difficult the trial is";
   if (word == "ez" && task.choices.size() > 2 && task.kind != TaskKind::oddity)
     return "EZ-diffusion is a model of two answers";
   if (word == "psychometric") return "";

@@ -144,7 +144,7 @@ void read_rating(const Value& table, Task& task, const Reading& reading) {
     if (steps < 10 || steps > 1000)
       reader.problem(reader.has("decimals") ? "decimals" : "line",
                      "the line has " + text::number(steps) + " steps of its smallest decimal",
-                     "from 10 to 1000: a finger cannot place more");
+                     "from 10 to 1000, because a finger cannot choose between more places");
     value.anchors = read_anchors(reader, value.low, value.high, reading);
     task.value = std::move(value);
   }

@@ -38,8 +38,8 @@ inline bool judges(Design design) { return design == Design::ratings || design =
 struct ProcedureEstimate {
   std::string block, procedure, parameter;
   double mean = 0;           ///< the estimate; a threshold is in the unit of the level
-  std::optional<double> sd;  ///< of the posterior, of the averaged reversals, or standard error
-  std::string basis;         ///< from what it was computed, such as "reversals 5 to 12 of 12"
+  std::optional<double> sd;  ///< SD of the posterior or of the averaged reversals, or a standard error
+  std::string basis;         ///< what it was computed from, such as "reversals 5 to 12 of 12"
   procedure::Choice choice = procedure::Choice::track;  ///< how the procedure chose its levels
   /// the proportion of right (or tracked) answers at the level on which it converges, if that is known
   std::optional<double> settles_at;

@@ -173,8 +173,8 @@ std::string describe_intervals(const NamedFit& named, const SessionData& data) {
   };
   const bool two_sided = data.design == Design::two_sided;
   std::string text =
-      "Posterior medians. 95 % credible intervals: central, posterior on a grid, since the answers chose the "
-      "levels. Prior: " +
+      "Posterior medians. 95 % credible intervals: central, posterior on a grid, because the answers "
+      "determined the levels. Prior: " +
       std::string(two_sided ? "PSE" : "threshold") + " uniform" +
       (options.scale == analysis::Scale::log10 ? " in its logarithm" : "") + " from " +
       range(flat.threshold_low, flat.threshold_high);

@@ -99,7 +99,7 @@ struct Marker {
   int channel = 1;
   Kind kind = Kind::pulse;
   double amplitude = 0.5;      ///< amplitude of the marker; 1 is full scale
-  double duration_s = 1e-3;    ///< of the pulse or tone, or of one bit of a code
+  double duration_s = 1e-3;    ///< length of the pulse or tone, or of one bit of a code
   double frequency_Hz = 1000;  ///< frequency, if the marker is a tone
 };
 

@@ -28,7 +28,7 @@ struct PilotEcho {
   /// Playback frame n is captured at frame n + delay. The delay's standard deviation is below 0.01 frames
   /// with noise at -40 dB.
   double delay_frames = 0;
-  double level_dB = 0;  ///< captured amplitude re played amplitude
+  double level_dB = 0;  ///< captured amplitude divided by played amplitude
   double likeness = 0;  ///< correlation of the capture with the pilot, 0 to 1
 };
 

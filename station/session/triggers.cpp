@@ -157,8 +157,9 @@ void Triggers::captured(const TriggerCapture::News& news) {
   }
 }
 
-/// Judges the codes that are over before `end_frame`, of which a range of captured frames begins at
-/// `first_frame`. What was captured must contain a whole code, with some bits before and after it.
+/// Judges the codes that ended before `end_frame`. `first_frame` is the first frame of the newest range of
+/// captured frames. A code can only be judged if the capture contains all of it, with some bits before and
+/// after it.
 void Triggers::conclude(std::int64_t first_frame, std::int64_t end_frame) {
   const auto margin = 2 * setup_.bit_frames;
   const auto from = first_frame == covered_.second ? covered_.first : first_frame;

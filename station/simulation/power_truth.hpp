@@ -31,16 +31,17 @@ class GeneratingValues {
            const observer::Question& question, const observer::Observer& observer);
   void add(const GeneratingValues& other);
 
-  /// The sums of one condition: all that is needed to add it to others, but for the questions asked.
+  /// The sums of one condition, from which those of several parts can be added. The questions of the trials
+  /// are not included.
   struct Sum {
-    double deadline_s = 0;  ///< of the first trial
+    double deadline_s = 0;  ///< deadline of the first trial
     bool one_deadline = true;
     int trials = 0;
     double correct = 0;
   };
   std::map<std::string, Sum> sums() const;
   static GeneratingValues of_sums(const std::map<std::string, Sum>& sums);
-  /// Takes the questions of the conditions that `other` has as well.
+  /// Copies from `other` the questions of the conditions that both objects have.
   void take_questions(const GeneratingValues& other);
   bool has_all_of(const GeneratingValues& other) const;  ///< true if this has each of the other's conditions
 

@@ -151,7 +151,7 @@ std::vector<std::string> unused(const Table& table, const std::map<std::string, 
 
 }  // namespace
 
-TEST_CASE("every layer uses only what the table allows, and all of it", "[layering]") {
+TEST_CASE("every layer uses only what the table allows, and every entry of the table is used", "[layering]") {
   const auto table = table_of_the_tree();
   std::map<std::string, Layers> used;
   each_line(TURNPOINT_SOURCE_DIR, [&](const std::string& file, const std::string& line) {
@@ -162,7 +162,7 @@ TEST_CASE("every layer uses only what the table allows, and all of it", "[layeri
   CHECK(used.size() > 20);
 }
 
-TEST_CASE("an include against the table is found: the negative control", "[layering]") {
+TEST_CASE("negative control: an include that the table does not allow is found", "[layering]") {
   const auto table = table_of_the_tree();
   const auto breaks = [&](const char* file, const char* line) {
     return !violation(table, file, line).empty();

@@ -187,7 +187,7 @@ TEST_CASE("the skin's lag shows as half the difference of the directions", "[sen
   CHECK(lag->friction_above == Approx(0.4).margin(0.05));
 }
 
-TEST_CASE("one bin far off does not pull the step away", "[sensing]") {
+TEST_CASE("one outlying bin does not move the felt step", "[sensing]") {
   FrictionProfile profile{{0, 2, 30}, {}};
   const auto fill = [&](double outlier) {
     profile.strokes.clear();

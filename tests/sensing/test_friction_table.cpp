@@ -78,7 +78,7 @@ Study study(int tables) {
 
 }  // namespace
 
-TEST_CASE("a friction table is precise, and its intervals hold what they say", "[sensing]") {
+TEST_CASE("a friction table is precise, and its intervals have the stated coverage", "[sensing]") {
   const int tables = repetitions(60);
   const bool many = tables >= 400;
   const Study s = study(tables);

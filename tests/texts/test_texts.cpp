@@ -60,7 +60,7 @@ TEST_CASE("every language has every text, with the same places for numbers and n
   }
 }
 
-TEST_CASE("every text is used, and every text that is asked for exists", "[texts]") {
+TEST_CASE("every text is used, and every text that the program requests exists", "[texts]") {
   const auto source = quoted();
   const auto keys = keys_of("en");
   CHECK(source.asked_for.size() > 40);
@@ -84,7 +84,7 @@ TEST_CASE("every text is used, and every text that is asked for exists", "[texts
 }
 
 TEST_CASE(
-    "a region's language is that language, an unknown one is English, an unknown key is a mistake of ours",
+    "de-CH gives German, an unknown language gives English, and an unknown key is an error of the program",
     "[texts]") {
   CHECK(texts::text("proceed", "de-CH") == "Weiter");
   CHECK(texts::text("proceed", "fi") == "Continue");
