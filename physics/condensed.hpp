@@ -4,10 +4,9 @@
 
 namespace turnpoint::physics {
 
-// The matrix of an element after its inner unknowns (its bubbles) have been expressed by the unknowns of its
-// two ends. The matrix is complex and symmetric, K - omega^2 M. An element is shorter than half a wavelength,
-// so the real part of the block that belongs to the bubbles is positive definite, and elimination needs no
-// pivoting.
+// The matrix of an element, with its inner unknowns (its bubbles) expressed by the unknowns of its two ends.
+// It is complex and symmetric, K - omega^2 M. An element is shorter than half a wavelength, so the real part
+// of the block that belongs to the bubbles is positive definite, and elimination needs no pivoting.
 class Condensed {
  public:
   using Matrix = Eigen::MatrixXcd;
@@ -24,9 +23,8 @@ class Condensed {
   const Matrix& ends() const { return ends_; }
   // Returns the values of the bubbles for these values at the ends, if no load acts on the bubbles.
   Vector follow(const Vector& ends) const;
-  // reduce() turns a load on the bubbles into the form that the other two functions need. load_on_ends()
-  // returns the load that the ends then feel. quadratic() returns load^T matrix^-1 load for a load on the
-  // bubbles alone.
+  // reduce() prepares a load on the bubbles for the other two functions. load_on_ends() returns the load that
+  // the ends then feel; quadratic() returns load^T matrix^-1 load for a load on the bubbles alone.
   Vector reduce(const Vector& load) const;
   Vector load_on_ends(const Vector& reduced) const { return -(rows_ * reduced); }
   std::complex<double> quadratic(const Vector& reduced) const {

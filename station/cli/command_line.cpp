@@ -87,8 +87,7 @@ std::string before(const std::string& text, const std::string& mark) {
   return text.substr(0, text.find(mark));
 }
 
-/// Returns the help without CLI11's notes "Excludes: ...", which would be longer than the text of the option
-/// itself.
+/// Returns the help without CLI11's notes "Excludes: ...", which can be longer than the option's own text.
 class HelpFormat : public CLI::Formatter {
  public:
   std::string make_option_opts(const CLI::Option* option) const override {
@@ -96,8 +95,7 @@ class HelpFormat : public CLI::Formatter {
   }
 };
 
-/// Explains an error of CLI11 to the user. CLI11's own messages do not name the command, and they count
-/// arguments instead of naming them.
+/// Explains an error of CLI11, whose own messages count arguments and do not name the command.
 std::string reason(const CLI::App& command, const CLI::ParseError& error) {
   const std::string said = error.what();
   if (dynamic_cast<const CLI::RequiredError*>(&error)) return missing_of(command);

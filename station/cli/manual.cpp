@@ -11,8 +11,7 @@ namespace turnpoint::cli {
 
 namespace {
 
-/// Escapes a text for roff, so that no character is taken for a command, and hyphens remain hyphens that a
-/// user can copy.
+/// Escapes a text for roff: no character is taken for a command, and a user can copy the hyphens.
 std::string roff(const std::string& text) {
   std::string safe;
   for (const char c : text) {

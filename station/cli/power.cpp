@@ -74,7 +74,7 @@ Json to_json(const std::vector<simulation::CueReport>& cues) {
 struct Found {
   simulation::Power power;
   std::vector<simulation::CueReport> cues;
-  std::string id, title;  ///< of the protocol
+  std::string id, title;  ///< id and title of the protocol
   std::string signal;     ///< the signal that stopped the work; usually ""
 };
 

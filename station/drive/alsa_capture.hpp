@@ -14,8 +14,7 @@
 
 namespace turnpoint::drive {
 
-/// Some captured frames. The samples are interleaved (the channels of a frame side by side); full scale is
-/// 2^31.
+/// Some captured frames. The samples are interleaved; full scale is 2^31.
 struct CapturedBlock {
   static constexpr int kSamples = 1024;
   std::int64_t first_frame = 0;  ///< counted from 0 at the opening; lost frames are counted too

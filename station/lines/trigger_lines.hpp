@@ -24,8 +24,7 @@ TriggerPlan trigger_plan(const std::string& uri);
 
 /// Gives out codes in parallel on GPIO lines, for a device that reads TTL levels. An ordinary thread sets the
 /// lines when a code is due: first the bits together, then the strobe, which falls again before the bits do.
-/// If another code is still on the lines when a code is due, the new code comes 1 ms after the end of the
-/// other.
+/// A code that is due while another is still on the lines comes 1 ms after the end of that one.
 class TriggerLines {
  public:
   TriggerLines(std::unique_ptr<Outputs> outputs, const TriggerPlan& plan);

@@ -52,8 +52,7 @@ double largest_is_right(double d_prime, int answers) {
 }
 
 /// Returns the proportion correct in ABX by differencing (Macmillan & Creelman 2005, eq. 9.7). For a negative
-/// d' (an observer who feels the difference the wrong way round), returns the proportion correct with two
-/// intervals.
+/// d' (the difference is felt the wrong way round), returns the proportion correct with two intervals.
 double nearest_is_right(double d_prime, double of_two) {
   if (d_prime <= 0) return of_two;
   const double apart = random::normal_cdf(d_prime / kSqrt2), beside = random::normal_cdf(d_prime / kSqrt6);

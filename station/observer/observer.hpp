@@ -78,9 +78,8 @@ struct ValueQuestion {
   double modulus = 10;  ///< the magnitude of the threshold
 };
 
-/// The level that gets the middle of a rating scale, which determines how the sensation grows with the level.
-/// bias: in proportion to the distance from the bias. threshold: with the logarithm of the ratio to the
-/// threshold. criterion: as in yes/no tasks, from noise through the criterion and beyond.
+/// The level at the middle of a rating scale. Sensation grows from noise through the criterion (as in yes/no
+/// tasks), with the logarithm of level / threshold, or with the distance of the level from the bias.
 enum class Middle { criterion, threshold, bias };
 
 /// The question that a trial asks: everything in the trial on which a simulated observer's answer depends.
@@ -92,7 +91,7 @@ struct Question {
   int positive = 1;
   bool absent = false;         ///< for `presence`: true if the trial has no signal, whatever its level
   std::optional<int> correct;  ///< for `right_answer`: the right answer; empty if no answer is right
-  Finding finding = Finding::weibull;   ///< for `right_answer`
+  Finding finding = Finding::weibull;   ///< for `right_answer`: how the observer finds it
   std::vector<double> categories = {};  ///< for `category`: the level for which each answer stands
   int answers = 2;
   bool rating = false;  ///< the answers are the points of a scale, from low to high levels

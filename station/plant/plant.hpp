@@ -110,8 +110,8 @@ class Plant {
   std::int64_t whole_delay_;
   std::vector<Fault> faults_;
   SurfaceResponse response_;
-  std::map<double, Gains> gains_;                         // by frequency / resonance factor
-  std::vector<std::pair<double, PickupFilter>> filters_;  // by resonance factor
+  std::map<double, Gains> gains_;                         // key: frequency / resonance factor
+  std::vector<std::pair<double, PickupFilter>> filters_;  // pairs of a resonance factor and its filter
   std::size_t filter_ = 0;
   std::vector<Tone> tones_;
   std::vector<Delay> transducer_delays_, carrier_delay_, marker_delay_;

@@ -265,7 +265,7 @@ enum class TriggerEvent { trial, onset, change, response };
 /// The code of an event in the trials of one condition.
 struct TriggerCode {
   TriggerEvent event = TriggerEvent::trial;
-  std::string condition;  ///< as conditions() names it; "" for trials that belong to none
+  std::string condition;  ///< name as given by conditions(); "" for trials that belong to none
   int code = 0;           ///< 1 to 255
 };
 
@@ -280,9 +280,8 @@ struct Triggers {
 /// The movement that the protocol asks for, on rigs that measure the finger.
 struct Sensing {
   std::optional<std::pair<double, double>> normal_N, speed_mm_s;  ///< empty: any
-  /// fraction of the strokes' time during which force and speed must be in their range
-  double fraction = 0.8;
-  int strokes = 2;  ///< least number of strokes in a trial
+  double fraction = 0.8;  ///< required fraction of the strokes' time with force and speed in range
+  int strokes = 2;        ///< least number of strokes in a trial
   /// How often a trial whose movement was wrong is presented again. After that, and with 0, the trial counts,
   /// and its row says what was wrong.
   int repeats = 0;

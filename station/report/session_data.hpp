@@ -23,7 +23,7 @@ enum class Design {
   /// like yes_no: "different" counts as "yes", and pairs of identical stimuli have no signal
   same_different,
   categories,  ///< the level decides which of several answers is right, or no answer is right
-  ratings,     ///< on points or on a line; the report has their mean at each level
+  ratings,     ///< ratings on points or on a line; the report has their mean at each level
   numbers,     ///< magnitude estimation: geometric means, and the exponent of Stevens' law
   adjustment,  ///< the participant sets a slider; no psychometric function is fitted
 };
@@ -68,7 +68,7 @@ struct SessionData {
   std::vector<analysis::Deciding> deciding;
   terms::Function function = terms::Function::weibull;
   analysis::Scale scale = analysis::Scale::linear;
-  std::string level_label;           ///< with the unit, for an axis: "Contrast (dB)"
+  std::string level_label;           ///< name and unit, for an axis: "Contrast (dB)"
   std::string level_unit;            ///< "" for a level without a unit
   std::vector<std::string> choices;  ///< ids in the order of their indices
   int positive = 1;                  ///< if has_noise(): the choice that means "yes"

@@ -28,8 +28,8 @@ struct Summary {
   analysis::OutcomeCounts outcomes;
   std::vector<NamedFit> fits;
   std::vector<analysis::Trace> traces;
-  std::optional<analysis::Bias> bias;           ///< for two answers
-  std::vector<analysis::Confusion> confusions;  ///< for three answers or more, and for categories
+  std::optional<analysis::Bias> bias;           ///< only if there are two answers
+  std::vector<analysis::Confusion> confusions;  ///< only for three or more answers, and for categories
   std::optional<analysis::Proportion> catch_trials;
   std::map<int, analysis::Proportion> confidence;  ///< right answers by degree of confidence
   analysis::Fatigue fatigue;

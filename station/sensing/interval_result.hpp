@@ -17,15 +17,14 @@ struct Limits {
 /// All limits of a proof, with the station's defaults. Infinity means never.
 struct ProofLimits {
   Limits level_dB{0.5, 1, 3};  ///< measured level relative to the plan, without a finger
-  Limits level_in_contact_dB{1.5, 3,
-                             1e9};  ///< with a finger (which loads the plate), or if that is not known
-  Limits phase_deg{10, 30, 1e9};    ///< measured phase against the calibration
-  /// all that the tones do not explain, and each product, relative to the plan
-  Limits residual_dB{-40, -30, -20};
-  Limits onset_us{200, 1000, 1e9};   ///< time of the half level, measured minus planned
-  Limits silence_dB{-70, -50, 1e9};  ///< vibration between trials, relative to the plan
-  double clipped = 0.98;             ///< a sample of at least this fraction of full scale refuses the trial
-  double dead_dB = -40;              ///< a tone below this level, relative to the plan, is missing
+  /// the same with a finger (which loads the plate), or if contact is not known
+  Limits level_in_contact_dB{1.5, 3, 1e9};
+  Limits phase_deg{10, 30, 1e9};      ///< measured phase minus calibrated phase
+  Limits residual_dB{-40, -30, -20};  ///< what the tones do not explain, and each product, re the plan
+  Limits onset_us{200, 1000, 1e9};    ///< time of the half level, measured minus planned
+  Limits silence_dB{-70, -50, 1e9};   ///< vibration between trials, relative to the plan
+  double clipped = 0.98;              ///< a sample of at least this fraction of full scale refuses the trial
+  double dead_dB = -40;               ///< a tone below this level, relative to the plan, is missing
   /// If all tones of a channel are between these levels, one of its two transducers is dead.
   double half_low_dB = -7.5, half_high_dB = -4.5;
   double unseen_dB = -26;  ///< a pick-up cannot judge tones at which its response is this far below its best

@@ -95,8 +95,7 @@ void TrialFinger::take_tare() {
   }
   auto taken = tare(quiet, setup_.bridges.band, setup_.calibration, zero_.value_or(Readings{}));
   loaded_ = zero_ && taken.state == TareState::stopped;
-  // Without a usable tare, keep the previous one: a finger that waits on the surface must not stop the
-  // session.
+  // Without a usable tare, keep the previous one: a finger waiting on the surface must not stop the session.
   if (loaded_ || taken.state == TareState::restless || taken.state == TareState::incomplete) return;
   if (zero_) tare_moved_N_ = taken.moved_N;
   zero_ = taken.readings;

@@ -12,9 +12,8 @@ struct MovementWindow {
 
   double least_normal_N = 0, most_normal_N = any;      ///< ends included
   double least_speed_mm_s = 0, most_speed_mm_s = any;  ///< ends included
-  /// fraction of the strokes' time during which force and speed must be in their range
-  double fraction = 0.8;
-  int strokes = 0;  ///< least number of strokes
+  double fraction = 0.8;  ///< required fraction of the strokes' time with force and speed in range
+  int strokes = 0;        ///< least number of strokes
 };
 
 /// Whether a movement was the requested one. If not, the first of these faults that it had.

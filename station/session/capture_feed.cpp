@@ -63,8 +63,7 @@ std::optional<CardCapture> card_capture_of(const rig::Rig& rig) {
 CaptureFeed::CaptureFeed(std::unique_ptr<drive::Capture> capture, const CardCapture& plan)
     : capture_(std::move(capture)),
       plan_(plan),
-      // A pilot is scheduled one buffer length before it is played. Its capture waits up to one buffer length
-      // until it is taken.
+      // A pilot is played one buffer length after it is scheduled, and taken up to one buffer length later.
       longest_wait_s_(0.5 + 2.0 * plan.device.periods * plan.device.period_frames / plan.device.rate_Hz),
       watch_(plan.setup),
       triggers_(plan.triggers, 0),
@@ -97,9 +96,8 @@ void CaptureFeed::listen(std::int64_t start_frame) {
                                                            plan_.reference, longest_wait_s_);
   const std::lock_guard lock(mutex_);
   const auto counters = capture_->counters();
-  // A first guess of the numbering: with it, the pilot comes after its first frame, because it has not been
-  // played yet. The listener needs some frames from before the pilot, and the next block may begin with the
-  // next frame.
+  // A first guess of the numbering. With it, the pilot comes late, because it has not been played yet. The
+  // listener needs some frames from before the pilot, and the next block may begin with the next frame.
   shift_ = start_frame - counters.frames - kBefore_frames;
   numbering_ = counters.numbering;
   aligned_ = false;

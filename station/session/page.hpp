@@ -77,7 +77,7 @@ struct Page {
   double remaining_s = 0;  ///< remaining time of a break
   /// for an adjustment: position, limits and step of the slider
   double slider = 0, slider_min = 0, slider_max = 1, slider_step = 0;
-  ValueEntry value;  ///< for a line or a number pad
+  ValueEntry value;  ///< what a line or a number pad needs
   std::string language;
   /// "disarmed" or "faulted" while the operator has to act (on a fault page); otherwise "armed", "enabled",
   /// or ""

@@ -25,8 +25,7 @@ class SimulatedRoom {
   /// The simulated participant touches the surface from now on for this many frames, and strokes it. Without
   /// force cells, nobody touches it.
   void touch(std::int64_t frames);
-  /// The participant lifts the finger after this many frames.
-  void lift(std::int64_t frames) { plant_.lift(frames); }
+  void lift(std::int64_t frames) { plant_.lift(frames); }  ///< Lifts the finger after this many frames.
 
   /// The movement that the protocol asks for.
   void ask_for(const sensing::MovementWindow& window) { window_ = window; }

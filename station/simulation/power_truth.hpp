@@ -31,8 +31,7 @@ class GeneratingValues {
            const observer::Question& question, const observer::Observer& observer);
   void add(const GeneratingValues& other);
 
-  /// The sums of one condition, from which those of several parts can be added. The questions of the trials
-  /// are not included.
+  /// The sums of one condition, which can be added to others. They do not include the questions.
   struct Sum {
     double deadline_s = 0;  ///< deadline of the first trial
     bool one_deadline = true;

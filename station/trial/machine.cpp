@@ -270,7 +270,7 @@ void Machine::conclude(Outcome outcome, std::int64_t at_ns) {
   settle(at_ns);
 }
 
-// Makes the trial void, and lets the page say why. A timeout or an anticipation remains one.
+// Makes the trial void, and lets the page say why. An outcome of timeout or anticipation is kept.
 void Machine::repeat(std::int64_t at_ns) {
   if (decided() || (concluded_ && result_.outcome != Outcome::answered)) return;
   if (phase_ == Phase::stimulus) actions_.push_back({ActionKind::silence, interval_, at_ns});

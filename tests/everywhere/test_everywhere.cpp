@@ -153,7 +153,7 @@ constexpr Recorded kSessions[] = {
 
 TEST_CASE("a burst has the same samples on every machine, bit for bit", "[everywhere]") {
   CHECK(rendered<double>(burst()) == "a63dd0d74bfd91b0");
-  CHECK(rendered<std::int32_t>(burst()) == "485448f497561d34");  // with dither and quantisation
+  CHECK(rendered<std::int32_t>(burst()) == "485448f497561d34");  // samples with dither and quantisation
   auto other = burst();
   other.tones.tones[0].frequency_Hz += 1e-9;  // negative control: the hash detects a change of the last digit
   CHECK(rendered<double>(other) != rendered<double>(burst()));

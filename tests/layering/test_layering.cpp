@@ -187,7 +187,7 @@ TEST_CASE("a name of a layer that the table does not allow is found without an i
   CHECK(breaks("  const auto rows = turnpoint::store::read_session(path, id);"));
   CHECK(breaks("std::vector<store::SessionRecord> all;"));
   CHECK(breaks("using namespace store;"));
-  CHECK(breaks("namespace turnpoint::store {"));  // as in a forward declaration
+  CHECK(breaks("namespace turnpoint::store {"));  // a namespace that is opened, as for a forward declaration
   CHECK_FALSE(breaks("namespace turnpoint::trial {"));
   CHECK_FALSE(breaks("  return terms::name(outcome);"));
   CHECK_FALSE(breaks("  log(\"store::read_session\");  // as store::read_session"));

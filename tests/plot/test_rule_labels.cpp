@@ -118,7 +118,7 @@ TEST_CASE("Labels of several rules keep apart from each other, from curves, bars
   CHECK(crossed(svg, 430, 260).empty());
 }
 
-TEST_CASE("A free label stands at its rule's upper right, and a rule beyond the axes shows nothing",
+TEST_CASE("A free label is at the upper right of its rule, and a rule beyond the axes shows nothing",
           "[plot][labels]") {
   auto chart = empty_panel();
   chart.layers.push_back(vertical(20, "here"));

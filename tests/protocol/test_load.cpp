@@ -59,7 +59,7 @@ TEST_CASE("the demo has ten trials of boundary localisation with one tone", "[pr
   CHECK_FALSE(demo.seed.has_value());
 }
 
-TEST_CASE("a single-interval answer is right where its comparison holds, and none is at 0", "[protocol]") {
+TEST_CASE("an answer is right if its comparison is true, and at 0 no answer is right", "[protocol]") {
   const auto demo = protocol::load(shipped + "demo.toml");
   REQUIRE(demo.task.correct_answer.size() == 2);
   const auto right = [&](double offset_mm) {

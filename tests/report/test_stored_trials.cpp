@@ -271,7 +271,8 @@ TEST_CASE("d' of three intervals and of ABX is reported by model, and the guess 
   REQUIRE(abx["discrimination"][3]["d_prime"].size() == 2);
   CHECK(abx["discrimination"][3]["level"] == -5.0);
   CHECK(abx["discrimination"][3]["correct"]["proportion"] == 1.0);
-  CHECK(abx["discrimination"][3]["d_prime"][1]["interval"]["high"].is_null());  // has no upper end
+  CHECK(
+      abx["discrimination"][3]["d_prime"][1]["interval"]["high"].is_null());  // the interval has no upper end
   CHECK(abx["confusion"].empty());
   const auto html = report::to_html(report::summarise(data));
   CHECK(html.find("differencing") != std::string::npos);

@@ -15,7 +15,7 @@ using namespace turnpoint::live_room;
 
 namespace {
 
-/// A room in which `asks` may ask for one pause. Everything else goes on as usual.
+/// A room in which `asks` may ask for one pause. Everything else in it happens as usual.
 struct PausingRoom : Room {
   const TemporaryFolder folder;
   session::Setup setup = live_setup(folder / "a.sqlite");

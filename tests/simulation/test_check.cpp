@@ -91,7 +91,7 @@ TEST_CASE("the ranges of check hold nine of ten sessions of each shipped protoco
     INFO(entry.path().stem().string());
     const auto protocol = protocol::load(entry.path().string());
     const auto stated = lengths(protocol, 0, simulation::usual_sessions(protocol)),
-               others = lengths(protocol, 2000, 600);  // so many that chance alone stays inside
+               others = lengths(protocol, 2000, 600);  // enough for chance alone to stay inside
     for (const auto what : {&simulation::SessionLength::trials, &simulation::SessionLength::duration_s}) {
       const auto spread = simulation::spread_of(values_of(stated, what));
       const auto values = values_of(others, what);

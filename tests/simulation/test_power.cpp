@@ -232,7 +232,7 @@ TEST_CASE(
     "d' of ABX and of three intervals is found as in the report, and its intervals contain the true value",
     "[power]") {
   auto long_abx = shipped("friction-abx");
-  long_abx.procedures.front().repeats = 150;  // of few trials, the estimate is biased
+  long_abx.procedures.front().repeats = 150;  // with few trials, the estimate is biased
   const auto abx = simulation::power(long_abx, options("sim:threshold=-12,lapse=0", 100, 0));
   for (const auto* model : {"d', independent observations", "d', differencing"}) {
     const auto& all = find(abx, "answers", model);

@@ -46,7 +46,7 @@ Panel panel_of(const QString& text) {
   const QSize size(parts[0].toInt(), parts[1].toInt());
   return {size, size.width() <= 800    ? 5.2
                 : size.width() <= 1280 ? 5.9
-                                       : 5.6};  // for diagonals of 7", 10.1" and 15.6"
+                                       : 5.6};  // px per mm for diagonals of 7", 10.1" and 15.6"
 }
 
 /// Renders the station's window for one panel in one language.
