@@ -2,11 +2,14 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <fstream>
 #include <string>
 
 #include "station/simulation/parallel.hpp"
 #include "station/simulation/rehearsal.hpp"
+#include "station/system/read_file.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 using namespace turnpoint;
 
@@ -69,6 +72,39 @@ TEST_CASE("the duration estimated by check is that of a rehearsed session plus t
           rest->min_s * static_cast<double>((trials.size() - 1) / static_cast<std::size_t>(rest->trials));
   }
   CHECK(check.duration_s.median == Approx(rehearsal.duration_s + beside_s));
+}
+
+TEST_CASE("check says in which languages the station's own words are, and refuses what cannot be drawn",
+          "[check]") {
+  const std::string root = TURNPOINT_SOURCE_DIR, rig = root + "/tests/support/thin_plate.toml";
+  const auto [language, note] =
+      GENERATE(std::pair("ko", "the station does not speak \"ko\""),
+               std::pair("zh", "no native speaker has read the station's own words in \"zh\""));
+  const TemporaryFolder folder;
+  const auto path = folder / "study.toml";
+  auto text = system::read_file(root + "/protocols/friction-2ifc.toml");
+  const auto replace = [&text](const std::string& from, const std::string& to) {
+    for (auto at = text.find(from); at != std::string::npos; at = text.find(from, at + to.size()))
+      text.replace(at, from.size(), to);
+  };
+  replace("\"de\"", std::string("\"") + language + "\"");
+  replace("de = \"", std::string(language) + " = \"\u6211");
+  std::ofstream(path) << text;
+  simulation::CheckOptions options;
+  options.sessions = 0;
+  const auto check = simulation::check(path, rig, options);
+  REQUIRE(check.problems.empty());
+  REQUIRE(check.notes.size() == 1);
+  CHECK(check.notes[0].what.find(note) == 0);
+
+  options.drawable = [](char32_t c) { return c < 0x3000; };
+  const auto refused = simulation::check(path, rig, options);
+  REQUIRE_FALSE(refused.problems.empty());
+  for (const auto& problem : refused.problems) {
+    CHECK(problem.place.file == path);
+    CHECK(problem.place.line > 0);
+    CHECK(problem.what.find("U+6211") != std::string::npos);
+  }
 }
 
 TEST_CASE("the duration estimated by check includes time to set a slider", "[check]") {

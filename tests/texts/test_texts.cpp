@@ -48,7 +48,7 @@ Quoted quoted() {
 }  // namespace
 
 TEST_CASE("every language has every text, with the same places for numbers and names", "[texts]") {
-  REQUIRE(texts::languages() == std::vector<std::string>{"de", "en", "ja"});
+  REQUIRE(texts::languages() == std::vector<std::string>{"ar", "de", "en", "es", "ja", "zh"});
   for (const auto& language : texts::languages()) {
     INFO(language);
     CHECK(keys_of(language) == keys_of("en"));
@@ -91,16 +91,22 @@ TEST_CASE(
   CHECK_THROWS_AS(texts::text("no_such_key", "en"), std::logic_error);
 }
 
+TEST_CASE("a language is known to be spoken or not, and to have been read by a native speaker or not", "[texts]") {
+  CHECK(texts::translation("en-GB") == texts::Translation::read);
+  CHECK(texts::translation("ar") == texts::Translation::unread);
+  CHECK(texts::translation("fi") == texts::Translation::none);
+}
+
 TEST_CASE("every fault says what happened, what is safe and what to do in each language", "[texts]") {
   std::set<std::string> pages;
   for (const auto kind : terms::fault_kinds)
-    for (const auto* language : {"en", "de", "ja"}) {
+    for (const auto& language : texts::languages()) {
       const auto text = texts::fault_text(kind, language);
       INFO(terms::name(kind) << " " << language);
       CHECK_FALSE(text.happened.empty());
       CHECK_FALSE(text.safe.empty());
       CHECK_FALSE(text.to_do.empty());
-      if (std::string(language) != "en") CHECK(text.happened != texts::fault_text(kind, "en").happened);
+      if (language != "en") CHECK(text.happened != texts::fault_text(kind, "en").happened);
       CHECK(pages.insert(text.happened).second);  // each kind of fault has a text of its own
     }
   CHECK(texts::fault_text(terms::FaultKind::amplifier, "fi").safe ==

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "station/texts/texts.hpp"
+#include "tests/ui/gallery_words.hpp"
 
 namespace turnpoint::ui {
 
@@ -15,6 +16,8 @@ using session::PageKind;
 struct Words {
   std::string language;
   std::string pick(const char* en, const char* de, const char* ja) const {
+    if (language == "ar") return gallery_words.at(en).ar;
+    if (language == "zh") return gallery_words.at(en).zh;
     return language == "de" ? de : language == "ja" ? ja : en;
   }
 };

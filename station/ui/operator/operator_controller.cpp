@@ -8,6 +8,7 @@
 
 #include "station/setup/prepare.hpp"
 #include "station/setup/resume.hpp"
+#include "station/system/fonts.hpp"
 #include "station/ui/operator/facts.hpp"
 
 namespace turnpoint::ui {
@@ -38,6 +39,7 @@ OperatorController::OperatorController(setup::StationRequest request, QObject* p
               std::ostringstream messages;  // the page says elsewhere which calibration is used
               return setup::calibrated_rig(path, "", messages);
             };
+            options.drawable = system::drawable;
             return simulation::check(protocol, rig, options, stop);
           },
           parent) {}

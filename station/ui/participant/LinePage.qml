@@ -36,6 +36,9 @@ Item {
     }
     Item {
         id: labels
+        // the line runs from left to right in every language, so that marks can be compared
+        LayoutMirroring.enabled: false
+        LayoutMirroring.childrenInherit: true
         readonly property int count: root.page.anchorTexts.length
         /// Where an anchor is, in pixels from the left.
         function place(index: int): real { return line.inset + (root.page.anchorPlaces[index] ?? 0) * (width - 2 * line.inset) }

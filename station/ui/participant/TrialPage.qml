@@ -43,8 +43,10 @@ Item {
         accent: root.theme.action
     }
 
-    // One dot for each interval; the dot of the current interval is filled.
+    // One dot for each interval; the dot of the current interval is filled. Dots and answers have the order of the
+    // protocol from left to right, like the buttons, even if texts are read from right to left.
     Row {
+        LayoutMirroring.enabled: false
         visible: root.counted && !root.confides && !root.feedback && root.page.kind !== PageModel.Interval
         anchors { horizontalCenter: parent.horizontalCenter; verticalCenter: surface.verticalCenter }
         spacing: root.theme.targetGap

@@ -5,6 +5,7 @@ import Turnpoint
 // file.) An unsupported language falls back to English.
 QtObject {
     required property string language
+    readonly property bool mirrored: Catalogue.mirrored(language)
 
     function text(key: string) : string { return phrased(Catalogue.text(key, language)) }
 
