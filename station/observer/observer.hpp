@@ -101,6 +101,10 @@ struct Question {
   double default_threshold = 1;        ///< the threshold, if the parameters have none
   /// 0: no deadline; if time is short, the observer decides sooner and makes more errors
   double deadline_s = 0;
+  /// If set, a signal asks for the answer at this time. The observer then says what it has found out by then:
+  /// what it has decided, or else the side to which the evidence points. It needs only half of its residual
+  /// time, and the time to move, because the answer is prepared; less if the deadline is sooner.
+  std::optional<double> signal_s = {};
   random::Key key;  ///< key of the trial's random draws; the observer sets its stream
 };
 
@@ -148,6 +152,9 @@ class Observer {
   Setting adjust(const Adjustment& adjustment) const;
 
  private:
+  /// Returns the probability that the evidence decides for the upper boundary.
+  double upper(const Question& question, double drift) const;
+  double latency_s(const Question& question) const;
   double strength(const Question& question, double from) const;
   double drift(const Question& question) const;
   double sensitivity(const Question& question) const;

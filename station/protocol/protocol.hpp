@@ -179,14 +179,24 @@ struct Task {
 
 using terms::ResponseZero;
 
+/// A signal to answer at once, for measuring how accuracy grows with the time for which people may think. An
+/// answer counts from the signal to the end of the window; earlier and later ones make the trial void, and it
+/// is repeated.
+struct ResponseSignal {
+  Linear after_s;  ///< counted from response_zero
+  double window_s = 0;
+};
+
 struct Timing {
   ResponseZero response_zero = ResponseZero::go_cue;
   Place response_zero_place;
   /// for a single interval: the longest time for which the tones are presented
   std::optional<double> explore_s;
-  std::optional<double> deadline_s;  ///< counted from response_zero; empty if each instruction gives its own
+  /// counted from response_zero; empty if each instruction gives its own, or if there is a signal
+  std::optional<Linear> deadline_s;
   Distribution iti_s;
-  double anticipation_s = 0;
+  Linear anticipation_s;
+  std::optional<ResponseSignal> signal;
 };
 
 enum class Feedback { none, trial, block };
@@ -236,7 +246,7 @@ struct Sequence {
 
 struct Instruction {
   Localised text, late_message;
-  std::optional<double> deadline_s;
+  std::optional<Linear> deadline_s;
   std::optional<std::pair<double, double>> target_accuracy;
 };
 

@@ -12,7 +12,8 @@ using text::TableReader;
 
 namespace {
 
-const std::vector<std::string> kShown{"psychometric", "ez", "bis", "lisas", "ies", "caf", "dprime", "trace"};
+const std::vector<std::string> kShown{"psychometric",    "ez",   "bis", "lisas", "ies", "caf", "dprime",
+                                      "response-signal", "trace"};
 
 void read_by(TableReader& reader, Reading& reading) {
   auto& by = reading.protocol.analysis.by;
@@ -57,6 +58,7 @@ std::string without_effect(const std::string& word, const Protocol& protocol) {
   if (word == "psychometric") return "";
   if (task.kind == TaskKind::single_interval && task.correct_answer.empty())
     return "without \"correct\" in [task], no answer is right or wrong";
+  if (word == "response-signal" && !protocol.timing.signal) return "[timing] has no \"response_signal\"";
   if (word == "dprime" && (task.kind == TaskKind::oddity || task.kind == TaskKind::same_different))
     return "d' is not estimated for \"oddity\" and \"same-different\"";
   if (word == "bis" && protocol.analysis.by.empty() && protocol.instructions.size() < 2)

@@ -92,9 +92,9 @@ struct SessionData {
   int replicates = 1000;
 };
 
-/// True if the report contains this part: "psychometric", "ez", "bis", "lisas", "ies", "caf", "dprime" or
-/// "trace". If the protocol does not choose, the report contains all parts, but d' only for yes/no tasks and
-/// where `deciding` has a model, and EZ-diffusion only for two answers.
+/// True if the report contains this part: "psychometric", "ez", "bis", "lisas", "ies", "caf", "dprime",
+/// "response-signal" or "trace". If the protocol does not choose, the report contains all parts, but d' only
+/// for yes/no tasks and where `deciding` has a model, and EZ-diffusion only for two answers.
 bool shows(const SessionData& data, const std::string& part);
 
 }  // namespace turnpoint::report

@@ -7,6 +7,7 @@
 #include "station/analysis/confusion.hpp"
 #include "station/analysis/course.hpp"
 #include "station/analysis/judgements.hpp"
+#include "station/analysis/response_signal.hpp"
 #include "station/analysis/settings.hpp"
 #include "station/analysis/signal_detection.hpp"
 #include "station/analysis/trade.hpp"
@@ -36,6 +37,7 @@ struct Summary {
   analysis::Trade trade;
   std::vector<analysis::Detection> detections;            ///< d' and criterion, if the report shows them
   std::vector<analysis::Discrimination> discriminations;  ///< d' where data.deciding has a model
+  std::vector<analysis::SpeedAccuracyCurve> curves;       ///< for a response signal, one for each condition
   /// for an adjustment task: one entry for each procedure and condition
   std::vector<analysis::Settings> settings;
   /// for ratings and numbers: one entry for each condition

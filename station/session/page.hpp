@@ -60,6 +60,7 @@ struct Page {
   std::string text;   ///< the question, instruction or message, in the session's language
   std::vector<AnswerButton> answers;
   bool answers_open = false;
+  bool answer_now = false;      ///< the response signal has been given
   std::optional<bool> correct;  ///< whether the answer was right; for feedback only
   /// "", "speed", "accuracy", ...: determines the block's style, which never differs by colour alone
   std::string instruction;

@@ -110,3 +110,46 @@ TEST_CASE("a passage is found for any drift and bound", "[observer]") {
       if (std::fabs(drift * bound) > 100) CHECK(passage.upper == (drift > 0));
     }
 }
+
+namespace {
+
+/// The probability that a walk has left at +1 or is above 0 at `time`, by explicit finite differences of the
+/// Fokker-Planck equation dp/dt = -drift dp/dx + 1/2 d2p/dx2 between absorbing boundaries.
+double upper_by_differences(double drift, double time) {
+  constexpr int n = 200;  // cells from -1 to 1
+  const double h = 2.0 / n;
+  const int steps = static_cast<int>(std::ceil(time / (0.4 * h * h)));
+  const double dt = time / steps;
+  std::vector<double> p(n + 1, 0.0), next(n + 1, 0.0);
+  p[n / 2] = 1 / h;
+  double upper = 0;
+  for (int step = 0; step < steps; ++step) {
+    for (int i = 1; i < n; ++i) {
+      const auto k = static_cast<std::size_t>(i);
+      next[k] = p[k] + dt * (0.5 * (p[k + 1] - 2 * p[k] + p[k - 1]) / (h * h) -
+                             drift * (p[k + 1] - p[k - 1]) / (2 * h));
+    }
+    // the flux through +1, from a one-sided difference of second order
+    upper += dt * 0.5 * (4 * p[n - 1] - p[n - 2]) / (2 * h);
+    std::swap(p, next);
+  }
+  double above = 0.5 * p[n / 2] * h;
+  for (std::size_t k = n / 2 + 1; k < n; ++k) above += p[k] * h;
+  return upper + above;
+}
+
+}  // namespace
+
+TEST_CASE("what a walk says at a signal agrees with finite differences of its density", "[observer]") {
+  for (const double drift : {0.0, 0.4, 1.5, -1.5, 4.0})
+    for (const double time : {0.02, 0.1, 0.5, 2.0}) {
+      CAPTURE(drift, time);
+      CHECK(observer::upper_by(drift, 1, time) == Approx(upper_by_differences(drift, time)).margin(2e-3));
+      CHECK(observer::upper_by(drift / 0.7, 0.7, time * 0.49) ==
+            Approx(observer::upper_by(drift, 1, time)).margin(1e-12));
+    }
+  CHECK(observer::upper_by(2, 1, 0) == 0.5);
+  CHECK(observer::upper_by(2, 1, 1e-9) == Approx(0.5).margin(1e-3));
+  CHECK(observer::upper_by(2, 1, 50) == Approx(observer::upper_probability(2, 1)).margin(1e-12));
+  CHECK(observer::upper_by(1e6, 1, 1) == 1);
+}

@@ -277,3 +277,29 @@ TEST_CASE("with several intervals, and in ABX, the observer is as good as its no
     check(Finding::nearest, 2, abx);
   }
 }
+
+TEST_CASE("at a response signal the observer answers from what it has found out so far", "[observer]") {
+  const Observer observer(
+      parse("sim:threshold=1,lapse=0,anticipation=0,residual=0.2,residual_range=0.1,travel=0"));
+  auto question = at_level(1.5);
+  double last = 0.45;
+  for (const double signal_s : {0.05, 0.3, 1.0, 3.0}) {
+    CAPTURE(signal_s);
+    question.signal_s = signal_s;
+    int right = 0;
+    constexpr int n = 20'000;
+    for (int trial = 0; trial < n; ++trial) {
+      question.key.trial = trial;
+      const auto reply = observer.answer(question);
+      right += reply.choice == 0;
+      CHECK(reply.response_time_s >= signal_s + 0.05);
+      CHECK(reply.response_time_s <= signal_s + 0.15);
+    }
+    const double share = observer.share(question, 0);
+    CHECK(right / static_cast<double>(n) == Approx(share).margin(4 * std::sqrt(0.25 / n)));
+    CHECK(share > last);
+    last = share;
+  }
+  question.signal_s.reset();
+  CHECK(last == Approx(observer.share(question, 0)).margin(0.01));
+}

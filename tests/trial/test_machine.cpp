@@ -466,3 +466,42 @@ TEST_CASE("before the answer, such a trial ends the question; after a timeout it
   late.handle({9001 * ms, EventKind::outside, 0});
   CHECK(late.result().outcome == Outcome::timeout);
 }
+
+TEST_CASE("a response signal is given once, at its time after the zero, and answers count from it on",
+          "[trial]") {
+  auto plan = exploration();
+  plan.signal_ns = plan.anticipation_ns = 700 * ms;
+  plan.deadline_ns = 1100 * ms;
+  auto machine = exploring(plan);
+  CHECK(machine.wake_ns() == 1200 * ms);
+  CHECK_FALSE(has(machine.handle({1199 * ms, EventKind::tick, 0}), ActionKind::signal, 0));
+  CHECK_FALSE(machine.signalled());
+  const auto actions = machine.handle({1203 * ms, EventKind::tick, 0});
+  REQUIRE(has(actions, ActionKind::signal, 0));
+  CHECK(actions.front().time_ns == 1200 * ms);
+  CHECK(machine.signalled());
+  CHECK_FALSE(has(machine.handle({1210 * ms, EventKind::tick, 0}), ActionKind::signal, 0));
+
+  SECTION("an answer within the window counts") {
+    machine.handle({1600 * ms, EventKind::answer, 1});
+    CHECK(machine.result().outcome == Outcome::answered);
+    CHECK(machine.result().response_time_ns == 1100 * ms);
+  }
+  SECTION("an answer that was given before the signal arrives late") {
+    machine.handle({1190 * ms, EventKind::answer, 1});
+    CHECK(machine.result().outcome == Outcome::anticipation);
+  }
+  SECTION("after the window it is too late") {
+    machine.handle({1700 * ms, EventKind::tick, 0});
+    CHECK(machine.result().outcome == Outcome::timeout);
+  }
+}
+
+TEST_CASE("after an answer before the signal there is no signal", "[trial]") {
+  auto plan = exploration();
+  plan.signal_ns = plan.anticipation_ns = 700 * ms;
+  auto machine = exploring(plan);
+  machine.handle({900 * ms, EventKind::answer, 1});
+  CHECK(machine.result().outcome == Outcome::anticipation);
+  CHECK_FALSE(has(machine.handle({1400 * ms, EventKind::tick, 0}), ActionKind::signal, 0));
+}

@@ -149,6 +149,9 @@ void add_trials(std::vector<Exhibit>& all, const Words& words) {
   all.push_back({"cue", cue});
   all.push_back({"explore", boundary(words, PageKind::stimulus)});
   all.push_back({"response", boundary(words, PageKind::response)});
+  Page now = boundary(words, PageKind::stimulus);
+  now.answer_now = true;
+  all.push_back({"explore-signal", now});
   all.push_back({"explore-speed", instructed(boundary(words, PageKind::stimulus), words, "speed")});
   all.push_back({"explore-accuracy", instructed(boundary(words, PageKind::stimulus), words, "accuracy")});
   all.push_back({"abx-cue", abx(words, PageKind::cue)});
