@@ -125,3 +125,30 @@ TEST_CASE(
     CHECK(question.decibel);
   }
 }
+
+TEST_CASE("the times of a trial follow its factors", "[session]") {
+  auto protocol = shipped("response-signal");
+  Director signalled(protocol, 0, 5);
+  std::map<double, int> lags;
+  signalled.finish_block();  // the practice
+  while (const auto spec = signalled.next()) {
+    const double lag_s = std::get<double>(spec->factors.at("lag_s"));
+    ++lags[lag_s];
+    REQUIRE(spec->signal_s == lag_s);
+    CHECK(spec->anticipation_s == lag_s);
+    CHECK(spec->deadline_s == Approx(lag_s + 0.4));
+    CHECK_FALSE(spec->timeouts_are_data);
+    signalled.record(answered(*spec, true));
+  }
+  CHECK(lags == std::map<double, int>{{0.1, 56}, {0.2, 56}, {0.35, 56}, {0.6, 56}, {1.0, 56}, {1.6, 56}});
+
+  protocol.timing.deadline_s = protocol.timing.signal->after_s;
+  protocol.timing.signal.reset();
+  Director limited(protocol, 0, 5);
+  for (int i = 0; i < 20; ++i) {
+    const auto spec = limited.next();
+    CHECK(spec->deadline_s == std::get<double>(spec->factors.at("lag_s")));
+    CHECK_FALSE(spec->signal_s);
+    limited.record(answered(*spec, true));
+  }
+}
