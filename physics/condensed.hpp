@@ -1,6 +1,6 @@
 #pragma once
 // Eliminates the inner unknowns of a finite element. Needs Eigen.
-#include <Eigen/Dense>
+#include <Eigen/Core>
 
 namespace turnpoint::physics {
 

@@ -1,5 +1,6 @@
 #include "physics/condensed.hpp"
 
+#include <Eigen/LU>
 #include <cmath>
 
 #include "tests/support/catch.hpp"

@@ -15,8 +15,6 @@ namespace turnpoint::ui {
 
 namespace {
 
-/// Placeholder for the participant's code. The code is typed last, and all other settings are checked before.
-constexpr const char* kCodeToCome = "keypad";
 /// Number of sessions to simulate for the number of trials and the duration on the start page. Five are
 /// simulated quickly, and give the duration to within some minutes.
 constexpr int kSessions = 5;
@@ -151,7 +149,7 @@ setup::RunRequest OperatorController::request_for(const char* mode) const {
   request.protocol = entry()->path;
   request.rig = request_.rig;
   request.database = request_.database;
-  request.participant = kCodeToCome;
+  request.participant = setup::kCodeToCome;
   request.mode = mode;
   return request;
 }
@@ -298,3 +296,5 @@ QString OperatorController::interrupted() const {
 }
 
 }  // namespace turnpoint::ui
+
+#include "moc_operator_controller.cpp"

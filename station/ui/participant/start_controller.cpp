@@ -80,3 +80,5 @@ void StartController::proceed() {
 }
 
 }  // namespace turnpoint::ui
+
+#include "moc_start_controller.cpp"

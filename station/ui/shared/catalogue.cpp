@@ -23,3 +23,5 @@ QString Catalogue::family() const {
 }
 
 }  // namespace turnpoint::ui
+
+#include "moc_catalogue.cpp"
