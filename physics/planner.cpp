@@ -150,7 +150,7 @@ RungEstimate edge_estimate(const Surface& surface, const PlanRequest& request, c
   RungEstimate e;
   e.cost_s = cost_s(surface, reference.f, Model::edge, 0);
   e.usable = request.points == 0 && !request.tolerance.level_dB && !request.tolerance.amplitude;
-  e.reason = e.usable ? "positions of the first mode with loss" : "has no profile";
+  e.reason = e.usable ? "positions only, from the first mode, with loss included" : "has no profile";
   if (request.edge.kind == Edge::Kind::turning || !e.usable) return e;
   const MapOptions options{
       request.edge.kind == Edge::Kind::friction ? Edge::peak() : request.edge, {}, {}, {}};

@@ -31,7 +31,7 @@ struct CapturedBlock {
 
 struct CaptureCounters {
   std::int64_t frames = 0;        ///< frames captured or lost so far
-  std::int64_t overruns = 0;      ///< losses of frames whose number is known
+  std::int64_t overruns = 0;      ///< gaps for which the device said how many frames were lost
   std::int64_t lost_frames = 0;   ///< frames lost in `overruns`
   std::int64_t unknown_gaps = 0;  ///< losses of an unknown number of frames: the device was restarted or lost
   std::uint32_t numbering = 0;    ///< numbering of the newest frame (see CapturedBlock)

@@ -6,7 +6,7 @@
 namespace turnpoint::sensing {
 
 /// Where friction changes along the strip, as measured by the finger. It can be compared with a planned edge
-/// of friction if it was measured at the edge's level; the turning point of a mode is another place.
+/// of friction if it was measured at the edge's level; the turning point of a mode is a different place.
 struct FeltStep {
   double boundary_mm = 0;       ///< mean of both directions, because the skin lags behind the finger
   double se_mm = 0;             ///< standard error of boundary_mm

@@ -44,9 +44,9 @@ class GeneratingValues {
   void take_questions(const GeneratingValues& other);
   bool has_all_of(const GeneratingValues& other) const;  ///< true if this has each of the other's conditions
 
-  /// True values for a fit with these options to the answers of a condition ("" for all trials). The slope is
-  /// set only if the observer's function is of the same family as the fitted one; a deadline changes the
-  /// family.
+  /// Returns the true values that a fit with these options should find in the answers of this condition (""
+  /// means all trials). The slope is set only if the observer's function is of the same family as the fitted
+  /// one; a deadline changes the family.
   FitTruth fit(const std::string& condition, const analysis::FitOptions& options,
                const observer::Observer& observer) const;
   std::optional<double> share_correct(const std::string& condition) const;

@@ -66,7 +66,8 @@ TEST_CASE("a survey plans each combination of level and mark once, with its boun
   }
 }
 
-TEST_CASE("a boundary that the rig cannot reach is refused with what it can reach", "[protocol]") {
+TEST_CASE("if the rig cannot reach a boundary, the message says which boundaries it can reach",
+          "[protocol]") {
   auto text = replaced(source("demo.toml"), "levels = [150.0, 160.0]", "levels = [250.0, 260.0]");
   const auto found = problems(text, quick_rig());
   CHECK(contains(found, "p.toml:25:15: scene \"edge\" in block \"main\" at mark_mm = 250, offset_mm = "));

@@ -165,7 +165,7 @@ TEST_CASE("a boundary at a level of friction is where a plate's friction crosses
       const auto felt = felt_step(profile, level);
       REQUIRE(felt);
       CHECK(felt->boundary_mm == Approx(crossing_mm).margin(level < 0.7 ? 0.15 : 0.3));
-      // negative control: half-way up the step is another place
+      // negative control: half-way up the step is a different place
       if (level == 0.8) CHECK(std::abs(felt_step(profile)->boundary_mm - crossing_mm) > 2);
     }
     CHECK_FALSE(felt_step(profile, 0.05));  // friction never falls so low

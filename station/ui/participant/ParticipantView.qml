@@ -57,7 +57,7 @@ Rectangle {
         interval: 350
         running: true
     }
-    /// Changes with everything that makes a page another one for the participant.
+    /// Changes whenever the participant sees a different page: another kind, title or text.
     readonly property string topic: kind + "\n" + page.title + "\n" + page.text + "\n" + page.safe
     onTopicChanged: arming.restart()
     onKindChanged: armable = false
