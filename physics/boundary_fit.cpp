@@ -1,6 +1,6 @@
 #include "physics/boundary_fit.hpp"
 
-#include <Eigen/Dense>
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <sstream>
@@ -12,8 +12,8 @@
 namespace turnpoint::physics {
 namespace {
 
-// The fit counts in standard deviations: parameters in those of the prior, boundaries in those of the
-// measurement.
+// The fit scales all quantities by standard deviations: parameters by those of the prior, boundaries by those
+// of the measurement.
 struct Problem {
   const Surface& surface;
   const MapOptions& options;
@@ -104,7 +104,7 @@ Solution solve(const Problem& problem) {
   return s;
 }
 
-// `named` boundaries are outliers; without the `taken` ones, no deviation exceeds the limit.
+// The boundaries in `named` are outliers. If those in `taken` are left out, no deviation exceeds the limit.
 struct Outliers {
   std::vector<bool> named, taken;
 };
@@ -115,7 +115,7 @@ struct Outliers {
 Outliers find_outliers(const Solution& s) {
   constexpr double limit = 3, as_bad = 0.9;
   const Eigen::Index m = s.jacobian.rows(), n = s.jacobian.cols();
-  // To first order: the deviations of the boundaries if the parameters were not changed.
+  // The deviations of the boundaries, to first order, if the parameters were not changed.
   const Eigen::VectorXd free = s.misses + s.jacobian * s.u;
   std::vector<bool> named(static_cast<std::size_t>(m)), taken(static_cast<std::size_t>(m));
   for (Eigen::Index round = 0; round < m; ++round) {

@@ -122,6 +122,9 @@ std::unique_ptr<CentreLine> make_centre_line(const Surface& surface, double freq
     case Model::uniform:
       return make_uniform_line(surface, frequency_Hz);
     case Model::modes:
+      if (surface.drive == DriveShape::piston && surface.theory != PlateTheory::kirchhoff)
+        throw std::domain_error(
+            "model modes of a thick plate is not available for drive piston, only for cosine");
       return make_modal_line(surface, frequency_Hz, losses, {});
   }
   throw std::domain_error("model " + std::string(name(model)) + " is not available for this surface");

@@ -45,9 +45,9 @@ std::unique_ptr<CentreLine> make_centre_line(const Surface& surface, double freq
 // length_m].
 std::optional<double> turning_point_m(const Surface& surface, double frequency_Hz);
 
-// Returns the surface without its outer part, where the first mode has decayed by more than e^-45 beyond its
-// turning point. Edges and resonances do not depend on that part, and on a long exponential taper solving it
-// would take millions of steps.
+// Returns the surface without its outer part, where the first mode has decayed by more than a factor of e^45
+// beyond its turning point. Edges and resonances do not depend on that part, and on a long exponential taper
+// solving it would take millions of steps.
 Surface moving_part(const Surface& surface, double frequency_Hz);
 
 // The equation that the models `seed` and `mode` solve step by step.

@@ -3,7 +3,7 @@
 namespace turnpoint::physics {
 namespace {
 
-// Moves the bubbles before the ends.
+// Reorders the unknowns: first the inner ones (bubbles), then those of the two ends.
 Eigen::MatrixXd bubbles_first(const Eigen::MatrixXd& from, Eigen::Index left, Eigen::Index right) {
   const Eigen::Index n = from.rows(), inner = n - left - right;
   Eigen::MatrixXd to(n, n);

@@ -1,30 +1,30 @@
 #pragma once
 // Eliminates the inner unknowns of a finite element. Needs Eigen.
-#include <Eigen/Dense>
+#include <Eigen/Core>
 
 namespace turnpoint::physics {
 
-// The matrix of an element after its inner unknowns (its bubbles) are expressed by those of its two ends. The
-// matrix is complex and symmetric, K - omega^2 M. An element is shorter than half a wavelength, so the real
-// part of the block that belongs to the bubbles is positive definite, and elimination needs no pivoting.
+// The matrix of an element, with its inner unknowns (its bubbles) expressed by the unknowns of its two ends.
+// It is complex and symmetric, K - omega^2 M. An element is shorter than half a wavelength, so the real part
+// of the block that belongs to the bubbles is positive definite, and elimination needs no pivoting.
 class Condensed {
  public:
   using Matrix = Eigen::MatrixXcd;
   using Vector = Eigen::VectorXcd;
 
   Condensed() = default;
-  // The unknowns of the matrix real + i imaginary are ordered: `left` ones of the left end, bubbles, `right`
-  // ones of the right end.
+  // The unknowns of the matrix real + i imaginary are in this order: `left` unknowns of the left end, the
+  // bubbles, `right` unknowns of the right end.
   Condensed(const Eigen::MatrixXd& real, const Eigen::MatrixXd& imaginary, Eigen::Index left,
             Eigen::Index right);
 
   Eigen::Index bubbles() const { return pivots_.size(); }
-  // The matrix that remains for the ends: left, then right.
+  // The matrix for the unknowns of the ends: first left, then right.
   const Matrix& ends() const { return ends_; }
-  // The bubbles that belong to these values at the ends, without a load on the bubbles.
+  // Returns the values of the bubbles for these values at the ends, if no load acts on the bubbles.
   Vector follow(const Vector& ends) const;
-  // The load that `reduced` bubbles exert on the ends, and load^T matrix^-1 load for a load on the bubbles
-  // alone. `reduce` turns a load on the bubbles into the form that both need.
+  // reduce() prepares a load on the bubbles for the other two functions. load_on_ends() returns the load that
+  // the ends then feel; quadratic() returns load^T matrix^-1 load for a load on the bubbles alone.
   Vector reduce(const Vector& load) const;
   Vector load_on_ends(const Vector& reduced) const { return -(rows_ * reduced); }
   std::complex<double> quadratic(const Vector& reduced) const {

@@ -6,8 +6,6 @@
 #include <mutex>
 #include <numbers>
 
-#include <Eigen/Eigenvalues>
-
 #include "physics/root.hpp"
 #include "physics/section_elements.hpp"
 
@@ -65,29 +63,6 @@ double ElasticCutOff::thickness_per_half_width(double wanted) const noexcept {
   const auto miss = [&](double t) { return t * value(t) - wanted; };
   return false_position({0, -wanted, largest, miss(largest)}, miss, {8, true}, 0,
                         [](const Chord& c) { return c.width() <= 1e-15 * c.right; });
-}
-
-std::vector<std::complex<double>> elastic_wavenumbers2(double t, double poisson, double omega, int count) {
-  const SectionPencil s = SectionElements(t, poisson).pencil;
-  const Eigen::Index na = s.along_mass.rows(), nb = s.mass.rows();
-  const double o2 = omega * omega;
-  Eigen::MatrixXd fixed = Eigen::MatrixXd::Zero(na + nb, na + nb), by = fixed;
-  fixed.topLeftCorner(na, na) = s.shear - o2 * s.along_mass;
-  fixed.topRightCorner(na, nb) = s.coupling;
-  fixed.bottomRightCorner(nb, nb) = s.plane - o2 * s.mass;
-  by.topLeftCorner(na, na) = s.along;
-  by.bottomLeftCorner(nb, na) = s.coupling.transpose();
-  by.bottomRightCorner(nb, nb) = s.cross;
-  // The eigenvalue problem is `fixed` v = -L `by` v. Compute the eigenvalues of fixed^-1 `by`, which are
-  // -1/L. The largest of them belong to the L of smallest magnitude.
-  const Eigen::EigenSolver<Eigen::MatrixXd> solver(Eigen::MatrixXd(fixed.partialPivLu().solve(by)), false);
-  std::vector<std::complex<double>> all;
-  for (const std::complex<double> one : solver.eigenvalues()) {
-    if (std::abs(one) > 0) all.push_back(-1.0 / one);
-  }
-  std::sort(all.begin(), all.end(), [](const auto& a, const auto& b) { return std::abs(a) < std::abs(b); });
-  all.resize(std::min(all.size(), static_cast<std::size_t>(count)));
-  return all;
 }
 
 }  // namespace turnpoint::physics

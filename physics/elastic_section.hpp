@@ -1,9 +1,6 @@
 #pragma once
-// The cross-section of a clamped strip in three-dimensional elasticity. Computes its cut-off and its waves
-// along x.
+// The cross-section of a clamped strip in three-dimensional elasticity. Computes its cut-off.
 #include <array>
-#include <complex>
-#include <vector>
 
 namespace turnpoint::physics {
 
@@ -35,13 +32,5 @@ class ElasticCutOff {
 // towards the corners, is within 2e-4 for Poisson's ratios to 0.33 and h/W to 0.4, and within 8e-4 for
 // Poisson's ratios to 0.45 and h/W to 0.6.
 double elastic_cut_off(double thickness_per_half_width, double poisson);
-
-// Squared wavenumbers along the strip, times W^2, of the waves at a given omega W / c_s, smallest magnitude
-// first. Only waves that are symmetric about the centre line and antisymmetric through the thickness are
-// included. A value is complex where two evanescent branches have met. The method is semi-analytical finite
-// elements: with u = (i k A, b, c) exp(-i k x) and A, b, c made of elements in y and z, the eigenvalue
-// problem is linear in k^2 (S. Dong & R. Nelson, J. Appl. Mech. 39 (1972) 739).
-std::vector<std::complex<double>> elastic_wavenumbers2(double thickness_per_half_width, double poisson,
-                                                       double omega_W_per_speed, int count);
 
 }  // namespace turnpoint::physics

@@ -43,7 +43,9 @@ Solved solve(const Surface& surface, double frequency_Hz, Model model) {
   s.info.turning_point_m = turning_point_m(surface, frequency_Hz);
   s.info.last_peak_m = s.line->last_peak_m();
   if (!s.info.last_peak_m) s.info.no_peak_reason = why_no_peak(surface, frequency_Hz);
-  s.at_drive = s.line->value(0);
+  // The field of `modes` belongs to a drive edge whose centre moves by exactly 1. Its own value there is not
+  // 1 for a piston, because the transverse functions cannot follow the jump to the held sides.
+  s.at_drive = model == Model::modes ? Scaled{1, 0} : s.line->value(0);
   s.at_peak = s.info.last_peak_m ? s.line->value(*s.info.last_peak_m) : s.at_drive;
   const double ln_gain = s.at_peak.ln_magnitude() - s.at_drive.ln_magnitude();
   s.info.gain = std::exp(std::clamp(ln_gain, -700.0, 700.0));
@@ -137,6 +139,20 @@ std::string validity_of(const Surface& surface, Model model) {
   return "two-dimensional field";
 }
 
+// Lower limit of the error of `modes` near a resonance. Its resonances, and those of its higher modes, are
+// not where the first mode's conditioning has them, so that the estimate before the solution does not know
+// them.
+double resonant_error(const Surface& surface, const ToneField& tone, Normalise normalise, double weight) {
+  constexpr double shape = 1e-4, largest = 2;
+  if (normalise != Normalise::peak) {
+    const bool piston = surface.drive == DriveShape::piston;
+    return (piston ? 5 : 1) * shape * tone.info.conditioning;
+  }
+  double most = 1;  // largest |v|, with the last maximum at one
+  for (const auto& v : tone.v) most = std::max(most, weight > 0 ? std::abs(v) / weight : 0);
+  return std::min(largest, shape * tone.info.gain * most);
+}
+
 }  // namespace
 
 std::string_view name(Normalise normalise) {
@@ -201,6 +217,11 @@ FieldNotes describe(const Surface& surface, std::span<const Tone> tones, const F
   const PlanRequest request{
       {tones.begin(), tones.end()}, static_cast<int>(field.amplitude.size()), {}, field.normalise, {}};
   notes.error_bound = estimate(surface, request, field.model).amplitude_bound;
+  for (std::size_t i = 0; field.model == Model::modes && i < field.tones.size(); ++i) {
+    const double weight = tones[i].amplitude_m / strongest(tones);
+    notes.error_bound =
+        std::max(notes.error_bound, resonant_error(surface, field.tones[i], field.normalise, weight));
+  }
   notes.validity = validity_of(surface, field.model);
   notes.warnings = surface_warnings(surface);
   for (Warning& warning : tone_warnings(surface, tones)) notes.warnings.push_back(std::move(warning));

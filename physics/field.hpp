@@ -59,8 +59,8 @@ struct Field {
 };
 
 // Evaluates the field at the points `x_m`, in any order. Throws std::invalid_argument if a point is outside
-// [0, length_m], for Model::edge, which has no profile, and for `modes` on clamped plates. The cost is one
-// solution per tone.
+// [0, length_m], and for Model::edge, which has no profile; std::domain_error if the model does not apply.
+// The cost is one solution per tone.
 Field evaluate(const Surface& surface, std::span<const Tone> tones, std::span<const double> x_m, Model model,
                Normalise normalise);
 

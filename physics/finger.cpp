@@ -37,9 +37,9 @@ std::vector<FingerLoad> finger_load(const Surface& surface, double f, const std:
   validate(surface);
   for (const double x : x_m) {
     if (!(x >= 0 && x <= surface.length_m))
-      throw std::invalid_argument("finger position: on the surface only");
+      throw std::invalid_argument("finger position: it must be on the surface");
   }
-  if (!(finger.contact_radius_m > 0)) throw std::invalid_argument("contact radius: above 0 only");
+  if (!(finger.contact_radius_m > 0)) throw std::invalid_argument("contact radius: it must be above 0");
   const std::complex<double> i_omega(0, 2 * std::numbers::pi * f);
   std::vector<FingerLoad> all;
   for (const DiscResponse& disc :

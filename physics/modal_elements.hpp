@@ -1,6 +1,6 @@
 #pragma once
 // Computes the finite-element matrices of the two-dimensional field, in the coordinates x and eta = y / W(x).
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <complex>
 #include <vector>
 

@@ -1,5 +1,6 @@
 #include "physics/modal_load.hpp"
 
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <numbers>

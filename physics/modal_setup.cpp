@@ -1,5 +1,6 @@
 #include "physics/modal_setup.hpp"
 
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <numbers>

@@ -14,7 +14,7 @@ struct ModeBound {
   double shape = 0;     // error of |v| if the last maximum is set to one, relative to the largest value
   double drive = 0;     // error of |v| if v(0) is set to one, relative to the largest value
   double level_dB = 0;  // error of the ratio of |v| at the last maximum to |v(0)|
-  // error of an edge's position from the one-mode equation, on a curved or steep taper
+  // error of an edge's position on a curved or steep taper, caused by using the equation for one mode
   double equation_m = 0;
   // error of an edge's position, caused by higher modes from the drive edge and by a straight clamped end
   // nearby

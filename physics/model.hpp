@@ -10,8 +10,9 @@ namespace turnpoint::physics {
 // seed     equation 11 of the 1998 paper, solved to rounding accuracy
 // uniform  Langer & Olver's uniform Airy approximation of the flux-corrected equation; without loss
 // mode     flux-corrected first transverse mode with loss, bending and any taper, solved to rounding accuracy
-// modes    coupled transverse modes with a straight drive edge, that is, the two-dimensional field (only
-//          membranes and simply supported plates)
+// modes    coupled transverse modes with a straight drive edge, that is, the two-dimensional field (not for
+// the
+//          plate theory elastic, and for the theory mindlin only with the drive cosine)
 enum class Model { edge, airy, seed, uniform, mode, modes };
 
 inline constexpr std::array all_models{Model::edge,    Model::airy, Model::seed,

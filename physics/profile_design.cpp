@@ -2,6 +2,7 @@
 #include <cmath>
 #include <sstream>
 #include <stdexcept>
+#include <string>
 
 #include "physics/centre_line.hpp"
 #include "physics/crest.hpp"
@@ -14,6 +15,7 @@ namespace {
 constexpr double reachable_residual = 0.25;
 // stop if another tone reduces the residual by less than this fraction
 constexpr double fit_tolerance = 1e-4;
+constexpr int most_candidates = 100000;
 
 // Appends a tone's squared amplitudes at the target's points to `columns`, relative to the tone's last
 // maximum. `drive_gain` is |v(0)| divided by that maximum.
@@ -39,9 +41,10 @@ ProfileDesign design_profile(const Surface& surface, std::span<const ProfilePoin
   std::vector<double> x, wanted;
   double norm = 0;
   for (const ProfilePoint& point : target) {
-    if (!(point.x_m >= 0 && point.x_m <= surface.length_m) || !(point.amplitude_m >= 0)) {
+    if (!(point.x_m >= 0 && point.x_m <= surface.length_m) ||
+        !(point.amplitude_m >= 0 && std::isfinite(point.amplitude_m))) {
       throw std::invalid_argument(
-          "target profile: points on the surface and amplitudes of 0 or more are needed");
+          "target profile: points on the surface and finite amplitudes of 0 or more are needed");
     }
     x.push_back(point.x_m);
     wanted.push_back(point.amplitude_m * point.amplitude_m);
@@ -52,8 +55,12 @@ ProfileDesign design_profile(const Surface& surface, std::span<const ProfilePoin
     throw std::invalid_argument("tone band: low_Hz up to high_Hz and spacing_Hz above 0 are needed");
   }
   std::vector<double> columns, frequencies, gains;
-  const int count =
-      static_cast<int>(std::floor((band.high_Hz - band.low_Hz) / band.spacing_Hz * (1 + 1e-12)));
+  const double candidates = std::floor((band.high_Hz - band.low_Hz) / band.spacing_Hz * (1 + 1e-12));
+  if (!(candidates < most_candidates)) {
+    throw std::invalid_argument("tone band: spacing_Hz gives " + std::to_string(candidates) +
+                                " candidate tones; allowed: fewer than " + std::to_string(most_candidates));
+  }
+  const int count = static_cast<int>(candidates);
   for (int i = 0; i <= count; ++i) {
     const double f = band.low_Hz + i * band.spacing_Hz;
     double gain = 1;

@@ -26,7 +26,8 @@ class Phase {
     // The solution is positive at the tip. Each zero between tip and drive edge adds pi and changes the sign.
     const int zeros = march.zeros();
     const double sign = zeros % 2 == 0 ? 1 : -1;
-    return pi * zeros + std::acos(std::clamp(sign * rising / std::hypot(v, rising), -1.0, 1.0));
+    // An arc cosine would lose half of the digits just where they count, at the resonances.
+    return pi * zeros + std::atan2(std::abs(v), sign * rising);
   }
 
  private:

@@ -1,7 +1,7 @@
 #pragma once
 // Basis functions over the cross-section of a thick clamped strip. The strip's motion is a sum of these
 // functions, with coefficients that depend on x. Needs Eigen.
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <array>
 
 #include "physics/surface.hpp"

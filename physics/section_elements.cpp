@@ -1,5 +1,7 @@
 #include "physics/section_elements.hpp"
 
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <vector>

@@ -1,6 +1,6 @@
 #pragma once
 // Finite elements for one quarter (y > 0, z > 0) of a clamped strip's cross-section. Needs Eigen.
-#include <Eigen/Dense>
+#include <Eigen/Core>
 
 namespace turnpoint::physics {
 

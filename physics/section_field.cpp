@@ -1,5 +1,6 @@
 #include "physics/section_field.hpp"
 
+#include <Eigen/LU>
 #include <cmath>
 #include <numbers>
 #include <stdexcept>

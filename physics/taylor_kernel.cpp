@@ -84,7 +84,7 @@ bool half_log_square(const double* re, const double* im, std::size_t n, double o
   // series, and e is read from the exponent bits.
   constexpr double ln2 = 0.693147180559945309417232121458;
   constexpr std::uint64_t sqrt_half = 0x3fe6a09e667f3bcdULL;
-  // the bits of about 1e-289, below which the result is not valid
+  // the bit pattern of about 1e-289; below it, the result is not valid
   constexpr std::uint64_t small = 0x03d0000000000000ULL;
   std::uint64_t any_small = 0;
   for (std::size_t i = 0; i < n; ++i) {

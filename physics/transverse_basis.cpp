@@ -1,5 +1,6 @@
 #include "physics/transverse_basis.hpp"
 
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <numbers>

@@ -1,7 +1,7 @@
 #pragma once
 // Basis functions of eta = y / W(x) for the two-dimensional field, and the integrals of their products that
 // its weak form needs.
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <array>
 #include <functional>
 #include <vector>

@@ -17,7 +17,7 @@ namespace {
 
 constexpr double grid_step_m = 0.5e-3;
 constexpr int candidates_per_spacing = 3;
-constexpr int most_candidates = 40;
+constexpr int most_candidate_tones = 40;
 // A tone is added only if it reduces the unevenness of the zone to this fraction or less.
 constexpr double worthwhile = 0.97;
 
@@ -76,7 +76,7 @@ void ZoneProfile::choose_tones(double highest_Hz) {
   weights_ = fit({&shapes_[0]}, best);
   if (request_.tones == 1) return;
   const double step = std::max(request_.band.spacing_Hz / candidates_per_spacing,
-                               (highest_Hz - request_.band.low_Hz) / most_candidates);
+                               (highest_Hz - request_.band.low_Hz) / most_candidate_tones);
   std::vector<ToneShape> candidates;
   for (double f = highest_Hz - request_.band.spacing_Hz; f >= request_.band.low_Hz; f -= step) {
     try {

@@ -21,7 +21,7 @@ struct ConfusionRow {
 struct Confusion {
   std::string condition;
   std::vector<ConfusionRow> rows;   ///< in the order of the choices, or in ascending order of the level
-  std::optional<Proportion> right;  ///< of all trials with a right answer
+  std::optional<Proportion> right;  ///< proportion correct of all trials with a right answer
 };
 
 /// Counts the answers in answered experimental trials: by the right choice, or by the level in trials without

@@ -66,7 +66,7 @@ FeltBoundaries boundaries_of(const std::vector<FingerTrial>& trials) {
   struct OfBoundary {
     std::vector<Single> shift_mm, mu_low, mu_high;
   };
-  std::map<long, OfBoundary> groups;  // by tenths of a millimetre
+  std::map<long, OfBoundary> groups;  // key: planned boundary in tenths of a mm
   for (const auto& trial : trials) {
     const auto shift = shift_of(trial);
     if (!shift) continue;

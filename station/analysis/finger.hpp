@@ -25,8 +25,8 @@ struct FingerTrial {
 struct FingerCondition {
   std::string condition;
   int trials = 0;    ///< trials in which force cells recorded
-  int measured = 0;  ///< those whose forces are known
-  int felt = 0;      ///< those with a felt boundary
+  int measured = 0;  ///< trials whose forces are known
+  int felt = 0;      ///< trials with a felt boundary
   std::optional<Estimate> normal_N, speed_mm_s, mu_low, mu_high;
   std::optional<Estimate> shift_mm;  ///< felt minus planned boundary
 };
@@ -47,8 +47,8 @@ struct FeltBoundaries {
 
 struct Finger {
   std::vector<FingerTrial> trials;          ///< in the order given
-  std::vector<FingerCondition> conditions;  ///< those in `order` first
-  FeltBoundaries boundaries;                ///< of all conditions
+  std::vector<FingerCondition> conditions;  ///< conditions in `order` come first
+  FeltBoundaries boundaries;                ///< boundaries of all conditions
   std::vector<Statement> statements;
 };
 

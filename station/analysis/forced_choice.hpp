@@ -27,8 +27,8 @@ const char* name(Deciding deciding);
 /// The proportion correct at this d'. `intervals` is the m of `largest`, at least 2; the others ignore it.
 double proportion_correct(Deciding deciding, double d_prime, int intervals);
 
-/// The d' at which the proportion correct is this. For ABX, 0 for proportions up to 0.5. Infinite for a
-/// proportion of 1, and minus infinity for 0 of `largest`. Throws std::invalid_argument outside of 0 to 1.
+/// Returns the d' that gives this proportion correct: for ABX 0 up to 0.5; infinite for 1, and minus infinity
+/// for 0 with `largest`. Throws std::invalid_argument for a proportion outside of 0 to 1.
 double d_prime(Deciding deciding, double proportion, int intervals);
 
 /// The sensitivity in one condition, at one level or over all levels.

@@ -29,8 +29,8 @@ struct Judgements {
 
 enum class Judged {
   ratings,
-  magnitudes,     ///< at levels of a physical size
-  magnitudes_dB,  ///< at levels of 20 log10 of a physical size
+  magnitudes,     ///< levels have a physical unit
+  magnitudes_dB,  ///< levels are 20 log10 of a physical quantity
 };
 
 /// Analyses TrialRecord::setting of answered experimental trials, one entry for each condition. Conditions in

@@ -1,6 +1,6 @@
 #include "station/analysis/least_squares.hpp"
 
-#include <Eigen/Dense>
+#include <Eigen/QR>
 #include <cmath>
 
 #include "station/terms/usage_error.hpp"

@@ -46,7 +46,7 @@ struct PsychometricFit {
   std::vector<LevelCount> data;  ///< one entry per level, ascending, without levels that have no trials
   std::optional<Psychometric> parameters;
   AtBound at_bound;
-  double negative_log_likelihood = 0;  ///< of the individual answers, in nats; without binomial coefficients
+  double negative_log_likelihood = 0;  ///< for the individual answers, in nats; without binomial coefficients
   /// deviance from the saturated model, which has one proportion per level
   double deviance = 0;
   int free_parameters = 0;

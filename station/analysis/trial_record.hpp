@@ -31,6 +31,8 @@ struct TrialRecord {
   std::optional<int> confidence;  ///< from 1 for the least sure; empty if the task does not ask
   Outcome outcome = Outcome::answered;
   std::optional<double> response_time_s;
+  std::optional<double>
+      signal_s;  ///< when the response signal came, after response_zero; empty if there is none
   /// the condition by which the analysis groups trials; "" if there is only one
   std::string instruction;
   /// equal for trials of equal difficulty; usually the absolute value of the level

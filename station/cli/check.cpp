@@ -16,6 +16,7 @@
 #include "station/setup/places.hpp"
 #include "station/setup/prepare.hpp"
 #include "station/simulation/check.hpp"
+#include "station/system/fonts.hpp"
 #include "station/text/number.hpp"
 
 namespace turnpoint::cli {
@@ -234,7 +235,7 @@ void check(const Options& options, Context& context) {
     return *calibrated;
   };
   LongWork work(options.progress);
-  simulation::CheckOptions wanted{options.sessions, true, true, load_rig};
+  simulation::CheckOptions wanted{options.sessions, true, true, load_rig, system::drawable};
   wanted.steps.finish = work.stop();
   wanted.steps.progress = [&work](const char* what, int done, int of) { work.show(what, done, of); };
   simulation::Check result;

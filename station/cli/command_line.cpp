@@ -42,7 +42,7 @@ std::string joined(const std::vector<std::string>& words, const std::string& sep
   return fmt::format("{}", fmt::join(words, separator));
 }
 
-/// "; did you mean KNOWN? ADVICE", or only "; ADVICE" if nothing known resembles the word.
+/// Returns "; did you mean KNOWN? ADVICE", or only "; ADVICE" if no known word resembles the typed one.
 std::string suggestion(const std::string& word, const std::vector<std::string>& known,
                        const std::string& advice) {
   auto near = text::nearest(word, known);
@@ -87,7 +87,7 @@ std::string before(const std::string& text, const std::string& mark) {
   return text.substr(0, text.find(mark));
 }
 
-/// The help without "Excludes: ..." after an option, which would be longer than the option's own text.
+/// Returns the help without CLI11's notes "Excludes: ...", which can be longer than the option's own text.
 class HelpFormat : public CLI::Formatter {
  public:
   std::string make_option_opts(const CLI::Option* option) const override {
@@ -95,7 +95,7 @@ class HelpFormat : public CLI::Formatter {
   }
 };
 
-/// What is wrong, for a person. CLI11's own messages do not name the command, and count arguments.
+/// Explains an error of CLI11, whose own messages count arguments and do not name the command.
 std::string reason(const CLI::App& command, const CLI::ParseError& error) {
   const std::string said = error.what();
   if (dynamic_cast<const CLI::RequiredError*>(&error)) return missing_of(command);

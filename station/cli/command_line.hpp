@@ -104,7 +104,7 @@ class CommandLine {
   /// UsageError for a command line that it does not understand.
   bool parse(int argc, char** argv, std::ostream& out);
 
-  std::vector<CommandText> texts() const;  ///< of all sub-commands
+  std::vector<CommandText> texts() const;  ///< help texts of all sub-commands
 
  private:
   void require_known(const std::vector<std::string>& words) const;

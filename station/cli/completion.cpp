@@ -38,7 +38,7 @@ const OptionText* find(const CommandText& command, const std::string& name) {
   return nullptr;
 }
 
-/// What fits after the words of a command, the last of which is being written.
+/// Returns what can complete the last of these words, which the user is still typing.
 Words after(const CommandText& command, const Words& words) {
   const OptionText* open = nullptr;  // the option that takes the next word as its value
   std::size_t place = 0;             // number of positional arguments before the next word

@@ -27,8 +27,8 @@ char single(const std::string& option, const std::string& text) {
   return text.front();
 }
 
-/// The number of exported trials: the rows of the trial tables, without those of the other tables. Of an
-/// export of signals, the number of signals.
+/// Returns the number of exported trials, that is, of rows in the trial tables; for an export of signals, the
+/// number of signals.
 std::size_t trial_rows(const std::vector<store::ExportedFile>& files) {
   std::size_t rows = 0;
   for (const auto& file : files)

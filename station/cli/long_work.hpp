@@ -12,8 +12,8 @@ namespace turnpoint::cli {
 void add_progress(Command& command, bool& target);
 
 /// Work of a command that may take long. While this object exists, the progress is shown, and the first stop
-/// signal (Ctrl-C) requests a stop instead of ending the program: the work ends at its next whole unit and
-/// the command prints what it has.
+/// signal (Ctrl-C) requests a stop instead of ending the program: the work stops after the current unit, such
+/// as a simulated session, and the command prints the results so far.
 class LongWork {
  public:
   explicit LongWork(bool show_progress);

@@ -11,7 +11,7 @@ namespace turnpoint::cli {
 
 namespace {
 
-/// Text for roff: no character of it is taken for a command, and hyphens stay what a user can copy.
+/// Escapes a text for roff: no character is taken for a command, and a user can copy the hyphens.
 std::string roff(const std::string& text) {
   std::string safe;
   for (const char c : text) {

@@ -48,6 +48,8 @@ constexpr Goal goals[] = {
     {"identification", "which of five degrees of slipperiness people recognise", "friction-identification"},
     {"confidence", "friction differences, and how sure people are of their answers", "friction-confidence"},
     {"speed-accuracy", "noticing a change under the finger, answering fast or carefully", "speed-accuracy"},
+    {"response-signal", "how accuracy grows with the time to think, answering at a signal",
+     "response-signal"},
     {"control", "whether the task can be done without touching the surface (control)", "no-touch-control"},
     {"demo", "ten trials to try out a station", "demo"},
 };

@@ -74,7 +74,7 @@ Json to_json(const std::vector<simulation::CueReport>& cues) {
 struct Found {
   simulation::Power power;
   std::vector<simulation::CueReport> cues;
-  std::string id, title;  ///< of the protocol
+  std::string id, title;  ///< id and title of the protocol
   std::string signal;     ///< the signal that stopped the work; usually ""
 };
 
@@ -208,7 +208,7 @@ void power(const Options& options, Context& context) {
     if (!survey.problems.empty()) throw text::BadInput(survey.problems);
     part.sessions = simulation::simulate_sessions(protocol, wanted);
     if (wanted.part.number == 1) part.cues = simulation::cue_guard(protocol, rig, survey, {}, steps).reports;
-  } catch (const protocol::Abandoned&) {  // before the first session
+  } catch (const protocol::Abandoned&) {  // stopped before the first session
   }
   const auto signal = work.end(context);
   part.whole = signal.empty();

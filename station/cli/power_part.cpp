@@ -137,7 +137,7 @@ PowerPart read_part(const std::string& file, const std::string& first_file, Json
                                    part.sessions.size(), count, options.part.number, options.part.of));
     return part;
   } catch (const Json::exception&) {
-    throw UsageError(fmt::format("{} is not a whole {}{}", file, kind, remedy));
+    throw UsageError(fmt::format("{} is an incomplete or damaged {}{}", file, kind, remedy));
   } catch (const std::system_error& error) {
     throw UsageError(error.what());
   }

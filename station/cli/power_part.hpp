@@ -12,7 +12,7 @@ namespace turnpoint::cli {
 /// is kept in a JSON file. Joined parts give the result that one machine would have had, to the last bit.
 struct PowerPart {
   std::string protocol;  ///< the text of the protocol file
-  std::string path;      ///< where it was, for messages
+  std::string path;      ///< path of the protocol file, for messages
   std::string observer;  ///< the simulated observer as the user wrote it
   simulation::PowerOptions options;
   std::vector<simulation::SessionOutcome> sessions;
@@ -23,8 +23,8 @@ struct PowerPart {
 
 Json to_json(const PowerPart& part);
 
-/// Reads the files of all parts of a study, in any order, and returns them as the only part of a study.
-/// Throws UsageError if a file is not such a part, or if a part is incomplete, missing, doubled or of another
+/// Reads the files of all parts of a study, in any order, and joins them into one. Throws UsageError if a
+/// file is not such a part, or if a part is incomplete, is missing, appears twice, or belongs to another
 /// study.
 PowerPart join_parts(const std::vector<std::string>& files);
 

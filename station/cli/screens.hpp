@@ -16,8 +16,8 @@ struct NoScreen : terms::UsageError {
   using UsageError::UsageError;
 };
 
-/// Functions that need a screen, which only turnpoint-ui provides; turnpoint starts turnpoint-ui to call
-/// them. Each returns when its window is closed.
+/// Functions that need a screen. Only turnpoint-ui provides them; turnpoint starts turnpoint-ui to call them.
+/// Each returns when its window is closed.
 struct Screens {
   /// Runs a session. If the request leaves the participant's language or code open, asks for it on the
   /// screen. To resume a session, pass its prepared setup; the request is then ignored.

@@ -10,7 +10,8 @@ namespace turnpoint::cli {
 /// Adds the protocol: a file, or the name of a protocol that comes with the program. It is not required yet.
 Option* add_protocol(Command& command, std::string& target);
 
-/// Adds --rig: a file, or the name of a rig that comes with the program. `when` completes the help.
+/// Adds --rig: a file, or the name of a rig that comes with the program. `when` is added to the help; it
+/// says which rig is used without the option.
 Option* add_rig(Command& command, std::string& target,
                 const std::string& when =
                     "by default the installed rig, or the simulated rig if none is "

@@ -62,7 +62,7 @@ void print_what_stays(std::ostream& out, const store::Withdrawal& gone, const Op
         "Earlier backups were not searched; use --backups FOLDER to do so. Remove exported files by hand.\n");
 }
 
-/// Lists what would be deleted and asks for consent, which is given by typing the participant's code.
+/// Lists what would be deleted and asks for confirmation: the operator types the participant's code.
 bool agreed(const Options& options, Context& context) {
   const auto plan = store::plan_withdrawal(options.database, options.withdraw);
   print(context.err, plan, "would be deleted");

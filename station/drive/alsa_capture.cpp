@@ -17,7 +17,7 @@
 namespace turnpoint::drive {
 namespace {
 
-constexpr int kFifoPriority = 69;  // below the playback, whose deadline is harder
+constexpr int kFifoPriority = 69;  // below that of the playback, whose deadline is stricter
 
 std::string device_name(const std::string& uri) {
   if (!uri.starts_with("alsa:") || uri.size() == 5)
@@ -111,7 +111,7 @@ void DeviceCapture::push(std::int64_t frames) noexcept {
     outgoing_->numbering = numbering_.load();
     outgoing_->count = static_cast<std::int32_t>(some * config_.channels);
     std::copy_n(period_.begin() + at * config_.channels, outgoing_->count, outgoing_->samples.begin());
-    if (!blocks_->push(*outgoing_)) return lose(frames - at);  // nobody has taken blocks for too long
+    if (!blocks_->push(*outgoing_)) return lose(frames - at);  // blocks were not taken for too long
     frames_.store(outgoing_->first_frame + some);
   }
 }

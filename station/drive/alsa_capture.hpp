@@ -14,7 +14,7 @@
 
 namespace turnpoint::drive {
 
-/// Some captured frames, the channels of a frame side by side, full scale 2^31.
+/// Some captured frames. The samples are interleaved; full scale is 2^31.
 struct CapturedBlock {
   static constexpr int kSamples = 1024;
   std::int64_t first_frame = 0;  ///< counted from 0 at the opening; lost frames are counted too
@@ -31,10 +31,10 @@ struct CapturedBlock {
 
 struct CaptureCounters {
   std::int64_t frames = 0;        ///< frames captured or lost so far
-  std::int64_t overruns = 0;      ///< losses of frames whose number is known
+  std::int64_t overruns = 0;      ///< gaps for which the device said how many frames were lost
   std::int64_t lost_frames = 0;   ///< frames lost in `overruns`
   std::int64_t unknown_gaps = 0;  ///< losses of an unknown number of frames: the device was restarted or lost
-  std::uint32_t numbering = 0;    ///< that of the newest frame (see CapturedBlock)
+  std::uint32_t numbering = 0;    ///< numbering of the newest frame (see CapturedBlock)
   bool present = true;            ///< false while the device is lost
 };
 

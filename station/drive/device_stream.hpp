@@ -25,8 +25,8 @@ class DeviceStream : public Stream {
   /// block that was lost is not played later: the next step renders the frames that are due by then.
   void step() noexcept;
 
-  /// Memory that the audio side uses beside this object, and a textual note about memory missing from the
-  /// list.
+  /// Memory that the audio side uses in addition to this object, and a textual note about memory missing from
+  /// the list.
   std::vector<system::MemoryRange> memory() const;
   std::string memory_left_out() const { return output_->memory_left_out(); }
 

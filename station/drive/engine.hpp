@@ -64,7 +64,7 @@ struct Counters {
 
 /// What a synchronous stream to `null:` does. With `rendered` it computes the samples, so that they or the
 /// time that they take can be measured. With `passed` it computes no samples but reports the same events at
-/// the same frames; this is for sessions to which nobody listens.
+/// the same frames; this is enough for simulated sessions.
 enum class Samples : std::int32_t { rendered, passed };
 
 /// A tone that sounds as long as the stream is open, for example to excite the bridges of force sensors. Its

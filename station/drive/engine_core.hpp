@@ -27,7 +27,7 @@ class EngineCore {
   void stop(std::uint32_t burst, const Ramp& ramp, std::optional<std::int64_t> frame);
   std::optional<Event> poll();
   Counters counters() const noexcept;
-  /// Memory that the audio side uses beside this object.
+  /// Memory that the audio side uses in addition to this object.
   std::vector<system::MemoryRange> memory() const;
 
   /// Takes the waiting commands and renders frames, beginning with `frame`.

@@ -71,7 +71,7 @@ struct PreparedMarker {
   double amplitude = 0;
   std::uint64_t increment = 0;
   std::int64_t frames = 0;  ///< length of the pulse or tone, or of half a bit of a code
-  std::array<std::uint32_t, max_changes + 1> patterns{};  ///< of the codes (trigger_code.hpp)
+  std::array<std::uint32_t, max_changes + 1> patterns{};  ///< pulse patterns of the codes (trigger_code.hpp)
 };
 
 /// A checked burst, ready for the audio thread. It contains only plain integers and doubles, and the audio

@@ -68,7 +68,7 @@ class Synth {
   std::span<const SynthEvent> events() const noexcept;
   void clear_events() noexcept;
 
-  /// All memory that render() uses beside this object.
+  /// All memory that render() uses in addition to this object.
   system::MemoryRange memory() const noexcept;
 
   bool active() const noexcept;  ///< true while anything waits or sounds

@@ -3,16 +3,16 @@
 
 namespace turnpoint::drive {
 
-/// A code for recording equipment, as a train of pulses on the marker channel. It begins at the frame of its
-/// event and has three parts, each of which is high as long as it is low, so that a line without DC carries
-/// it: a start (one bit high, one bit low), eight bits of the code, and four check bits. A 1 is half a bit
-/// high, then half a bit low; a 0 is the reverse. The most significant bit comes first. Codes are 1 to 255.
+/// A code for recording equipment, as a train of pulses on the marker channel, from the frame of its event
+/// on. It has a start (one bit high, one bit low), eight bits of the code, and four check bits. A 1 is half a
+/// bit high, then half a bit low; a 0 is the reverse. Each part is high as long as it is low, so an output
+/// without DC can transmit it. The most significant bit comes first. Codes are 1 to 255.
 inline constexpr int trigger_bits = 14;
 inline constexpr int trigger_half_bits = 2 * trigger_bits;
 /// Bits of silence that a code needs before and after itself.
 inline constexpr int trigger_quiet_bits = 1;
 
-/// The remainder of the code by x^4 + x + 1, which finds every one or two wrong bits.
+/// The remainder of the code divided by x^4 + x + 1. It detects all errors of one or two bits.
 constexpr std::uint32_t trigger_check(std::uint32_t code) noexcept {
   std::uint32_t remainder = code << 4;
   for (int bit = 11; bit >= 4; --bit)

@@ -101,7 +101,7 @@ void Voice::end_glide(std::int64_t at) noexcept {
   glide_end_ = never;
 }
 
-// Begins and ends, in order, all glides that are due at frame `at` or earlier.
+// Begins and ends all glides that are due at frame `at` or earlier, in order.
 void Voice::enter(std::int64_t at) noexcept {
   for (;;) {
     std::int64_t change_at = never;

@@ -81,7 +81,7 @@ void TriggerLines::run(const std::stop_token& stop) {
   std::unique_lock lock(mutex_);
   while (changed_.wait(lock, stop, [this] { return !waiting_.empty(); })) {
     const auto next = waiting_.front();
-    // A new code may come first, and a waiting one may be cancelled.
+    // While waiting, a code that is due earlier may be added, and this one may be cancelled.
     if (next.due_ns - kAhead_ns > system::monotonic_ns()) {
       changed_.wait_until(lock, stop, point(next.due_ns - kAhead_ns),
                           [&] { return waiting_.empty() || waiting_.front().due_ns != next.due_ns; });

@@ -17,14 +17,14 @@ struct TriggerPlan {
   std::vector<std::string> names;  ///< lines of the bits, the lowest first, then the strobe; empty for `sim:`
   int bits = 8;
   bool strobe = false;
-  std::int64_t pulse_ns = 5'000'000;  ///< how long a code stands on the lines
+  std::int64_t pulse_ns = 5'000'000;  ///< how long a code is held on the lines
 };
 /// Throws terms::UsageError for a URI that is not understood.
 TriggerPlan trigger_plan(const std::string& uri);
 
 /// Gives out codes in parallel on GPIO lines, for a device that reads TTL levels. An ordinary thread sets the
 /// lines when a code is due: first the bits together, then the strobe, which falls again before the bits do.
-/// A code that is due while another stands on the lines comes 1 ms after that one has ended.
+/// A code that is due while another is still on the lines comes 1 ms after the end of that one.
 class TriggerLines {
  public:
   TriggerLines(std::unique_ptr<Outputs> outputs, const TriggerPlan& plan);

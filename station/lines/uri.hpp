@@ -15,7 +15,7 @@ struct Uri {
   /// Removes a key and returns its value, or `otherwise` if there is no such key. A key that is still there
   /// at the end was not understood.
   std::string take(const std::string& key, const std::string& otherwise);
-  /// Throws terms::UsageError with the name of the first key that nobody took.
+  /// Throws terms::UsageError with the name of the first key that has not been removed.
   void check_empty(const std::string& allowed) const;
   std::string text;  ///< the URI as written in the file
 };

@@ -162,7 +162,7 @@ void display(std::vector<lines::Finding>& checks) {
   const bool direct = !setup::screen_card().empty() || std::filesystem::exists("/dev/fb0", ignored);
   checks.push_back({"display", session || direct ? Status::ok : Status::warning,
                     session  ? "a desktop session"
-                    : direct ? "the kernel has a display"
+                    : direct ? "a screen, without a desktop session"
                              : "no display",
                     session || direct
                         ? ""

@@ -68,6 +68,21 @@ double upper_probability(double drift, double bound) {
   return 1 / (1 + random::exp(std::clamp(-2 * drift * bound, -2 * kSurest, 2 * kSurest)));
 }
 
+double upper_by(double drift, double bound, double time_s) {
+  constexpr double pi = 3.14159265358979323846;
+  const double pull = std::clamp(drift * bound, -kSurest, kSurest), time = time_s / (bound * bound);
+  if (time <= 0) return 0.5;
+  // P(upper) - pull sum over odd n of exp(-(pull^2 + (n pi / 2)^2) time / 2) / (pull^2 + (n pi / 2)^2)
+  double sum = 0;
+  for (int n = 1;; n += 2) {
+    const double rate = pull * pull + 0.25 * n * n * pi * pi;
+    const double term = random::exp(-0.5 * rate * time) / rate;
+    sum += term;
+    if (term < 1e-17 || n > 20000) break;
+  }
+  return upper_probability(pull, 1) - pull * sum;
+}
+
 double upper_probability(double drift, double bound, double range) {
   const double pull = std::clamp(drift * bound, -kSurest, kSurest), inner = 2 * pull * range;
   if (std::fabs(inner) < 1e-4) return upper_probability(pull, 1);

@@ -25,6 +25,12 @@ Passage first_passage(double drift, double bound, double start, random::Draws& d
 /// bound)).
 double upper_probability(double drift, double bound);
 
+/// Returns the probability that a walk from the middle has ended at the upper boundary by `time_s`, or is
+/// still between the boundaries and above the middle. It is 1/2 at time 0 and grows to upper_probability().
+/// (Follows from the density of a walk between two absorbing boundaries as a sine series, Cox & Miller 1965,
+/// section 5.7.)
+double upper_by(double drift, double bound, double time_s);
+
 /// The same probability if the starting point is uniformly distributed between -range and +range times the
 /// bound (0 <= range < 1).
 double upper_probability(double drift, double bound, double range);

@@ -51,8 +51,8 @@ double largest_is_right(double d_prime, int answers) {
   return sum * step * kNormalPeak;
 }
 
-/// Returns the proportion correct in ABX by differencing (Macmillan & Creelman 2005, eq. 9.7). An observer
-/// who feels the difference the wrong way round is as often wrong as two intervals would be.
+/// Returns the proportion correct in ABX by differencing (Macmillan & Creelman 2005, eq. 9.7). For a negative
+/// d' (the difference is felt the wrong way round), returns the proportion correct with two intervals.
 double nearest_is_right(double d_prime, double of_two) {
   if (d_prime <= 0) return of_two;
   const double apart = random::normal_cdf(d_prime / kSqrt2), beside = random::normal_cdf(d_prime / kSqrt6);
@@ -69,9 +69,9 @@ double d_prime_of_two(double right) {
   return kSqrt2 * 0.5 * (low + high);
 }
 
-/// Returns the proportion correct, if a diffusion ends at its upper boundary with probability `upper`: the
-/// proportion correct with two answers. Above the guessing rate, a psychometric function of Weibull's has the
-/// same shape for any number of answers.
+/// Returns the proportion correct of a task, given the probability `upper` that a diffusion ends at its upper
+/// boundary. That probability is the proportion correct with two answers. For any number of answers, a
+/// Weibull function has the same shape above the guess rate.
 double share_right(double upper, const Question& q) {
   if (q.finding == Finding::largest) return largest_is_right(d_prime_of_two(upper), q.answers);
   if (q.finding == Finding::nearest) return nearest_is_right(d_prime_of_two(upper), upper);
@@ -206,10 +206,20 @@ double Observer::bound(double deadline_s) const {
   return std::min(parameters_.bound, std::sqrt(0.35 * left_s));
 }
 
+double Observer::upper(const Question& q, double drift) const {
+  if (q.signal_s) return upper_by(drift, parameters_.bound, *q.signal_s);
+  return upper_probability(drift, bound(q.deadline_s), parameters_.start_range);
+}
+
+/// Returns the mean time from the response signal to the answer.
+double Observer::latency_s(const Question& q) const {
+  const double usual_s = 0.5 * parameters_.residual_s + parameters_.travel_s;
+  return q.deadline_s > 0 ? std::min(usual_s, 0.8 * (q.deadline_s - *q.signal_s)) : usual_s;
+}
+
 double Observer::share(const Question& q, int choice) const {
   const auto& p = parameters_;
-  const double limit = bound(q.deadline_s);
-  const auto upper = [&](double drift) { return upper_probability(drift, limit, p.start_range); };
+  const auto upper = [&](double drift) { return this->upper(q, drift); };
   const auto mean = [&](auto function) { return mean_over_drift(drift(q), p.drift_sd, function); };
   const double chance = 1.0 / q.answers;
   double share = chance;
@@ -244,16 +254,17 @@ Reply Observer::answer(const Question& q) const {
   const auto any = static_cast<int>(draws.below(static_cast<std::uint64_t>(q.answers)));
   const auto other = static_cast<int>(draws.below(static_cast<std::uint64_t>(std::max(1, q.answers - 1))));
   const double u = draws.uniform(), felt = draws.normal();
-  const double residual_s = p.residual_s + p.residual_range_s * (draws.uniform() - 0.5);
+  const double jitter_s = p.residual_range_s * (draws.uniform() - 0.5), residual_s = p.residual_s + jitter_s;
   const double start = p.start_range * (2 * draws.uniform() - 1);
-  const double limit = bound(q.deadline_s), pull = drift(q) + p.drift_sd * draws.normal();
-  const auto passage = first_passage(pull, limit, start, draws);
+  const double pull = drift(q) + p.drift_sd * draws.normal();
+  const auto passage = q.signal_s ? Passage{draws.uniform() < upper(q, pull), *q.signal_s}
+                                  : first_passage(pull, bound(q.deadline_s), start, draws);
   Reply reply;
   if (q.decides == Decides::right_answer) {
     // With three or more answers, and in ABX, fewer answers are right than with two intervals. Some walks
     // that end at the upper boundary must therefore give a wrong answer, so that the proportion correct
     // equals share_right().
-    const double upper = upper_probability(pull, limit, p.start_range);
+    const double upper = this->upper(q, pull);
     const bool found = passage.upper && u * upper < share_right(upper, q);
     const int right = q.correct.value_or(any);
     reply.choice = found ? right : (right + 1 + other) % q.answers;
@@ -269,6 +280,7 @@ Reply Observer::answer(const Question& q) const {
   }
   if (lapses || anticipates) reply.choice = any;
   reply.response_time_s = anticipates ? 0.05 : passage.time_s + residual_s + p.travel_s;
+  if (q.signal_s && !anticipates) reply.response_time_s = *q.signal_s + latency_s(q) + jitter_s;
   if (q.value) {
     auto asked = q;
     if (lapses) asked.level = q.middle == Middle::bias ? p.bias : p.threshold.value_or(q.default_threshold);

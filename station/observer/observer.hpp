@@ -45,7 +45,7 @@ struct Parameters {
   double start_range = 0;
   /// range of the non-decision time (uniform around residual_s); at most twice residual_s
   double residual_range_s = 0;
-  /// spread of judgements: of numbers, the SD of their decimal logarithm
+  /// spread of judgements; for numbers, the SD of their decimal logarithm
   double scatter = 0.1;
   double anticipation = 0;  ///< fraction of trials answered before anything can be felt
 };
@@ -66,7 +66,7 @@ enum class Decides {
 enum class Finding {
   weibull,  ///< Weibull's function, from the guess rate 1 / answers
   largest,  ///< the interval with the largest of independent observations
-  nearest,  ///< ABX: of two observations the one that is nearer to a third (differencing)
+  nearest,  ///< ABX: the one of two observations that is nearer to a third (differencing)
 };
 
 /// An answer that is a number from `low` to `high`, a multiple of 10^-decimals.
@@ -78,8 +78,8 @@ struct ValueQuestion {
   double modulus = 10;  ///< the magnitude of the threshold
 };
 
-/// The level that is rated in the middle of a scale. Sensation grows with the level from the bias, with the
-/// logarithm of its ratio to the threshold, or, as in yes/no tasks, from noise to the criterion and beyond.
+/// The level at the middle of a rating scale. Sensation grows from noise through the criterion (as in yes/no
+/// tasks), with the logarithm of level / threshold, or with the distance of the level from the bias.
 enum class Middle { criterion, threshold, bias };
 
 /// The question that a trial asks: everything in the trial on which a simulated observer's answer depends.
@@ -91,7 +91,7 @@ struct Question {
   int positive = 1;
   bool absent = false;         ///< for `presence`: true if the trial has no signal, whatever its level
   std::optional<int> correct;  ///< for `right_answer`: the right answer; empty if no answer is right
-  Finding finding = Finding::weibull;   ///< for `right_answer`
+  Finding finding = Finding::weibull;   ///< for `right_answer`: how the observer finds it
   std::vector<double> categories = {};  ///< for `category`: the level for which each answer stands
   int answers = 2;
   bool rating = false;  ///< the answers are the points of a scale, from low to high levels
@@ -101,6 +101,10 @@ struct Question {
   double default_threshold = 1;        ///< the threshold, if the parameters have none
   /// 0: no deadline; if time is short, the observer decides sooner and makes more errors
   double deadline_s = 0;
+  /// If set, a signal asks for the answer at this time. The observer then says what it has found out by then:
+  /// what it has decided, or else the side to which the evidence points. It needs only half of its residual
+  /// time, and the time to move, because the answer is prepared; less if the deadline is sooner.
+  std::optional<double> signal_s = {};
   random::Key key;  ///< key of the trial's random draws; the observer sets its stream
 };
 
@@ -148,6 +152,9 @@ class Observer {
   Setting adjust(const Adjustment& adjustment) const;
 
  private:
+  /// Returns the probability that the evidence decides for the upper boundary.
+  double upper(const Question& question, double drift) const;
+  double latency_s(const Question& question) const;
   double strength(const Question& question, double from) const;
   double drift(const Question& question) const;
   double sensitivity(const Question& question) const;

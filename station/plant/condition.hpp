@@ -13,7 +13,7 @@ struct Condition {
   std::array<double, kMostTransducers> transducer_gain{};
   std::array<bool, 3> bridge_open{};  ///< open wires of the cells a, b and lateral
   bool no_reference = false, lifted = false;
-  double clip = 1e300;  ///< level at which the amplifier clips, of full scale
+  double clip = 1e300;  ///< level at which the amplifier clips, as a fraction of full scale
   std::int64_t late_frames = 0;
   double resonance = 1;  ///< factor on all resonances of the surface
   double frequency = 1;  ///< factor on the frequencies of the drive

@@ -6,8 +6,8 @@
 
 namespace turnpoint::plant {
 
-/// Distance covered by a movement of minimum jerk, from 0 to 1, when the fraction `share` of its duration is
-/// over; and its speed relative to the mean speed, at most 1.875 (Flash & Hogan 1985).
+/// For a movement of minimum jerk (Flash & Hogan 1985), after the fraction `share` of its duration: the
+/// distance covered, from 0 to 1, and the speed relative to the mean speed, at most 1.875.
 double minimum_jerk(double share);
 double minimum_jerk_speed(double share);
 

@@ -1,6 +1,6 @@
 #include "station/plant/pickup_response.hpp"
 
-#include <Eigen/Dense>
+#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <numbers>

@@ -21,11 +21,11 @@ namespace turnpoint::plant {
 /// The true state of the laboratory at the frame that was captured last.
 struct Truth {
   std::int64_t frame = -1;             ///< number of the captured frame; -1 before the first
-  double normal_N = 0, lateral_N = 0;  ///< on the surface, from finger and load together
-  FingerState finger;                  ///< at the step that began last (a step is an eighth of a ms)
-  CellForces reading_N{};              ///< with resonance, crosstalk, zero and drift: what the bridges carry
-  double drive_um = 0;                 ///< displacement of the drive edge at this frame
-  double amplitude_um = 0;             ///< amplitude of all tones under the finger, rms over the fingertip
+  double normal_N = 0, lateral_N = 0;  ///< forces on the surface, from finger and load together
+  FingerState finger;                  ///< state at the step that began last (a step is an eighth of a ms)
+  CellForces reading_N{};   ///< readings with resonance, crosstalk, zero and drift: what the bridges carry
+  double drive_um = 0;      ///< displacement of the drive edge at this frame
+  double amplitude_um = 0;  ///< amplitude of all tones under the finger, rms over the fingertip
   double temperature_C = 0;
 };
 
@@ -110,8 +110,8 @@ class Plant {
   std::int64_t whole_delay_;
   std::vector<Fault> faults_;
   SurfaceResponse response_;
-  std::map<double, Gains> gains_;                         // by frequency / resonance factor
-  std::vector<std::pair<double, PickupFilter>> filters_;  // by resonance factor
+  std::map<double, Gains> gains_;                         // key: frequency / resonance factor
+  std::vector<std::pair<double, PickupFilter>> filters_;  // pairs of a resonance factor and its filter
   std::size_t filter_ = 0;
   std::vector<Tone> tones_;
   std::vector<Delay> transducer_delays_, carrier_delay_, marker_delay_;

@@ -38,7 +38,7 @@ struct Cells {
   double first_m = 0;                                       ///< position of cell a, from the drive edge
   double span_m = 0.3;                                      ///< L, distance from cell a to cell b
   double height_m = 0.0;                                    ///< h
-  double normal_Hz = 60, lateral_Hz = 180, damping = 0.05;  ///< of the cells' second-order resonances
+  double normal_Hz = 60, lateral_Hz = 180, damping = 0.05;  ///< second-order resonances of the cells
   /// For the cells a, b and lateral: reading = crosstalk matrix times forces.
   std::array<std::array<double, 3>, 3> crosstalk{{{1, 0.02, -0.02}, {0.02, 1, 0.02}, {-0.02, 0.02, 1}}};
   std::array<double, 3> zero_N{};
@@ -54,7 +54,7 @@ struct Wires {
   double reference_V_at_full_scale = 3.0;    ///< excitation that is full scale on the reference channel
   double gain = 200;                         ///< gain of the bridge amplifiers
   double full_scale_V = 2.1;                 ///< amplified voltage that is full scale on a bridge's channel
-  double crosstalk_V_per_full_scale = 4e-3;  ///< from the drive into each bridge: a tone of 0.25 gives 1 mV
+  double crosstalk_V_per_full_scale = 4e-3;  ///< from drive to each bridge: a tone of 0.25 gives 1 mV
   double a2_per_V = 1e-4, a3_per_V2 = 1e-4;
   double noise_V_per_rtHz = 4e-9;            ///< density of noise at the bridge
   double converter_noise_full_scale = 7e-6;  ///< rms of one sample of the reference (110 dB in 20 kHz)

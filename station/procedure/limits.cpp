@@ -161,7 +161,7 @@ std::map<std::string, Estimate> Limits::estimates() const {
   Mean both{0.5 * (up.position + down.position), {}, up.used + down.used, up.ended + down.ended};
   if (up.variance && down.variance) both.variance = 0.25 * (*up.variance + *down.variance);
   all["threshold"] = estimate_of(both, "");
-  auto difference = all["threshold"];  // for its basis
+  auto difference = all["threshold"];  // copied to keep its basis
   const auto& above = all["threshold ascending"];
   const auto& below = all["threshold descending"];
   difference.mean = difference.mode = above.mean - below.mean;

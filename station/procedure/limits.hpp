@@ -37,7 +37,7 @@ class Limits : public Procedure {
   struct Series {
     Direction direction = Direction::up;
     double start = 0;
-    std::optional<double> midpoint;  ///< on the scale on which the steps are counted
+    std::optional<double> midpoint;  ///< position on the scale on which the steps are counted
   };
   void set_starts(Direction direction, const SeriesStarts& starts, random::Draws& draws);
   /// Returns the position, on the scale of the steps, this number of steps from the current series' start.

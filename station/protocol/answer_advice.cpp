@@ -116,7 +116,7 @@ void check_followed(AdviceList& advice, const Source& source) {
   if (kind == AnswerKind::category)
     return advice.add(key_of(*spec, "level"),
                       "\"" + spec->name + "\" follows right answers, but \"" + spec->level +
-                          "\" decides which answer is right, not how easy it is to find",
+                          "\" decides which answer is right, not how difficult the trial is",
                       "use kind = \"constant-stimuli\"");
   const auto& levels = source.levels;
   if (levels.empty() || levels.front() >= 0 || levels.back() <= 0) return;

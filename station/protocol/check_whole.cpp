@@ -165,26 +165,37 @@ void check_timing(text::TableReader& file, const Reading& reading) {
   if (!one_interval && table->find("explore_s"))
     findings.add(place("explore_s"), "\"explore_s\" does not apply to a task with several intervals",
                  "use \"duration_s\" in [task] instead");
+  if (timing.signal && protocol.task.kind == TaskKind::adjustment)
+    findings.add(place("response_signal"),
+                 "a slider is not set at a signal: \"response_signal\" does not apply to \"adjustment\"",
+                 "use \"deadline_s\"");
   if (timing.response_zero == ResponseZero::change && !has_change(protocol.task))
     findings.add(place("response_zero"),
                  "\"response_zero\" is \"change\", but no interval has a second scene",
                  "use an interval of two scenes: intervals = [[\"a\", \"b\"]]");
-  if (!table->find("deadline_s"))
+  if (!table->find("deadline_s") && !table->find("response_signal"))
     if (const auto block = block_without_deadline(protocol))
       findings.add(table->place, "block \"" + *block + "\" has no deadline: [timing] has no \"deadline_s\"",
                    "set \"deadline_s\" here, or in the block's [instructions.NAME]");
   // If anticipation_s is not shorter than a deadline, one of them is wrong. A deadline shorter than any
   // person's response is to blame; otherwise anticipation_s is, which is normally about 0.15 s.
-  const auto check_anticipation = [&](const std::string& key, double deadline_s) {
-    if (timing.anticipation_s >= deadline_s)
+  const double anticipation_s = bounds(timing.anticipation_s, protocol.factors).second;
+  const auto check_anticipation = [&](const std::string& key, const Linear& deadline) {
+    const double deadline_s = bounds(deadline, protocol.factors).first;
+    if (anticipation_s >= deadline_s)
       findings.add(
           deadline_s < shortest_deadline_s ? reading.places.of(key) : place("anticipation_s"),
           "\"anticipation_s\" must be shorter than the deadline of " + text::number(deadline_s) + " s", "");
   };
   if (timing.deadline_s) check_anticipation("timing.deadline_s", *timing.deadline_s);
   for (const auto& [name, instruction] : protocol.instructions)
-    if (instruction.deadline_s)
-      check_anticipation("instructions." + name + ".deadline_s", *instruction.deadline_s);
+    if (instruction.deadline_s) {
+      const auto key = "instructions." + name + ".deadline_s";
+      check_anticipation(key, *instruction.deadline_s);
+      if (timing.signal)
+        findings.add(reading.places.of(key), "a deadline does not apply if there is a response signal",
+                     "answers count from the signal to the end of its \"window_s\"");
+    }
 }
 
 }  // namespace

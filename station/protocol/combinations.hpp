@@ -16,7 +16,7 @@ struct Combination {
 /// levels of the factors that are drawn at random.
 std::vector<Combination> combinations_of(const Protocol& protocol);
 
-/// The scene's expression that contains factors, if there is exactly one; otherwise null.
+/// The scene's expression that contains factors, if exactly one expression does; otherwise null.
 const Linear* only_expression(const Scene& scene);
 
 /// True if roving the scene's strength also moves its edge. This is the case for an edge defined by friction.

@@ -179,14 +179,24 @@ struct Task {
 
 using terms::ResponseZero;
 
+/// A signal to answer at once, for measuring how accuracy grows with the time for which people may think. An
+/// answer counts from the signal to the end of the window; earlier and later ones make the trial void, and it
+/// is repeated.
+struct ResponseSignal {
+  Linear after_s;  ///< counted from response_zero
+  double window_s = 0;
+};
+
 struct Timing {
   ResponseZero response_zero = ResponseZero::go_cue;
   Place response_zero_place;
   /// for a single interval: the longest time for which the tones are presented
   std::optional<double> explore_s;
-  std::optional<double> deadline_s;  ///< counted from response_zero; empty if each instruction gives its own
+  /// counted from response_zero; empty if each instruction gives its own, or if there is a signal
+  std::optional<Linear> deadline_s;
   Distribution iti_s;
-  double anticipation_s = 0;
+  Linear anticipation_s;
+  std::optional<ResponseSignal> signal;
 };
 
 enum class Feedback { none, trial, block };
@@ -236,7 +246,7 @@ struct Sequence {
 
 struct Instruction {
   Localised text, late_message;
-  std::optional<double> deadline_s;
+  std::optional<Linear> deadline_s;
   std::optional<std::pair<double, double>> target_accuracy;
 };
 
@@ -265,7 +275,7 @@ enum class TriggerEvent { trial, onset, change, response };
 /// The code of an event in the trials of one condition.
 struct TriggerCode {
   TriggerEvent event = TriggerEvent::trial;
-  std::string condition;  ///< as conditions() names it; "" for trials that belong to none
+  std::string condition;  ///< name as given by conditions(); "" for trials that belong to none
   int code = 0;           ///< 1 to 255
 };
 
@@ -280,10 +290,10 @@ struct Triggers {
 /// The movement that the protocol asks for, on rigs that measure the finger.
 struct Sensing {
   std::optional<std::pair<double, double>> normal_N, speed_mm_s;  ///< empty: any
-  double fraction = 0.8;  ///< of the strokes' time that force and speed must be in their range
+  double fraction = 0.8;  ///< required fraction of the strokes' time with force and speed in range
   int strokes = 2;        ///< least number of strokes in a trial
-  /// How often a trial with another movement is presented again. After that, and with 0, it counts, and its
-  /// row says what was wrong.
+  /// How often a trial whose movement was wrong is presented again. After that, and with 0, the trial counts,
+  /// and its row says what was wrong.
   int repeats = 0;
   Place place;
 };

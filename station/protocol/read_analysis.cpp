@@ -12,7 +12,8 @@ using text::TableReader;
 
 namespace {
 
-const std::vector<std::string> kShown{"psychometric", "ez", "bis", "lisas", "ies", "caf", "dprime", "trace"};
+const std::vector<std::string> kShown{"psychometric",    "ez",   "bis", "lisas", "ies", "caf", "dprime",
+                                      "response-signal", "trace"};
 
 void read_by(TableReader& reader, Reading& reading) {
   auto& by = reading.protocol.analysis.by;
@@ -51,12 +52,13 @@ std::string without_effect(const std::string& word, const Protocol& protocol) {
   if (judges(task)) return "ratings and numbers are neither right nor wrong";
   if ((word == "psychometric" || word == "dprime") &&
       answer_rule(protocol, level).kind == AnswerKind::category)
-    return "the level decides which answer is right, not how easy that is";
+    return "the level decides which answer is right, not how difficult the trial is";
   if (word == "ez" && task.choices.size() > 2 && task.kind != TaskKind::oddity)
     return "EZ-diffusion is a model of two answers";
   if (word == "psychometric") return "";
   if (task.kind == TaskKind::single_interval && task.correct_answer.empty())
     return "without \"correct\" in [task], no answer is right or wrong";
+  if (word == "response-signal" && !protocol.timing.signal) return "[timing] has no \"response_signal\"";
   if (word == "dprime" && (task.kind == TaskKind::oddity || task.kind == TaskKind::same_different))
     return "d' is not estimated for \"oddity\" and \"same-different\"";
   if (word == "bis" && protocol.analysis.by.empty() && protocol.instructions.size() < 2)

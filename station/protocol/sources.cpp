@@ -97,6 +97,12 @@ std::set<std::string> factors_used(const Protocol& protocol) {
     for (const auto* expression : expressions_of(protocol.scenes.at(name))) add(*expression, names);
   for (const auto& [id, comparison] : protocol.task.correct_answer)
     add(comparison.left, names), add(comparison.right, names);
+  const auto& timing = protocol.timing;
+  add(timing.anticipation_s, names);
+  if (timing.deadline_s) add(*timing.deadline_s, names);
+  if (timing.signal) add(timing.signal->after_s, names);
+  for (const auto& [name, instruction] : protocol.instructions)
+    if (instruction.deadline_s) add(*instruction.deadline_s, names);
   return names;
 }
 

@@ -27,7 +27,7 @@ std::vector<Source> sources_of(const Protocol& protocol);
 /// All expressions of a scene. The pointers point into the scene.
 std::vector<const Linear*> expressions_of(const Scene& scene);
 
-/// The factors on which the task's scenes and its right answers depend.
+/// The factors on which the task's scenes, its right answers and its times depend.
 std::set<std::string> factors_used(const Protocol& protocol);
 
 /// The scenes that the task presents, each once.

@@ -18,8 +18,9 @@ void check_length(AdviceList& advice, const std::string& key, double seconds) {
                "times are in seconds: write 0.8 for 800 ms");
 }
 
-void check_deadline(AdviceList& advice, const std::string& key, double seconds) {
-  check_length(advice, key, seconds);
+void check_deadline(AdviceList& advice, const std::string& key, const Linear& deadline) {
+  const auto [seconds, longest] = bounds(deadline, advice.protocol.factors);
+  check_length(advice, key, longest);
   if (seconds < shortest_deadline_s)
     advice.add(key, "nobody can answer within " + number(seconds) + " s",
                number(shortest_deadline_s) + " s or more");
@@ -53,6 +54,10 @@ void advise_on_times(AdviceList& advice) {
   for (const auto& [name, instruction] : advice.protocol.instructions)
     if (instruction.deadline_s)
       check_deadline(advice, "instructions." + name + ".deadline_s", *instruction.deadline_s);
+  if (timing.signal && timing.signal->window_s < shortest_deadline_s)
+    advice.add("timing.response_signal.window_s",
+               "nobody can answer within " + number(timing.signal->window_s) + " s of a signal",
+               number(shortest_deadline_s) + " s or more");
   check_length(advice, "timing.iti_s", timing.iti_s.high);
   check_length(advice, "timing.explore_s", timing.explore_s.value_or(0));
   check_length(advice, "task.duration_s", task.duration_s.value_or(0));

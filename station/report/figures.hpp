@@ -23,6 +23,8 @@ std::optional<plot::Figure> judgement_figure(const Summary& summary);
 /// Plots the level of the measured vibration relative to the planned vibration, in order of presentation.
 /// Open markers are trials that are void because of their level.
 std::optional<plot::Figure> vibration_figure(const Summary& summary);
+/// Plots d' against the response time at each lag of the response signal, and the fitted curve.
+std::optional<plot::Figure> signal_figure(const Summary& summary);
 /// Plots accuracy against response time in two panels: the conditional accuracy functions, and one point for
 /// the trials of each difficulty.
 /// One chart for each condition: the share of each answer, by stimulus.

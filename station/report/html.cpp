@@ -385,7 +385,7 @@ std::string to_html(const Summary& summary) {
       html += "<h2>Psychometric function</h2>\n" + picture(psychometric_figure(summary));
     for (const auto& named : summary.fits) html += fit_table(named, data);
     html += confusion_section(summary) + estimate_section(data) + detection_section(summary) +
-            discrimination_section(summary) + trade_section(summary);
+            discrimination_section(summary) + signal_section(summary) + trade_section(summary);
   } else {
     html += settings_section(summary);
   }

@@ -80,7 +80,7 @@ const char* explanation(analysis::Deciding model) {
     case analysis::Deciding::differencing:
       break;
   }
-  return "Differencing: X is the one of A and B that is nearer. ";
+  return "Differencing: the answer is A or B, whichever is nearer to X. ";
 }
 
 }  // namespace

@@ -50,7 +50,7 @@ std::string finger_section(const Summary& summary) {
             "planned boundary. Open markers: single trials, side by side if they have the same boundary. The "
             "felt boundary is where friction changed under the finger; the planned one is the place that the "
             "scene\u2019s <code>edge</code> names. They should agree for an edge of friction, <code>{ "
-            "friction = \u2026 }</code>; any other edge is another place.</p>\n";
+            "friction = \u2026 }</code>; other edges are defined at other places.</p>\n";
   return html +
          "<p class=\"soft\">Answered trials without practice. Force and speed are means over a trial\u2019s "
          "strokes; with more than 40 trials, a marker is the mean of several, with a bar from the smallest "

@@ -24,6 +24,9 @@ std::string picture(const std::optional<plot::Figure>& figure);
 /// The name of a condition, or "all trials" if there is only one.
 std::string name_of(const std::string& condition);
 
+/// The section on accuracy at the response signal; "" if there was none.
+std::string signal_section(const Summary& summary);
+
 /// The section on the finger's force, speed and friction; "" if no force cells recorded.
 std::string finger_section(const Summary& summary);
 

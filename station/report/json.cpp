@@ -254,6 +254,23 @@ std::string to_json(const Summary& summary) {
                                  {"correct_rejections", entry.counts.correct_rejections},
                                  {"d_prime", value(entry.d_prime)},
                                  {"criterion", value(entry.criterion)}});
+  json["response_signal"] = Json::array();
+  for (const auto& curve : summary.curves) {
+    auto lags = Json::array();
+    for (const auto& point : curve.points)
+      lags.push_back({{"after_s", value(point.lag_s)},
+                      {"response_time_s", value(point.time_s)},
+                      {"hits", point.counts.hits},
+                      {"misses", point.counts.misses},
+                      {"false_alarms", point.counts.false_alarms},
+                      {"correct_rejections", point.counts.correct_rejections},
+                      {"d_prime", value(point.d_prime)}});
+    json["response_signal"].push_back({{"condition", curve.condition},
+                                       {"asymptote", value(curve.asymptote)},
+                                       {"rate_per_s", value(curve.rate_per_s)},
+                                       {"intercept_s", value(curve.intercept_s)},
+                                       {"lags", lags}});
+  }
   json["discrimination"] = Json::array();
   for (const auto& entry : summary.discriminations)
     json["discrimination"].push_back(discrimination_json(entry));

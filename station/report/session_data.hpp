@@ -23,7 +23,7 @@ enum class Design {
   /// like yes_no: "different" counts as "yes", and pairs of identical stimuli have no signal
   same_different,
   categories,  ///< the level decides which of several answers is right, or no answer is right
-  ratings,     ///< on points or on a line; the report has their mean at each level
+  ratings,     ///< ratings on points or on a line; the report has their mean at each level
   numbers,     ///< magnitude estimation: geometric means, and the exponent of Stevens' law
   adjustment,  ///< the participant sets a slider; no psychometric function is fitted
 };
@@ -38,8 +38,8 @@ inline bool judges(Design design) { return design == Design::ratings || design =
 struct ProcedureEstimate {
   std::string block, procedure, parameter;
   double mean = 0;           ///< the estimate; a threshold is in the unit of the level
-  std::optional<double> sd;  ///< of the posterior, of the averaged reversals, or standard error
-  std::string basis;         ///< from what it was computed, such as "reversals 5 to 12 of 12"
+  std::optional<double> sd;  ///< SD of the posterior or of the averaged reversals, or a standard error
+  std::string basis;         ///< what it was computed from, such as "reversals 5 to 12 of 12"
   procedure::Choice choice = procedure::Choice::track;  ///< how the procedure chose its levels
   /// the proportion of right (or tracked) answers at the level on which it converges, if that is known
   std::optional<double> settles_at;
@@ -68,7 +68,7 @@ struct SessionData {
   std::vector<analysis::Deciding> deciding;
   terms::Function function = terms::Function::weibull;
   analysis::Scale scale = analysis::Scale::linear;
-  std::string level_label;           ///< with the unit, for an axis: "Contrast (dB)"
+  std::string level_label;           ///< name and unit, for an axis: "Contrast (dB)"
   std::string level_unit;            ///< "" for a level without a unit
   std::vector<std::string> choices;  ///< ids in the order of their indices
   int positive = 1;                  ///< if has_noise(): the choice that means "yes"
@@ -92,9 +92,9 @@ struct SessionData {
   int replicates = 1000;
 };
 
-/// True if the report contains this part: "psychometric", "ez", "bis", "lisas", "ies", "caf", "dprime" or
-/// "trace". If the protocol does not choose, the report contains all parts, but d' only for yes/no tasks and
-/// where `deciding` has a model, and EZ-diffusion only for two answers.
+/// True if the report contains this part: "psychometric", "ez", "bis", "lisas", "ies", "caf", "dprime",
+/// "response-signal" or "trace". If the protocol does not choose, the report contains all parts, but d' only
+/// for yes/no tasks and where `deciding` has a model, and EZ-diffusion only for two answers.
 bool shows(const SessionData& data, const std::string& part);
 
 }  // namespace turnpoint::report

@@ -63,6 +63,7 @@ analysis::TrialRecord record_of(const records::TrialRow& row, const records::Blo
   record.outcome = row.outcome;
   record.response_time_s = row.response_time_s;
   const auto factors = factors_of(row);
+  if (protocol.timing.signal) record.signal_s = protocol::evaluate(protocol.timing.signal->after_s, factors);
   record.instruction = protocol::condition_of(protocol, factors, block.instruction);
   if (protocol.analysis.difficulty)
     record.difficulty = protocol::evaluate(*protocol.analysis.difficulty, factors);

@@ -112,14 +112,20 @@ void hide(const SessionData& data, analysis::Trade& trade) {
   });
 }
 
+analysis::Detecting detecting(const SessionData& data) {
+  if (data.design == Design::yes_no) return analysis::Detecting::presence;
+  return data.design == Design::two_sided ? analysis::Detecting::sides : analysis::Detecting::forced_choice;
+}
+
+/// The choice that counts as "yes".
+int positive(const SessionData& data) {
+  if (data.design == Design::yes_no) return data.positive;
+  return data.design == Design::two_sided ? rising_choice(data.trials) : 1;
+}
+
 std::vector<analysis::Detection> detections_of(const SessionData& data) {
   if (!data.scored || data.choices.size() > 2 || !data.deciding.empty() || !shows(data, "dprime")) return {};
-  if (data.design == Design::yes_no)
-    return analysis::detect(data.trials, data.conditions, analysis::Detecting::presence, data.positive);
-  if (data.design == Design::two_sided)
-    return analysis::detect(data.trials, data.conditions, analysis::Detecting::sides,
-                            rising_choice(data.trials));
-  return analysis::detect(data.trials, data.conditions, analysis::Detecting::forced_choice, 1);
+  return analysis::detect(data.trials, data.conditions, detecting(data), positive(data));
 }
 
 }  // namespace
@@ -173,8 +179,8 @@ std::string describe_intervals(const NamedFit& named, const SessionData& data) {
   };
   const bool two_sided = data.design == Design::two_sided;
   std::string text =
-      "Posterior medians. 95 % credible intervals: central, posterior on a grid, since the answers chose the "
-      "levels. Prior: " +
+      "Posterior medians. 95 % credible intervals: central, posterior on a grid, because the answers "
+      "determined the levels. Prior: " +
       std::string(two_sided ? "PSE" : "threshold") + " uniform" +
       (options.scale == analysis::Scale::log10 ? " in its logarithm" : "") + " from " +
       range(flat.threshold_low, flat.threshold_high);
@@ -191,6 +197,7 @@ std::string describe_intervals(const NamedFit& named, const SessionData& data) {
 
 bool shows(const SessionData& data, const std::string& part) {
   if (data.show) return std::find(data.show->begin(), data.show->end(), part) != data.show->end();
+  if (part == "response-signal") return true;
   if (part == "ez") return data.choices.size() <= 2;
   return part != "dprime" || data.design == Design::yes_no || !data.deciding.empty();
 }
@@ -228,6 +235,8 @@ Summary summarise(const SessionData& data) {
   summary.trade = analysis::trade(data.trials, trade_options(data));
   hide(data, summary.trade);
   summary.detections = detections_of(data);
+  if (data.choices.size() == 2 && shows(data, "response-signal"))
+    summary.curves = analysis::response_signal(data.trials, data.conditions, detecting(data), positive(data));
   if (!data.deciding.empty() && shows(data, "dprime"))
     summary.discriminations =
         analysis::discriminate(data.trials, data.conditions, data.deciding, data.alternatives);

@@ -7,6 +7,7 @@
 #include "station/analysis/confusion.hpp"
 #include "station/analysis/course.hpp"
 #include "station/analysis/judgements.hpp"
+#include "station/analysis/response_signal.hpp"
 #include "station/analysis/settings.hpp"
 #include "station/analysis/signal_detection.hpp"
 #include "station/analysis/trade.hpp"
@@ -28,14 +29,15 @@ struct Summary {
   analysis::OutcomeCounts outcomes;
   std::vector<NamedFit> fits;
   std::vector<analysis::Trace> traces;
-  std::optional<analysis::Bias> bias;           ///< for two answers
-  std::vector<analysis::Confusion> confusions;  ///< for three answers or more, and for categories
+  std::optional<analysis::Bias> bias;           ///< only if there are two answers
+  std::vector<analysis::Confusion> confusions;  ///< only for three or more answers, and for categories
   std::optional<analysis::Proportion> catch_trials;
   std::map<int, analysis::Proportion> confidence;  ///< right answers by degree of confidence
   analysis::Fatigue fatigue;
   analysis::Trade trade;
   std::vector<analysis::Detection> detections;            ///< d' and criterion, if the report shows them
   std::vector<analysis::Discrimination> discriminations;  ///< d' where data.deciding has a model
+  std::vector<analysis::SpeedAccuracyCurve> curves;       ///< for a response signal, one for each condition
   /// for an adjustment task: one entry for each procedure and condition
   std::vector<analysis::Settings> settings;
   /// for ratings and numbers: one entry for each condition

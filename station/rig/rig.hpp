@@ -27,7 +27,7 @@ enum class PlateTheory { kirchhoff, mindlin, elastic, automatic };
 /// Parameters of the surface, fitted to measured boundaries. Part of the rig's calibration. SI units.
 struct SurfaceFit {
   struct Parameter {
-    std::string name;      ///< as physics::name() writes it
+    std::string name;      ///< name as physics::name() writes it
     double change = 0;     ///< the estimate minus the value in the rig file
     double sd = 0;         ///< standard deviation of the estimate
     double stated_sd = 0;  ///< standard deviation in the rig file
@@ -99,7 +99,7 @@ struct Marker {
   int channel = 1;
   Kind kind = Kind::pulse;
   double amplitude = 0.5;      ///< amplitude of the marker; 1 is full scale
-  double duration_s = 1e-3;    ///< of the pulse or tone, or of one bit of a code
+  double duration_s = 1e-3;    ///< length of the pulse or tone, or of one bit of a code
   double frequency_Hz = 1000;  ///< frequency, if the marker is a tone
 };
 
@@ -119,7 +119,7 @@ struct PickUpResponse {
   struct Point {
     double frequency_Hz = 0;
     double amplitude = 0;  ///< captured amplitude for a tone of full scale; 1 is full scale of the capture
-    double phase_rad = 0;  ///< without the phase from the delay of the loop
+    double phase_rad = 0;  ///< phase without the delay of the loop
   };
   std::vector<Point> points;  ///< in order of frequency
 };

@@ -105,7 +105,7 @@ void read_bridges(TableReader& reader, Capture& capture) {
     capture.bridges.push_back(channel);
   }
   if (!capture.uri.starts_with("sim:"))
-    reader.problem("bridges", "force cells have no calibration yet",
+    reader.problem("bridges", "real force cells cannot be calibrated yet",
                    "use them with uri = \"sim:\", or leave \"bridges\" out");
 }
 

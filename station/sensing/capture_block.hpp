@@ -8,8 +8,8 @@ namespace turnpoint::sensing {
 /// If the device lost frames, the next block's first_frame jumps.
 ///
 /// Captured and played frames have the same numbers, except for a delay: what is played at frame n is
-/// captured at frame n + delay. Whoever numbers the blocks may already subtract a whole number of frames;
-/// only the rest is then called delay.
+/// captured at frame n + delay. The code that numbers the blocks may subtract the whole frames of the delay;
+/// "delay" then means only the remainder.
 struct CaptureBlock {
   std::span<const std::int32_t> samples;  ///< interleaved: frames x channels
   int channels = 1;

@@ -44,7 +44,7 @@ class CarrierFilter {
   std::uint64_t increment_;
   std::array<int, inputs> channels_;
   std::int64_t stride_;
-  std::vector<Quad> even_, odd_;  ///< taps times cos and sin of the carrier; n: frames from the centre
+  std::vector<Quad> even_, odd_;  ///< taps times the cosine, and the sine, of the carrier
   std::vector<Quad> kept_;        ///< recent frames, the newest last
   std::size_t filled_ = 0;
   bool ready_ = false;

@@ -1,6 +1,6 @@
 #include "station/sensing/felt_step.hpp"
 
-#include <Eigen/Dense>
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <limits>

@@ -6,13 +6,13 @@
 namespace turnpoint::sensing {
 
 /// Where friction changes along the strip, as measured by the finger. It can be compared with a planned edge
-/// of friction if it was measured at the edge's level; the turning point of a mode is another place.
+/// of friction if it was measured at the edge's level; the turning point of a mode is a different place.
 struct FeltStep {
   double boundary_mm = 0;       ///< mean of both directions, because the skin lags behind the finger
   double se_mm = 0;             ///< standard error of boundary_mm
   double half_interval_mm = 0;  ///< half-width of the 95 % interval: se_mm times Student's t
   double lag_mm = 0;            ///< half the difference of the directions; positive if the change comes late
-  double friction_below = 0, friction_above = 0;  ///< at smaller and at larger positions than the boundary
+  double friction_below = 0, friction_above = 0;  ///< friction at smaller and at larger positions
 };
 
 /// Fits a step with the shape of a normal distribution function to the mean friction of each direction, with

@@ -52,7 +52,7 @@ std::optional<FingerPoint> FingerTracker::push(const ForcePoint& point) {
   finger.contact = middle.contact;
   finger.position_mm = finger.speed_mm_s = std::numeric_limits<double>::quiet_NaN();
   double normal = 0;
-  bool contact = true;  // at all points of the window
+  bool contact = true;  // true if the finger is in contact at all points of the window
   // Sums of w N^2 t^i and w N M t^i: weight w, normal force N, moment M, time t.
   double square = 0, square_t = 0, square_tt = 0, product = 0, product_t = 0;
   for (std::int64_t k = -half; k <= half; ++k) {

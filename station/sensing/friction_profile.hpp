@@ -39,8 +39,8 @@ struct FrictionProfile {
 FrictionProfile friction_profile(std::span<const FingerPoint> track, std::span<const Stroke> strokes,
                                  const Bins& bins);
 
-/// Friction of a whole stroke: the sum of |lateral force| over the sum of normal force. NaN if no point of
-/// the stroke counts.
+/// Friction of a whole stroke: the sum of |lateral force| over the sum of normal force. Only points with
+/// contact and a normal force of least_normal_N or more count; NaN if there are none.
 double stroke_friction(std::span<const FingerPoint> track, const Stroke& stroke);
 
 }  // namespace turnpoint::sensing

@@ -30,7 +30,7 @@ struct FrictionLevel {
 };
 
 struct FrictionTable {
-  std::vector<FrictionLevel> levels;  ///< by ascending displacement
+  std::vector<FrictionLevel> levels;  ///< in ascending order of displacement
   /// Displacement that halves friction; empty if no level reduces friction that far.
   std::optional<double> half_displacement_m;
   double half_displacement_sd_m = 0;

@@ -15,7 +15,7 @@ namespace {
 constexpr double kLowest_Hz = 5000;    // lowest frequency of a product
 constexpr double kApart_Hz = 20;       // least distance of a product from every tone
 constexpr double kUnseenNoise = 0.05;  // a tone whose relative standard error is not below this is not judged
-constexpr double kVibrates_dB = -10;   // below this level, re the plan, there is no onset to measure
+constexpr double kVibrates_dB = -10;   // below this level, relative to the plan, there is no onset to measure
 
 }  // namespace
 

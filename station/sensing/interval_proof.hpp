@@ -15,7 +15,7 @@ struct IntervalPlan {
   drive::PreparedBurst burst;  ///< the planned burst; its start is an absolute frame
   int rate_Hz = 192000;
   int capture_channels = 6;
-  std::vector<PickUp> pick_ups;  ///< at least one
+  std::vector<PickUp> pick_ups;  ///< there must be at least one
   double delay_frames = 0;       ///< loop delay, measured by the most recent pilot
   ProofLimits limits;
 };

@@ -16,15 +16,15 @@ struct Limits {
 
 /// All limits of a proof, with the station's defaults. Infinity means never.
 struct ProofLimits {
-  Limits level_dB{0.5, 1, 3};  ///< measured re planned level, without a finger
-  Limits level_in_contact_dB{1.5, 3,
-                             1e9};    ///< with a finger (which loads the plate), or if that is not known
-  Limits phase_deg{10, 30, 1e9};      ///< measured phase against the calibration
-  Limits residual_dB{-40, -30, -20};  ///< all that the tones do not explain, and each product, re the plan
+  Limits level_dB{0.5, 1, 3};  ///< measured level relative to the plan, without a finger
+  /// the same with a finger (which loads the plate), or if contact is not known
+  Limits level_in_contact_dB{1.5, 3, 1e9};
+  Limits phase_deg{10, 30, 1e9};      ///< measured phase minus calibrated phase
+  Limits residual_dB{-40, -30, -20};  ///< what the tones do not explain, and each product, re the plan
   Limits onset_us{200, 1000, 1e9};    ///< time of the half level, measured minus planned
-  Limits silence_dB{-70, -50, 1e9};   ///< vibration between trials, re the plan
-  double clipped = 0.98;              ///< a sample of at least this size (of full scale) refuses the trial
-  double dead_dB = -40;               ///< a tone below this level, re the plan, is missing
+  Limits silence_dB{-70, -50, 1e9};   ///< vibration between trials, relative to the plan
+  double clipped = 0.98;              ///< a sample of at least this fraction of full scale refuses the trial
+  double dead_dB = -40;               ///< a tone below this level, relative to the plan, is missing
   /// If all tones of a channel are between these levels, one of its two transducers is dead.
   double half_low_dB = -7.5, half_high_dB = -4.5;
   double unseen_dB = -26;  ///< a pick-up cannot judge tones at which its response is this far below its best
@@ -50,14 +50,14 @@ struct IntervalResult {
   terms::ProofCause cause = terms::ProofCause::none;
   std::vector<ToneProof> tones;
   double ratio_dB = 0;  ///< measured / planned level of all judged tones together
-  /// rms of everything that the tones do not explain, re the plan, in the worst window of 0.2 s. A high-pass
-  /// filter (high_pass_gain()) comes first, so hum and friction noise hardly count.
+  /// rms of everything that the tones do not explain, relative to the plan, in the worst window of 0.2 s. A
+  /// high-pass filter (high_pass_gain()) comes first, so hum and friction noise hardly count.
   double residual_dB = -200;
   std::optional<Product> product;        ///< the strongest product, in the window with the largest residual
   std::optional<double> onset_error_us;  ///< time of the half level, measured minus planned
   std::optional<double> found_Hz;        ///< if the cause is `frequency`: the frequency of the vibration
-  double largest_sample = 0;             ///< largest sample of the pick-ups, of full scale
-  std::int64_t lost_frames = 0;          ///< within the interval, rounded up to blocks of 1 ms
+  double largest_sample = 0;             ///< largest sample of the pick-ups, as a fraction of full scale
+  std::int64_t lost_frames = 0;          ///< lost frames within the interval, rounded up to blocks of 1 ms
 };
 
 /// The verdict on one quantity, and the cause that this quantity points to.

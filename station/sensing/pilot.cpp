@@ -44,7 +44,7 @@ template <class At>
 Baseband baseband(const Pilot& pilot, std::int64_t frames, std::int64_t factor, const At& at) {
   const double turn = M_PI * (pilot.low_Hz + pilot.high_Hz) / pilot.rate_Hz;
   Baseband made;
-  std::vector<Complex> mix;  // within a group; the sum gets the phase at the group's start
+  std::vector<Complex> mix;  // rotation within a group; the sum is rotated by the phase at the group's start
   for (std::int64_t k = 0; k < factor; ++k) mix.push_back(std::polar(1.0, -turn * static_cast<double>(k)));
   for (std::int64_t n = 0; n + factor <= frames; n += factor) {
     Complex sum = 0;

@@ -15,7 +15,7 @@ struct Pilot {
   double low_Hz = 22000;
   double high_Hz = 46000;      ///< must be below 0.45 of the sampling rate
   std::int64_t frames = 1920;  ///< 10 ms at 192 kHz; an even number
-  double amplitude = 0.25;     ///< as a fraction of full scale
+  double amplitude = 0.25;     ///< fraction of full scale
   std::int32_t channel = 0;    ///< output channel
   double carrier_Hz = 0;       ///< a tone that is on the channel all the time; 0: none
 };
@@ -28,7 +28,7 @@ struct PilotEcho {
   /// Playback frame n is captured at frame n + delay. The delay's standard deviation is below 0.01 frames
   /// with noise at -40 dB.
   double delay_frames = 0;
-  double level_dB = 0;  ///< captured amplitude re played amplitude
+  double level_dB = 0;  ///< captured amplitude divided by played amplitude
   double likeness = 0;  ///< correlation of the capture with the pilot, 0 to 1
 };
 

@@ -12,14 +12,14 @@ namespace turnpoint::sensing {
 
 /// All tones with the same frequency in one steady part of a burst. Only their sum can be measured.
 struct PlannedLine {
-  std::uint64_t phase = 0, increment = 0;  ///< of the first of these tones, in 2^-64 cycles
+  std::uint64_t phase = 0, increment = 0;  ///< phase of the first of these tones, in 2^-64 cycles
   double frequency_Hz = 0;
   double gain = 1;  ///< gain of the high-pass filter at this frequency (high_pass_gain())
   std::vector<PlannedTone> tones;
   /// The complex amplitude that each pick-up should capture, relative to `phase` and before the high-pass
   /// filter.
   std::vector<std::complex<double>> expected;
-  std::vector<double> seen;  ///< response of each pick-up re its best response; 0 if not calibrated
+  std::vector<double> seen;  ///< response of each pick-up relative to its best response; 0 if not calibrated
 };
 
 std::vector<PlannedLine> planned_lines(const Stretch& stretch, const std::vector<PickUp>& pick_ups,

@@ -12,7 +12,7 @@ struct PlannedTone {
   int index = 0;    ///< index in the burst's tone set
   int channel = 0;  ///< output channel
   double frequency_Hz = 0;
-  double amplitude = 0;     ///< as a fraction of full scale
+  double amplitude = 0;     ///< fraction of full scale
   std::uint64_t phase = 0;  ///< phase at origin_frame, in 2^-64 cycles
   std::uint64_t increment = 0;
 };

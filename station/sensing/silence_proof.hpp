@@ -11,7 +11,7 @@ namespace turnpoint::sensing {
 struct SilenceResult {
   terms::Proof verdict = terms::Proof::unproven;  ///< `unproven` if fewer than 50 ms were captured
   terms::ProofCause cause = terms::ProofCause::none;
-  double level_dB = -200;  ///< rms of the loudest 50 ms, re the plan, after the high-pass filter
+  double level_dB = -200;  ///< rms of the loudest 50 ms, relative to the plan, after the high-pass filter
 };
 
 /// Measures whether the surface is at rest between two intervals. Allocates only in its constructor. For an

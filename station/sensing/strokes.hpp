@@ -9,7 +9,7 @@ namespace turnpoint::sensing {
 
 /// A movement of the finger in one direction, as a range of points of its track.
 struct Stroke {
-  std::size_t first = 0, end = 0;  ///< without the first and last 5 mm, where the skin changes its direction
+  std::size_t first = 0, end = 0;  ///< without 5 mm at each end, where the skin changes its direction
   int direction = 0;               ///< 1 towards larger positions, -1 towards smaller positions
 };
 

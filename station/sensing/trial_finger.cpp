@@ -9,10 +9,10 @@
 namespace turnpoint::sensing {
 namespace {
 
-constexpr double filter_s = 0.02;   // how far a point's filter reaches, in either direction
-constexpr double tracker_s = 0.04;  // how far the fit of position and speed reaches
-constexpr double idle_s = 1;        // how much is kept while no trial is expected
-constexpr double longest_s = 1200;  // more is not kept; the beginning of such a trial is lost
+constexpr double filter_s = 0.02;   // time over which a point's filter reaches, in either direction
+constexpr double tracker_s = 0.04;  // time over which the fit of position and speed reaches
+constexpr double idle_s = 1;        // time of capture that is kept while no trial is expected
+constexpr double longest_s = 1200;  // longest capture that is kept; of a longer trial, the beginning is lost
 
 static_assert(TrialFinger::tail_s >= filter_s + tracker_s);
 
@@ -95,7 +95,7 @@ void TrialFinger::take_tare() {
   }
   auto taken = tare(quiet, setup_.bridges.band, setup_.calibration, zero_.value_or(Readings{}));
   loaded_ = zero_ && taken.state == TareState::stopped;
-  // Without a usable tare, the previous one holds: a finger that waits on the surface is no reason to stop.
+  // Without a usable tare, keep the previous one: a finger waiting on the surface must not stop the session.
   if (loaded_ || taken.state == TareState::restless || taken.state == TareState::incomplete) return;
   if (zero_) tare_moved_N_ = taken.moved_N;
   zero_ = taken.readings;

@@ -59,7 +59,7 @@ class TrialFinger {
   /// The intervals of the next trial. The tare is taken from what was captured before `quiet_until`. Points
   /// that the trial does not need are dropped.
   void expect(std::int64_t quiet_until, std::vector<Range> intervals);
-  /// The intervals end at this playback frame, or do not begin.
+  /// Playback was cut at this frame: an interval that had begun ends here, and later ones do not take place.
   void cut(std::int64_t frame);
   void push(const CaptureBlock& block);
 

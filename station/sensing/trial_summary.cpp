@@ -39,7 +39,7 @@ TrialSummary summarise(std::span<const FingerPoint> track, Band band, std::span<
 
 Movement judge(const TrialSummary& summary, const MovementWindow& window) {
   if (summary.strokes < window.strokes) return Movement::strokes;
-  // what is NaN was not asked for, or needs a stroke
+  // the comparisons below are false for NaN, which means "not asked for" or "no stroke"
   if (summary.normal_in_window < window.fraction) {
     const double middle_N = (window.least_normal_N + window.most_normal_N) / 2;
     return summary.normal_N < middle_N ? Movement::light : Movement::hard;

@@ -12,11 +12,11 @@ struct MovementWindow {
 
   double least_normal_N = 0, most_normal_N = any;      ///< ends included
   double least_speed_mm_s = 0, most_speed_mm_s = any;  ///< ends included
-  double fraction = 0.8;  ///< of the strokes' time that force and speed each must be in their range
+  double fraction = 0.8;  ///< required fraction of the strokes' time with force and speed in range
   int strokes = 0;        ///< least number of strokes
 };
 
-/// Whether a movement was the one that was asked for, and if not, the first of these that it was.
+/// Whether a movement was the requested one. If not, the first of these faults that it had.
 enum class Movement {
   ok,
   strokes,  ///< too few strokes

@@ -63,7 +63,7 @@ std::optional<CardCapture> card_capture_of(const rig::Rig& rig) {
 CaptureFeed::CaptureFeed(std::unique_ptr<drive::Capture> capture, const CardCapture& plan)
     : capture_(std::move(capture)),
       plan_(plan),
-      // A pilot is scheduled a buffer before it is played, and captured up to a buffer before it is taken.
+      // A pilot is played one buffer length after it is scheduled, and taken up to one buffer length later.
       longest_wait_s_(0.5 + 2.0 * plan.device.periods * plan.device.period_frames / plan.device.rate_Hz),
       watch_(plan.setup),
       triggers_(plan.triggers, 0),
@@ -96,8 +96,8 @@ void CaptureFeed::listen(std::int64_t start_frame) {
                                                            plan_.reference, longest_wait_s_);
   const std::lock_guard lock(mutex_);
   const auto counters = capture_->counters();
-  // Numbered in this way, the pilot comes back after its first frame, because it has not been played yet. The
-  // listener wants some frames from before it, and the next block may begin with the next frame.
+  // A first guess of the numbering. With it, the pilot comes late, because it has not been played yet. The
+  // listener needs some frames from before the pilot, and the next block may begin with the next frame.
   shift_ = start_frame - counters.frames - kBefore_frames;
   numbering_ = counters.numbering;
   aligned_ = false;
@@ -141,7 +141,7 @@ bool CaptureFeed::take(const drive::CapturedBlock& captured) {
 void CaptureFeed::conclude() {
   std::unique_lock lock(mutex_);
   const auto listener = std::exchange(listener_, nullptr);
-  if (!listener) return;  // cancelled since it was complete
+  if (!listener) return;  // cancelled after it was complete
   lock.unlock();
   const auto echo = listener->find();
   lock.lock();

@@ -22,7 +22,7 @@ struct CardCapture {
   TriggerSetup triggers;
 };
 
-/// None unless the rig's [capture] is `alsa:`.
+/// Returns nothing unless the rig's [capture] is `alsa:`.
 std::optional<CardCapture> card_capture_of(const rig::Rig& rig);
 
 /// Gives captured samples to a VibrationWatch, numbered like the playback. The numbers are known after a

@@ -60,6 +60,7 @@ struct Page {
   std::string text;   ///< the question, instruction or message, in the session's language
   std::vector<AnswerButton> answers;
   bool answers_open = false;
+  bool answer_now = false;      ///< the response signal has been given
   std::optional<bool> correct;  ///< whether the answer was right; for feedback only
   /// "", "speed", "accuracy", ...: determines the block's style, which never differs by colour alone
   std::string instruction;
@@ -77,7 +78,7 @@ struct Page {
   double remaining_s = 0;  ///< remaining time of a break
   /// for an adjustment: position, limits and step of the slider
   double slider = 0, slider_min = 0, slider_max = 1, slider_step = 0;
-  ValueEntry value;  ///< for a line or a number pad
+  ValueEntry value;  ///< what a line or a number pad needs
   std::string language;
   /// "disarmed" or "faulted" while the operator has to act (on a fault page); otherwise "armed", "enabled",
   /// or ""

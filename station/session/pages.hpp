@@ -22,7 +22,7 @@ class Pages {
   /// Makes the page for one phase of a trial.
   Page of_phase(trial::Phase phase, int interval, const trial::TrialSpec& spec, const protocol::Block& block,
                 const trial::Result& result, const trial::Director& director) const;
-  /// What to do otherwise after a movement that the protocol does not ask for, by the row's word for it.
+  /// Says what to change after a wrong movement; `word` is the movement's word in the trial's row.
   std::string movement(const std::string& word) const;
   /// Adds the slider of an adjustment to the page of a phase.
   void add_slider(Page& page, const trial::SliderSpan& span, double setting) const;

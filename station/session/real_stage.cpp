@@ -23,7 +23,7 @@ constexpr std::int64_t kFirstBlocks_ns = 500'000'000;
 // longest wait for the first position of a restarted device
 constexpr std::int64_t kFirstPosition_ns = 500'000'000;
 constexpr std::int64_t kHeard_ns = 1'000'000'000;  // longest wait for the report that an interval was played
-constexpr std::int64_t kPilot_ns = 1'000'000'000;  // beyond the longest time in which a pilot comes back
+constexpr std::int64_t kPilot_ns = 1'000'000'000;  // longer than a pilot can take to come back
 constexpr std::int64_t kMeasured_ns = 1'000'000'000;  // longest wait for what was captured of an interval
 // A proof needs captured frames from before the onset, so it must be expected this long before.
 constexpr std::int64_t kExpected_ns = 50'000'000;

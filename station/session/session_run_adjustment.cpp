@@ -12,6 +12,7 @@ void SessionRun::show_phase(trial::Phase phase, const Running& trial) {
   auto page = pages_.of_phase(phase, trial.machine.interval(), trial.spec, *director_.block(),
                               trial.machine.result(), director_);
   const bool adjusting = phase == trial::Phase::stimulus || phase == trial::Phase::response;
+  page.answer_now = adjusting && trial.machine.signalled();
   if (trial.slider && adjusting) pages_.add_slider(page, *trial.spec.slider, trial.slider->setting());
   if (phase == trial::Phase::late && trial.machine.result().outcome == terms::Outcome::fault)
     page.text = pages_.movement(trial.row.finger.sensing);

@@ -197,6 +197,9 @@ void SessionRun::perform(const std::vector<trial::Action>& actions, Running& tri
       case trial::ActionKind::present:
         present(action.time_ns, trial);
         break;
+      case trial::ActionKind::signal:
+        show_phase(trial.machine.phase(), trial);
+        break;
       case trial::ActionKind::silence: {
         const auto silent_ns = stage_->silence();
         for (auto& interval : surface_) interval.off_ns = std::min(interval.off_ns, silent_ns);

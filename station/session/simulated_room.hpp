@@ -16,7 +16,7 @@ class SimulatedRoom {
   /// Throws std::logic_error if the rig captures nothing.
   explicit SimulatedRoom(const rig::Rig& rig);
 
-  /// Tells which frequencies these bursts contain; call it before they are played.
+  /// Names the frequencies that these bursts contain. Call this before they are played.
   void expect(std::span<const drive::PreparedBurst> bursts);
   /// Takes what is played from `first_frame` on (interleaved, full scale 2^31) and returns what is captured
   /// meanwhile. Frames may be left out while nothing is played.
@@ -25,7 +25,7 @@ class SimulatedRoom {
   /// The simulated participant touches the surface from now on for this many frames, and strokes it. Without
   /// force cells, nobody touches it.
   void touch(std::int64_t frames);
-  void lift(std::int64_t frames) { plant_.lift(frames); }  ///< The participant lifts the finger after this.
+  void lift(std::int64_t frames) { plant_.lift(frames); }  ///< Lifts the finger after this many frames.
 
   /// The movement that the protocol asks for.
   void ask_for(const sensing::MovementWindow& window) { window_ = window; }

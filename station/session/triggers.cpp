@@ -14,7 +14,7 @@ static_assert(rig::trigger_code_bits == drive::trigger_bits + drive::trigger_qui
 
 namespace {
 
-constexpr double kPulse = 0.25;  // level of a captured pulse at which it begins, of full scale
+constexpr double kPulse = 0.25;  // level at which a captured pulse begins, as a fraction of full scale
 constexpr std::int64_t kWait_ns = 2'000'000'000;  // longest wait for a code's read-back, or for the lines
 
 }  // namespace
@@ -157,8 +157,9 @@ void Triggers::captured(const TriggerCapture::News& news) {
   }
 }
 
-/// Judges the codes that are over before `end_frame`, of which a range of captured frames begins at
-/// `first_frame`. What was captured must contain a whole code, with some bits before and after it.
+/// Judges the codes that ended before `end_frame`. The newest range of captured frames begins at
+/// `first_frame`. A code can be judged only if the capture contains all of it, with some bits before and
+/// after it.
 void Triggers::conclude(std::int64_t first_frame, std::int64_t end_frame) {
   const auto margin = 2 * setup_.bit_frames;
   const auto from = first_frame == covered_.second ? covered_.first : first_frame;

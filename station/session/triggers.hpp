@@ -35,7 +35,7 @@ struct Trigger {
   int trial_index = 0;
   std::int64_t frame = 0;                ///< first frame of the code on the marker channel
   std::int64_t time_ns = 0;              ///< time at which that frame leaves the converter
-  bool cut = false;                      ///< on the marker channel the code broke off before its end
+  bool cut = false;                      ///< true if the code broke off before its end on the marker channel
   std::string refused;                   ///< why the code was not sent; "" if it was
   std::optional<std::int64_t> lines_ns;  ///< time at which it was on the lines
   enum class ReadBack { none, pending, right, missed, lost };

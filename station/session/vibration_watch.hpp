@@ -20,7 +20,7 @@ constexpr double kRated_N = 10;
 struct CaptureSetup {
   int rate_Hz = 192000;
   int channels = 1;                       ///< captured channels
-  std::vector<sensing::PickUp> pick_ups;  ///< with their calibration; at least one
+  std::vector<sensing::PickUp> pick_ups;  ///< the pick-ups with their calibration; at least one
   double delay_frames = 0;                ///< from a played to a captured frame
   std::optional<bool> in_contact;         ///< whether a finger was on the surface, if that is known
   sensing::ProofLimits limits;

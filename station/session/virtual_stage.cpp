@@ -40,7 +40,7 @@ class VirtualStage : public Stage {
 
   std::optional<Input> wait_until(std::int64_t deadline_ns) override {
     if (!simulated_sync_) return wait_for_input(deadline_ns);
-    // Pulses do not hurry anything: they are reported with the next input.
+    // Pulses are not urgent: they are reported with the next input.
     if (sync_due_ns_ <= now_ns_) return pulse();
     return wait_for_input(deadline_ns);
   }

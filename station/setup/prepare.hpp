@@ -9,6 +9,9 @@
 
 namespace turnpoint::setup {
 
+/// Placeholder for the participant's code while it is not typed yet. All other settings are checked before.
+inline constexpr const char* kCodeToCome = "keypad";
+
 /// The options of `turnpoint run`, as typed.
 struct RunRequest {
   std::string protocol, rig, participant, database;

@@ -55,7 +55,7 @@ std::vector<CueRange> best_ranges(std::vector<Weighed> values, std::size_t answe
         if (score != impossible) score += groups[g].weights[a];
       }
     }
-  // Fewer ranges win ties.
+  // If several divisions have the same score, use the one with the fewest ranges.
   std::size_t state = 0;
   for (std::size_t s = 1; s < states; ++s)
     if (scores[s] > scores[state] + 1e-12) state = s;

@@ -8,9 +8,11 @@
 #include "station/observer/observer.hpp"
 #include "station/protocol/answers.hpp"
 #include "station/protocol/design_advice.hpp"
+#include "station/protocol/glyphs.hpp"
 #include "station/protocol/triggers.hpp"
 #include "station/simulation/parallel.hpp"
 #include "station/simulation/rehearsal.hpp"
+#include "station/texts/texts.hpp"
 
 namespace turnpoint::simulation {
 
@@ -140,6 +142,23 @@ std::optional<scene::FingerShares> shares(const protocol::Survey& survey, const 
   return scene::finger_shares(rig, {*least, *most});
 }
 
+std::vector<text::Problem> language_notes(const Protocol& protocol) {
+  std::vector<text::Problem> notes;
+  for (const auto& language : protocol.languages) {
+    const auto translation = texts::translation(language);
+    if (translation == texts::Translation::read) continue;
+    notes.push_back({{protocol.path, 0, 0},
+                     translation == texts::Translation::none
+                         ? "the station does not speak \"" + language +
+                               "\": its own words, such as Continue, are in English"
+                         : "no native speaker has read the station's own words in \"" + language + "\"",
+                     translation == texts::Translation::none
+                         ? "add a catalogue of texts for the language"
+                         : "let somebody read station/texts/" + language.substr(0, 2) + ".toml"});
+  }
+  return notes;
+}
+
 }  // namespace
 
 Spread spread_of(std::vector<double> values) {
@@ -185,6 +204,10 @@ Check check(const std::string& protocol_path, const std::string& rig_path, const
   };
   gather([&] { protocol = protocol::load(protocol_path); });
   gather([&] { rig = options.load_rig(rig_path); });
+  if (protocol && options.drawable) {
+    const auto texts = protocol::undrawable(*protocol, options.drawable);
+    check.problems.insert(check.problems.end(), texts.begin(), texts.end());
+  }
   if (!check.problems.empty()) return check;
   check.id = protocol->id, check.title = protocol->title, check.rig_name = rig->name;
   check.protocol_defaults = protocol->defaults_used;
@@ -195,6 +218,7 @@ Check check(const std::string& protocol_path, const std::string& rig_path, const
   check.problems = check.survey.problems;
   check.warnings = check.survey.warnings;
   check.notes = protocol::notes(*protocol);
+  for (const auto& note : language_notes(*protocol)) check.notes.push_back(note);
   if (rig::largest_trigger_code(*rig) > 0) check.triggers = protocol::trigger_codes(*protocol);
   try {
     const auto& finish = options.steps.finish;

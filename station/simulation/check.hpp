@@ -73,6 +73,8 @@ struct CheckOptions {
   bool finger = false;
   /// reads the rig file; a caller that knows the rig's calibration applies it here
   std::function<rig::Rig(const std::string& path)> load_rig = rig::load;
+  /// says whether a character can be drawn on this machine (see protocol::undrawable); empty: not checked
+  std::function<bool(char32_t character)> drawable = {};
   Steps steps = {};
 };
 

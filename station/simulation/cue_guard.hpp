@@ -10,7 +10,7 @@
 
 namespace turnpoint::simulation {
 
-/// How long work shows its progress, and how it is stopped early with a result.
+/// How a long computation shows its progress, and how it is stopped early with a result.
 struct Steps {
   /// called after each unit of the work with what is counted, from one thread at a time; may be empty
   std::function<void(const char* what, int done, int of)> progress;

@@ -43,8 +43,8 @@ std::vector<SessionOutcome> simulate_sessions(const protocol::Protocol& protocol
 Power power_of(const protocol::Protocol& protocol, const PowerOptions& options,
                const std::vector<SessionOutcome>& outcomes);
 
-/// Completes sessions 0, 1, 2, ... that were read from the files of parts, which leave out what the first
-/// sessions ask and how they are fitted. Simulates those sessions again, without intervals.
+/// Completes sessions 0, 1, 2, ... that were read from the files of parts. The files do not say what the
+/// first sessions ask and how they are fitted, so these are simulated again, without intervals.
 void complete(const protocol::Protocol& protocol, const PowerOptions& options,
               std::vector<SessionOutcome>& outcomes);
 

@@ -22,7 +22,9 @@ std::function<double(double)> share_of_ones(const protocol::Protocol& protocol, 
   trial::TrialSpec trial;
   trial.procedure = spec.name;
   trial.level = 0;
-  trial.deadline_s = protocol.timing.deadline_s.value_or(0);
+  const auto& timing = protocol.timing;
+  if (timing.signal || (timing.deadline_s && !timing.deadline_s->is_constant())) return {};
+  if (timing.deadline_s) trial.deadline_s = timing.deadline_s->constant;
   auto question = trial::question_of(trial, protocol, 0);
   int choice = 0;
   if (question.decides == observer::Decides::right_answer) {
@@ -99,7 +101,8 @@ void GeneratingValues::add(const protocol::Protocol& protocol, const trial::Tria
   auto [entry, is_new] = conditions_.try_emplace(condition);
   auto& made = entry->second;
   if (is_new) made.question = question;
-  made.one_deadline = made.one_deadline && made.question.deadline_s == question.deadline_s;
+  made.one_deadline =
+      made.one_deadline && !question.signal_s && made.question.deadline_s == question.deadline_s;
   if (!trial.correct) return;
   ++made.trials;
   made.correct += observer.share(question, *trial.correct);

@@ -31,22 +31,22 @@ class GeneratingValues {
            const observer::Question& question, const observer::Observer& observer);
   void add(const GeneratingValues& other);
 
-  /// The sums of one condition: all that is needed to add it to others, but for the questions asked.
+  /// The sums of one condition, which can be added to others. They do not include the questions.
   struct Sum {
-    double deadline_s = 0;  ///< of the first trial
+    double deadline_s = 0;  ///< deadline of the first trial
     bool one_deadline = true;
     int trials = 0;
     double correct = 0;
   };
   std::map<std::string, Sum> sums() const;
   static GeneratingValues of_sums(const std::map<std::string, Sum>& sums);
-  /// Takes the questions of the conditions that `other` has as well.
+  /// Copies from `other` the questions of the conditions that both objects have.
   void take_questions(const GeneratingValues& other);
   bool has_all_of(const GeneratingValues& other) const;  ///< true if this has each of the other's conditions
 
-  /// True values for a fit with these options to the answers of a condition ("" for all trials). The slope is
-  /// set only if the observer's function is of the same family as the fitted one; a deadline changes the
-  /// family.
+  /// Returns the true values that a fit with these options should find in the answers of this condition (""
+  /// means all trials). The slope is set only if the observer's function is of the same family as the fitted
+  /// one; a deadline changes the family.
   FitTruth fit(const std::string& condition, const analysis::FitOptions& options,
                const observer::Observer& observer) const;
   std::optional<double> share_correct(const std::string& condition) const;

@@ -22,7 +22,7 @@ std::string recording_of(const std::string& stream) {
 }
 
 /// Writes the signals of one run as a table without gaps in time: BIDS gives a recording one start and one
-/// rate. Each trial is at its own place by time, to half a point.
+/// rate. Each trial is placed by its time, to within half a point.
 class Recording {
  public:
   Recording(const std::string& base, const SignalRow& first, std::vector<SignalChannel> channels)

@@ -30,7 +30,7 @@ struct stat status_of(int descriptor, const std::string& path) {
 }
 
 /// If root created the file, gives it to the owner of its folder. A file of an ordinary user keeps its owner.
-void give_to_owner_of_folder(int descriptor, const std::string& path) {
+void give_open_file_to_owner_of_folder(int descriptor, const std::string& path) {
   if (::geteuid() != 0 || status_of(descriptor, path).st_uid != 0) return;
   struct stat folder {};
   const auto name = folder_of(path);
@@ -136,7 +136,7 @@ FileDescriptor open_lock(const std::string& path) {
     throw StoreError(ErrorKind::io, "lock file " + path +
                                         ": the file is not a regular file, or has a second name (a hard "
                                         "link), and was not used; remove the file");
-  give_to_owner_of_folder(lock.get(), path);
+  give_open_file_to_owner_of_folder(lock.get(), path);
   return lock;
 }
 
@@ -149,7 +149,7 @@ void create_private(const std::string& path) {
 void give_to_owner_of_folder(const std::string& path) {
   const FileDescriptor file(::open(path.c_str(), O_RDONLY | O_NOFOLLOW | O_CLOEXEC));
   if (!file.is_open()) fail_system(kind_of_errno(errno), path, errno, "check the disk");
-  give_to_owner_of_folder(file.get(), path);
+  give_open_file_to_owner_of_folder(file.get(), path);
 }
 
 void permit_as(const std::string& original, const std::string& path) {

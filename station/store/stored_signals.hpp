@@ -37,7 +37,7 @@ class SignalReader {
 /// The place in `channels` of each channel of the signal.
 std::vector<std::size_t> places_of(const SignalRow& signal, const std::vector<SignalChannel>& channels);
 
-/// How a channel is called and explained in exports: its name with its unit, such as normal_n or speed_mm_s.
+/// Name and explanation of a channel in exports; the name includes the unit, such as normal_n or speed_mm_s.
 Column signal_column(const SignalChannel& channel);
 std::vector<Column> signal_columns(const std::vector<SignalChannel>& channels);
 

@@ -37,7 +37,7 @@ class Progress {
   std::mutex mutex_;
   bool terminal_ = false, shown_ = false, line_ = false;
   std::string what_;
-  std::deque<Mark> marks_;  ///< of the last quarter of a minute, from which the speed is computed
+  std::deque<Mark> marks_;  ///< marks of the last quarter of a minute, from which the speed is computed
   Clock::time_point last_;
 };
 

@@ -22,7 +22,8 @@ struct Rights {
 /// madvise(MADV_DONTNEED) then fails, and Qt's JavaScript engine, which expects zeroed pages, crashes.
 Rights lock_memory(const std::vector<MemoryRange>& ranges, const std::string& left_out = "");
 
-/// Locks the part of the calling thread's stack that a real-time thread uses. Returns 0 or an errno value.
+/// Locks the calling thread's stack in memory, as much of it as a real-time thread needs. Returns 0 or an
+/// errno value.
 int lock_stack() noexcept;
 
 /// Makes the calling thread real-time: SCHED_FIFO at `priority`, with its stack locked in memory. Its run

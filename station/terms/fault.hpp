@@ -52,7 +52,7 @@ const char* describe(FaultKind kind);
 /// it.
 struct Fault {
   FaultKind kind = FaultKind::other;
-  std::string detail;  ///< for the log and for the small print on a page; may be ""
+  std::string detail;  ///< text for the log and for the small print on a page; may be ""
 };
 /// Describes the fault with its detail: "GPIO lines disconnected: No such device".
 std::string describe(const Fault& fault);

@@ -34,7 +34,7 @@ struct Entry {
   Value value;
 };
 
-/// Parses `source`. `path` is the file name in the places of problems. Throws BadInput with the place of a
+/// Parses `source`. `path` is the file name that messages show. Throws BadInput with the place of a
 /// syntax error, of a list with more than 10 000 items, or of a key with more than 16 parts.
 Value parse_toml(const std::string& source, const std::string& path);
 

@@ -11,18 +11,25 @@ namespace {
 
 using Texts = std::map<std::string, std::string>;
 
-void read(const text::Value& table, const std::string& above, Texts& texts) {
+struct Spoken {
+  Texts texts;
+  bool read_by_native_speaker = false;
+};
+
+void read(const text::Value& table, const std::string& above, Spoken& spoken) {
   for (const auto& [key, place, value] : table.entries) {
     if (value.kind == text::Value::Kind::table)
-      read(value, above + key + ".", texts);
+      read(value, above + key + ".", spoken);
+    else if (value.kind == text::Value::Kind::boolean)
+      spoken.read_by_native_speaker = value.boolean;
     else
-      texts[above + key] = value.string;
+      spoken.texts[above + key] = value.string;
   }
 }
 
-const std::map<std::string, Texts>& all() {
+const std::map<std::string, Spoken>& all() {
   static const auto read_once = [] {
-    std::map<std::string, Texts> all;
+    std::map<std::string, Spoken> all;
     for (const auto& [language, toml] : catalogues)
       read(text::parse_toml(toml, std::string(language) + ".toml"), "", all[language]);
     return all;
@@ -32,18 +39,24 @@ const std::map<std::string, Texts>& all() {
 
 const Texts& in(const std::string& language) {
   const auto spoken = all().find(language.substr(0, 2));
-  return spoken == all().end() ? all().at("en") : spoken->second;
+  return (spoken == all().end() ? all().at("en") : spoken->second).texts;
 }
 
 }  // namespace
 
 std::vector<std::string> languages() {
   std::vector<std::string> codes;
-  for (const auto& [language, texts] : all()) codes.push_back(language);
+  for (const auto& [language, spoken] : all()) codes.push_back(language);
   return codes;
 }
 
-const Texts& catalogue(const std::string& language) { return all().at(language); }
+const Texts& catalogue(const std::string& language) { return all().at(language).texts; }
+
+Translation translation(const std::string& language) {
+  const auto spoken = all().find(language.substr(0, 2));
+  if (spoken == all().end()) return Translation::none;
+  return spoken->second.read_by_native_speaker ? Translation::read : Translation::unread;
+}
 
 const std::string& text(const std::string& key, const std::string& language) {
   const auto& texts = in(language);

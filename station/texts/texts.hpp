@@ -14,6 +14,11 @@ std::vector<std::string> languages();
 /// "fault.disk_full.happened".
 const std::map<std::string, std::string>& catalogue(const std::string& language);
 
+/// Says whether the station speaks a language ("de", "de-CH"), and whether a native speaker has read its
+/// texts.
+enum class Translation { none, unread, read };
+Translation translation(const std::string& language);
+
 /// Returns one text in the given language ("de", "de-CH"), or in English if the station does not speak that
 /// language. Throws std::logic_error for a key that no catalogue has.
 const std::string& text(const std::string& key, const std::string& language);

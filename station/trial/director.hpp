@@ -26,7 +26,9 @@ struct TrialSpec {
   std::optional<int> correct;
   std::optional<SliderSpan> slider;  ///< the slider; only for an adjustment
   double iti_s = 0, foreperiod_s = 0;
-  double deadline_s = 0;
+  double deadline_s = 0, anticipation_s = 0;
+  std::optional<double>
+      signal_s;  ///< when the response signal comes, after response_zero; empty if there is none
   /// true if the block's instruction sets the deadline; a timeout then counts as a result
   bool timeouts_are_data = false;
 };

@@ -52,7 +52,7 @@ struct Director::State {
 
   // These functions make one trial (director_trials.cpp).
   bool timeouts_are_data() const;
-  double deadline() const;
+  void set_times(TrialSpec& spec) const;
   protocol::Factors drawn_factors() const;
   std::optional<int> pick_procedure() const;
   bool catch_due() const;

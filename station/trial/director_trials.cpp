@@ -28,10 +28,22 @@ bool Director::State::timeouts_are_data() const {
   return instruction != protocol.instructions.end() && instruction->second.deadline_s.has_value();
 }
 
-double Director::State::deadline() const {
-  if (timeouts_are_data())
-    return *protocol.instructions.at(std::get<std::string>(now()->fixed.at("instruction"))).deadline_s;
-  return protocol.timing.deadline_s.value_or(0);
+/// Sets the times that depend on the trial's factors.
+void Director::State::set_times(TrialSpec& spec) const {
+  const auto& timing = protocol.timing;
+  const auto set = [&](const protocol::Linear& expression) {
+    return protocol::evaluate(expression, spec.factors);
+  };
+  spec.anticipation_s = set(timing.anticipation_s);
+  if (timing.signal) {
+    spec.signal_s = spec.anticipation_s = set(timing.signal->after_s);
+    spec.deadline_s = *spec.signal_s + timing.signal->window_s;
+  } else if (spec.timeouts_are_data) {
+    spec.deadline_s =
+        set(*protocol.instructions.at(std::get<std::string>(now()->fixed.at("instruction"))).deadline_s);
+  } else if (timing.deadline_s) {
+    spec.deadline_s = set(*timing.deadline_s);
+  }
 }
 
 /// Draws levels for the factors that nothing else sets. A factor that is fixed for the block keeps its value.
@@ -71,7 +83,6 @@ TrialSpec Director::State::blank(terms::TrialType type) const {
   spec.trial_in_block = trial;
   spec.type = now()->practice ? terms::TrialType::practice : type;
   spec.factors = drawn_factors();
-  spec.deadline_s = deadline();
   spec.timeouts_are_data = timeouts_are_data();
   return spec;
 }
@@ -89,6 +100,7 @@ void Director::State::complete(TrialSpec& spec) const {
     const double range = protocol.scenes.at(interval.front()).rove_dB;
     spec.rove_dB.push_back(range > 0 ? rove.uniform(-range, range) : 0);
   }
+  set_times(spec);
   const auto& iti = protocol.timing.iti_s;
   spec.iti_s = draws(Stream::intertrial, key).uniform(iti.low, iti.high);
   if (const auto& foreperiod = protocol.task.foreperiod_s)

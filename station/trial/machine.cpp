@@ -15,8 +15,9 @@ void check(const Timing& plan) {
   if (plan.intervals.empty())
     throw std::invalid_argument("trial: there is no interval; at least one is needed");
   if (plan.answers < 1) throw std::invalid_argument("trial: there are no answers; at least one is needed");
-  for (const auto time : {plan.cue_ns, plan.gap_ns, plan.deadline_ns, plan.anticipation_ns, plan.feedback_ns,
-                          plan.late_ns, plan.iti_ns, plan.watermark_ns})
+  for (const auto time :
+       {plan.signal_ns.value_or(0), plan.cue_ns, plan.gap_ns, plan.deadline_ns, plan.anticipation_ns,
+        plan.feedback_ns, plan.late_ns, plan.iti_ns, plan.watermark_ns})
     if (time < 0) throw std::invalid_argument("trial: a time is negative; all times must be 0 or more");
   for (const auto& interval : plan.intervals) {
     std::int64_t last = 0;
@@ -105,7 +106,8 @@ std::optional<std::int64_t> Machine::wake_ns() const {
   if (phase_ == Phase::interval && !decided()) return std::nullopt;
   const bool answering = phase_ == Phase::stimulus || phase_ == Phase::response;
   const auto deadline = answering ? deadline_at() : kNever;
-  const auto wake = deadline == kNever ? until_ns_ : std::min(until_ns_, deadline + plan_.watermark_ns);
+  auto wake = deadline == kNever ? until_ns_ : std::min(until_ns_, deadline + plan_.watermark_ns);
+  if (answering) wake = std::min(wake, signal_at());
   return wake == kNever ? std::nullopt : std::optional(wake);
 }
 
@@ -138,6 +140,11 @@ void Machine::advance(std::int64_t now_ns) {
 
 bool Machine::step(std::int64_t now_ns) {
   const bool answering = phase_ == Phase::stimulus || phase_ == Phase::response;
+  if (answering && now_ns >= signal_at() && signal_at() <= until_ns_) {
+    actions_.push_back({ActionKind::signal, interval_, signal_at()});
+    signalled_ = true;
+    return true;
+  }
   if (answering && deadline_at() != kNever && now_ns >= deadline_at() + plan_.watermark_ns &&
       deadline_at() + plan_.watermark_ns <= until_ns_) {
     conclude(Outcome::timeout, deadline_at() + plan_.watermark_ns);
@@ -211,6 +218,12 @@ std::int64_t Machine::deadline_at() const {
   return no_contact_deadline_ns_.value_or(kNever);
 }
 
+// Returns when the response signal is due; kNever if there is none, if it was given, or if its time is not
+// known yet.
+std::int64_t Machine::signal_at() const {
+  return plan_.signal_ns && !signalled_ && result_.zero_ns ? *result_.zero_ns + *plan_.signal_ns : kNever;
+}
+
 void Machine::contact(const Event& event) {
   touching_ = event.value != 0;
   if (phase_ != Phase::stimulus && phase_ != Phase::response) return;
@@ -270,7 +283,7 @@ void Machine::conclude(Outcome outcome, std::int64_t at_ns) {
   settle(at_ns);
 }
 
-// Makes the trial void, and lets the page say why. A timeout or an anticipation remains one.
+// Makes the trial void, and lets the page say why. An outcome of timeout or anticipation is kept.
 void Machine::repeat(std::int64_t at_ns) {
   if (decided() || (concluded_ && result_.outcome != Outcome::answered)) return;
   if (phase_ == Phase::stimulus) actions_.push_back({ActionKind::silence, interval_, at_ns});

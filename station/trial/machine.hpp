@@ -43,8 +43,10 @@ struct Timing {
   ResponseZero response_zero = ResponseZero::go_cue;
   std::int64_t deadline_ns = 0;      ///< longest response time, counted from response_zero
   std::int64_t anticipation_ns = 0;  ///< an answer sooner than this after response_zero is an anticipation
-  std::int64_t feedback_ns = 0;      ///< length of the feedback; 0 for none
-  std::int64_t late_ns = 0;          ///< length of the message after a late answer; 0 for none
+  /// when the participant is asked to answer at once, counted from response_zero; empty if that never happens
+  std::optional<std::int64_t> signal_ns;
+  std::int64_t feedback_ns = 0;  ///< length of the feedback; 0 for none
+  std::int64_t late_ns = 0;      ///< length of the message after a late answer; 0 for none
   std::int64_t iti_ns = 0;
   /// How long a time stamp may take to arrive. The machine waits this long after a deadline before it decides
   /// from the time stamps whether an answer was late.
@@ -82,6 +84,7 @@ enum class ActionKind {
   /// `onset` event for each interval, and with a `heard` event when the interval has been played completely
   present,
   silence,  ///< ramp down what is playing now, and cancel what has not begun
+  signal,   ///< give the response signal; time_ns: when it was due
 };
 
 struct Action {
@@ -132,6 +135,8 @@ class Machine {
   /// True once the outcome is final. Later events cannot change it.
   bool decided() const;
   int interval() const { return interval_; }
+  /// True from the response signal on.
+  bool signalled() const { return signalled_; }
   const Result& result() const { return result_; }
 
  private:
@@ -151,6 +156,7 @@ class Machine {
   void end(Outcome outcome, std::int64_t at_ns);
   void settle(std::int64_t at_ns);
   std::int64_t deadline_at() const;
+  std::int64_t signal_at() const;
 
   Timing plan_;
   Phase phase_ = Phase::idle;
@@ -161,6 +167,7 @@ class Machine {
   std::vector<bool> heard_;
   bool concluded_ = false;
   bool touching_ = false;
+  bool signalled_ = false;
   std::optional<std::int64_t> lift_off_ns_, no_contact_deadline_ns_;
   Result result_;
   std::vector<Action> actions_;

@@ -50,6 +50,7 @@ observer::Question question_of(const TrialSpec& spec, const protocol::Protocol& 
   question.level = spec.level.value_or(0);
   question.correct = spec.correct;
   question.deadline_s = spec.deadline_s;
+  question.signal_s = spec.signal_s;
   question.answers = static_cast<int>(protocol.task.choices.size());
   question.key = {seed, random::Stream::observer, spec.block_index, spec.attempt, spec.trial_in_block};
   const auto level = level_factor(spec, protocol);

@@ -46,7 +46,8 @@ Timing timing_of(const protocol::Protocol& protocol, const protocol::Block& bloc
   plan.answer_ends_stimulus = protocol::explored(protocol.task);
   plan.response_zero = protocol.timing.response_zero;
   plan.deadline_ns = ns(spec.deadline_s);
-  plan.anticipation_ns = ns(protocol.timing.anticipation_s);
+  plan.anticipation_ns = ns(spec.anticipation_s);
+  if (spec.signal_s) plan.signal_ns = ns(*spec.signal_s);
   plan.feedback_ns = block.feedback == protocol::Feedback::trial ? ns(kFeedback_s) : 0;
   plan.late_ns = ns(kLate_s);
   plan.iti_ns = ns(spec.iti_s);

@@ -82,15 +82,25 @@ Window {
         language: root.start.language
     }
 
+    Binding {
+        target: Catalogue
+        property: "shown"
+        value: root.start.language
+        when: root.asking
+    }
     RunModeFrame {
         id: frame
         anchors.fill: parent
+        LayoutMirroring.enabled: texts.mirrored
+        LayoutMirroring.childrenInherit: true
         visible: root.asking && shown
         theme: theme
         texts: texts
         runMode: root.asking ? root.start.runMode : ""
     }
     Item {
+        LayoutMirroring.enabled: texts.mirrored
+        LayoutMirroring.childrenInherit: true
         anchors { fill: parent; margins: theme.margin; topMargin: frame.band + (frame.shown ? theme.unit : theme.margin) }
         LanguagePage {
             objectName: "languagePage"

@@ -23,7 +23,7 @@ std::vector<TrialRecord> scored(int right, int trials, double level = 1) {
 
 }  // namespace
 
-TEST_CASE("the proportion correct of each model is that of numerical integration, and d' its inverse",
+TEST_CASE("the proportion correct of each model equals numerical integration, and d' is its inverse",
           "[analysis]") {
   for (const auto& row : kForcedChoice) {
     const double d = row[0];
@@ -68,7 +68,7 @@ TEST_CASE("simulated observers with noisy observations reach the proportion corr
   check(differencing, Deciding::differencing);
 }
 
-TEST_CASE("the intervals of d' hold the true value in 95 % of all sessions or more", "[analysis]") {
+TEST_CASE("the intervals of d' contain the true value in 95 % of all sessions or more", "[analysis]") {
   const auto coverage = [](Deciding model, int m, double d, int trials) {
     const boost::math::binomial law(trials, proportion_correct(model, d, m));
     double held = 0;

@@ -45,7 +45,7 @@ TEST_CASE("levels in dB are logarithms already", "[analysis]") {
   CHECK(analysis::judgements(trials, {}, Judged::magnitudes_dB)[0].exponent->value == Approx(0.5));
 }
 
-TEST_CASE("what has no logarithm is left out of magnitudes and said", "[analysis]") {
+TEST_CASE("numbers without a logarithm are left out of magnitudes, and a statement says so", "[analysis]") {
   std::vector<analysis::TrialRecord> trials;
   for (const double value : {0.0, 1.0, 2.0, 4.0})
     trials.push_back(judged(1, value)), trials.push_back(judged(2, value));

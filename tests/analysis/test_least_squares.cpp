@@ -8,7 +8,7 @@
 using namespace turnpoint;
 using analysis::least_squares;
 
-TEST_CASE("a line through points far from the origin keeps its digits", "[analysis]") {
+TEST_CASE("a line fitted to points far from the origin loses no digits", "[analysis]") {
   // The columns 1 and x are nearly equal. Solving the normal equations, which square the condition number,
   // would keep only five digits of the slope.
   std::vector<std::vector<double>> rows;
@@ -36,7 +36,8 @@ TEST_CASE("a line through points far from the origin keeps its digits", "[analys
   CHECK(fit.sd[1] == Approx(std::sqrt(rest / 9 / square) / 4).epsilon(1e-9));
 }
 
-TEST_CASE("as many points as parameters are met, without a scatter to judge by", "[analysis]") {
+TEST_CASE("a fit to as many points as parameters passes through all points, and has no scatter",
+          "[analysis]") {
   const auto fit = least_squares({{1, 0, 0}, {1, 1, 1}, {1, 2, 4}}, {5, 4, 7}, {1, 2, 3});
   CHECK(fit.value[0] == Approx(5));
   CHECK(fit.value[1] == Approx(-3));

@@ -3,7 +3,8 @@
 
 using namespace turnpoint::benchmark;
 
-TEST_CASE("the integer phase does not age, other methods do", "[benchmark]") {
+TEST_CASE("the error of the integer phase does not grow with time, that of other methods does",
+          "[benchmark]") {
   const SynthBenchmark table = benchmark_synthesis();
   REQUIRE(table.methods.size() == 8);
   const auto& ours = table.methods[0].error_dB;

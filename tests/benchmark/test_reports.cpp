@@ -25,7 +25,7 @@ double error_of(Task task, const std::string& scene, const std::string& solver,
 
 }  // namespace
 
-TEST_CASE("errors against the field fall up the ladder, and with the resolution", "[benchmark]") {
+TEST_CASE("a better model or a finer resolution has a smaller error against the field", "[benchmark]") {
   const std::string scene = "seed brass 19.6 kHz, Q = 60";
   CHECK(error_of(Task::field, scene, "airy") > error_of(Task::field, scene, "seed"));
   CHECK(error_of(Task::field, scene, "seed") > error_of(Task::field, scene, "mode"));
@@ -36,7 +36,7 @@ TEST_CASE("errors against the field fall up the ladder, and with the resolution"
   for (const auto& row : rows()) CHECK(row.seconds > 0);
 }
 
-TEST_CASE("the marched mode agrees with extended precision by an unrelated method", "[benchmark]") {
+TEST_CASE("the model mode agrees with an unrelated method in extended precision", "[benchmark]") {
   for (const char* scene :
        {"seed brass 19.6 kHz, lossless", "seed brass 45 kHz, Q = 60", "exponential taper 30 kHz, Q = 60"}) {
     const double error = error_of(Task::equation, scene, "mode");
@@ -58,12 +58,12 @@ TEST_CASE("a table is aligned for people and quoted for programs", "[benchmark]"
   CHECK(to_text(table) == "what    time_us\na, \"b\"      1.5\nc             -\n");
 }
 
-TEST_CASE("a peer that is not installed gives no lines", "[benchmark]") {
+TEST_CASE("a program that is not installed prints no lines", "[benchmark]") {
   CHECK(run_peer("no_such_script.py", {}).empty());
   CHECK(run_peer("questplus_trial.py", {"not", "a", "grid"}).empty());
 }
 
-TEST_CASE("the pictures have a panel for each scene", "[benchmark]") {
+TEST_CASE("the figures have a panel for each scene", "[benchmark]") {
   const auto pictures = physics_pictures(rows());
   REQUIRE(!pictures.empty());
   CHECK(pictures[0].figure.charts.size() == 6);

@@ -5,7 +5,8 @@
 
 using namespace turnpoint::benchmark;
 
-TEST_CASE("the benchmark writes the trials it says by each way, and leaves nothing behind", "[benchmark]") {
+TEST_CASE("the benchmark writes the stated number of trials with each method, and leaves no files behind",
+          "[benchmark]") {
   TemporaryFolder folder;
   const auto table = time_durable_trials(folder.path, 5);
   REQUIRE(table.size() == 3);

@@ -50,7 +50,7 @@ TEST_CASE("a transducer of another rig, or without a common band, is refused", "
   CHECK_THROWS_AS(applied(calibration, plate()), terms::UsageError);
 }
 
-TEST_CASE("a calibration tells what each pick-up captures of each transducer", "[calibration][apply]") {
+TEST_CASE("a calibration contains the response of each pick-up to each transducer", "[calibration][apply]") {
   auto rig = plate();
   rig.capture = rig::Capture{"alsa:hw:1", 4, {1, 3}, 0, 2, {}};
   CHECK(rig::unproven_transducers(rig) == std::vector<std::string>{rig.transducers[0].name});
@@ -83,7 +83,7 @@ TEST_CASE("a calibration tells what each pick-up captures of each transducer", "
   CHECK_THROWS_AS(applied(calibration, plate()), terms::UsageError);
 }
 
-TEST_CASE("a table of a pick-up must have columns of one length, in order of frequency",
+TEST_CASE("the columns of a pick-up's table must have equal length and be in order of frequency",
           "[calibration][apply]") {
   const auto problem = [](const std::string& columns) {
     Calibration calibration;

@@ -139,14 +139,15 @@ TEST_CASE("boundaries that cannot be used are refused, wrong ones are named", "[
   CHECK_THROWS_AS(fit_boundaries(plate(), "p50", {}), terms::UsageError);
 }
 
-TEST_CASE("a calibration with the law of an earlier release is read without it", "[calibration]") {
+TEST_CASE("the boundary fit of an earlier release is skipped when a calibration is read", "[calibration]") {
   auto calibration = made();
   calibration.boundary.reset();
   const auto text = to_toml(calibration) + "\n[boundary]\nlaw = \"plate\"\napex_mm = 466\nconstant = 55\n";
   CHECK_FALSE(parse(text, "old.toml").boundary.has_value());
 }
 
-TEST_CASE("a calibration expires, belongs to one rig file, and says so", "[calibration]") {
+TEST_CASE("a calibration expires, belongs to one rig file, and says why it must not be used",
+          "[calibration]") {
   const Calibration calibration = made();
   CHECK(days_left(calibration, "2026-02-27") == 30);
   CHECK(days_left(calibration, "2026-03-29") == 0);

@@ -35,7 +35,7 @@ TEST_CASE("frequency and Q of a resonance come from its width", "[calibration]")
                   .has_value());  // the sweep is too coarse for this resonance
 }
 
-TEST_CASE("a hump without a turn of the phase is no resonance", "[calibration]") {
+TEST_CASE("a hump at which the phase does not turn is not a resonance", "[calibration]") {
   auto sweep = resonator(28000, 20, 24000, 32000, 61);
   REQUIRE(find_resonances(sweep).size() == 1);
   for (auto& point : sweep) point.phase_rad = 0.1;
@@ -63,7 +63,8 @@ TEST_CASE("a response is smoothed without bias, and its band ends where equalisa
   CHECK(clean.high_Hz < 60000);
 }
 
-TEST_CASE("measured friction is made to fall with displacement by pooling what does not", "[calibration]") {
+TEST_CASE("where measured friction rises with displacement, neighbouring points are pooled",
+          "[calibration]") {
   const FrictionFit fit = fit_friction({{0, 1.0}, {2e-6, 0.5}, {1e-6, 0.7}, {1.5e-6, 0.74}, {3e-6, 0.2}});
   REQUIRE(fit.points.size() == 5);
   CHECK(fit.points[1].relative_friction == Approx(0.72));

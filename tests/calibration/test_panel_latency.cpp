@@ -8,8 +8,9 @@ namespace {
 constexpr std::int64_t ms = 1'000'000, s = 1000 * ms;
 }
 
-TEST_CASE("a panel's latency is the median from the button to the touch, its jitter their scatter",
-          "[panel]") {
+TEST_CASE(
+    "a panel's latency is the median time from the button to the touch, and its jitter is their scatter",
+    "[panel]") {
   std::vector<std::int64_t> edges, touches;
   for (int k = 0; k < 12; ++k) {
     edges.push_back(k * s);
@@ -26,7 +27,7 @@ TEST_CASE("a panel's latency is the median from the button to the touch, its jit
   CHECK(pair_delays(edges, touches, LatencyReference::photodiode)->median_s == Approx(0.061));
 }
 
-TEST_CASE("a touch without exactly one edge near it is unmatched, not guessed", "[panel]") {
+TEST_CASE("a touch without exactly one edge near it counts as unmatched", "[panel]") {
   const std::vector<std::int64_t> edges{1 * s, 2 * s, 3 * s, 3 * s + 100 * ms};
   const std::vector<std::int64_t> touches{1 * s + 50 * ms, 2 * s + 50 * ms, 3 * s + 150 * ms, 4 * s};
   const auto delay = pair_delays(touches, edges, LatencyReference::button);
@@ -36,7 +37,7 @@ TEST_CASE("a touch without exactly one edge near it is unmatched, not guessed", 
   CHECK(delay->median_s == Approx(0.05));
 }
 
-TEST_CASE("a calibration keeps the panel's latency, and holds even where nothing else was measured",
+TEST_CASE("a calibration keeps the panel's latency, and is valid even if nothing else was measured",
           "[panel]") {
   Calibration calibration;
   calibration.rig_name = "plate";

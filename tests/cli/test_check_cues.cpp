@@ -33,7 +33,7 @@ std::string cues_of(const std::string& protocol) {
 
 }  // namespace
 
-TEST_CASE("check says how precise it knows what a cue reaches in simulated sessions", "[cli]") {
+TEST_CASE("check states the precision of accuracies that come from simulated sessions", "[cli]") {
   // Even with roving, the amplitude reveals something about the answer. It reveals more at the easier levels
   // of the staircase.
   const auto text = with(turnpoint::system::read_file(source + "/protocols/friction-staircase.toml"),

@@ -49,7 +49,7 @@ TEST_CASE("the exit status says whose mistake it was", "[cli]") {
   }
 }
 
-TEST_CASE("numbers that physics refuses are the user's", "[cli]") {
+TEST_CASE("numbers that the physics library refuses count as the user's mistake", "[cli]") {
   CHECK(status_of({"map", "--rig", kRig, "--frequency", "30000", "--edge", "nowhere"}) == 2);
   CHECK(status_of({"map", "--rig", kRig, "--frequency", "30000", "--model", "fem"}) == 2);
   CHECK(status_of({"field", "--rig", kRig, "--tone", "30000", "--points", "1"}) == 2);

@@ -110,7 +110,8 @@ TEST_CASE("without a terminal the operator's code is a line of standard input", 
   CHECK(content(file).substr(0, 3) == "$y$");
 }
 
-TEST_CASE("a locked station begins with a stored code alone, and no command line takes one", "[code]") {
+TEST_CASE("a locked station starts only if a code is stored, and no option of the command line takes a code",
+          "[code]") {
   const TemporaryFolder folder;
   const auto station = [&](const std::vector<std::string>& options) {
     std::vector<std::string> command = {TURNPOINT, "station"};

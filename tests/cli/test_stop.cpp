@@ -107,7 +107,8 @@ void check_stopped(const Child& child, int signal, const store::SessionRecord& s
 
 }  // namespace
 
-TEST_CASE("a signal to end amid a stimulus stops a session by buttons as the operator does", "[stop]") {
+TEST_CASE("a stop signal during a stimulus ends a session with buttons as the operator's stop does",
+          "[stop]") {
   const TemporaryFolder folder;
   const auto database = folder / "db";
   const int signal = GENERATE(SIGTERM, SIGINT, SIGHUP);
@@ -136,7 +137,8 @@ TEST_CASE("a signal to end amid a stimulus stops a session by buttons as the ope
   CHECK(trials_of(database).size() == 2);
 }
 
-TEST_CASE("a simulated session that signals ended goes on to what an unbroken one comes to", "[stop]") {
+TEST_CASE("a simulated session that is stopped by signals and resumed gives the trials of an unbroken one",
+          "[stop]") {
   const TemporaryFolder folder;
   const auto database = folder / "db";
   Child child(simulated(database));
@@ -172,7 +174,7 @@ TEST_CASE("a simulated session that signals ended goes on to what an unbroken on
   }
 }
 
-TEST_CASE("a second signal ends at once a session whose ending hangs", "[stop]") {
+TEST_CASE("a second signal ends a session at once if its ending hangs", "[stop]") {
   const TemporaryFolder folder;
   const auto database = folder / "db";
   const int signal = GENERATE(SIGTERM, SIGINT);
@@ -192,7 +194,7 @@ TEST_CASE("a second signal ends at once a session whose ending hangs", "[stop]")
   CHECK(only_session(database).status == records::SessionStatus::running);
 }
 
-TEST_CASE("a session goes on through a signal that whoever started it has it ignore", "[stop]") {
+TEST_CASE("a session continues after a signal that the starting program has set to be ignored", "[stop]") {
   const TemporaryFolder folder;
   const auto database = folder / "db";
   const auto before = ::signal(SIGHUP, SIG_IGN);
@@ -208,7 +210,7 @@ TEST_CASE("a session goes on through a signal that whoever started it has it ign
   check_stopped(child, SIGTERM, only_session(database));
 }
 
-TEST_CASE("a session ends in order where the reader of its messages was ended as well", "[stop]") {
+TEST_CASE("a session ends cleanly even if the program that reads its messages was ended too", "[stop]") {
   const TemporaryFolder folder;
   const auto database = folder / "db";
   Child child(by_buttons(database));

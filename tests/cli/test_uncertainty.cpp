@@ -71,7 +71,7 @@ TEST_CASE("map and plan use the boundaries that were measured on a rig", "[cli]"
   CHECK(contains(output_of({"check", demo, "--sessions", "0", "--rig", copy}), "uncertain by 0."));
   const auto field = output_of({"field", "--tone", "30000", "--points", "2", "--rig", copy});
   CHECK(contains(field, "calibration "));
-  CHECK_FALSE(contains(field, "turning point 147.4 mm"));  // that of the rig file
+  CHECK_FALSE(contains(field, "turning point 147.4 mm"));  // the value from the rig file
   CHECK(contains(output_of({"power", demo, "--observers", "1", "--intervals", "0", "--rig", copy}),
                  "calibration "));
 }

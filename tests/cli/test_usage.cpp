@@ -22,9 +22,8 @@ void check_refused(std::vector<std::string> arguments, const std::string& why) {
 
 }  // namespace
 
-TEST_CASE(
-    "nothing plays on the amplifier that the operator has not armed, nor for longer than the rig allows",
-    "[cli]") {
+TEST_CASE("nothing is played unless the operator has armed the amplifier, nor for longer than the rig allows",
+          "[cli]") {
   check_refused({"synth", "--rig", kRig, "--tone", "30000", "--seconds", "2", "--out", "null:", "--arm"},
                 "synth: --arm with --out null:; --arm is only possible with --out alsa:NAME, which plays "
                 "through the amplifier");
@@ -53,7 +52,7 @@ TEST_CASE("the doctor warns of a simulated panel beside a real converter", "[cli
   }
 }
 
-TEST_CASE("amplifier-off takes the options of the station that it comes after, and its rig", "[cli]") {
+TEST_CASE("amplifier-off accepts the options of the station, and uses the station's rig", "[cli]") {
   const TemporaryFolder folder;
   Child child({TURNPOINT, "amplifier-off", "--locked", "--protocols", folder / "protocols", "--db",
                folder / "lab.sqlite", "--rig", kRig});
@@ -63,7 +62,7 @@ TEST_CASE("amplifier-off takes the options of the station that it comes after, a
   CHECK(child.said().find("amplifier off: sim:, of " + kRig) != std::string::npos);
 }
 
-TEST_CASE("the doctor takes the rig that the other commands take", "[cli]") {
+TEST_CASE("the doctor uses the same rig as the other commands", "[cli]") {
   const TemporaryFolder folder;
   Child child({TURNPOINT, "doctor"}, {"XDG_DATA_HOME=" + (folder / "data")});
   REQUIRE(child.ends_within(kPatience_ms));

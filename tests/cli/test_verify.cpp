@@ -27,8 +27,8 @@ std::string said_by(const std::vector<std::string>& command, int outcome = 0) {
 
 std::string run_demo(const std::string& db) {
   return said_by({TURNPOINT, "run", kSource + "/protocols/demo.toml", "--rig",
-                  kSource + "/tests/support/thin_plate.toml", "--participant", "P01", "--db", db, "--observer",
-                  "sim", "--seed", "7"});
+                  kSource + "/tests/support/thin_plate.toml", "--participant", "P01", "--db", db,
+                  "--observer", "sim", "--seed", "7"});
 }
 
 bool contains(const std::string& text, const std::string& part) {
@@ -37,8 +37,7 @@ bool contains(const std::string& text, const std::string& part) {
 
 }  // namespace
 
-TEST_CASE("the checksum at the end of a session is the one that is exported, reported and verified",
-          "[cli]") {
+TEST_CASE("the checksum printed at the end of a session is also exported, reported and verified", "[cli]") {
   const TemporaryFolder folder;
   const auto db = folder / "lab.sqlite";
   const auto summary = run_demo(db);
@@ -61,7 +60,7 @@ TEST_CASE("the checksum at the end of a session is the one that is exported, rep
   CHECK(contains(said_by(verify, 1), "trial 3"));
 }
 
-TEST_CASE("a signed export is verified by ssh-keygen, and a changed one is not", "[cli]") {
+TEST_CASE("ssh-keygen accepts a signed export, and rejects a changed one", "[cli]") {
   const TemporaryFolder folder;
   const auto db = folder / "lab.sqlite", key = folder / "key", out = folder / "out";
   run_demo(db);
@@ -78,7 +77,7 @@ TEST_CASE("a signed export is verified by ssh-keygen, and a changed one is not",
                  "unsigned"));
 }
 
-TEST_CASE("nothing is signed where an exported file cannot be read to its end", "[cli]") {
+TEST_CASE("nothing is signed if an exported file cannot be read completely", "[cli]") {
   const TemporaryFolder folder;
   const auto fifo = folder / "fifo.csv";
   REQUIRE(::mkfifo(fifo.c_str(), 0600) == 0);

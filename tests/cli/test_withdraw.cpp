@@ -17,7 +17,7 @@ std::vector<std::string> withdraw(const std::string& database, const std::vector
 
 }  // namespace
 
-TEST_CASE("withdraw lists what would go and deletes it only where the code is typed", "[cli]") {
+TEST_CASE("withdraw lists what it would delete, and deletes it only after the code was typed", "[cli]") {
   const TemporaryFolder folder;
   const auto database = folder / "lab.sqlite";
   const auto id = sample::session(database, 3);
@@ -40,7 +40,7 @@ TEST_CASE("withdraw lists what would go and deletes it only where the code is ty
   CHECK(store::list_sessions(database).size() == 1);
 }
 
-TEST_CASE("a script withdraws with --yes, and looks first with --dry-run", "[cli]") {
+TEST_CASE("with --yes withdraw asks for nothing, and with --dry-run it deletes nothing", "[cli]") {
   const TemporaryFolder folder;
   const auto database = folder / "lab.sqlite";
   sample::session(database, 3);

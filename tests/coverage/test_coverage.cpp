@@ -55,7 +55,7 @@ TEST_CASE("Intervals after 200 trials of QUEST+ hold the slope of a shallow func
   CHECK(tally(sessions, 2, threshold).coverage() >= 0.93);
 }
 
-TEST_CASE("A cell keeps its promise by the share that was found, without an allowance for chance",
+TEST_CASE("A cell keeps its promise only if the observed share does, without an allowance for chance",
           "[coverage]") {
   const auto broken = [](int held, std::size_t source, Quantity quantity) {
     Tally found;
@@ -92,7 +92,8 @@ TEST_CASE("Fixed true values of the coverage table lie in the middle half of the
   CHECK(off_centre >= 6);
 }
 
-TEST_CASE("A session of the coverage table is its seed's, alone or among others", "[coverage]") {
+TEST_CASE("A session of the coverage table depends only on its seed, not on the other sessions",
+          "[coverage]") {
   const Design design("staircase");
   const auto one = design.run(sources()[1], 7, false), again = design.run(sources()[1], 7, false),
              other = design.run(sources()[1], 8, false);
@@ -102,7 +103,7 @@ TEST_CASE("A session of the coverage table is its seed's, alone or among others"
   }
 }
 
-TEST_CASE("A run of the coverage table that was cut off goes on where it stopped", "[coverage]") {
+TEST_CASE("An interrupted run of the coverage table continues where it stopped", "[coverage]") {
   const TemporaryFolder folder;
   const auto path = folder / "cell.csv";
   const auto sessions = sessions_of("psi", sources()[0], 3, 48, 1);

@@ -87,7 +87,8 @@ setup::RunRequest demo_in(const Folder& folder) {
 
 }  // namespace
 
-TEST_CASE("the course of a session counts what was scored, and timeouts give no time", "[operator]") {
+TEST_CASE("the progress of a session counts scored trials, and timeouts have no response time",
+          "[operator]") {
   auto late = answered(false, 0);
   late.correct.reset();
   late.response_time_s.reset();
@@ -104,7 +105,7 @@ TEST_CASE("the course of a session counts what was scored, and timeouts give no 
   CHECK(value_of(desk::course_of({}), "Right") == "none scored yet");
 }
 
-TEST_CASE("the course of a session says what the pick-up measured of the last trial", "[operator]") {
+TEST_CASE("the progress of a session shows what the pick-up measured in the last trial", "[operator]") {
   std::vector<desk::LiveTrial> trials(2);
   const auto shown = [&] {
     for (const auto& [label, value] : desk::course_of(trials))
@@ -117,7 +118,7 @@ TEST_CASE("the course of a session says what the pick-up measured of the last tr
   CHECK(shown() == "refused: the surface does not move; level -62.0 dB");
 }
 
-TEST_CASE("limits used look back one minute", "[operator]") {
+TEST_CASE("the used part of the limits is computed from the last minute", "[operator]") {
   rig::Rig rig;
   rig.limits.displacement_m = 8e-6;
   std::vector<desk::LiveTrial> trials(3, answered(true, 1));
@@ -205,7 +206,7 @@ TEST_CASE("the live view shows what is played: each scene of each interval, with
   CHECK((roved > 0 || scenes > 1));
 }
 
-TEST_CASE("a slider that moves fast is shown a few times a second, and in the end where it stands",
+TEST_CASE("a slider that moves fast is shown a few times a second, and finally at its last position",
           "[operator]") {
   const Folder folder;
   auto request = demo_in(folder);
@@ -241,7 +242,8 @@ TEST_CASE("a slider that moves fast is shown a few times a second, and in the en
   CHECK(states.back().surfaces.size() == 1);
 }
 
-TEST_CASE("the report on the screen has the trade's numbers and pictures", "[operator]") {
+TEST_CASE("the report on the screen has the numbers and figures of the speed-accuracy trade-off",
+          "[operator]") {
   const Folder folder;
   session::Inputs inputs;
   const auto summary = session::run(setup::prepare(demo_in(folder)), nullptr, inputs);
@@ -271,7 +273,7 @@ TEST_CASE("the report on the screen has the finger's forces and friction, if for
   CHECK(pages.friction);
 }
 
-TEST_CASE("protocol files of a folder are listed with the ones that cannot be used", "[operator]") {
+TEST_CASE("the list of protocol files in a folder includes those that cannot be used", "[operator]") {
   const Folder folder;
   fs::copy_file(kSource + "/protocols/demo.toml", folder.path / "a.toml");
   std::ofstream(folder.path / "b.toml") << "format = 3\n";
@@ -284,7 +286,7 @@ TEST_CASE("protocol files of a folder are listed with the ones that cannot be us
   CHECK(list[1].problems.front().find("b.toml: ") != std::string::npos);
 }
 
-TEST_CASE("odd entries among the protocols have a message and hide no other", "[operator]") {
+TEST_CASE("an unusable entry among the protocols has a message and does not hide the others", "[operator]") {
   const Folder folder;
   const auto shipped = std::string(TURNPOINT_SOURCE_DIR) + "/protocols/demo.toml";
   fs::copy_file(shipped, folder.path / "demo.toml");
@@ -300,7 +302,7 @@ TEST_CASE("odd entries among the protocols have a message and hide no other", "[
   }
 }
 
-TEST_CASE("participants are known once a session of theirs is stored, and an interrupted one is offered",
+TEST_CASE("participants are listed once they have a stored session, and an interrupted session is offered",
           "[operator]") {
   const Folder folder;
   const auto request = demo_in(folder);
@@ -323,7 +325,7 @@ TEST_CASE("participants are known once a session of theirs is stored, and an int
   CHECK(note->trials == 3);
 }
 
-TEST_CASE("a check in words names the cues that would give answers away first", "[operator]") {
+TEST_CASE("the description of a check begins with the cues that could give answers away", "[operator]") {
   simulation::Check check;
   check.cues.reports = {{"pitch", 0, 0, "Hz", 0.5, 0.5}, {"loudness", 0, 1, "dB", 0.9, 0.5}};
   const auto words = desk::words_of(check);
@@ -356,7 +358,7 @@ TEST_CASE("preparing a session that is no longer wanted is abandoned before it p
   CHECK_THROWS_AS(setup::prepare(demo_in(folder), stop.get_token()), protocol::Abandoned);
 }
 
-TEST_CASE("ages are said as people say them", "[operator]") {
+TEST_CASE("ages are formatted as people say them", "[operator]") {
   CHECK(desk::age_in_words(30) == "30 s");
   CHECK(desk::age_in_words(600) == "10 min");
   CHECK(desk::age_in_words(3 * 3600) == "3 h");

@@ -43,7 +43,7 @@ std::string problem_with(const std::string& file) {
 
 }  // namespace
 
-TEST_CASE("a code opens by its digits alone, and its hash tells nothing about them", "[code]") {
+TEST_CASE("only the right digits open, and the hash of a code does not reveal them", "[code]") {
   const auto code = desk::OperatorCode::of_digits("7391");
   CHECK(code.opens("7391"));
   for (const auto* wrong : {"", "739", "73911", "7392", "2468", "1937"}) CHECK_FALSE(code.opens(wrong));
@@ -54,7 +54,7 @@ TEST_CASE("a code opens by its digits alone, and its hash tells nothing about th
   CHECK(desk::OperatorCode::of_hash(code.hash()).opens("7391"));
 }
 
-TEST_CASE("the hash is the one that other programs make of a password", "[code]") {
+TEST_CASE("other programs make the same hash of the same code", "[code]") {
   // This hash was made on Debian 12 by perl -e 'print crypt("7391", "\$y\$j9T\$abcdefghijklmnopqrstu.")';
   // crypt(5) describes the format.
   const auto known = desk::OperatorCode::of_hash(
@@ -63,13 +63,13 @@ TEST_CASE("the hash is the one that other programs make of a password", "[code]"
   CHECK_FALSE(known.opens("7392"));
 }
 
-TEST_CASE("codes that no keypad has, that are short, or that everybody knows are refused", "[code]") {
+TEST_CASE("codes that a keypad cannot type, short codes and the public code are refused", "[code]") {
   for (const auto* digits : {"", "739", "24b8", "7391 ", "1234567890123", "2468"})
     CHECK_THROWS_AS(desk::OperatorCode::of_digits(digits), terms::UsageError);
   CHECK_NOTHROW(desk::OperatorCode::of_digits("123456789012"));
 }
 
-TEST_CASE("a code is stored for its owner alone, and the first file that is there counts", "[code]") {
+TEST_CASE("only its owner can read a stored code, and the first existing file is used", "[code]") {
   const TemporaryFolder folder;
   const auto own = folder / "config/turnpoint/operator-code", station = folder / "etc/operator-code";
   CHECK(desk::operator_code({own, station}).is_built_in());
@@ -85,7 +85,8 @@ TEST_CASE("a code is stored for its owner alone, and the first file that is ther
   CHECK_FALSE(desk::operator_code({own, station}).opens("7391"));
 }
 
-TEST_CASE("a file that holds no code, or that everybody may read, is refused by name", "[code]") {
+TEST_CASE("a file that contains no code, or that everybody may read, is refused, and the message names it",
+          "[code]") {
   const TemporaryFolder folder;
   const auto file = folder / "operator-code";
   for (const auto* text : {"7391\n", "\n", "$y$\n", "$9$abc$def\n"}) {
@@ -101,7 +102,7 @@ TEST_CASE("a file that holds no code, or that everybody may read, is refused by 
   CHECK(problem_with(file).find("every user of this computer may read") != std::string::npos);
 }
 
-TEST_CASE("wrong codes are taken ever more slowly, and the right one ends that", "[code]") {
+TEST_CASE("after wrong codes the waiting time grows, and the right code resets it", "[code]") {
   desk::CodeBackOff back_off;
   double now_s = 100;
   std::vector<double> waits_s;

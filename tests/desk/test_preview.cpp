@@ -63,7 +63,8 @@ TEST_CASE("the chart of friction under a fingertip shows the loaded surface", "[
   CHECK(lowest(1) > *std::min_element(free.begin(), free.end()) + 0.1);
 }
 
-TEST_CASE("a scene's knobs are the factors that it depends on, with their ranges and levels", "[preview]") {
+TEST_CASE("the sliders of a scene are the factors on which it depends, with their ranges and levels",
+          "[preview]") {
   const auto preview = preview_of("demo");
   const auto knobs = preview.knobs("edge");
   REQUIRE(knobs.size() == 2);
@@ -75,7 +76,7 @@ TEST_CASE("a scene's knobs are the factors that it depends on, with their ranges
   CHECK(knobs[1].levels == std::vector<double>{150, 160});
 }
 
-TEST_CASE("a look puts the boundary where the factors say, and the displacement falls to a half there",
+TEST_CASE("a preview has its boundary where the factors put it, and the displacement falls to half there",
           "[preview]") {
   auto preview = preview_of("demo");
   const auto look = preview.look("edge", factors(preview, {"offset_mm=9"}));
@@ -112,7 +113,7 @@ TEST_CASE("factors that are set must exist and be numbers", "[preview]") {
   CHECK(assumed == std::vector<std::string>{"mark_mm"});
 }
 
-TEST_CASE("in a surface's picture no words stand on other words or on the boundary, wherever the mark is",
+TEST_CASE("in the picture of a surface no text overlaps other text or the boundary, wherever the mark is",
           "[preview]") {
   auto preview = preview_of("demo");
   auto look = preview.look("edge", factors(preview, {}));
@@ -130,7 +131,8 @@ TEST_CASE("in a surface's picture no words stand on other words or on the bounda
     }
 }
 
-TEST_CASE("the same look is the same picture, and another boundary another one", "[preview]") {
+TEST_CASE("the same preview gives the same picture, and another boundary gives another picture",
+          "[preview]") {
   auto preview = preview_of("demo");
   const auto draw = [&](const std::string& offset) {
     return desk::surface_svg(preview.look("edge", factors(preview, {"offset_mm=" + offset})), preview.rig());

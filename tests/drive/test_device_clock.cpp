@@ -114,7 +114,7 @@ TEST_CASE("an underrun is reported with its first lost frame and with the burst 
   REQUIRE(told);
   CHECK(told->frame == rendered);
   CHECK(told->frames == 100 + 384);
-  CHECK(told->burst == 0);  // 0 means none: no burst had begun
+  CHECK(told->burst == 0);  // 0 means none: no burst had begun yet
   steps(stream, 100);
   const auto in_burst = stream.counters().frames;
   card.pass(card.queued() + 50);

@@ -146,6 +146,7 @@ constexpr Recorded kSessions[] = {
     {"friction-3ifc", "12249024c7cd68c7", "ddb1edda9eb2a2eb"},
     {"friction-abx", "c95786baf94d2faf", "81a6d1b7adaa8862"},
     {"limits-boundary", "f095f41207962b6a", "8d35ed030edf1940"},
+    {"response-signal", "ef371dbbfaebe6ce", "5d99f9739e94ada6"},
     {"two-spots-oddity", "d84ae5fc63983e76", "b2d2fee42b03d1aa"},
 };
 
@@ -153,7 +154,7 @@ constexpr Recorded kSessions[] = {
 
 TEST_CASE("a burst has the same samples on every machine, bit for bit", "[everywhere]") {
   CHECK(rendered<double>(burst()) == "a63dd0d74bfd91b0");
-  CHECK(rendered<std::int32_t>(burst()) == "485448f497561d34");  // with dither and quantisation
+  CHECK(rendered<std::int32_t>(burst()) == "485448f497561d34");  // samples with dither and quantisation
   auto other = burst();
   other.tones.tones[0].frequency_Hz += 1e-9;  // negative control: the hash detects a change of the last digit
   CHECK(rendered<double>(other) != rendered<double>(burst()));

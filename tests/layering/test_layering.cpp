@@ -151,7 +151,7 @@ std::vector<std::string> unused(const Table& table, const std::map<std::string, 
 
 }  // namespace
 
-TEST_CASE("every layer uses only what the table allows, and all of it", "[layering]") {
+TEST_CASE("every layer uses only what the table allows, and every entry of the table is used", "[layering]") {
   const auto table = table_of_the_tree();
   std::map<std::string, Layers> used;
   each_line(TURNPOINT_SOURCE_DIR, [&](const std::string& file, const std::string& line) {
@@ -162,7 +162,7 @@ TEST_CASE("every layer uses only what the table allows, and all of it", "[layeri
   CHECK(used.size() > 20);
 }
 
-TEST_CASE("an include against the table is found: the negative control", "[layering]") {
+TEST_CASE("negative control: an include that the table does not allow is found", "[layering]") {
   const auto table = table_of_the_tree();
   const auto breaks = [&](const char* file, const char* line) {
     return !violation(table, file, line).empty();
@@ -187,7 +187,7 @@ TEST_CASE("a name of a layer that the table does not allow is found without an i
   CHECK(breaks("  const auto rows = turnpoint::store::read_session(path, id);"));
   CHECK(breaks("std::vector<store::SessionRecord> all;"));
   CHECK(breaks("using namespace store;"));
-  CHECK(breaks("namespace turnpoint::store {"));  // as in a forward declaration
+  CHECK(breaks("namespace turnpoint::store {"));  // a namespace that is opened, as for a forward declaration
   CHECK_FALSE(breaks("namespace turnpoint::trial {"));
   CHECK_FALSE(breaks("  return terms::name(outcome);"));
   CHECK_FALSE(breaks("  log(\"store::read_session\");  // as store::read_session"));

@@ -16,8 +16,9 @@ TEST_CASE("a stimulus beyond a limit is refused with the limit's name and value"
   CHECK_THROWS_AS(Exposure({8e-6, 50, 1.5, 3600}, 0), std::invalid_argument);
 }
 
-TEST_CASE("the interval stretches just as far as the duty needs, and no sliding minute exceeds it",
-          "[drive][exposure]") {
+TEST_CASE(
+    "a pause is extended only as far as the duty cycle requires, and no window of a minute exceeds the limit",
+    "[drive][exposure]") {
   Exposure exposure(limits, 0);
   double time = 0;
   std::vector<Exposed> all;
@@ -47,7 +48,7 @@ TEST_CASE("stimuli without a rest between them count as one continuous exposure"
   CHECK(exposure.earliest_start_s(20.1, 15) == Approx(20.5));
 }
 
-TEST_CASE("a restart forgets nothing: history and session start come from the database",
+TEST_CASE("a restart resets no limit, because history and session start come from the database",
           "[drive][exposure]") {
   Exposure before(limits, 1000);
   std::vector<Exposed> presented;

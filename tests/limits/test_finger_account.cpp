@@ -31,7 +31,7 @@ void add(store::StoredSession& session, double at_s, const std::string& kind, co
 
 }  // namespace
 
-TEST_CASE("stimuli come back from the database at their wall-clock times", "[session][limits]") {
+TEST_CASE("stimuli are read from the database with their wall-clock times", "[session][limits]") {
   auto session = session_of(100);
   add(session, 60, "stimulus", "8.5");
   const auto history = finger_history({session}, kNow_s, 30);
@@ -53,7 +53,7 @@ TEST_CASE("a trial that a crash cut off counts as the longest stimulus", "[sessi
   CHECK(finger_history({session}, kNow_s, 30).stimuli.empty());
 }
 
-TEST_CASE("a crash does not begin a new period of exposure, a pause of half an hour does",
+TEST_CASE("a pause of half an hour begins a new period of exposure, but a crash does not",
           "[session][limits]") {
   auto earlier = session_of(3000);
   add(earlier, 1500, "stimulus", "1");  // the finger was stimulated until 1500 s ago
@@ -68,8 +68,7 @@ TEST_CASE("a crash does not begin a new period of exposure, a pause of half an h
   CHECK(finger_history({rested}, kNow_s, 30).period_start_s == kNow_s);
 }
 
-TEST_CASE("the intervals of a trial keep the limits together, however long the session",
-          "[session][limits]") {
+TEST_CASE("the intervals of a trial together keep the limits, even in a long session", "[session][limits]") {
   const limits::ExposureLimits limits{8e-6, 30, 0.8, 1e9};
   limits::FingerAccount account(limits, {{}, kNow_s}, 0, kNow_s);
   const std::vector<limits::Exposed> trial{{0.8, 9.8}, {10.4, 19.4}};
@@ -87,14 +86,16 @@ TEST_CASE("the intervals of a trial keep the limits together, however long the s
   CHECK(shown_s / (1e-9 * static_cast<double>(now_ns)) > 0.75);
 }
 
-TEST_CASE("an exact stretch of the continuous time is allowed, a longer one never", "[session][limits]") {
+TEST_CASE("a stimulus of exactly the longest continuous time is allowed, a longer one is not",
+          "[session][limits]") {
   const limits::ExposureLimits limits{8e-6, 30, 0.8, 1e9};
   const limits::FingerAccount account(limits, {{}, kNow_s}, 0, kNow_s);
   CHECK(account.earliest_ns(0, {{0.8, 30.8}}) == 0);
   CHECK_THROWS_AS(account.earliest_ns(0, {{0.8, 30.9}}), limits::LimitExceeded);
 }
 
-TEST_CASE("sleep and a clock that was set are distinguished, and steering is neither", "[session][clock]") {
+TEST_CASE("a suspended machine and a changed clock are distinguished, and slow corrections count as neither",
+          "[session][clock]") {
   system::ClockWatch watch({0, 0, 100 * kSecond_ns});
   auto news = watch.look({kSecond_ns, kSecond_ns, 101 * kSecond_ns + 400'000});
   CHECK_FALSE(news.suspended_s.has_value());

@@ -65,7 +65,8 @@ std::vector<TriggerLines::Given> given(TriggerLines& lines, std::size_t count) {
 
 }  // namespace
 
-TEST_CASE("a code stands on the lines for its width, and the strobe within it", "[lines][trigger]") {
+TEST_CASE("a code stays on the lines for the length of its pulse, and the strobe lies inside this time",
+          "[lines][trigger]") {
   const bool strobe = GENERATE(false, true);
   Record record;
   const auto due_ns = system::monotonic_ns() + 5 * ms;
@@ -89,7 +90,7 @@ TEST_CASE("a code stands on the lines for its width, and the strobe within it", 
   CHECK(record.sets[strobe ? 3 : 1].time_ns - record.sets[0].time_ns >= 2 * ms);
 }
 
-TEST_CASE("a code that is due earlier overtakes, and cancelled codes never come", "[lines][trigger]") {
+TEST_CASE("a code that is due earlier comes first, and cancelled codes never come", "[lines][trigger]") {
   Record record;
   const auto now_ns = system::monotonic_ns();
   TriggerLines lines(std::make_unique<RecordedOutputs>(record), three_bits(false));
@@ -106,7 +107,7 @@ TEST_CASE("a code that is due earlier overtakes, and cancelled codes never come"
   CHECK(lines.failure() == "");
 }
 
-TEST_CASE("lines that cannot be set are a failure with its reason", "[lines][trigger]") {
+TEST_CASE("if lines cannot be set, the failure is reported with its reason", "[lines][trigger]") {
   Record record;
   auto plan = three_bits(false);
   plan.bits = 8;
@@ -118,7 +119,7 @@ TEST_CASE("lines that cannot be set are a failure with its reason", "[lines][tri
   CHECK(lines.take().empty());
 }
 
-TEST_CASE("the lines of codes are named from the lowest bit on", "[lines][trigger]") {
+TEST_CASE("the lines for codes are named in order, beginning with the lowest bit", "[lines][trigger]") {
   const auto plan = trigger_plan("gpio:bit1=B,bit0=A,strobe=S,pulse_ms=2.5");
   CHECK(plan.names == std::vector<std::string>{"A", "B", "S"});
   CHECK(plan.bits == 2);

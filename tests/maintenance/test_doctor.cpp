@@ -7,7 +7,8 @@
 using namespace turnpoint;
 using Status = lines::Finding::Status;
 
-TEST_CASE("the doctor fails where the machine swaps, and says how to turn it off", "[maintenance][doctor]") {
+TEST_CASE("the doctor fails if the machine swaps, and says how to switch swapping off",
+          "[maintenance][doctor]") {
   const TemporaryFolder folder;
   const auto file = folder / "swaps";
   const std::string heading = "Filename\t\t\t\tType\t\tSize\t\tUsed\t\tPriority\n";
@@ -24,7 +25,7 @@ TEST_CASE("the doctor fails where the machine swaps, and says how to turn it off
   CHECK(maintenance::check_swap(folder / "nothing").status == Status::warning);
 }
 
-TEST_CASE("the doctor says whether the hardware watchdog is fed", "[maintenance][doctor]") {
+TEST_CASE("the doctor says whether the hardware watchdog is in use", "[maintenance][doctor]") {
   const TemporaryFolder folder;
   CHECK(maintenance::check_watchdog(folder.path).status == Status::warning);
   std::filesystem::create_directory(folder / "watchdog0");

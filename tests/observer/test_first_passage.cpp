@@ -65,13 +65,14 @@ TEST_CASE("first passages have the distribution of the known series", "[observer
   }
 }
 
-TEST_CASE("the comparison with the series sees a drift that is 3 % off, and a start that is", "[observer]") {
+TEST_CASE("negative control: the comparison with the series detects a drift or a start that is 3 % off",
+          "[observer]") {
   const auto table = oracle();
   CHECK(distance(0.9 * 1.03, 0, table.at({0.9, 0.0})) > 4.5);
   CHECK(distance(0.9, 0.03, table.at({0.9, 0.0})) > 4.5);
 }
 
-TEST_CASE("accuracy and mean time are those of Palmer, Huk and Shadlen", "[observer]") {
+TEST_CASE("accuracy and mean time agree with Palmer, Huk and Shadlen", "[observer]") {
   // For normalised bound A' = .85, sensitivity k = 9 and stimulus strength x = .1, their formulas give a mean
   // decision time of .60823 s. With the residual time tR = .35 s, the whole response takes .95823 s.
   CHECK(observer::upper_probability(0.9, 0.85) == Approx(0.82201).margin(1e-5));
@@ -87,7 +88,7 @@ TEST_CASE("accuracy and mean time are those of Palmer, Huk and Shadlen", "[obser
   CHECK(sum / n + 0.35 == Approx(0.95823).margin(4 * sd / std::sqrt(n)));
 }
 
-TEST_CASE("a start between the boundaries shifts who is hit as the closed form says", "[observer]") {
+TEST_CASE("a starting point off the middle changes the accuracy as the closed form says", "[observer]") {
   random::Draws draws({4, random::Stream::observer, 0, 0, 0});
   const int n = 100'000;
   for (const double drift : {-0.8, 0.0, 0.8}) {
@@ -108,4 +109,47 @@ TEST_CASE("a passage is found for any drift and bound", "[observer]") {
       CHECK((std::isfinite(passage.time_s) && passage.time_s > 0));
       if (std::fabs(drift * bound) > 100) CHECK(passage.upper == (drift > 0));
     }
+}
+
+namespace {
+
+/// The probability that a walk has left at +1 or is above 0 at `time`, by explicit finite differences of the
+/// Fokker-Planck equation dp/dt = -drift dp/dx + 1/2 d2p/dx2 between absorbing boundaries.
+double upper_by_differences(double drift, double time) {
+  constexpr int n = 200;  // cells from -1 to 1
+  const double h = 2.0 / n;
+  const int steps = static_cast<int>(std::ceil(time / (0.4 * h * h)));
+  const double dt = time / steps;
+  std::vector<double> p(n + 1, 0.0), next(n + 1, 0.0);
+  p[n / 2] = 1 / h;
+  double upper = 0;
+  for (int step = 0; step < steps; ++step) {
+    for (int i = 1; i < n; ++i) {
+      const auto k = static_cast<std::size_t>(i);
+      next[k] = p[k] + dt * (0.5 * (p[k + 1] - 2 * p[k] + p[k - 1]) / (h * h) -
+                             drift * (p[k + 1] - p[k - 1]) / (2 * h));
+    }
+    // the flux through +1, from a one-sided difference of second order
+    upper += dt * 0.5 * (4 * p[n - 1] - p[n - 2]) / (2 * h);
+    std::swap(p, next);
+  }
+  double above = 0.5 * p[n / 2] * h;
+  for (std::size_t k = n / 2 + 1; k < n; ++k) above += p[k] * h;
+  return upper + above;
+}
+
+}  // namespace
+
+TEST_CASE("what a walk says at a signal agrees with finite differences of its density", "[observer]") {
+  for (const double drift : {0.0, 0.4, 1.5, -1.5, 4.0})
+    for (const double time : {0.02, 0.1, 0.5, 2.0}) {
+      CAPTURE(drift, time);
+      CHECK(observer::upper_by(drift, 1, time) == Approx(upper_by_differences(drift, time)).margin(2e-3));
+      CHECK(observer::upper_by(drift / 0.7, 0.7, time * 0.49) ==
+            Approx(observer::upper_by(drift, 1, time)).margin(1e-12));
+    }
+  CHECK(observer::upper_by(2, 1, 0) == 0.5);
+  CHECK(observer::upper_by(2, 1, 1e-9) == Approx(0.5).margin(1e-3));
+  CHECK(observer::upper_by(2, 1, 50) == Approx(observer::upper_probability(2, 1)).margin(1e-12));
+  CHECK(observer::upper_by(1e6, 1, 1) == 1);
 }

@@ -78,7 +78,7 @@ TEST_CASE("EZ-diffusion finds the drift, boundary and residual time of the obser
   }
 }
 
-TEST_CASE("an observer answers as often as its shares say", "[observer]") {
+TEST_CASE("an observer gives each answer with the stated probability", "[observer]") {
   for (const auto* text :
        {"sim:threshold=4,lapse=0.05", "sim:threshold=4,slope=2,drift_sd=0.6,start_range=0.5"}) {
     INFO(text);
@@ -112,7 +112,8 @@ TEST_CASE("at its threshold an observer is right 75 % of the time, whatever is a
   CHECK(Observer(parse("sim:threshold=-20,lapse=0")).share(question, 0) == Approx(0.75));
 }
 
-TEST_CASE("answers of which one is right follow a Weibull function with the observer's slope", "[observer]") {
+TEST_CASE("if one answer is right, answers follow a Weibull function with the observer's slope",
+          "[observer]") {
   const Observer observer(parse("sim:threshold=3,slope=1.7,lapse=0.04"));
   for (const double level : {0.5, 2.0, 3.0, 5.0})
     for (const int answers : {2, 3}) {
@@ -123,7 +124,7 @@ TEST_CASE("answers of which one is right follow a Weibull function with the obse
     }
 }
 
-TEST_CASE("answers on two sides follow a normal distribution about the bias", "[observer]") {
+TEST_CASE("if the answers are two sides, they follow a normal distribution around the bias", "[observer]") {
   const Observer observer(parse("sim:threshold=4,lapse=0,bias=3"));
   auto question = at_level(0);
   question.decides = Decides::side, question.positive = 0;
@@ -134,7 +135,7 @@ TEST_CASE("answers on two sides follow a normal distribution about the bias", "[
   }
 }
 
-TEST_CASE("yes and no fall about the criterion", "[observer]") {
+TEST_CASE("yes and no are separated by the criterion", "[observer]") {
   auto question = at_level(6);
   question.decides = Decides::presence;
   for (const double criterion : {-0.5, 0.2, 1.5}) {
@@ -157,7 +158,7 @@ TEST_CASE("yes and no fall about the criterion", "[observer]") {
   }
 }
 
-TEST_CASE("ratings of signal and noise overlap by d'", "[observer]") {
+TEST_CASE("ratings of signal and noise overlap as d' predicts", "[observer]") {
   const Observer observer(parse("sim:threshold=5,lapse=0"));
   auto question = at_level(5);
   question.decides = Decides::presence, question.answers = 6, question.rating = true;
@@ -193,7 +194,7 @@ TEST_CASE("a deadline lowers the bound so that few decisions come too late", "[o
   CHECK(observer.share(easy, 0) < careful - 0.05);
 }
 
-TEST_CASE("times outside the decision vary within their range", "[observer]") {
+TEST_CASE("non-decision times vary within their range", "[observer]") {
   // At 99 times the threshold, a decision takes a few hundredths of a second.
   const Observer observer(parse("sim:threshold=1,slope=4,bound=0.01,residual=0.5,residual_range=0.4"));
   auto question = at_level(100);
@@ -206,7 +207,8 @@ TEST_CASE("times outside the decision vary within their range", "[observer]") {
   CHECK(analysis::variance(times) == Approx(0.16 / 12).epsilon(0.05));
 }
 
-TEST_CASE("an observer that is not understood is refused with what is allowed", "[observer]") {
+TEST_CASE("a description of an observer that is not understood is refused, with what is allowed",
+          "[observer]") {
   for (const auto* text :
        {"human", "sim:treshold=3", "sim:threshold=x", "sim:lapse=2", "sim:threshold=0", "sim:slope",
         "sim:spread=0.25", "sim:start_range=1", "sim:drift_sd=-1", "sim:residual=0.1,residual_range=0.3"})
@@ -215,8 +217,9 @@ TEST_CASE("an observer that is not understood is refused with what is allowed", 
   CHECK(parse("sim:criterion=-0.3,drift_sd=0.2").criterion == -0.3);
 }
 
-TEST_CASE("an observer of categories confuses neighbours as a normal distribution over criteria halfway says",
-          "[observer]") {
+TEST_CASE(
+    "an observer of categories confuses neighbours as a normal distribution with criteria halfway predicts",
+    "[observer]") {
   Question question;
   question.decides = Decides::category;
   question.categories = {30, 10, 20, 60};
@@ -240,8 +243,8 @@ TEST_CASE("an observer of categories confuses neighbours as a normal distributio
 
 TEST_CASE("with several intervals, and in ABX, the observer is as good as its noisy observations are",
           "[observer]") {
-  // An observer of two intervals who is right in 1 - 2^-(1 + level) of the trials has this d'. The
-  // proportions that follow from it are found here by drawing the observations.
+  // An observer of two intervals who is right in 1 - 2^-(1 + level) of the trials has this d'. Here the
+  // proportions that follow from this d' are found by drawing the observations.
   std::mt19937_64 random(7);
   std::normal_distribution<> noise;
   constexpr int trials = 200'000;
@@ -273,4 +276,30 @@ TEST_CASE("with several intervals, and in ABX, the observer is as good as its no
     check(Finding::largest, 4, of_four);
     check(Finding::nearest, 2, abx);
   }
+}
+
+TEST_CASE("at a response signal the observer answers from what it has found out so far", "[observer]") {
+  const Observer observer(
+      parse("sim:threshold=1,lapse=0,anticipation=0,residual=0.2,residual_range=0.1,travel=0"));
+  auto question = at_level(1.5);
+  double last = 0.45;
+  for (const double signal_s : {0.05, 0.3, 1.0, 3.0}) {
+    CAPTURE(signal_s);
+    question.signal_s = signal_s;
+    int right = 0;
+    constexpr int n = 20'000;
+    for (int trial = 0; trial < n; ++trial) {
+      question.key.trial = trial;
+      const auto reply = observer.answer(question);
+      right += reply.choice == 0;
+      CHECK(reply.response_time_s >= signal_s + 0.05);
+      CHECK(reply.response_time_s <= signal_s + 0.15);
+    }
+    const double share = observer.share(question, 0);
+    CHECK(right / static_cast<double>(n) == Approx(share).margin(4 * std::sqrt(0.25 / n)));
+    CHECK(share > last);
+    last = share;
+  }
+  question.signal_s.reset();
+  CHECK(last == Approx(observer.share(question, 0)).margin(0.01));
 }

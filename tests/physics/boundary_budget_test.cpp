@@ -105,7 +105,7 @@ TEST_CASE("a boundary's derivatives are those of solving again on changed surfac
   check_derivatives(thick, "p50", 30e3);
 }
 
-TEST_CASE("the first-order uncertainty is that of random surfaces", "[physics]") {
+TEST_CASE("the first-order uncertainty agrees with the scatter of random surfaces", "[physics]") {
   std::mt19937_64 random(11);
   std::normal_distribution<double> normal;
   for (const Surface& nominal : {plate(), membrane(LinearTaper{0.03, 0.1})}) {
@@ -128,7 +128,7 @@ TEST_CASE("the first-order uncertainty is that of random surfaces", "[physics]")
   }
 }
 
-TEST_CASE("a budget names first what is best measured", "[physics]") {
+TEST_CASE("a budget lists first the parameter whose measurement helps most", "[physics]") {
   Surface s = plate();
   const BoundaryBudget budget = boundary_budget(s, 30e3, solved_m(s, "p50", 30e3));
   REQUIRE(budget.contributions.size() == 7);

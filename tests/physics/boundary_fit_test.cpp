@@ -114,7 +114,8 @@ TEST_CASE("measured boundaries make the map of an unknown plate precise", "[phys
   CHECK(std::abs(five.coverage - 0.95) < margin);
 }
 
-TEST_CASE("exact boundaries give back the surface that they came from, as far as they can", "[physics]") {
+TEST_CASE("a fit of exact boundaries finds the surface that they came from, as far as they determine it",
+          "[physics]") {
   // The boundaries of a membrane determine its apex and one constant. If slope and density are known,
   // half-width and tension follow.
   Surface nominal = seed_brass();
@@ -136,7 +137,7 @@ TEST_CASE("exact boundaries give back the surface that they came from, as far as
   for (const double f : {18e3, 30e3}) CHECK(solved_m(s, f) == Approx(solved_m(truth, f)).margin(1e-6));
 }
 
-TEST_CASE("a fit of one linear parameter is the closed form of its posterior", "[physics]") {
+TEST_CASE("a fit of one linear parameter equals the closed form of its posterior", "[physics]") {
   Surface nominal = aluminium_plate();
   nominal.sd.clamp_line_m = 0.3e-3;
   const double x = solved_m(nominal, 30e3);
@@ -152,7 +153,7 @@ TEST_CASE("a fit of one linear parameter is the closed form of its posterior", "
         Approx(std::sqrt(1 / (1 / 4.0 + 1 / 100.0)) * 1e-3).epsilon(1e-3));
 }
 
-TEST_CASE("a boundary that was read wrongly is named", "[physics]") {
+TEST_CASE("a boundary that was read wrongly is named as an outlier", "[physics]") {
   std::mt19937_64 random(5);
   const Surface nominal = plate(), truth = random_surface(nominal, random);
   auto points = measured(nominal, truth, 6, 0.2e-3, random);
@@ -171,7 +172,8 @@ TEST_CASE("a boundary that was read wrongly is named", "[physics]") {
 }
 
 TEST_CASE(
-    "a boundary that was read wrongly does not change the fit, and those that contradict each other stay",
+    "a boundary that was read wrongly does not change the fit, and boundaries that contradict each other "
+    "stay in it",
     "[physics]") {
   std::mt19937_64 random(7);
   const Surface nominal = plate(), truth = random_surface(nominal, random);
@@ -201,7 +203,7 @@ TEST_CASE(
   CHECK(torn.residuals_m[0] == Approx(-torn.residuals_m[1]).epsilon(0.1));
 }
 
-TEST_CASE("a fit refuses what it cannot use", "[physics]") {
+TEST_CASE("a fit refuses measurements and surfaces that it cannot use", "[physics]") {
   const MeasuredBoundary good{30e3, 0.15, 1e-3}, vague{30e3, 0.15, 0}, below{5e3, 0.15, 1e-3};
   CHECK_THROWS_AS(fit_boundaries(plate(), edge(), {}), std::invalid_argument);
   CHECK_THROWS_AS(fit_boundaries(plate(), edge(), {&vague, 1}), std::invalid_argument);

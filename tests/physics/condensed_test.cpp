@@ -1,5 +1,6 @@
 #include "physics/condensed.hpp"
 
+#include <Eigen/LU>
 #include <cmath>
 
 #include "tests/support/catch.hpp"
@@ -23,7 +24,7 @@ MatrixXd symmetric(Index n, double diagonal, double phase) {
 
 }  // namespace
 
-TEST_CASE("a condensed element answers as the whole matrix does", "[physics]") {
+TEST_CASE("a condensed element gives the same solution as the whole matrix", "[physics]") {
   for (const Index bubbles : {0, 1, 4, 7, 30}) {  // whole and broken panels of the elimination
     const Index left = 3, right = 2, n = left + bubbles + right;
     CAPTURE(bubbles);

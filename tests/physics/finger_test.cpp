@@ -147,7 +147,7 @@ TEST_CASE("the effect of a finger can be computed for every plate theory, taper 
     for (const FingerLoad& load : finger_load(s, 30e3, x, Finger{})) {
       CHECK(std::isfinite(load.share(Finger{})));
       CHECK(std::isfinite(std::abs(load.loaded)));
-      CHECK(load.mobility_m_per_Ns.real() >= -1e-12);  // the strip gives no power of its own
+      CHECK(load.mobility_m_per_Ns.real() >= -1e-12);  // negative would mean that the strip generates power
       all.push_back(load.share(Finger{}));
     }
     return all;

@@ -1,11 +1,16 @@
+#include <Eigen/Eigenvalues>
+#include <algorithm>
 #include <cmath>
 #include <complex>
 #include <numbers>
+#include <string>
+#include <vector>
 
 #include "physics/dispersion.hpp"
 #include "physics/elastic_section.hpp"
 #include "physics/mindlin_plate.hpp"
 #include "physics/plate_theory.hpp"
+#include "physics/section_elements.hpp"
 #include "physics/surface.hpp"
 #include "physics/warning.hpp"
 #include "tests/physics/csv_table.hpp"
@@ -28,6 +33,34 @@ Surface unit_plate(double thickness, double poisson, PlateTheory theory) {
 }
 
 double number(const std::string& cell) { return std::stod(cell); }
+
+// Squared wavenumbers along the strip, times W^2, of the waves at a given omega W / c_s, smallest magnitude
+// first. Only waves that are symmetric about the centre line and antisymmetric through the thickness are
+// included. A value is complex where two evanescent branches have met. The method is semi-analytical finite
+// elements: with u = (i k A, b, c) exp(-i k x) and A, b, c made of elements in y and z, the eigenvalue
+// problem is linear in k^2 (S. Dong & R. Nelson, J. Appl. Mech. 39 (1972) 739).
+std::vector<std::complex<double>> elastic_wavenumbers2(double t, double poisson, double omega, int count) {
+  const SectionPencil s = SectionElements(t, poisson).pencil;
+  const Eigen::Index na = s.along_mass.rows(), nb = s.mass.rows();
+  const double o2 = omega * omega;
+  Eigen::MatrixXd fixed = Eigen::MatrixXd::Zero(na + nb, na + nb), by = fixed;
+  fixed.topLeftCorner(na, na) = s.shear - o2 * s.along_mass;
+  fixed.topRightCorner(na, nb) = s.coupling;
+  fixed.bottomRightCorner(nb, nb) = s.plane - o2 * s.mass;
+  by.topLeftCorner(na, na) = s.along;
+  by.bottomLeftCorner(nb, na) = s.coupling.transpose();
+  by.bottomRightCorner(nb, nb) = s.cross;
+  // The eigenvalue problem is `fixed` v = -L `by` v. Compute the eigenvalues of fixed^-1 `by`, which are
+  // -1/L. The largest of them belong to the L of smallest magnitude.
+  const Eigen::EigenSolver<Eigen::MatrixXd> solver(Eigen::MatrixXd(fixed.partialPivLu().solve(by)), false);
+  std::vector<std::complex<double>> all;
+  for (const std::complex<double> one : solver.eigenvalues()) {
+    if (std::abs(one) > 0) all.push_back(-1.0 / one);
+  }
+  std::sort(all.begin(), all.end(), [](const auto& a, const auto& b) { return std::abs(a) < std::abs(b); });
+  all.resize(std::min(all.size(), static_cast<std::size_t>(count)));
+  return all;
+}
 
 }  // namespace
 

@@ -58,7 +58,7 @@ TEST_CASE("what is captured does not depend on the size of the blocks", "[plant]
   }
 }
 
-TEST_CASE("the seed decides all noise", "[plant]") {
+TEST_CASE("the seed determines all noise", "[plant]") {
   auto setup = whole_laboratory();
   const auto first = record(setup, 960, 9600);
   CHECK((record(setup, 960, 9600).samples == first.samples));
@@ -73,7 +73,7 @@ TEST_CASE("the seed decides all noise", "[plant]") {
   for (std::int64_t n = 0; n < 9600; ++n) REQUIRE(first.at(n, kMarker) == second.at(n, kMarker));
 }
 
-TEST_CASE("the readings that the bridges carry are the truth's", "[plant]") {
+TEST_CASE("the bridges carry the readings that the truth states", "[plant]") {
   Setup setup = quiet_setup();
   setup.finger.touches = {{}};
   setup.cells.height_m = 0.008;

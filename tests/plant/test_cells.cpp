@@ -55,7 +55,7 @@ TEST_CASE("the lateral cell has its own resonance", "[plant]") {
   CHECK(at_s[2] == Approx(0.5 / 180 / damped).epsilon(2e-3));
 }
 
-TEST_CASE("cells read each other's force, their zero, and a drift with temperature", "[plant]") {
+TEST_CASE("the readings of cells include crosstalk, a zero and a drift with temperature", "[plant]") {
   Cells cells;
   cells.crosstalk = {{{1, 0.02, -0.01}, {0.03, 1, 0.015}, {-0.02, 0.01, 1}}};
   cells.zero_N = {0.1, -0.2, 0.05};

@@ -90,7 +90,7 @@ TEST_CASE("resonances that are 3 % higher change a pick-up as a tone 3 % lower w
   CHECK(std::abs(trial.change_dB(kPickup + 1, 30e3)) > 0.5);
 }
 
-TEST_CASE("the surface moves on while its resonances change", "[plant]") {
+TEST_CASE("the surface continues its motion while its resonances change", "[plant]") {
   // A change of 1 mK is too small to be seen, so the recording must continue as without a fault.
   Plant healthy(quiet_setup());
   const auto expected = run(healthy, kAt + 2000, tone_and_carrier);
@@ -197,7 +197,7 @@ TEST_CASE("a finger that lifts takes its forces away", "[plant]") {
   CHECK(plant.truth().normal_N == Approx(0.5).epsilon(1e-9));
 }
 
-TEST_CASE("a gap loses captured frames, and all that follows comes earlier", "[plant]") {
+TEST_CASE("a gap loses captured frames, and all later frames come earlier", "[plant]") {
   Setup setup = quiet_setup();
   setup.marker_channel = 2;
   setup.finger.touches = {{}};

@@ -41,7 +41,7 @@ TEST_CASE("a stroke has minimum jerk", "[plant]") {
   CHECK(1 - minimum_jerk(1 - 1e-3) < 1.01e-8);
 }
 
-TEST_CASE("the finger strokes to and fro, with the speed that its place shows", "[plant]") {
+TEST_CASE("the finger strokes to and fro, with the speed that its positions imply", "[plant]") {
   Finger finger = smooth_finger();
   Stroker stroker(finger);
   double before = finger.from_m, lowest = 1, highest = 0, fastest = 0;
@@ -98,7 +98,7 @@ TEST_CASE("before the skin slides, it is a spring", "[plant]") {
   CHECK(sticking > 100);
 }
 
-TEST_CASE("friction follows the vibration behind a low-pass", "[plant]") {
+TEST_CASE("friction follows the vibration through a low-pass filter", "[plant]") {
   Finger finger = smooth_finger();
   finger.land_s = 0;
   Stroker stroker(finger);

@@ -122,7 +122,7 @@ TEST_CASE("the finger's friction is the mean over the fingertip of the friction 
     const double of_rms = setup.friction.relative_friction(0.8e-6 * std::sqrt(square));
     largest = std::max(largest, std::abs(mean - of_rms));
   }
-  CHECK(largest > 0.015);  // negative control: the friction of the rms displacement is another
+  CHECK(largest > 0.015);  // negative control: the friction at the rms displacement differs
 }
 
 TEST_CASE("the amplitudes of tones under the finger add as squares, and follow what was played", "[plant]") {

@@ -5,7 +5,7 @@ using namespace turnpoint::plant;
 
 namespace {
 
-constexpr std::int64_t kSettled = 4 * 192000;  // by then, a step of force has decayed to 1e-15
+constexpr std::int64_t kSettled = 4 * 192000;  // time after which a step of force has decayed to 1e-15
 constexpr std::int64_t kTenth = 19200;
 
 /// Mean of the squared samples of a channel.

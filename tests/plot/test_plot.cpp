@@ -33,7 +33,8 @@ std::size_t count(const std::string& text, const std::string& what) {
 
 }  // namespace
 
-TEST_CASE("Ticks are 1, 2 or 5 times a power of ten, inside the axis, with a true minus", "[plot]") {
+TEST_CASE("Ticks are 1, 2 or 5 times a power of ten, inside the axis, with a typographic minus sign",
+          "[plot]") {
   std::vector<std::string> labels;
   for (const auto& tick : ticks({"", -30, -10, AxisScale::linear}, 5)) labels.push_back(tick.label);
   CHECK(labels == std::vector<std::string>{"\u221230", "\u221225", "\u221220", "\u221215", "\u221210"});
@@ -107,7 +108,7 @@ TEST_CASE("Axes without a range, or a log axis from 0, are refused", "[plot]") {
   CHECK(wide.high == Approx(11));
 }
 
-TEST_CASE("A figure is the same bytes each time, escaped and without NaN", "[plot]") {
+TEST_CASE("A figure always has the same bytes, is escaped, and contains no NaN", "[plot]") {
   const auto svg = render(example());
   CHECK(svg == render(example()));
   CHECK(svg.find("nan") == std::string::npos);
@@ -118,7 +119,7 @@ TEST_CASE("A figure is the same bytes each time, escaped and without NaN", "[plo
   CHECK(count(svg, "<g ") == count(svg, "</g>"));
 }
 
-TEST_CASE("Each series differs from every other by colour, by marker, and lines by dash", "[plot]") {
+TEST_CASE("Each series has its own colour and marker, and each line its own dash", "[plot]") {
   std::set<std::string> colours, dashes;
   std::set<int> markers;
   for (int i = 0; i < 6; ++i) {
@@ -132,7 +133,7 @@ TEST_CASE("Each series differs from every other by colour, by marker, and lines 
   CHECK(style(6).colour == style(0).colour);
 }
 
-TEST_CASE("A figure laid out for a place fills it, in the arrangement that suits its charts", "[plot]") {
+TEST_CASE("A figure laid out for a given size fills it, in the arrangement that suits its charts", "[plot]") {
   Figure figure;
   figure.title = "Two";
   Chart chart;
@@ -178,7 +179,7 @@ TEST_CASE("A histogram counts every value in range once", "[plot]") {
   CHECK(bars.edges.size() == 5);
 }
 
-TEST_CASE("Text is measured with room to spare, wide characters as one em", "[plot]") {
+TEST_CASE("The estimated width of a text is never too small, and wide characters count as one em", "[plot]") {
   CHECK(text_width("abc", 10) == Approx(18.6));
   CHECK(text_width("\u5de6\u53f3", 10) == Approx(20));
   CHECK(text_width("\u2212", 10) == Approx(6.2));

@@ -58,7 +58,7 @@ Chart empty_panel() {
 
 }  // namespace
 
-TEST_CASE("The label of a rule never stands on a tone's mark, however close both are", "[plot][labels]") {
+TEST_CASE("The label of a rule never overlaps a tone's mark, however close they are", "[plot][labels]") {
   const double height = GENERATE(165.0, 200.0, 260.0), width = GENERATE(200.0, 430.0);
   for (double tone = 15; tone <= 45; tone += 2.5)
     for (double off = -4; off <= 4; off += 0.25) {
@@ -73,7 +73,7 @@ TEST_CASE("The label of a rule never stands on a tone's mark, however close both
     }
 }
 
-TEST_CASE("Where curves leave no place, a rule's label stands outside of the data", "[plot][labels]") {
+TEST_CASE("If curves leave no free place, a rule's label is placed outside the data", "[plot][labels]") {
   Line dense;
   for (int i = 0; i <= 3000; ++i) {
     dense.x.push_back(15 + 0.01 * i);
@@ -118,7 +118,7 @@ TEST_CASE("Labels of several rules keep apart from each other, from curves, bars
   CHECK(crossed(svg, 430, 260).empty());
 }
 
-TEST_CASE("A free label stands at its rule's upper right, and a rule beyond the axes shows nothing",
+TEST_CASE("A free label is at the upper right of its rule, and a rule beyond the axes shows nothing",
           "[plot][labels]") {
   auto chart = empty_panel();
   chart.layers.push_back(vertical(20, "here"));
@@ -137,7 +137,7 @@ TEST_CASE("A free label stands at its rule's upper right, and a rule beyond the 
     }
 }
 
-TEST_CASE("Panels of one figure keep one height, also where only one of them has no place for a label",
+TEST_CASE("Panels of a figure keep equal heights even if only one of them has no place for a label",
           "[plot][labels]") {
   auto tall = empty_panel(), flat = empty_panel();
   tall.layers = {Histogram{{15, 25, 35, 45}, {0.7, 0.7, 0.7}, 0, ""}, vertical(30, "median 1.02 s")};

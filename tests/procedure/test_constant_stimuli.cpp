@@ -29,7 +29,8 @@ Context marks() {
 
 }  // namespace
 
-TEST_CASE("constant stimuli present each value as often, balanced, without long runs", "[procedure]") {
+TEST_CASE("constant stimuli present each value equally often, balanced and without long runs",
+          "[procedure]") {
   for (std::uint64_t seed = 0; seed < 200; ++seed) {
     const auto procedure = make_procedure(offsets(), marks(), {seed, {}, 1, 0, 0});
     std::map<double, int> counts;
@@ -83,7 +84,7 @@ TEST_CASE("several balanced factors are crossed as evenly as the repeats allow",
   }
 }
 
-TEST_CASE("one balanced factor gets the levels that it got when sessions were first stored", "[procedure]") {
+TEST_CASE("a single balanced factor gets the same levels as in earlier releases", "[procedure]") {
   auto spec = offsets();
   spec.values = {-9, 9};
   spec.repeats = 7;
@@ -94,7 +95,7 @@ TEST_CASE("one balanced factor gets the levels that it got when sessions were fi
   CHECK(levels == "01201201220110");
 }
 
-TEST_CASE("an unanswered trial comes again later, unless its deadline is part of the design", "[procedure]") {
+TEST_CASE("an unanswered trial is repeated later, unless its deadline is part of the design", "[procedure]") {
   auto context = marks();
   context.unanswered_are_data = GENERATE(false, true);
   const auto procedure = make_procedure(offsets(), context, {7, {}, 0, 0, 0});
@@ -105,7 +106,7 @@ TEST_CASE("an unanswered trial comes again later, unless its deadline is part of
   CHECK(procedure->recorded() == 80);
 }
 
-TEST_CASE("the same key gives the same order, another attempt another", "[procedure]") {
+TEST_CASE("the same key gives the same order, and another attempt gives another order", "[procedure]") {
   const auto order = [](int attempt) {
     std::vector<double> levels;
     const auto procedure = make_procedure(offsets(), marks(), {7, {}, 0, attempt, 0});
@@ -116,7 +117,7 @@ TEST_CASE("the same key gives the same order, another attempt another", "[proced
   CHECK(order(0) != order(1));
 }
 
-TEST_CASE("adjustment starts from every level equally often, and again where nothing was set",
+TEST_CASE("adjustment starts from every level equally often, and repeats trials without a setting",
           "[procedure]") {
   Spec spec;
   spec.name = "settings";

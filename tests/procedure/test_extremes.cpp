@@ -81,7 +81,10 @@ TEST_CASE("a posterior survives ten thousand answers of any kind at levels of 40
     run(posterior_spec(kind, function, slope), pattern, -400, 400);
 }
 
-TEST_CASE("all right goes to the lowest threshold of the grid, all wrong to the highest", "[procedure]") {
+TEST_CASE(
+    "if all answers are right, the estimate is the grid's lowest threshold, and if all are wrong, its "
+    "highest",
+    "[procedure]") {
   for (const auto pattern : {Pattern::all_right, Pattern::all_wrong}) {
     const auto procedure = make_procedure(posterior_spec(Kind::quest_plus, Function::weibull, 3.5), {}, {});
     for (int trial = 0; trial < 200; ++trial) procedure->record(answer(pattern, trial));
@@ -104,7 +107,8 @@ TEST_CASE("a track with limits stays inside them for ten thousand answers of any
   }
 }
 
-TEST_CASE("a multiplying track without limits neither overflows nor reaches zero", "[procedure]") {
+TEST_CASE("a track with multiplying steps and without limits neither overflows nor reaches zero",
+          "[procedure]") {
   for (const auto scale : {Scale::dB, Scale::log10})
     for (const auto pattern : {Pattern::all_right, Pattern::all_wrong, Pattern::alternating})
       for (const auto kind : {Kind::up_down, Kind::accelerated_stochastic_approximation}) {

@@ -8,7 +8,7 @@
 
 using namespace turnpoint::procedure;
 
-TEST_CASE("Watson's first example comes out trial by trial", "[procedure]") {
+TEST_CASE("Watson's first example is reproduced trial by trial", "[procedure]") {
   const auto result = trace(watson_1(), {}, "11110011111111011011011111111111");
   const std::vector<double> published{-18, -22, -25, -28, -30, -22, -13, -15, -16, -18, -19,
                                       -20, -21, -22, -23, -19, -20, -20, -18, -18, -19, -17,
@@ -21,14 +21,15 @@ TEST_CASE("Watson's first example comes out trial by trial", "[procedure]") {
   CHECK(*result.entropy_nats == Approx(1.68350).margin(5e-6));
 }
 
-TEST_CASE("one likelihood floor too high changes Watson's levels: the vector can fail", "[procedure]") {
+TEST_CASE("negative control: with a higher likelihood floor, the levels differ from Watson's",
+          "[procedure]") {
   auto spec = watson_1();
   spec.lapse.values = {0.03};
   CHECK(trace(spec, {}, "11110011111111011011011111111111").levels !=
         trace(watson_1(), {}, "11110011111111011011011111111111").levels);
 }
 
-TEST_CASE("information has the same best stimulus as expected entropy, computed the long way",
+TEST_CASE("the most informative stimulus is that of a direct computation of the expected entropy",
           "[procedure]") {
   Spec spec = watson_1();
   spec.slope.values = {1, 2, 4};
@@ -50,7 +51,7 @@ TEST_CASE("information has the same best stimulus as expected entropy, computed 
   }
 }
 
-TEST_CASE("grids whose steps do not agree give the same information as ones that share distances",
+TEST_CASE("grids whose steps do not agree give the same information as grids that share distances",
           "[procedure]") {
   // On the second grid no two stimuli have the same distances from the thresholds. The results may differ
   // only by rounding.
@@ -82,7 +83,8 @@ TEST_CASE("psychometric functions agree with libm and stay finite at every extre
       }
 }
 
-TEST_CASE("an unanswered trial brings the same level, and at most four cost one trial", "[procedure]") {
+TEST_CASE("an unanswered trial is repeated at the same level, and four in a row cost one trial",
+          "[procedure]") {
   auto spec = watson_1();
   spec.stop.trials = 2;
   const auto procedure = make_procedure(spec, {}, {});
@@ -97,7 +99,8 @@ TEST_CASE("an unanswered trial brings the same level, and at most four cost one 
   CHECK(procedure->recorded() == 0);
 }
 
-TEST_CASE("psi-marginal learns about what is kept and sums over the nuisance", "[procedure]") {
+TEST_CASE("psi-marginal learns about the kept parameters and sums over the nuisance parameters",
+          "[procedure]") {
   Spec spec;
   spec.name = "psi";
   spec.level = "spread_mm";

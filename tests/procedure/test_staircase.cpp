@@ -100,7 +100,7 @@ TEST_CASE("a staircase that cannot run is refused with the key and what is allow
   CHECK_FALSE(validate(spec).empty());
 }
 
-TEST_CASE("an observer who never answers is not asked for ever", "[procedure]") {
+TEST_CASE("a procedure ends even if the observer never answers", "[procedure]") {
   auto spec = two_down_one_up();
   spec.stop = {};
   spec.stop.reversals = 8;

@@ -114,14 +114,13 @@ TEST_CASE("accelerated stochastic approximation ends by trials, or by reversals 
   CHECK_FALSE(trace(spec, {}, "111").next.has_value());
 }
 
-TEST_CASE("accelerated stochastic approximation multiplies levels where its scale is one of ratios",
-          "[procedure]") {
+TEST_CASE("accelerated stochastic approximation multiplies levels on a logarithmic scale", "[procedure]") {
   auto spec = approximation(100, 20, 0.5);
   spec.scale = Scale::dB;
   CHECK(*trace(spec, {}, "1").next == Approx(100 * std::pow(10.0, -10.0 / 20)));
 }
 
-TEST_CASE("an unanswered trial of an accelerated stochastic approximation brings its level again",
+TEST_CASE("an unanswered trial of an accelerated stochastic approximation is repeated at the same level",
           "[procedure]") {
   const auto procedure = make_procedure(approximation(10, 8, 0.75), {}, {});
   procedure->record(Answer::one);

@@ -6,7 +6,7 @@ using namespace turnpoint::procedure;
 
 // The levels and answers of the example runs published with Watson (2017).
 
-TEST_CASE("Watson's run over threshold and slope comes out trial by trial", "[procedure]") {
+TEST_CASE("Watson's run over threshold and slope is reproduced trial by trial", "[procedure]") {
   auto spec = watson_1();
   spec.slope.values = {2, 3, 4, 5};
   const auto result = trace(spec, {}, "1011111111111011011101111011111111111011001111010111011111111111");
@@ -20,7 +20,7 @@ TEST_CASE("Watson's run over threshold and slope comes out trial by trial", "[pr
   CHECK(result.estimates.at("slope").mode == 3);
 }
 
-TEST_CASE("Watson's second example, with slope and lapse, comes out trial by trial", "[procedure]") {
+TEST_CASE("Watson's second example, with slope and lapse, is reproduced trial by trial", "[procedure]") {
   auto spec = watson_1();
   spec.slope.values = {2, 3, 4, 5};
   spec.lapse.values = {0, 0.01, 0.02, 0.03, 0.04};
@@ -42,7 +42,7 @@ TEST_CASE("Watson's second example, with slope and lapse, comes out trial by tri
   CHECK(result.estimates.at("lapse").mode == 0.04);
 }
 
-TEST_CASE("Watson's third example, a cumulative normal with tied asymptotes, comes out trial by trial",
+TEST_CASE("Watson's third example, a cumulative normal with tied asymptotes, is reproduced trial by trial",
           "[procedure]") {
   Spec spec = watson_1();
   spec.function = Function::normal;

@@ -40,7 +40,7 @@ std::string only_problem(const std::string& source) {
 
 }  // namespace
 
-TEST_CASE("by takes one factor with levels, or several", "[protocol]") {
+TEST_CASE("the key by accepts one factor with levels, or several", "[protocol]") {
   const auto one = protocol::parse(with_analysis("speed-accuracy", "by = \"instruction\""), "p");
   CHECK(one.analysis.by == std::vector<std::string>{"instruction"});
   const auto two = protocol::parse(with_analysis("demo", "by = [\"mark_mm\"]"), "p");
@@ -53,7 +53,7 @@ TEST_CASE("by takes one factor with levels, or several", "[protocol]") {
   CHECK(!problems_of(with_analysis("demo", "by = \"offset_mm\"")).empty());
 }
 
-TEST_CASE("what show could not show is an error that says why", "[protocol]") {
+TEST_CASE("a value of the key show that would show nothing is an error that says why", "[protocol]") {
   const std::vector<std::string> all{"psychometric", "ez", "bis", "lisas", "ies", "caf", "dprime", "trace"};
   const auto refused = [&](const std::string& protocol, const std::string& more = "") {
     std::vector<std::string> words;

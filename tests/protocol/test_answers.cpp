@@ -32,7 +32,7 @@ protocol::Protocol yes_no() {
 
 }  // namespace
 
-TEST_CASE("what the answers say of the level is read from their comparisons", "[protocol]") {
+TEST_CASE("the relation of the answers to the level is derived from their comparisons", "[protocol]") {
   const auto rule = [](const protocol::Protocol& protocol) {
     return protocol::answer_rule(protocol, protocol.procedures.front().level);
   };

@@ -59,7 +59,7 @@ TEST_CASE("the demo has ten trials of boundary localisation with one tone", "[pr
   CHECK_FALSE(demo.seed.has_value());
 }
 
-TEST_CASE("a single-interval answer is right where its comparison holds, and none is at 0", "[protocol]") {
+TEST_CASE("an answer is right if its comparison is true, and at 0 no answer is right", "[protocol]") {
   const auto demo = protocol::load(shipped + "demo.toml");
   REQUIRE(demo.task.correct_answer.size() == 2);
   const auto right = [&](double offset_mm) {
@@ -73,7 +73,8 @@ TEST_CASE("a single-interval answer is right where its comparison holds, and non
   CHECK(right(0).empty());
 }
 
-TEST_CASE("a scene takes over what its base says, zones key by key", "[protocol]") {
+TEST_CASE("a scene takes from its base what it does not state, and zones are merged key by key",
+          "[protocol]") {
   const auto change = protocol::load(shipped + "speed-accuracy.toml");
   const auto& after = change.scenes.at("after");
   REQUIRE(after.zone.has_value());
@@ -158,7 +159,7 @@ TEST_CASE("a grid in the file becomes values, with both ends exact", "[protocol]
   CHECK(contrast.procedures.at(0).prior_threshold.normal->second == 8.0);
 }
 
-TEST_CASE("a copied procedure differs only in what it states", "[protocol]") {
+TEST_CASE("a copied procedure differs only in the keys that it states", "[protocol]") {
   const auto protocol = protocol::load(shipped + "boundary-adaptive.toml");
   const auto& upper = protocol.procedures.at(0);
   const auto& lower = protocol.procedures.at(1);
@@ -179,7 +180,7 @@ TEST_CASE("blocks and sequences keep the order of the file", "[protocol]") {
   CHECK(block(protocol, 1).break_after->trials == 40);
 }
 
-TEST_CASE("the defaults that stood in are named", "[protocol]") {
+TEST_CASE("the defaults that were used are named", "[protocol]") {
   const auto used = protocol::load(shipped + "no-touch-control.toml").defaults_used;
   const auto has = [&](const char* line) { return std::find(used.begin(), used.end(), line) != used.end(); };
   CHECK(has("random.seed = \"per-session\""));
@@ -189,11 +190,11 @@ TEST_CASE("the defaults that stood in are named", "[protocol]") {
   CHECK_FALSE(has("scene.edge.rove_dB = 2"));
 }
 
-TEST_CASE("a protocol file that is not there is bad input", "[protocol]") {
+TEST_CASE("a missing protocol file is bad input", "[protocol]") {
   CHECK_THROWS_AS(protocol::load("no/such/protocol.toml"), text::BadInput);
 }
 
-TEST_CASE("a file with far too much of something is refused, and within a second", "[protocol]") {
+TEST_CASE("a file with far too many items, keys or bytes is refused within a second", "[protocol]") {
   const auto demo = system::read_file(shipped + "demo.toml");
   std::string factors, values, keys;
   for (int i = 0; i < 100'000; ++i)

@@ -75,13 +75,13 @@ bool lacks_the_rest(const text::Problem& problem) {
 
 }  // namespace
 
-TEST_CASE("the manual's whole example is a good protocol file", "[protocol]") {
+TEST_CASE("the manual's complete example is a valid protocol file", "[protocol]") {
   const auto all = snippets();
   REQUIRE(all.size() >= 10);
   CHECK(problems_of(all.front()).empty());
 }
 
-TEST_CASE("every example of the manual reads, apart from what stands elsewhere in a file", "[protocol]") {
+TEST_CASE("every example of the manual is valid, apart from what stands elsewhere in a file", "[protocol]") {
   for (const auto& snippet : snippets()) {
     INFO(snippet);
     for (const auto& problem : problems_of(snippet)) {

@@ -66,7 +66,8 @@ TEST_CASE("a survey plans each combination of level and mark once, with its boun
   }
 }
 
-TEST_CASE("a boundary that the rig cannot reach is refused with what it can reach", "[protocol]") {
+TEST_CASE("if the rig cannot reach a boundary, the message says which boundaries it can reach",
+          "[protocol]") {
   auto text = replaced(source("demo.toml"), "levels = [150.0, 160.0]", "levels = [250.0, 260.0]");
   const auto found = problems(text, quick_rig());
   CHECK(contains(found, "p.toml:25:15: scene \"edge\" in block \"main\" at mark_mm = 250, offset_mm = "));
@@ -115,7 +116,7 @@ TEST_CASE("tones that last longer than the rig allows are refused", "[protocol]"
   CHECK(contains(problems(text, quick_rig()), "the rig allows at most continuous_s = 30 s"));
 }
 
-TEST_CASE("what is probably not meant is a warning at its place", "[protocol]") {
+TEST_CASE("a probable mistake gives a warning at its place", "[protocol]") {
   const auto advice = [](const std::string& text) {
     return all_of(protocol::advice(protocol::parse(text, "p.toml")));
   };
@@ -129,7 +130,7 @@ TEST_CASE("what is probably not meant is a warning at its place", "[protocol]") 
         replaced(source("friction-same-different.toml"), "[-20.0, -14.0, -9.0, -4.0]", "[-8.0, -4.0]");
     CHECK(contains(advice(coarse), "which everybody feels"));
   }
-  SECTION("practice that one key passes") {
+  SECTION("practice that can be passed with one key") {
     CHECK(contains(advice(replaced(constant, "levels = [-28.0, 28.0]", "levels = [20.0, 28.0]")),
                    "can be passed by always pressing the same key"));
     CHECK(contains(advice(replaced(constant, "accuracy = 0.75", "accuracy = 0.5")),
@@ -158,7 +159,7 @@ TEST_CASE("what is probably not meant is a warning at its place", "[protocol]") 
   }
 }
 
-TEST_CASE("counts that balance cannot make even are noted, of one factor and of several together",
+TEST_CASE("counts that balance cannot make equal are noted, for one factor and for several together",
           "[protocol]") {
   const auto notes = [](const std::string& balance, const std::string& repeats) {
     auto text = replaced(source("boundary-constant.toml"), "[scene.edge]",
@@ -198,7 +199,7 @@ TEST_CASE("counts that balance cannot make even are noted, of one factor and of 
                    "for equal counts, set repeats = 24"));
     CHECK(one_line(said));
   }
-  SECTION("combinations that no number of repeats meets") {
+  SECTION("combinations that no number of repeats makes equal") {
     std::string levels = "[1";
     for (int i = 2; i <= 1500; ++i) levels += ", " + std::to_string(i);
     auto text = replaced(source("boundary-constant.toml"), "[scene.edge]",

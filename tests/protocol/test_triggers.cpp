@@ -70,7 +70,7 @@ TEST_CASE("by default each event of each condition has a code of its own", "[pro
   CHECK(protocol::trigger_code(protocol, TriggerEvent::trial, {}) == 9);
 }
 
-TEST_CASE("a protocol chooses the events, and states codes", "[protocol][trigger]") {
+TEST_CASE("a protocol can choose the events and state their codes", "[protocol][trigger]") {
   const auto protocol = with(
       "[triggers]\nsend = [\"onset\", \"response\"]\n"
       "code = [{ event = \"onset\", condition = \"speed\", code = 100 }]\n");
@@ -80,7 +80,7 @@ TEST_CASE("a protocol chooses the events, and states codes", "[protocol][trigger
   CHECK(protocol::trigger_code(protocol, TriggerEvent::onset, {}) == 5);
 }
 
-TEST_CASE("trigger codes that nobody could use are refused", "[protocol][trigger]") {
+TEST_CASE("unusable trigger codes are refused", "[protocol][trigger]") {
   CHECK(
       contains(problem_with("[triggers]\nsend = [\"touch\"]"), "\"send\" has \"touch\"; allowed: \"trial\""));
   CHECK(contains(problem_with("[triggers]\nsend = [\"onset\", \"onset\"]"), "appears twice"));

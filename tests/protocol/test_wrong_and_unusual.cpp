@@ -125,7 +125,8 @@ TEST_CASE("each wrong protocol is refused, or warned of, at its line", "[protoco
   CHECK(cases >= 420);
 }
 
-TEST_CASE("a wrong protocol that nobody notices, or at another line only, is missed", "[protocol][corpus]") {
+TEST_CASE("negative control: a mistake that is not reported, or only at another line, is detected",
+          "[protocol][corpus]") {
   CHECK(missed({"", "demo", {{"title =", "<!>title ="}}}) != "");
   CHECK(missed({"", "demo", {{"repeats = 2", "repeats = 0"}, {"title =", "<!>title ="}}}) != "");
   CHECK(missed({"", "demo", {{"repeats = 2", "<!>repeats = 0"}}}) == "");

@@ -9,7 +9,7 @@
 
 using namespace turnpoint::random;
 
-TEST_CASE("Philox gives the published answers", "[random]") {
+TEST_CASE("Philox gives the published values", "[random]") {
   using Words = std::array<std::uint32_t, 4>;
   CHECK(philox({0, 0, 0, 0}, {0, 0}) == Words{0x6627e8d5, 0xe169c58d, 0xbc57ac4c, 0x9b00dbd8});
   CHECK(philox({0xffffffff, 0xffffffff, 0xffffffff, 0xffffffff}, {0xffffffff, 0xffffffff}) ==
@@ -57,7 +57,7 @@ TEST_CASE("a shuffle gives every permutation equally often", "[random]") {
   for (const auto& [items, count] : counts) CHECK(count == Approx(1000).margin(160));
 }
 
-TEST_CASE("log and exp agree with libm to the last bits and refuse what they cannot answer", "[random]") {
+TEST_CASE("log and exp agree with libm to the last bits and refuse arguments without a result", "[random]") {
   Draws draws({9, Stream::bootstrap, 0, 0, 0});
   for (int i = 0; i < 20'000; ++i) {
     const double x = draws.uniform(-700, 700);
@@ -88,7 +88,7 @@ double log_by_frexp(double x) {
 
 }  // namespace
 
-TEST_CASE("log and logs have the bits of the series, for every kind of number", "[random]") {
+TEST_CASE("log and logs give the same bits as the series, for every kind of number", "[random]") {
   std::vector<double> numbers{5e-324, 2.2250738585072009e-308, 2.2250738585072014e-308,
                               1.7976931348623157e308};
   Draws draws({10, Stream::bootstrap, 0, 0, 0});
@@ -110,7 +110,7 @@ TEST_CASE("log and logs have the bits of the series, for every kind of number", 
   }
 }
 
-TEST_CASE("the normal distribution function agrees with another to 1e-15", "[random]") {
+TEST_CASE("the normal distribution function agrees with another implementation to 1e-15", "[random]") {
   for (double x = -9; x <= 9; x += 0.0625)
     CHECK(normal_cdf(x) == Approx(0.5 * std::erfc(-x / std::sqrt(2.0))).margin(1e-15));
   CHECK(normal_cdf(0) == 0.5);

@@ -169,7 +169,7 @@ TEST_CASE("A forced-choice session in dB has its threshold and 75 % point in the
   keep("staircase.svg", shown(trace_figure(summary)));
 }
 
-TEST_CASE("Where the answers chose the levels the report states the posterior and its prior", "[report]") {
+TEST_CASE("If the answers determined the levels, the report states the posterior and its prior", "[report]") {
   auto data = staircase_session();
   data.prior = analysis::Prior{-40, 3, 0.25, 16, 0.25};
   const auto summary = summarise(data);

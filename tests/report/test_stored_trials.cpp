@@ -59,7 +59,8 @@ std::string yes_no(const std::string& analysis, int sign = 1, int repeats = 40) 
 
 }  // namespace
 
-TEST_CASE("a numeric factor gives one curve a level, two factors one a combination", "[report]") {
+TEST_CASE("a numeric factor gives one curve for each level, two factors give one for each combination",
+          "[report]") {
   auto source = replaced(shipped("demo"), "repeats = 2", "repeats = 12") + "\n[analysis]\n";
   const auto pooled = data_of(source);
   CHECK(pooled.conditions.empty());
@@ -85,7 +86,7 @@ TEST_CASE("settings are grouped by the levels of a factor", "[report]") {
   CHECK(settings[0]["condition"].get<std::string>().find("mark ") == 0);
 }
 
-TEST_CASE("the order of conditions is the file's, whatever block came first", "[report]") {
+TEST_CASE("conditions are in the order of the file, whichever block came first", "[report]") {
   const auto first = report_of(data_of(shipped("speed-accuracy"), "sim", 0));
   const auto second = report_of(data_of(shipped("speed-accuracy"), "sim", 1));
   const auto began = [](int index) {
@@ -100,7 +101,7 @@ TEST_CASE("the order of conditions is the file's, whatever block came first", "[
   }
 }
 
-TEST_CASE("by that names another factor takes the instructions together", "[report]") {
+TEST_CASE("if the key by names another factor, the instructions are pooled", "[report]") {
   auto source = replaced(shipped("speed-accuracy"), "by = \"instruction\"", "by = \"finger\"");
   source = replaced(source, "[scene.before]",
                     "[[factor]]\nname = \"finger\"\nlevels = [\"wet\", \"dry\"]\n\n[scene.before]");
@@ -139,7 +140,7 @@ TEST_CASE("same-different counts pairs that are the same as false alarms", "[rep
   CHECK(report["fits"][0]["guess"].get<double>() == Approx(0.25).margin(0.12));
 }
 
-TEST_CASE("show decides what the report contains, each of its values", "[report]") {
+TEST_CASE("each value of the key show adds a part to the report", "[report]") {
   const auto source = [](const std::string& show) {
     return replaced(shipped("speed-accuracy"),
                     "show = [\"psychometric\", \"ez\", \"bis\", \"lisas\", \"caf\"]",
@@ -173,7 +174,7 @@ TEST_CASE("show decides what the report contains, each of its values", "[report]
   }
 }
 
-TEST_CASE("a report has each procedure's own estimate, the one that the session ended with", "[report]") {
+TEST_CASE("a report has each procedure's own estimate, as it was at the end of the session", "[report]") {
   for (const std::string name :
        {"friction-2ifc", "friction-staircase", "boundary-adaptive", "two-spots-oddity"}) {
     INFO(name);
@@ -270,7 +271,8 @@ TEST_CASE("d' of three intervals and of ABX is reported by model, and the guess 
   REQUIRE(abx["discrimination"][3]["d_prime"].size() == 2);
   CHECK(abx["discrimination"][3]["level"] == -5.0);
   CHECK(abx["discrimination"][3]["correct"]["proportion"] == 1.0);
-  CHECK(abx["discrimination"][3]["d_prime"][1]["interval"]["high"].is_null());  // has no upper end
+  CHECK(
+      abx["discrimination"][3]["d_prime"][1]["interval"]["high"].is_null());  // the interval has no upper end
   CHECK(abx["confusion"].empty());
   const auto html = report::to_html(report::summarise(data));
   CHECK(html.find("differencing") != std::string::npos);

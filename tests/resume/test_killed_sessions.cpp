@@ -61,6 +61,7 @@ std::vector<Case> other_tasks() {
            {{"series = 12", "series = 4"},
             {"n_change = 1", "n_change = 2"},
             {"[22.0, 26.0, 30.0]", "{ uniform = [20.0, 30.0] }"}}},
+          {"response-signal.toml", {{"repeats = 84", "repeats = 3"}, {"trials = 28", "trials = 4"}}},
           {"boundary-adjustment.toml", {{"repeats = 9", "repeats = 4"}}}};
 }
 
@@ -186,8 +187,10 @@ void check_killed(const Case& wanted) {
 
 }  // namespace
 
-TEST_CASE("a session that is killed at random moments and resumed equals one that was never interrupted, trial by trial",
-          "[resume]") {
+TEST_CASE(
+    "a session that is killed at random moments and resumed equals one that was never interrupted, trial by "
+    "trial",
+    "[resume]") {
   check_killed(GENERATE(from_range(shipped())));
 }
 

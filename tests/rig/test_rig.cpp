@@ -126,7 +126,7 @@ TEST_CASE("the converter's delay is read in ms, and a negative one is refused", 
   CHECK_THROWS_AS(with("converter_delay_ms = \"0.1\""), text::BadInput);
 }
 
-TEST_CASE("all mistakes of a rig file come at once, each with its line", "[rig]") {
+TEST_CASE("all mistakes in a rig file are reported at once, each with its line", "[rig]") {
   auto bad = replaced(source(), "thickness_mm = 2.0", "thicknes_mm = 2.0");
   bad = replaced(bad, "slope = 0.03", "slope = -0.03");
   bad = replaced(bad, "channel = 0", "channel = \"0\"");
@@ -145,7 +145,7 @@ TEST_CASE("all mistakes of a rig file come at once, each with its line", "[rig]"
   }
 }
 
-TEST_CASE("what a rig file may not say is refused with what is allowed", "[rig]") {
+TEST_CASE("invalid values in a rig file are refused, with what is allowed", "[rig]") {
   CHECK(contains(problems("rate_Hz = 192000", "rate_Hz = 96000"),
                  "it may extend at most to 0.45 of rate_Hz, which is 43.2 kHz"));
   CHECK(contains(problems("\"null:\"", "\"pulse:\""), "allowed: \"null:\", \"wav:FILE\" or \"alsa:DEVICE\""));
@@ -278,7 +278,7 @@ TEST_CASE("a spare channel is one that nothing else drives", "[rig]") {
   CHECK(contains(problems("[limits]", "[marker]\nchannel = 8\nkind = \"click\"\n[limits]"), "\"click\""));
 }
 
-TEST_CASE("a material fills the constants that the file does not state", "[rig]") {
+TEST_CASE("a material provides the constants that the file does not state", "[rig]") {
   const auto lines = "density_kg_m3 = 2700\nmodulus_GPa = 69\npoisson = 0.33\n";
   const auto rig = rig::parse(replaced(source(), lines, ""), "r.toml");
   CHECK(rig.surface.density_kg_m3 == 2700);
@@ -345,7 +345,7 @@ TEST_CASE("tables beside the rig file are read, and their rows checked", "[rig]"
     write("friction.csv", "\"displacement_um\";\"relative_friction\"\n0;1\n1;0.4\n3;0.2\n");
     CHECK(parsed().friction.table.at(1).second == Approx(0.4));
   }
-  SECTION("a file with decimal commas has no points, which might group thousands") {
+  SECTION("in a file with decimal commas points are refused, because they might group thousands") {
     write("response.csv", "frequency_Hz;um_per_full_scale;phase_deg\n14.000;4,5;0\n60.000;2;-180\n");
     try {
       parsed();
@@ -368,7 +368,7 @@ TEST_CASE("tables beside the rig file are read, and their rows checked", "[rig]"
   }
 }
 
-TEST_CASE("a rig file that is not there, or is a folder, is bad input", "[rig]") {
+TEST_CASE("a rig file that is missing, or is a folder, is bad input", "[rig]") {
   CHECK_THROWS_AS(rig::load("no/such/rig.toml"), text::BadInput);
   CHECK_THROWS_AS(rig::load("/tmp"), text::BadInput);
 }

@@ -84,7 +84,8 @@ TEST_CASE("boundaries from 100 to 205 mm are inside the band, whatever the plate
   CHECK_FALSE(reachable(thin));
 }
 
-TEST_CASE("a finger leaves a quarter of the displacement or more, and 2 um can be had under it", "[scene]") {
+TEST_CASE("a finger leaves a quarter of the displacement or more, and 2 um are possible under it",
+          "[scene]") {
   const auto rig = shipped("simulated");
   CHECK(least_share(rig) > 0.25);
   Planner planner(rig);

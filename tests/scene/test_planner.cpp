@@ -12,7 +12,9 @@ using namespace turnpoint::scene;
 
 namespace {
 
-rig::Rig simulated() { return rig::load(std::string(TURNPOINT_SOURCE_DIR) + "/tests/support/thin_plate.toml"); }
+rig::Rig simulated() {
+  return rig::load(std::string(TURNPOINT_SOURCE_DIR) + "/tests/support/thin_plate.toml");
+}
 
 /// The scene "edge" of protocols/demo.toml, with its boundary at `boundary_m` and without roving.
 Scene edge_at(double boundary_m, const char* edge) {
@@ -58,7 +60,7 @@ TEST_CASE("a planned tone has its edge at the scene's boundary, within the state
   }
 }
 
-TEST_CASE("a plan says what a finger leaves of displacement, friction and boundary", "[scene]") {
+TEST_CASE("a plan states displacement, friction and boundary under a finger", "[scene]") {
   auto rig = simulated();
   Planner planner(rig);
   const auto plan = planner.plan(edge_at(0.150, "p50"));
@@ -85,7 +87,7 @@ TEST_CASE("a plan says what a finger leaves of displacement, friction and bounda
   CHECK(same.boundary_shift_m == 0);
 }
 
-TEST_CASE("a displacement wanted under a finger is there under the finger, and limits hold without it",
+TEST_CASE("a displacement requested under a finger is reached there, and limits apply without the finger",
           "[scene]") {
   auto rig = simulated();
   Planner planner(rig);

@@ -16,20 +16,22 @@ namespace turnpoint::sensing {
 /// of 10 N and 2 mV/V, amplifiers with gain 200, converter full scale 3 V.
 struct BridgeSignal {
   double rate_Hz = 192000, carrier_Hz = 10525;
-  std::function<double(double)> force_N = [](double) { return 0.0; };  ///< of time (s), on all cells
+  /// Force on all cells, as a function of time (s).
+  std::function<double(double)> force_N = [](double) { return 0.0; };
   /// As a function of time (s), one force for each cell; replaces force_N.
   std::function<std::array<double, bridge_count>(double)> forces_N;
-  std::function<double(double)> gain = [](double) { return 1.0; };  ///< of the excitation, by time (s)
-  double phase_rad = 0.4;                                           ///< of the carrier, on all channels
-  double bridge_phase_rad = 0;                                      ///< resistive part against reference
-  double quadrature_V_V = 0;                                        ///< from unbalanced capacitance
-  std::vector<double> tones_Hz;                                     ///< drive tones that reach the bridges
-  double tone_V = 1e-3, cubic_per_V2 = 0;  ///< tone: at the bridge; cubic: of the output
+  /// Factor on the excitation, as a function of time (s).
+  std::function<double(double)> gain = [](double) { return 1.0; };
+  double phase_rad = 0.4;                  ///< phase of the carrier on all channels
+  double bridge_phase_rad = 0;             ///< phase of the resistive part against the reference
+  double quadrature_V_V = 0;               ///< from unbalanced capacitance
+  std::vector<double> tones_Hz;            ///< drive tones that reach the bridges
+  double tone_V = 1e-3, cubic_per_V2 = 0;  ///< tone: amplitude at the bridge; cubic: distortion of the output
   double noise_V_rtHz = 0;                 ///< density of the noise at the bridge
   unsigned seed = 1;
 
   static constexpr double excitation_V = 2.5, volt_per_volt_N = 2e-4, amplifier = 200, full_scale_V = 3;
-  static constexpr double reference_share = 0.5;  ///< amplitude of the reference, of full scale
+  static constexpr double reference_share = 0.5;  ///< amplitude of the reference, as a fraction of full scale
 
   std::vector<std::int32_t> frames(std::int64_t first, std::size_t count) const {
     std::mt19937_64 random(seed);

@@ -43,7 +43,7 @@ struct Finger {
   double normal_N = 0.5, normal_noise = 0.15, friction_noise = 0.08;
   double edge_mm = 80, width_mm = 10;
   double friction_below = 0.8, friction_above = 0.4;
-  double stiffness_N_mm = 1;  ///< of the skin of the fingertip
+  double stiffness_N_mm = 1;  ///< stiffness of the skin of the fingertip
   /// Distance that the finger has moved past the edge before it meets the change of friction.
   double lag_mm = 0;
   double cell_noise_N = 0.25e-3, span_mm = 200;

@@ -149,7 +149,7 @@ TEST_CASE("drift of the excitation cancels, drift of one amplifier does not", "[
   CHECK(drifting.back() - drifting.front() > 1e-3);
 }
 
-TEST_CASE("the size of the blocks does not matter", "[sensing]") {
+TEST_CASE("the result does not depend on the size of the blocks", "[sensing]") {
   BridgeSignal signal;
   signal.force_N = [](double t) { return std::sin(300 * t); };
   signal.noise_V_rtHz = 4e-9;
@@ -171,7 +171,7 @@ TEST_CASE("the size of the blocks does not matter", "[sensing]") {
   }
 }
 
-TEST_CASE("missing frames make the points within reach NaN, and no others", "[sensing]") {
+TEST_CASE("missing frames make only those points NaN that depend on them", "[sensing]") {
   BridgeSignal signal;
   signal.force_N = [](double t) { return std::sin(200 * t); };
   const auto samples = signal.frames(0, second / 4);

@@ -165,7 +165,7 @@ TEST_CASE("a boundary at a level of friction is where a plate's friction crosses
       const auto felt = felt_step(profile, level);
       REQUIRE(felt);
       CHECK(felt->boundary_mm == Approx(crossing_mm).margin(level < 0.7 ? 0.15 : 0.3));
-      // negative control: half-way up the step is another place
+      // negative control: half-way up the step is a different place
       if (level == 0.8) CHECK(std::abs(felt_step(profile)->boundary_mm - crossing_mm) > 2);
     }
     CHECK_FALSE(felt_step(profile, 0.05));  // friction never falls so low
@@ -187,7 +187,7 @@ TEST_CASE("the skin's lag shows as half the difference of the directions", "[sen
   CHECK(lag->friction_above == Approx(0.4).margin(0.05));
 }
 
-TEST_CASE("one bin far off does not pull the step away", "[sensing]") {
+TEST_CASE("one outlying bin does not move the felt step", "[sensing]") {
   FrictionProfile profile{{0, 2, 30}, {}};
   const auto fill = [&](double outlier) {
     profile.strokes.clear();

@@ -83,7 +83,7 @@ TEST_CASE("position and speed have no delay and no unit error", "[sensing]") {
   }
 }
 
-TEST_CASE("contact needs 20 ms of force, and ends with little", "[sensing]") {
+TEST_CASE("contact begins after 20 ms of force, and ends when the force is small", "[sensing]") {
   std::vector<double> normal(500, 0.0);
   for (std::size_t i = 100; i < 119; ++i) normal[i] = 0.2;  // 19 ms are too short for a contact
   for (std::size_t i = 200; i < 300; ++i) normal[i] = 0.2;
@@ -98,7 +98,7 @@ TEST_CASE("contact needs 20 ms of force, and ends with little", "[sensing]") {
   CHECK(contacts == 120);
 }
 
-TEST_CASE("with little force or with missing points there is no position", "[sensing]") {
+TEST_CASE("there is no position if the force is small or points are missing", "[sensing]") {
   std::vector<double> normal(1000, 0.5);
   for (std::size_t i = 300; i < 500; ++i) normal[i] = 0.08;
   auto forces = resting(normal);

@@ -136,7 +136,7 @@ TEST_CASE("weights without a pull along the surface are not enough", "[sensing]"
   CHECK_NOTHROW(fit_weights(all));
 }
 
-TEST_CASE("a tare says when the cells moved, and when something lies on the surface", "[sensing]") {
+TEST_CASE("a tare reports a changed zero, and something that lies on the surface", "[sensing]") {
   std::mt19937_64 random(5);
   const Cells cells(random);
   const auto calibration = fit_weights(weights(cells, random)).calibration;

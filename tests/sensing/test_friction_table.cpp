@@ -78,7 +78,7 @@ Study study(int tables) {
 
 }  // namespace
 
-TEST_CASE("a friction table is precise, and its intervals hold what they say", "[sensing]") {
+TEST_CASE("a friction table is precise, and its intervals have the stated coverage", "[sensing]") {
   const int tables = repetitions(60);
   const bool many = tables >= 400;
   const Study s = study(tables);
@@ -153,7 +153,10 @@ TEST_CASE("a friction table falls strictly, and a rig can use it", "[sensing]") 
   CHECK(map.relative_friction(*table.half_displacement_m) == Approx(0.5));
 }
 
-TEST_CASE("strokes without neighbours at rest do not count, and too few are refused", "[sensing]") {
+TEST_CASE(
+    "a stroke counts only between valid strokes on the silent surface, and a table of too few strokes is "
+    "refused",
+    "[sensing]") {
   std::mt19937_64 random(8);
   const auto good = measured(friction_table_order(levels_m, 6, 4), random);
   CHECK(friction_table(good, 1, 10).unused == 0);

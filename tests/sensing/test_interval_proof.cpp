@@ -274,7 +274,7 @@ TEST_CASE("each fault of the drive is named in random intervals", "[sensing][pro
   }
 }
 
-TEST_CASE("a tone on a node of the pick-up is not proven, unless another pick-up sees it",
+TEST_CASE("a tone on a node of the pick-up is not proven, unless another pick-up can measure it",
           "[sensing][proof]") {
   Room room;
   room.pick_ups = {{4, 0.5, 0.7, 3e-4}, {5, 0.4, -0.4, 2e-4}};

@@ -106,7 +106,8 @@ TEST_CASE("missing frames, a wire fault and a load before the trial are told apa
   }
 }
 
-TEST_CASE("an interval that was cut ends there, and one that had not begun is not expected", "[sensing]") {
+TEST_CASE("an interval that is stopped ends there, and one that has not begun is no longer expected",
+          "[sensing]") {
   Bench bench;
   TrialFinger finger(bench.setup);
   const auto samples = bench.samples({}, 0, 2 * second);

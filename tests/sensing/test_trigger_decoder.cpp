@@ -25,7 +25,7 @@ struct Line {
   double low_pass_Hz = 0;   // first order; 0: none
   double ripple_dB = 0;     // gain above 2 kHz relative to that below
   double noise = 0;         // rms
-  double offset = 0;        // of the frame, 0 to 1: the part of a frame by which sampling is late
+  double offset = 0;        // by how much of a frame (0 to 1) sampling is late
   std::uint64_t seed = 1;
 };
 
@@ -55,7 +55,8 @@ void through(std::vector<double>& wave, const Line& line) {
   }
 }
 
-/// The wave of a code, by its documentation and not by the program's pattern: sampled `late` of a frame late.
+/// The wave of a code according to the documentation, not from the program's pattern, sampled `late` frames
+/// late.
 double ideal(std::uint8_t code, double frame) {
   if (frame < 0 || frame >= 14.0 * bit) return 0;
   const int check = [&] {
@@ -119,7 +120,7 @@ TEST_CASE("a code is found at any sampling offset", "[sensing][trigger]") {
   }
 }
 
-TEST_CASE("a code passes a line out: high-passed, with a ripple of 1 dB", "[sensing][trigger]") {
+TEST_CASE("a code is found behind a line output: high-passed, with a ripple of 1 dB", "[sensing][trigger]") {
   for (const double high_pass_Hz : {2.0, 20.0, 60.0})
     for (const double ripple_dB : {-1.0, 1.0}) {
       Line line;
@@ -202,9 +203,10 @@ TEST_CASE("a code with a wrong bit is not found", "[sensing][trigger]") {
   CHECK(wrong == 0);
 }
 
-// White noise, noise low-passed at the rate of the half bits, and random telegraph waves on the grid of the
-// half bits. Bits of 8 frames make 50 s as long as 20 minutes are for bits of 1 ms. By the form of a code
-// alone, these waves give 44 codes; since a code stands alone between two silent bits, they give none.
+// White noise; noise that is low-passed at the rate of the half bits; and random telegraph waves on the grid
+// of the half bits. Bits of 8 frames make 50 s equivalent to 20 minutes with bits of 1 ms. The form of a code
+// alone would find 44 codes in these waves. Because a code must also stand between two silent bits, none is
+// found.
 TEST_CASE("random waves give no code in an hour", "[sensing][trigger]") {
   std::mt19937_64 random(5);
   std::normal_distribution<double> normal(0, 0.3);

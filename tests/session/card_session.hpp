@@ -84,7 +84,7 @@ struct SteppedCapture : drive::DeviceCapture {
     return true;
   }
 
-  std::int64_t backlog_frames = 20'000;  ///< that may wait for the sensing thread
+  std::int64_t backlog_frames = 20'000;  ///< most frames that may wait for the sensing thread
   std::int64_t put = 0;
   std::atomic<std::int64_t> got{0};
 };

@@ -58,7 +58,8 @@ struct Ran {
   session::Summary summary;
   std::vector<records::TrialRow> trials;
   std::vector<std::string> faults;
-  std::vector<std::string> messages;  ///< of the pages after a trial, but not whether an answer was right
+  /// texts of the pages after a trial, but not whether an answer was right
+  std::vector<std::string> messages;
 };
 
 /// What may go wrong in a room before a trial.

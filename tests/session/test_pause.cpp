@@ -15,7 +15,7 @@ using namespace turnpoint::live_room;
 
 namespace {
 
-/// A room in which `asks` may ask for one pause. Everything else goes on as usual.
+/// A room in which `asks` may ask for one pause. Everything else in it happens as usual.
 struct PausingRoom : Room {
   const TemporaryFolder folder;
   session::Setup setup = live_setup(folder / "a.sqlite");
@@ -58,7 +58,7 @@ void add_breaks(session::Setup& setup, const std::string& min_s) {
 
 }  // namespace
 
-TEST_CASE("a pause on the page of instructions acts at once, and the instructions follow again",
+TEST_CASE("a pause on the page of instructions is shown at once, and the instructions follow again",
           "[session][pause]") {
   PausingRoom room;
   const auto summary = room.run([](const auto& page) { return page.kind == PageKind::instructions; });
@@ -69,7 +69,8 @@ TEST_CASE("a pause on the page of instructions acts at once, and the instruction
   CHECK(room.count(PageKind::paused) == 1);
 }
 
-TEST_CASE("a pause in a break acts at once, and the time of the break goes on", "[session][pause]") {
+TEST_CASE("a pause in a break is shown at once, and the time of the break continues to run",
+          "[session][pause]") {
   const double remaining_s = GENERATE(1.0, 0.0);
   PausingRoom room;
   add_breaks(room.setup, "0.6");
@@ -103,7 +104,7 @@ TEST_CASE("a pause while the row of a trial is being stored comes before the nex
   CHECK(room.count(PageKind::paused) == 1);
 }
 
-TEST_CASE("a pause while the limit of duty lengthens the interval between trials acts at once",
+TEST_CASE("a pause is shown at once while the limit of duty lengthens the interval between trials",
           "[session][pause]") {
   PausingRoom room;
   room.setup.rig.limits.duty = 0.04;  // 2.4 s per minute, enough for one stimulus of 2 s only

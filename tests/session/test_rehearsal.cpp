@@ -13,7 +13,7 @@ TEST_CASE("a rehearsed session has the same trials, answers and times as a sessi
           "[session][rehearsal]") {
   const auto* protocol = GENERATE("demo", "boundary-adjustment", "smoothness-points", "smoothness-line",
                                   "magnitude-standard", "friction-confidence", "friction-identification",
-                                  "friction-3ifc", "friction-abx", "limits-boundary");
+                                  "friction-3ifc", "friction-abx", "limits-boundary", "response-signal");
   const TemporaryFolder folder;
   session::Setup setup;
   setup.rig = rig::load(std::string(TURNPOINT_SOURCE_DIR) + "/tests/support/thin_plate.toml");

@@ -2,11 +2,14 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <fstream>
 #include <string>
 
 #include "station/simulation/parallel.hpp"
 #include "station/simulation/rehearsal.hpp"
+#include "station/system/read_file.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 using namespace turnpoint;
 
@@ -71,6 +74,39 @@ TEST_CASE("the duration estimated by check is that of a rehearsed session plus t
   CHECK(check.duration_s.median == Approx(rehearsal.duration_s + beside_s));
 }
 
+TEST_CASE("check says in which languages the station's own words are, and refuses what cannot be drawn",
+          "[check]") {
+  const std::string root = TURNPOINT_SOURCE_DIR, rig = root + "/tests/support/thin_plate.toml";
+  const auto [language, note] =
+      GENERATE(std::pair("ko", "the station does not speak \"ko\""),
+               std::pair("zh", "no native speaker has read the station's own words in \"zh\""));
+  const TemporaryFolder folder;
+  const auto path = folder / "study.toml";
+  auto text = system::read_file(root + "/protocols/friction-2ifc.toml");
+  const auto replace = [&text](const std::string& from, const std::string& to) {
+    for (auto at = text.find(from); at != std::string::npos; at = text.find(from, at + to.size()))
+      text.replace(at, from.size(), to);
+  };
+  replace("\"de\"", std::string("\"") + language + "\"");
+  replace("de = \"", std::string(language) + " = \"\u6211");
+  std::ofstream(path) << text;
+  simulation::CheckOptions options;
+  options.sessions = 0;
+  const auto check = simulation::check(path, rig, options);
+  REQUIRE(check.problems.empty());
+  REQUIRE(check.notes.size() == 1);
+  CHECK(check.notes[0].what.find(note) == 0);
+
+  options.drawable = [](char32_t c) { return c < 0x3000; };
+  const auto refused = simulation::check(path, rig, options);
+  REQUIRE_FALSE(refused.problems.empty());
+  for (const auto& problem : refused.problems) {
+    CHECK(problem.place.file == path);
+    CHECK(problem.place.line > 0);
+    CHECK(problem.what.find("U+6211") != std::string::npos);
+  }
+}
+
 TEST_CASE("the duration estimated by check includes time to set a slider", "[check]") {
   const std::string root = TURNPOINT_SOURCE_DIR;
   const auto path = root + "/protocols/boundary-adjustment.toml";
@@ -91,7 +127,7 @@ TEST_CASE("the ranges of check hold nine of ten sessions of each shipped protoco
     INFO(entry.path().stem().string());
     const auto protocol = protocol::load(entry.path().string());
     const auto stated = lengths(protocol, 0, simulation::usual_sessions(protocol)),
-               others = lengths(protocol, 2000, 600);  // so many that chance alone stays inside
+               others = lengths(protocol, 2000, 600);  // enough for chance alone to stay inside
     for (const auto what : {&simulation::SessionLength::trials, &simulation::SessionLength::duration_s}) {
       const auto spread = simulation::spread_of(values_of(stated, what));
       const auto values = values_of(others, what);

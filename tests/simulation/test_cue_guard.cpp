@@ -87,7 +87,7 @@ TEST_CASE(
     "whole sessions",
     "[cues]") {
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-  constexpr int count = 8;  // the release build tests all protocols; with a sanitizer a few are enough
+  constexpr int count = 4;  // the release build tests all protocols; with a sanitizer a few are enough
 #else
   constexpr int count = 200;
 #endif

@@ -68,7 +68,7 @@ TEST_CASE("with more answers, neighbouring ranges of the cue are found, in any o
   CHECK(best(three, {single(5, 0), single(5, 1), single(5, 2), single(5, 2)}) == Approx(0.5));
 }
 
-TEST_CASE("of four intervals the one with the target is found; X is matched wherever it comes", "[cues]") {
+TEST_CASE("of four intervals the one with the target is found; X is matched in any position", "[cues]") {
   const Asked four{TaskKind::several_intervals, 4, 4};
   CHECK(best(four, {{{1, 1, 1, 2}, 3, 1}, {{2, 1, 1, 1}, 0, 1}}) == 1);
   CHECK(best(four, {{{1, 1, 1, 1}, 3, 1}, {{1, 1, 1, 1}, 0, 1}}) == Approx(0.25));

@@ -49,8 +49,9 @@ TEST_CASE("the point of subjective equality that sessions find is the observer's
   }
 }
 
-TEST_CASE("a staircase's truth is where its rule balances, a posterior's where its function stands",
-          "[power]") {
+TEST_CASE(
+    "the truth of a staircase is where its rule balances, and that of a posterior follows from its function",
+    "[power]") {
   const auto stairs =
       simulation::power(shipped("friction-staircase"), options("sim:threshold=-16,lapse=0", 2));
   // A three-down-one-up staircase converges on 79.37 %; the observer reaches 75 % at -16 dB.
@@ -128,7 +129,7 @@ TEST_CASE("the results do not depend on the number of threads", "[power]") {
     CHECK(a.recoveries[i].estimates == b.recoveries[i].estimates);
 }
 
-TEST_CASE("a study that is stopped is that of fewer observers", "[power]") {
+TEST_CASE("a stopped study gives the result of fewer observers", "[power]") {
   const auto protocol = shipped("friction-staircase");
   auto stopped = options("sim", 50, 3);
   std::stop_source stop;
@@ -151,7 +152,7 @@ TEST_CASE("a study that is stopped is that of fewer observers", "[power]") {
   CHECK(simulation::power(protocol, stopped).observers == 0);  // stopped before it began
 }
 
-TEST_CASE("the parts of a study hold its sessions once each", "[power]") {
+TEST_CASE("the parts of a study contain each session once", "[power]") {
   for (const auto& [observers, parts] : {std::pair{10, 3}, {12, 4}, {5, 5}, {1000, 64}}) {
     int sum = 0;
     for (int number = 1; number <= parts; ++number)
@@ -215,7 +216,7 @@ TEST_CASE("the exponent that sessions find is the observer's own slope, and rati
                     Catch::Matchers::Contains("ratings have no threshold"));
 }
 
-TEST_CASE("the proportion correct of an identification is the observer's own, and its intervals hold it",
+TEST_CASE("the proportion correct of an identification is the observer's own, and its intervals contain it",
           "[power]") {
   const auto power = simulation::power(shipped("friction-identification"), options("sim:lapse=0", 200, 200));
   const auto& right = find(power, "answers", "proportion correct");
@@ -227,10 +228,11 @@ TEST_CASE("the proportion correct of an identification is the observer's own, an
   CHECK(right.coverage->value >= 0.92);
 }
 
-TEST_CASE("d' of ABX and of three intervals is found where the report has it, and its intervals hold it",
-          "[power]") {
+TEST_CASE(
+    "d' of ABX and of three intervals is found as in the report, and its intervals contain the true value",
+    "[power]") {
   auto long_abx = shipped("friction-abx");
-  long_abx.procedures.front().repeats = 150;  // of few trials, the estimate is biased
+  long_abx.procedures.front().repeats = 150;  // with few trials, the estimate is biased
   const auto abx = simulation::power(long_abx, options("sim:threshold=-12,lapse=0", 100, 0));
   for (const auto* model : {"d', independent observations", "d', differencing"}) {
     const auto& all = find(abx, "answers", model);

@@ -71,7 +71,7 @@ TEST_CASE("an answered trial must have a response time of 0 or more and a score 
   auto trial = sample::answered(1);
   SECTION("no response time") { trial.response_time_s.reset(); }
   SECTION("a negative response time") { trial.response_time_s = -0.016; }
-  SECTION("a score against the answer") { trial.correct = !*trial.correct; }
+  SECTION("a score that contradicts the answer") { trial.correct = !*trial.correct; }
   SECTION("a score where nothing is right") { trial.correct_response.reset(); }
   CHECK(sample::failure([&] { log.append(trial); }).first == ErrorKind::refused);
 }

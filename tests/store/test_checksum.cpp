@@ -239,7 +239,7 @@ TEST_CASE("verify compares a database with a sessions.csv that was exported earl
   CHECK(verify(db, {"", csv}).good());
   sample::session(db, 1, sample::start("P04"));
   CHECK(verify(db, {"", csv}).good());  // the export is valid although it lacks later sessions
-  SECTION("rows edited and sealed again") {
+  SECTION("edited rows with new checksums") {
     auto database = unguarded(db);
     database.execute("UPDATE trial SET level = 3; DELETE FROM link");
     for (const auto& session : list_sessions(database)) Chain(database, session.session_id).add();
@@ -263,7 +263,7 @@ TEST_CASE("verify compares a database with a sessions.csv that was exported earl
                            }).second,
                            "absent.csv"));
   }
-  SECTION("what cannot be read to its end") {
+  SECTION("a file that cannot be read completely") {
     std::ofstream(folder / "empty.csv");
     REQUIRE(::mkfifo((folder / "fifo.csv").c_str(), 0600) == 0);
     const auto message = [&](const std::string& against) {

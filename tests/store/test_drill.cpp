@@ -70,7 +70,7 @@ TEST_CASE(
     std::ofstream(made.path, std::ios::binary) << bytes;
     CHECK(sample::failure([&] { drill_restore(db, dir); }).first == ErrorKind::corrupt);
   }
-  SECTION("cut to nothing, although an older one is good") {
+  SECTION("it is empty, although an older one is good") {
     backup(db, {dir, 9});
     const auto made = backup(db, {dir, 9});
     fs::resize_file(made.path, 0);

@@ -106,7 +106,7 @@ TEST_CASE("no command changes a damaged database", "[store]") {
   auto bytes = sample::bytes_of(db);
   SECTION("pages of zeros") { bytes.replace(5 * 4096, 8 * 4096, 8 * 4096, '\0'); }
   SECTION("cut short") { bytes.resize(bytes.size() / 2 + 100); }
-  SECTION("cut inside its first page") { bytes.resize(1000); }
+  SECTION("truncated within its first page") { bytes.resize(1000); }
   write_bytes(db, bytes);
   for (const auto& action : std::vector<std::function<void()>>{
            [&] { SessionLog::begin(db, sample::start(), sample::segment()); }, [&] { list_sessions(db); },

@@ -74,7 +74,7 @@ TEST_CASE("continuing a block with another name or instruction is refused", "[st
   log.begin_block(sample::block());
 }
 
-TEST_CASE("only an interrupted session can be resumed, and for another the message states its status",
+TEST_CASE("only an interrupted session can be resumed; for any other, the error states its status",
           "[store]") {
   TemporaryFolder folder;
   const auto db = folder / "a.sqlite";

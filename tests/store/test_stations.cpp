@@ -91,7 +91,7 @@ TEST_CASE("merging refuses contradictory rows, says which they are, and changes 
   sample::session(b, 2, at_station("P02", "b"));
   const auto sessions_before = list_sessions(a).size();
   std::string expected;
-  SECTION("a session gone on with in both") {
+  SECTION("a session that was continued on both stations") {
     for (const auto& db : {a, b}) {
       sample::raw(db).execute("UPDATE session SET status = 'interrupted' WHERE participant = 'P01'");
       auto log = SessionLog::resume(db, id, sample::segment("resume"));
@@ -102,7 +102,7 @@ TEST_CASE("merging refuses contradictory rows, says which they are, and changes 
     }
     expected = "table trial, session_id " + id + ", trial_index 4: onset_ns is";
   }
-  SECTION("two databases that bear the name of one station") {
+  SECTION("two databases with the same station name") {
     std::filesystem::remove(a);
     sample::session(a, 1, at_station("P09", "b"));
     expected =

@@ -8,7 +8,7 @@
 
 using turnpoint::system::read_file;
 
-TEST_CASE("what cannot be read to its end is an error and never an empty file", "[system]") {
+TEST_CASE("a file that cannot be read completely is an error, and never counts as empty", "[system]") {
   CHECK_THROWS_AS(read_file("/proc/self/mem"), std::system_error);  // reading its first byte fails with EIO
   CHECK_THROWS_AS(read_file("/proc/self"), std::system_error);
   CHECK_THROWS_AS(read_file("/dev/zero"), std::system_error);

@@ -21,7 +21,7 @@ std::string content(const std::string& path) {
 
 }  // namespace
 
-TEST_CASE("a file is written whole in the place of what was there", "[write]") {
+TEST_CASE("writing a file replaces the old file as a whole", "[write]") {
   const TemporaryFolder folder;
   const auto path = folder / "a.csv";
   system::write_file(path, "one\n");
@@ -47,7 +47,7 @@ TEST_CASE("a file written in pieces appears whole, or not at all", "[write]") {
   CHECK_FALSE(fs::exists(path + ".new"));
 }
 
-TEST_CASE("a link that lies where a draft goes is not followed", "[write]") {
+TEST_CASE("a link with the name of the temporary file is not followed", "[write]") {
   const TemporaryFolder folder;
   const auto path = folder / "a.csv", victim = folder / "victim";
   std::ofstream(victim) << "precious";
@@ -72,7 +72,7 @@ TEST_CASE("the user's own link is followed, and one that another user has made i
   CHECK(content(target) == "new");
 }
 
-TEST_CASE("a pipe and a device take the bytes as they are", "[write]") {
+TEST_CASE("bytes are written directly to a pipe or a device", "[write]") {
   CHECK_NOTHROW(system::write_file("/dev/null", "bytes"));
   CHECK(fs::is_character_file("/dev/null"));
 }

@@ -17,7 +17,7 @@ TEST_CASE("SHA-256 gives the published digests at every padding length", "[text]
         "cdc76e5c9914fb9281a1c7e284d73e67f1809a48a497200e046d39ccc7112cd0");
 }
 
-TEST_CASE("SHA-256 of pieces is that of the whole, wherever it is cut", "[text]") {
+TEST_CASE("SHA-256 does not depend on how the data are divided into pieces", "[text]") {
   std::string bytes;
   for (int i = 0; i < 200; ++i) bytes += static_cast<char>(i * 37);
   for (std::size_t first = 0; first <= bytes.size(); first += 9)
@@ -30,7 +30,7 @@ TEST_CASE("SHA-256 of pieces is that of the whole, wherever it is cut", "[text]"
     }
 }
 
-TEST_CASE("a number is written for people without noise", "[text]") {
+TEST_CASE("a number for people has no insignificant digits", "[text]") {
   CHECK(number(0.1 + 0.2) == "0.3");
   CHECK(number(198.65394, 6) == "198.654");
   CHECK(number(22400) == "22400");
@@ -43,18 +43,18 @@ TEST_CASE("a number written for a file reads back as the same double", "[text]")
   CHECK(exact(std::numeric_limits<double>::quiet_NaN()) == "n/a");
 }
 
-TEST_CASE("a problem names file, line, column, what and what is allowed", "[text]") {
+TEST_CASE("a problem names file, line, column, what is wrong and what is allowed", "[text]") {
   CHECK(format({{"a.toml", 3, 7}, "unknown key \"x\"", "nearest: \"y\""}) ==
         "a.toml:3:7: unknown key \"x\"; nearest: \"y\"");
   CHECK(format({{"a.toml", 0, 0}, "no such file", ""}) == "a.toml: no such file");
 }
 
-TEST_CASE("the nearest word is offered only where it may be a slip", "[text]") {
+TEST_CASE("the nearest word is suggested only if the word may be a typing error", "[text]") {
   CHECK(nearest("boundry_mm", {"boundary_mm", "edge"}) == "boundary_mm");
   CHECK(nearest("zzz", {"boundary_mm", "edge"}).empty());
 }
 
-TEST_CASE("letters beyond ASCII stand in strings and comments, and nowhere else", "[text]") {
+TEST_CASE("letters beyond ASCII are allowed only in strings and comments", "[text]") {
   const auto document = parse_toml(
       "\xEF\xBB\xBF"
       R"TOML(# é ひ
@@ -83,7 +83,7 @@ d = '''é''''
   }
 }
 
-TEST_CASE("an estimate is printed to the digits that its uncertainty leaves", "[text]") {
+TEST_CASE("an estimate is printed to the digits that its uncertainty justifies", "[text]") {
   CHECK(estimated(3e-16, 0.9) == "0.00");
   CHECK(estimated(-1.63e-15, 0.05) == "0.000");
   CHECK(estimated(-19.64712, 6.3) == "-19.6");

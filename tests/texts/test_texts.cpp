@@ -48,7 +48,7 @@ Quoted quoted() {
 }  // namespace
 
 TEST_CASE("every language has every text, with the same places for numbers and names", "[texts]") {
-  REQUIRE(texts::languages() == std::vector<std::string>{"de", "en", "ja"});
+  REQUIRE(texts::languages() == std::vector<std::string>{"ar", "de", "en", "es", "ja", "zh"});
   for (const auto& language : texts::languages()) {
     INFO(language);
     CHECK(keys_of(language) == keys_of("en"));
@@ -60,7 +60,7 @@ TEST_CASE("every language has every text, with the same places for numbers and n
   }
 }
 
-TEST_CASE("every text is used, and every text that is asked for exists", "[texts]") {
+TEST_CASE("every text is used, and every text that the program requests exists", "[texts]") {
   const auto source = quoted();
   const auto keys = keys_of("en");
   CHECK(source.asked_for.size() > 40);
@@ -84,23 +84,29 @@ TEST_CASE("every text is used, and every text that is asked for exists", "[texts
 }
 
 TEST_CASE(
-    "a region's language is that language, an unknown one is English, an unknown key is a mistake of ours",
+    "de-CH gives German, an unknown language gives English, and an unknown key is an error of the program",
     "[texts]") {
   CHECK(texts::text("proceed", "de-CH") == "Weiter");
   CHECK(texts::text("proceed", "fi") == "Continue");
   CHECK_THROWS_AS(texts::text("no_such_key", "en"), std::logic_error);
 }
 
+TEST_CASE("a language is known to be spoken or not, and to have been read by a native speaker or not", "[texts]") {
+  CHECK(texts::translation("en-GB") == texts::Translation::read);
+  CHECK(texts::translation("ar") == texts::Translation::unread);
+  CHECK(texts::translation("fi") == texts::Translation::none);
+}
+
 TEST_CASE("every fault says what happened, what is safe and what to do in each language", "[texts]") {
   std::set<std::string> pages;
   for (const auto kind : terms::fault_kinds)
-    for (const auto* language : {"en", "de", "ja"}) {
+    for (const auto& language : texts::languages()) {
       const auto text = texts::fault_text(kind, language);
       INFO(terms::name(kind) << " " << language);
       CHECK_FALSE(text.happened.empty());
       CHECK_FALSE(text.safe.empty());
       CHECK_FALSE(text.to_do.empty());
-      if (std::string(language) != "en") CHECK(text.happened != texts::fault_text(kind, "en").happened);
+      if (language != "en") CHECK(text.happened != texts::fault_text(kind, "en").happened);
       CHECK(pages.insert(text.happened).second);  // each kind of fault has a text of its own
     }
   CHECK(texts::fault_text(terms::FaultKind::amplifier, "fi").safe ==

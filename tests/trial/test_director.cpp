@@ -42,7 +42,7 @@ Count run_through(Director& director, bool right = true) {
 
 }  // namespace
 
-TEST_CASE("a void trial is presented again as it was and shifts nothing after it", "[session]") {
+TEST_CASE("a void trial is presented again unchanged, and does not change later trials", "[session]") {
   const auto protocol = shipped("boundary-constant");
   Director smooth(protocol, 0, 11), disturbed(protocol, 0, 11);
   int trial = 0;
@@ -78,7 +78,7 @@ TEST_CASE("practice that is not passed is repeated and then ends the session wit
   CHECK(director.ended_because().find("practice") != std::string::npos);
 }
 
-TEST_CASE("catch trials come at about their rate and teach the procedure nothing", "[session]") {
+TEST_CASE("catch trials occur at about their rate, and the procedure does not learn from them", "[session]") {
   const auto protocol = shipped("friction-2ifc");
   int catches = 0, trials = 0;
   for (std::uint64_t seed = 0; seed < 20; ++seed) {
@@ -90,7 +90,7 @@ TEST_CASE("catch trials come at about their rate and teach the procedure nothing
   CHECK(catches / static_cast<double>(trials) == Approx(0.06).margin(0.03));
 }
 
-TEST_CASE("the same seed gives the same session and another one another", "[session]") {
+TEST_CASE("the same seed gives the same session, and another seed gives another session", "[session]") {
   const auto protocol = shipped("boundary-constant");
   const auto levels = [&protocol](std::uint64_t seed) {
     std::vector<double> all;
@@ -108,8 +108,10 @@ TEST_CASE("the same seed gives the same session and another one another", "[sess
   CHECK(levels(5) != levels(6));
 }
 
-TEST_CASE("an observer without a threshold of its own gets the protocol's middle, staircases included",
-          "[session]") {
+TEST_CASE(
+    "an observer without a threshold of its own gets the middle of the protocol's levels, also for "
+    "staircases",
+    "[session]") {
   const auto protocol =
       protocol::load(std::string(TURNPOINT_SOURCE_DIR) + "/protocols/friction-staircase.toml");
   trial::Director director(protocol, 0, 1);
@@ -121,5 +123,32 @@ TEST_CASE("an observer without a threshold of its own gets the protocol's middle
     const auto question = trial::question_of(spec, protocol, 1);
     CHECK(question.default_threshold == Approx(-18.5));  // the middle of the limits -34 and -3 dB
     CHECK(question.decibel);
+  }
+}
+
+TEST_CASE("the times of a trial follow its factors", "[session]") {
+  auto protocol = shipped("response-signal");
+  Director signalled(protocol, 0, 5);
+  std::map<double, int> lags;
+  signalled.finish_block();  // the practice
+  while (const auto spec = signalled.next()) {
+    const double lag_s = std::get<double>(spec->factors.at("lag_s"));
+    ++lags[lag_s];
+    REQUIRE(spec->signal_s == lag_s);
+    CHECK(spec->anticipation_s == lag_s);
+    CHECK(spec->deadline_s == Approx(lag_s + 0.4));
+    CHECK_FALSE(spec->timeouts_are_data);
+    signalled.record(answered(*spec, true));
+  }
+  CHECK(lags == std::map<double, int>{{0.1, 56}, {0.2, 56}, {0.35, 56}, {0.6, 56}, {1.0, 56}, {1.6, 56}});
+
+  protocol.timing.deadline_s = protocol.timing.signal->after_s;
+  protocol.timing.signal.reset();
+  Director limited(protocol, 0, 5);
+  for (int i = 0; i < 20; ++i) {
+    const auto spec = limited.next();
+    CHECK(spec->deadline_s == std::get<double>(spec->factors.at("lag_s")));
+    CHECK_FALSE(spec->signal_s);
+    limited.record(answered(*spec, true));
   }
 }

@@ -64,7 +64,8 @@ Machine answered_after_two() {
 
 }  // namespace
 
-TEST_CASE("an exploration runs cue, stimulus, answer, interval, and counts from the go cue", "[trial]") {
+TEST_CASE("an exploration consists of cue, stimulus, answer and pause, and times count from the go cue",
+          "[trial]") {
   Machine machine(exploration());
   const auto asked = machine.start(0);
   CHECK(enters(asked, Phase::cue));
@@ -132,7 +133,7 @@ TEST_CASE("after the exploration the surface is silent and the answer still coun
   CHECK(machine.result().response_time_ns == 4500 * ms);
 }
 
-TEST_CASE("an answer before the stimulus or after another is logged and never scored", "[trial]") {
+TEST_CASE("an answer before the stimulus, or after another answer, is logged but never scored", "[trial]") {
   Machine machine(exploration());
   machine.start(0);
   machine.handle({500 * ms, EventKind::onset, 0});
@@ -169,7 +170,7 @@ TEST_CASE("two intervals are presented in turn and answers open at the end of th
   CHECK(machine.result().correct == true);
 }
 
-TEST_CASE("a change under the finger counts from the change, and an answer before it anticipates",
+TEST_CASE("response times count from a change under the finger, and an earlier answer is an anticipation",
           "[trial]") {
   auto plan = exploration();
   plan.intervals = {{5000 * ms, {1500 * ms}}};
@@ -193,7 +194,7 @@ TEST_CASE("a change under the finger counts from the change, and an answer befor
   }
 }
 
-TEST_CASE("deciding and reaching are separated if the finger's contact is known", "[trial]") {
+TEST_CASE("decision and movement time are separated if the finger's contact is known", "[trial]") {
   auto machine = exploring();
   machine.handle({600 * ms, EventKind::contact, 1});
   machine.handle({1500 * ms, EventKind::contact, 0});
@@ -202,7 +203,7 @@ TEST_CASE("deciding and reaching are separated if the finger's contact is known"
   CHECK(machine.result().movement_time_ns == 400 * ms);
 }
 
-TEST_CASE("with first contact as zero nothing counts before the finger arrives", "[trial]") {
+TEST_CASE("if response_zero is the first contact, no answer counts before the finger arrives", "[trial]") {
   auto plan = exploration();
   plan.response_zero = ResponseZero::first_contact;
   auto machine = exploring(plan);
@@ -214,7 +215,8 @@ TEST_CASE("with first contact as zero nothing counts before the finger arrives",
   CHECK(untouched.result().outcome == Outcome::timeout);
 }
 
-TEST_CASE("lost frames of a stimulus or a fault void the trial at once, and silence is ordered", "[trial]") {
+TEST_CASE("lost frames of a stimulus, or a fault, make the trial void at once and silence the surface",
+          "[trial]") {
   auto machine = exploring();
   const auto kind = GENERATE(EventKind::xrun, EventKind::fault);
   const auto actions = machine.handle({900 * ms, kind, 1});
@@ -224,14 +226,14 @@ TEST_CASE("lost frames of a stimulus or a fault void the trial at once, and sile
   CHECK_FALSE(machine.result().response.has_value());
 }
 
-TEST_CASE("lost frames of silence are counted and void nothing", "[trial]") {
+TEST_CASE("lost frames of silence are counted, but do not make the trial void", "[trial]") {
   auto machine = exploring();
   CHECK(machine.handle({900 * ms, EventKind::xrun, 0}).empty());
   CHECK(machine.result().xruns == 1);
   CHECK(machine.phase() == Phase::stimulus);
 }
 
-TEST_CASE("lost frames that are reported after the stimulus, or after the answer, still void the trial",
+TEST_CASE("lost frames that are reported after the stimulus, or after the answer, still make the trial void",
           "[trial]") {
   SECTION("in the pause that follows") {
     Machine machine(two_intervals());
@@ -264,7 +266,7 @@ TEST_CASE("lost frames that are reported after the stimulus, or after the answer
   }
 }
 
-TEST_CASE("a trial ends no sooner than its last frame has been heard", "[trial]") {
+TEST_CASE("a trial does not end before its last frame has been played", "[trial]") {
   auto machine = answered_after_two();
   machine.handle({9000 * ms, EventKind::tick, 0});
   CHECK_FALSE(machine.done());
@@ -275,7 +277,7 @@ TEST_CASE("a trial ends no sooner than its last frame has been heard", "[trial]"
   CHECK(machine.result().ended_ns == (4310 + 800) * ms);
 }
 
-TEST_CASE("a fault before the last frame was heard leaves the answer without proof: the trial is void",
+TEST_CASE("after a fault before the last frame was played, the answer has no proof and the trial is void",
           "[trial]") {
   auto machine = answered_after_two();
   machine.handle({4311 * ms, EventKind::fault, 0});
@@ -303,7 +305,7 @@ TEST_CASE("stopping after the answer keeps the answer", "[trial]") {
   CHECK(machine.result().outcome == Outcome::answered);
 }
 
-TEST_CASE("a plan that cannot run is refused with what is wrong", "[trial]") {
+TEST_CASE("an impossible plan is refused, and the message says what is wrong", "[trial]") {
   auto plan = exploration();
   SECTION("no interval") { plan.intervals.clear(); }
   SECTION("no answers") { plan.answers = 0; }
@@ -463,4 +465,43 @@ TEST_CASE("before the answer, such a trial ends the question; after a timeout it
   late.handle({9000 * ms, EventKind::tick, 0});
   late.handle({9001 * ms, EventKind::outside, 0});
   CHECK(late.result().outcome == Outcome::timeout);
+}
+
+TEST_CASE("a response signal is given once, at its time after the zero, and answers count from it on",
+          "[trial]") {
+  auto plan = exploration();
+  plan.signal_ns = plan.anticipation_ns = 700 * ms;
+  plan.deadline_ns = 1100 * ms;
+  auto machine = exploring(plan);
+  CHECK(machine.wake_ns() == 1200 * ms);
+  CHECK_FALSE(has(machine.handle({1199 * ms, EventKind::tick, 0}), ActionKind::signal, 0));
+  CHECK_FALSE(machine.signalled());
+  const auto actions = machine.handle({1203 * ms, EventKind::tick, 0});
+  REQUIRE(has(actions, ActionKind::signal, 0));
+  CHECK(actions.front().time_ns == 1200 * ms);
+  CHECK(machine.signalled());
+  CHECK_FALSE(has(machine.handle({1210 * ms, EventKind::tick, 0}), ActionKind::signal, 0));
+
+  SECTION("an answer within the window counts") {
+    machine.handle({1600 * ms, EventKind::answer, 1});
+    CHECK(machine.result().outcome == Outcome::answered);
+    CHECK(machine.result().response_time_ns == 1100 * ms);
+  }
+  SECTION("an answer that was given before the signal arrives late") {
+    machine.handle({1190 * ms, EventKind::answer, 1});
+    CHECK(machine.result().outcome == Outcome::anticipation);
+  }
+  SECTION("after the window it is too late") {
+    machine.handle({1700 * ms, EventKind::tick, 0});
+    CHECK(machine.result().outcome == Outcome::timeout);
+  }
+}
+
+TEST_CASE("after an answer before the signal there is no signal", "[trial]") {
+  auto plan = exploration();
+  plan.signal_ns = plan.anticipation_ns = 700 * ms;
+  auto machine = exploring(plan);
+  machine.handle({900 * ms, EventKind::answer, 1});
+  CHECK(machine.result().outcome == Outcome::anticipation);
+  CHECK_FALSE(has(machine.handle({1400 * ms, EventKind::tick, 0}), ActionKind::signal, 0));
 }

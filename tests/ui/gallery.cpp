@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "station/texts/texts.hpp"
+#include "tests/ui/gallery_words.hpp"
 
 namespace turnpoint::ui {
 
@@ -15,6 +16,8 @@ using session::PageKind;
 struct Words {
   std::string language;
   std::string pick(const char* en, const char* de, const char* ja) const {
+    if (language == "ar") return gallery_words.at(en).ar;
+    if (language == "zh") return gallery_words.at(en).zh;
     return language == "de" ? de : language == "ja" ? ja : en;
   }
 };
@@ -146,6 +149,9 @@ void add_trials(std::vector<Exhibit>& all, const Words& words) {
   all.push_back({"cue", cue});
   all.push_back({"explore", boundary(words, PageKind::stimulus)});
   all.push_back({"response", boundary(words, PageKind::response)});
+  Page now = boundary(words, PageKind::stimulus);
+  now.answer_now = true;
+  all.push_back({"explore-signal", now});
   all.push_back({"explore-speed", instructed(boundary(words, PageKind::stimulus), words, "speed")});
   all.push_back({"explore-accuracy", instructed(boundary(words, PageKind::stimulus), words, "accuracy")});
   all.push_back({"abx-cue", abx(words, PageKind::cue)});

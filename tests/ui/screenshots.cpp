@@ -31,7 +31,7 @@ namespace {
 using turnpoint::ui::SessionBridge;
 using turnpoint::ui::StartController;
 
-const QStringList kLanguages{"en", "de", "ja"};
+const QStringList kLanguages{"en", "de", "ja", "es", "zh", "ar"};
 
 /// A panel for which pages are rendered: its size in pixels, and the pixel density of a common panel of this
 /// size.
@@ -46,7 +46,7 @@ Panel panel_of(const QString& text) {
   const QSize size(parts[0].toInt(), parts[1].toInt());
   return {size, size.width() <= 800    ? 5.2
                 : size.width() <= 1280 ? 5.9
-                                       : 5.6};  // for diagonals of 7", 10.1" and 15.6"
+                                       : 5.6};  // px per mm for diagonals of 7", 10.1" and 15.6"
 }
 
 /// Renders the station's window for one panel in one language.
@@ -257,7 +257,7 @@ int main(int argc, char** argv) {
   for (const auto& size : parser.value("sizes").split(',')) {
     for (const auto& language : parser.value("languages").split(',')) {
       if (!kLanguages.contains(language))
-        qFatal("--languages: %s; allowed: en, de, ja", qPrintable(language));
+        qFatal("--languages: %s; allowed: en, de, ja, es, zh, ar", qPrintable(language));
       Camera camera(out, panel_of(size), size + "-" + language + "-", parser.value("only"));
       count += shoot_all(camera, language);
     }

@@ -77,7 +77,7 @@ TEST_CASE("ten fingers at once give no answer and leave the question open", "[to
 }
 
 TEST_CASE("fingers further apart than the settling time are two taps: the first one answers", "[touch]") {
-  TouchJudge judge;  // negative control of the rule that touches at the same time do not count
+  TouchJudge judge;  // negative control for the rule that simultaneous touches do not count
   judge.open();
   judge.down(touch(500 * ms, 0));
   judge.down(touch(500 * ms + settle + 1, 1));

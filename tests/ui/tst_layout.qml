@@ -111,7 +111,7 @@ Item {
         function test_no_texts_or_buttons_of_a_session_overlap_data() {
             const rows = []
             for (const panel of panels)
-                for (const language of ["en", "de", "ja"])
+                for (const language of ["en", "de", "ja", "es", "zh", "ar"])
                     rows.push({ tag: language + " " + panel.width + "x" + panel.height + " " + panel.mm, language: language, panel: panel })
             return rows
         }
@@ -130,7 +130,7 @@ Item {
         function test_no_texts_or_buttons_before_a_session_overlap_data() {
             const rows = []
             for (const panel of panels)
-                for (const language of ["en", "de", "ja"])
+                for (const language of ["en", "de", "ja", "es", "zh", "ar"])
                     rows.push({ tag: language + " " + panel.width + "x" + panel.height + " " + panel.mm, language: language, panel: panel })
             return rows
         }

@@ -110,7 +110,7 @@ Item {
         function test_every_text_has_a_contrast_of_seven_to_one_and_is_complete_data() {
             const rows = []
             for (const panel of [{ width: 800, height: 480, mm: 5.2 }, { width: 1280, height: 800, mm: 5.9 }])
-                for (const language of ["en", "de", "ja"])
+                for (const language of ["en", "de", "ja", "ar"])
                     for (const page of script.pages)
                         rows.push({ tag: page + " " + language + " " + panel.width, page: page, language: language, panel: panel })
             return rows

@@ -10,7 +10,7 @@ Rectangle {
     required property real pixelsPerMm
     property bool typing: false
     readonly property real gap: look.unit
-    /// On a tall screen, what stands side by side on a wide one stands above each other.
+    /// On a tall screen, items that are side by side on a wide screen are stacked.
     readonly property bool tall: height > width
 
     color: look.paper

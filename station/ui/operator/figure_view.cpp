@@ -38,3 +38,5 @@ void FigureView::paint(QPainter* painter) {
 }
 
 }  // namespace turnpoint::ui
+
+#include "moc_figure_view.cpp"

@@ -72,3 +72,5 @@ void LatencyController::keep() {
 }
 
 }  // namespace turnpoint::ui
+
+#include "moc_latency_controller.cpp"

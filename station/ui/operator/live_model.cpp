@@ -50,3 +50,5 @@ QVariantList LiveModel::surfaces() const {
 }
 
 }  // namespace turnpoint::ui
+
+#include "moc_live_model.cpp"

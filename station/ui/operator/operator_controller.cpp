@@ -8,14 +8,13 @@
 
 #include "station/setup/prepare.hpp"
 #include "station/setup/resume.hpp"
+#include "station/system/fonts.hpp"
 #include "station/ui/operator/facts.hpp"
 
 namespace turnpoint::ui {
 
 namespace {
 
-/// Placeholder for the participant's code. The code is typed last, and all other settings are checked before.
-constexpr const char* kCodeToCome = "keypad";
 /// Number of sessions to simulate for the number of trials and the duration on the start page. Five are
 /// simulated quickly, and give the duration to within some minutes.
 constexpr int kSessions = 5;
@@ -38,6 +37,7 @@ OperatorController::OperatorController(setup::StationRequest request, QObject* p
               std::ostringstream messages;  // the page says elsewhere which calibration is used
               return setup::calibrated_rig(path, "", messages);
             };
+            options.drawable = system::drawable;
             return simulation::check(protocol, rig, options, stop);
           },
           parent) {}
@@ -149,7 +149,7 @@ setup::RunRequest OperatorController::request_for(const char* mode) const {
   request.protocol = entry()->path;
   request.rig = request_.rig;
   request.database = request_.database;
-  request.participant = kCodeToCome;
+  request.participant = setup::kCodeToCome;
   request.mode = mode;
   return request;
 }
@@ -296,3 +296,5 @@ QString OperatorController::interrupted() const {
 }
 
 }  // namespace turnpoint::ui
+
+#include "moc_operator_controller.cpp"

@@ -57,3 +57,5 @@ void OperatorLock::judge(bool right) {
 }
 
 }  // namespace turnpoint::ui
+
+#include "moc_operator_lock.cpp"

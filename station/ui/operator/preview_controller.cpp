@@ -122,3 +122,5 @@ void PreviewController::take(Drawn drawn) {
 }
 
 }  // namespace turnpoint::ui
+
+#include "moc_preview_controller.cpp"

@@ -58,3 +58,5 @@ QVariantList ReportModel::pictures() const {
 }
 
 }  // namespace turnpoint::ui
+
+#include "moc_report_model.cpp"

@@ -92,6 +92,8 @@ Item {
         id: controls
         anchors { horizontalCenter: parent.horizontalCenter; bottom: parent.bottom }
         spacing: root.theme.targetGap
+        LayoutMirroring.enabled: false
+        LayoutMirroring.childrenInherit: true
         layoutDirection: root.leftHanded ? Qt.RightToLeft : Qt.LeftToRight
         Row {
             spacing: root.theme.targetGap

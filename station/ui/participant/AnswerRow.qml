@@ -8,7 +8,7 @@ Item {
     id: root
     required property Theme theme
     required property var answers
-    /// smaller texts below the answers; may be shorter than `answers`
+    /// Smaller texts below the answers. The list may be shorter than `answers`.
     property var captions: []
     required property int pressed
     /// The points of a scale may be close together, so that more of them fit one row.

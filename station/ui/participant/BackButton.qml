@@ -6,6 +6,7 @@ ActionButton {
     id: root
     required property Texts texts
     objectName: "back"
+    anchors.left: parent.left
     primary: false
     quiet: true
     size: theme.textSmall

@@ -79,6 +79,7 @@ Item {
     }
     Row {
         id: cells
+        LayoutMirroring.enabled: false
         anchors { horizontalCenter: parent.horizontalCenter; top: help.bottom; topMargin: 1.2 * root.theme.unit }
         spacing: 0.6 * root.theme.unit
         Repeater {
@@ -155,6 +156,8 @@ Item {
 
     Column {
         id: keys
+        LayoutMirroring.enabled: false
+        LayoutMirroring.childrenInherit: true
         visible: !question.visible
         anchors { left: parent.left; right: parent.right; top: cells.bottom; topMargin: 1.6 * root.theme.unit; bottom: parent.bottom }
         spacing: root.keyGap

@@ -1,8 +1,8 @@
 import QtQuick
 import Turnpoint
 
-// Asks whether the participant has signed this version of the consent form. The form itself is on paper. Who has
-// not signed reads what follows, and can go back to the question.
+// Asks whether the participant has signed this version of the consent form. The form itself is on paper. A
+// participant who has not signed it sees what to do next, and can go back to the question.
 Item {
     id: root
     required property Theme theme

@@ -73,6 +73,8 @@ Item {
     // The session's numbers, while there is no report or if none could be made.
     Rectangle {
         visible: root.counting
+        LayoutMirroring.enabled: false
+        LayoutMirroring.childrenInherit: true
         anchors.fill: parent
         color: root.theme.paper
         MouseArea { anchors.fill: parent }

@@ -36,12 +36,16 @@ Item {
     }
     Item {
         id: labels
+        // the line runs from left to right in every language, so that marks can be compared
+        LayoutMirroring.enabled: false
+        LayoutMirroring.childrenInherit: true
         readonly property int count: root.page.anchorTexts.length
         /// Where an anchor is, in pixels from the left.
         function place(index: int): real { return line.inset + (root.page.anchorPlaces[index] ?? 0) * (width - 2 * line.inset) }
         anchors { left: parent.left; right: parent.right; bottom: line.top }
         height: 3.4 * root.theme.textBody
-        /// Where the room of this text ends and that of the next begins. The texts at the ends reach to one side only.
+        /// Returns the border between the space of this text and that of the next one. The texts at the two
+        /// ends may extend to one side only, so they get more space.
         function border(index: int): real {
             const share = count < 3 ? 0.5 : index === 0 ? 0.6 : index === count - 2 ? 0.4 : 0.5
             return (1 - share) * place(index) + share * place(index + 1)

@@ -102,6 +102,7 @@ Item {
             id: sign
             height: 1.3 * line.textSize
             name: line.glyph
+            rotation: root.texts.mirrored && line.glyph === "tool" ? 180 : 0   // an arrow
             color: line.tint
         }
         PlainText {
@@ -134,6 +135,7 @@ Item {
             objectName: "explanation"
             anchors { left: parent.left; right: parent.right; verticalCenter: parent.verticalCenter; margins: 1.8 * root.theme.unit }
             spacing: 0.8 * root.theme.unit
+            scale: Math.min(1, (parent.height - root.theme.unit) / Math.max(1, implicitHeight))
             readonly property real headingWidth: Math.max(happened.needed, safe.needed, toDo.needed) + 0.8 * root.theme.unit
             Line {
                 id: happened

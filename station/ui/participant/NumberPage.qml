@@ -30,7 +30,7 @@ Item {
     }
 
     PlainText {
-        anchors { left: parent.left; top: parent.top }
+        anchors.top: parent.top
         width: root.tall ? root.width : entry.x - root.theme.targetGap
         height: (root.tall ? entry.y : pad.y) - root.theme.unit
         text: root.texts.phrased((root.page.first === "" ? "" : root.page.first + "\n") + root.page.text)
@@ -44,6 +44,8 @@ Item {
     }
     Row {
         id: entry
+        LayoutMirroring.enabled: false
+        LayoutMirroring.childrenInherit: true
         anchors { bottom: pad.top; bottomMargin: root.theme.unit }
         x: root.tall ? (root.width - width) / 2 : pad.x + pad.width - width
         spacing: root.theme.targetGap
@@ -81,6 +83,7 @@ Item {
     }
     Grid {
         id: pad
+        LayoutMirroring.enabled: false
         readonly property real gap: Math.min(root.theme.targetGap, root.theme.unit)
         readonly property real key: Math.max(root.theme.targetMin, 0.14 * root.height)
         anchors { horizontalCenter: parent.horizontalCenter; bottom: parent.bottom }

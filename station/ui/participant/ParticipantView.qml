@@ -32,6 +32,14 @@ Rectangle {
                                      || kind === PageModel.Rest
 
     color: theme.paper
+    LayoutMirroring.enabled: texts.mirrored
+    LayoutMirroring.childrenInherit: true
+    Binding {
+        target: Catalogue
+        property: "shown"
+        value: root.page.language
+        when: root.visible
+    }
 
     Theme {
         id: theme
@@ -49,7 +57,7 @@ Rectangle {
         interval: 350
         running: true
     }
-    /// Changes with everything that makes a page another one for the participant.
+    /// Changes whenever the participant sees a different page: another kind, title or text.
     readonly property string topic: kind + "\n" + page.title + "\n" + page.text + "\n" + page.safe
     onTopicChanged: arming.restart()
     onKindChanged: armable = false
@@ -180,6 +188,7 @@ Rectangle {
 
     MouseArea {
         objectName: "operatorCorner"
+        LayoutMirroring.enabled: false
         anchors { right: parent.right; bottom: parent.bottom }
         width: 12 * theme.unit
         height: Math.max(progress.height + 2 * theme.unit, 4 * theme.unit)

@@ -26,6 +26,8 @@ Item {
         radius: height / 2
         color: root.theme.line
         Rectangle {
+            objectName: "progressDone"
+            anchors.left: parent.left
             width: track.width * Math.min(1, root.done / Math.max(1, root.total))
             height: parent.height
             radius: height / 2

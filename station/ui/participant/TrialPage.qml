@@ -27,7 +27,7 @@ Item {
 
     SurfaceDrawing {
         id: surface
-        visible: !root.counted && height > 12 * root.theme.unit && (root.cue || root.stimulus || root.page.kind === PageModel.Response)
+        visible: !root.counted && !root.page.answerNow && height > 12 * root.theme.unit && (root.cue || root.stimulus || root.page.kind === PageModel.Response)
         anchors { left: parent.left; right: parent.right; top: parent.top }
         height: Math.max(0, Math.min(0.46 * parent.height, parent.height - answers.height - 10 * root.theme.unit))
         lengthMm: root.page.lengthMm
@@ -43,9 +43,11 @@ Item {
         accent: root.theme.action
     }
 
-    // One dot for each interval; the dot of the current interval is filled.
+    // One dot for each interval; the dot of the current interval is filled. Dots and answers have the order of the
+    // protocol from left to right, like the buttons, even if texts are read from right to left.
     Row {
-        visible: root.counted && !root.confides && !root.feedback && root.page.kind !== PageModel.Interval
+        LayoutMirroring.enabled: false
+        visible: root.counted && !root.page.answerNow && !root.confides && !root.feedback && root.page.kind !== PageModel.Interval
         anchors { horizontalCenter: parent.horizontalCenter; verticalCenter: surface.verticalCenter }
         spacing: root.theme.targetGap
         Repeater {
@@ -70,9 +72,29 @@ Item {
         }
     }
 
+    // The response signal: a band over the whole width, dark and large enough to be noticed while looking elsewhere.
+    Rectangle {
+        objectName: "signal"
+        visible: root.page.answerNow && !root.feedback
+        anchors { left: parent.left; right: parent.right; top: parent.top; bottom: answers.top; bottomMargin: root.theme.targetGap }
+        radius: root.theme.radius
+        color: root.theme.ink
+        PlainText {
+            anchors { fill: parent; margins: root.theme.unit }
+            text: root.texts.answerNow
+            color: root.theme.actionText
+            font { pixelSize: root.theme.textHuge; weight: Font.Bold }
+            fontSizeMode: Text.Fit
+            minimumPixelSize: root.theme.textSmall
+            wrapMode: Text.Wrap
+            horizontalAlignment: Text.AlignHCenter
+            verticalAlignment: Text.AlignVCenter
+        }
+    }
+
     PlainText {
         id: question
-        visible: !root.feedback && root.page.kind !== PageModel.Interval
+        visible: !root.feedback && !root.page.answerNow && root.page.kind !== PageModel.Interval
         anchors { left: parent.left; right: parent.right; bottom: answers.top; bottomMargin: 1.5 * root.theme.unit; top: surface.bottom }
         text: root.counted && root.stimulus ? root.texts.slideNow
             : root.counted && !root.asks ? root.texts.getReady

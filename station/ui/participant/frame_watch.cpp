@@ -67,3 +67,5 @@ void FrameWatch::waited(std::int64_t from_ns) {
 }
 
 }  // namespace turnpoint::ui
+
+#include "moc_frame_watch.cpp"

@@ -88,3 +88,5 @@ QStringList PageModel::summary_values() const {
 }
 
 }  // namespace turnpoint::ui
+
+#include "moc_page_model.cpp"

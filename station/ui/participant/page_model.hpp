@@ -28,6 +28,7 @@ class PageModel : public QObject {
   Q_PROPERTY(QStringList anchorTexts READ anchor_texts NOTIFY changed)
   Q_PROPERTY(QString first READ first NOTIFY changed)
   Q_PROPERTY(bool answersOpen READ answers_open NOTIFY changed)
+  Q_PROPERTY(bool answerNow READ answer_now NOTIFY changed)
   Q_PROPERTY(Verdict verdict READ verdict NOTIFY changed)
   Q_PROPERTY(QString instruction READ instruction NOTIFY changed)
   Q_PROPERTY(bool hasMark READ has_mark NOTIFY changed)
@@ -98,6 +99,7 @@ class PageModel : public QObject {
   QStringList anchor_texts() const;
   QString first() const { return QString::fromStdString(page_.value.first); }
   bool answers_open() const { return page_.answers_open; }
+  bool answer_now() const { return page_.answer_now; }
   Verdict verdict() const;
   QString instruction() const { return QString::fromStdString(page_.instruction); }
   bool has_mark() const { return page_.mark_mm.has_value(); }

@@ -24,3 +24,5 @@ void ParticipantCode::clear() {
 }
 
 }  // namespace turnpoint::ui
+
+#include "moc_participant_code.cpp"

@@ -131,3 +131,5 @@ bool SessionBridge::eventFilter(QObject* watched, QEvent* event) {
 }
 
 }  // namespace turnpoint::ui
+
+#include "moc_session_bridge.cpp"

@@ -144,3 +144,5 @@ std::optional<session::Summary> SessionRunner::finish() {
 }
 
 }  // namespace turnpoint::ui
+
+#include "moc_session_runner.cpp"

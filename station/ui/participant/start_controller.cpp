@@ -32,9 +32,11 @@ StartController::Stage StartController::stage() const {
 QStringList StartController::language_names() const {
   QStringList names;
   for (const auto& code : questions_.languages) {
-    // Offer each language under its own name. For a variant of English, the name is "English".
-    const QString own = code == "en" ? "English" : QLocale(code).nativeLanguageName();
-    names += own.isEmpty() ? code : own;
+    // Offer each language under its own name. Without a country, Qt takes the largest one and calls these two
+    // "American English" and "español de España".
+    const QLocale locale(code);
+    const QString own = code == "en" ? "English" : code == "es" ? "Español" : locale.nativeLanguageName();
+    names += own.isEmpty() ? code : locale.toUpper(own.left(1)) + own.mid(1);
   }
   return names;
 }
@@ -78,3 +80,5 @@ void StartController::proceed() {
 }
 
 }  // namespace turnpoint::ui
+
+#include "moc_start_controller.cpp"

@@ -68,7 +68,7 @@ class StartController : public QObject {
  private:
   void proceed();
 
-  Questions questions_, asked_;  ///< with and without the answers so far
+  Questions questions_, asked_;  ///< the questions with and without the answers so far
   Known known_;
   bool with_operator_ = true, consented_ = false;
 };

@@ -234,3 +234,5 @@ void SurfaceDrawing::paint_finger(QPainter& painter, const Layout& at) const {
 }
 
 }  // namespace turnpoint::ui
+
+#include "moc_surface_drawing.cpp"

@@ -85,3 +85,5 @@ void TouchField::mousePressEvent(QMouseEvent* event) {
 }
 
 }  // namespace turnpoint::ui
+
+#include "moc_touch_field.cpp"

@@ -28,9 +28,10 @@ double pixels_per_mm(const QScreen& screen) {
 }
 
 void set_fonts() {
-  QFont font;
-  font.setFamilies({"Inter", "DejaVu Sans", "M PLUS 1", "VL PGothic", "VL Gothic"});
-  QGuiApplication::setFont(font);
+  QFont::insertSubstitutions(
+      "Inter", {"Noto Sans Arabic UI", "Noto Sans Hebrew", "Noto Sans Devanagari UI", "DejaVu Sans",
+                "M PLUS 1", "VL PGothic", "VL Gothic", "Noto Sans CJK JP"});
+  QGuiApplication::setFont(QFont("Inter"));
 }
 
 }  // namespace turnpoint::ui

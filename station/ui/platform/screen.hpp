@@ -9,8 +9,8 @@ namespace turnpoint::ui {
 /// that range.
 double pixels_per_mm(const QScreen& screen);
 
-/// Sets the application's fonts: for each shipped language, families in order of preference. A text that
-/// mixes scripts then finds all of its glyphs.
+/// Sets the application's font, and for each script the families that replace it, in order of preference. A text that
+/// mixes scripts then finds all of its glyphs. Catalogue::family says which languages need another font.
 void set_fonts();
 
 }  // namespace turnpoint::ui

@@ -15,10 +15,6 @@ namespace turnpoint::ui {
 
 namespace {
 
-/// Placeholder for the participant's code. The code is typed last, and all other settings are checked before
-/// a window opens.
-constexpr const char* kCodeToCome = "keypad";
-
 StationWindow::Place place_on(const Application& application, bool fullscreen) {
   return {pixels_per_mm(application.screen()), application.window_size(),
           fullscreen || application.is_bare_panel()};
@@ -62,7 +58,7 @@ void show_until_closed(const Application& application, const QString& page, cons
 session::Summary run_on_screen(setup::RunRequest request, std::optional<session::Setup> prepared) {
   ChosenSession chosen;
   chosen.ask_code = !prepared && request.participant.empty();
-  if (chosen.ask_code) request.participant = kCodeToCome;
+  if (chosen.ask_code) request.participant = setup::kCodeToCome;
   chosen.setup = prepared ? std::move(*prepared) : setup::prepare(request);
   chosen.ask_language = !prepared && request.language.empty() && chosen.setup.protocol.languages.size() > 1;
   chosen.arm = true;  // starting a session from the command line is the operator's request to arm

@@ -119,3 +119,5 @@ void StationWindow::close() {
 }
 
 }  // namespace turnpoint::ui
+
+#include "moc_station_window.cpp"

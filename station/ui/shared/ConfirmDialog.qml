@@ -44,7 +44,7 @@ Rectangle {
             wrapMode: Text.Wrap
         }
     }
-    // The buttons stand above each other, so that neither is where a row of buttons was.
+    // The buttons are stacked, so that neither is where a row of buttons was.
     Column {
         id: buttons
         anchors { horizontalCenter: parent.horizontalCenter; bottom: parent.bottom; bottomMargin: root.theme.controlHeight + 2 * root.theme.targetGap }

@@ -5,6 +5,7 @@ import Turnpoint
 // file.) An unsupported language falls back to English.
 QtObject {
     required property string language
+    readonly property bool mirrored: Catalogue.mirrored(language)
 
     function text(key: string) : string { return phrased(Catalogue.text(key, language)) }
 
@@ -52,6 +53,7 @@ QtObject {
     readonly property string slideNow: text("slide_now")
     readonly property string right: text("right")
     readonly property string wrong: text("wrong")
+    readonly property string answerNow: text("answer_now")
     readonly property string noted: text("noted")
     readonly property string failedTitle: text("failed_title")
     readonly property string failedText: text("failed_text")

@@ -1,5 +1,7 @@
 #include "station/ui/shared/catalogue.hpp"
 
+#include <QLocale>
+
 #include "station/texts/texts.hpp"
 
 namespace turnpoint::ui {
@@ -8,4 +10,18 @@ QString Catalogue::text(const QString& key, const QString& language) {
   return QString::fromStdString(texts::text(key.toStdString(), language.toStdString()));
 }
 
+bool Catalogue::mirrored(const QString& language) {
+  return QLocale(language).textDirection() == Qt::RightToLeft;
+}
+
+QString Catalogue::family() const {
+  const QLocale locale(shown_);
+  if (locale.language() == QLocale::Korean) return "Noto Sans CJK KR";
+  if (locale.language() != QLocale::Chinese) return "Inter";
+  if (locale.script() != QLocale::TraditionalHanScript) return "Noto Sans CJK SC";
+  return locale.territory() == QLocale::HongKong ? "Noto Sans CJK HK" : "Noto Sans CJK TC";
+}
+
 }  // namespace turnpoint::ui
+
+#include "moc_catalogue.cpp"

@@ -1,17 +1,34 @@
 #pragma once
 #include <QtQml/qqmlregistration.h>
 #include <QObject>
+#include <QString>
 
 namespace turnpoint::ui {
 
-/// Gives pages the station's own texts, from texts::text().
+/// Gives pages the station's own texts, from texts::text(), and says how texts of a language are shown.
 class Catalogue : public QObject {
   Q_OBJECT
   QML_ELEMENT
   QML_SINGLETON
 
+  /// language of the texts on the screen, which decides `family`
+  Q_PROPERTY(QString shown MEMBER shown_ NOTIFY shownChanged)
+  /// Family of fonts of all texts on the screen. Chinese, Japanese and Korean share characters that each
+  /// language draws in its own way, so each needs a family of its own. For other scripts the application's
+  /// fonts replace each other.
+  Q_PROPERTY(QString family READ family NOTIFY shownChanged)
+
  public:
   Q_INVOKABLE static QString text(const QString& key, const QString& language);
+  /// Says whether a language is written from right to left.
+  Q_INVOKABLE static bool mirrored(const QString& language);
+  QString family() const;
+
+ Q_SIGNALS:
+  void shownChanged();
+
+ private:
+  QString shown_;
 };
 
 }  // namespace turnpoint::ui

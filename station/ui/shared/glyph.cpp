@@ -78,3 +78,5 @@ void Glyph::paint(QPainter* painter) {
 }
 
 }  // namespace turnpoint::ui
+
+#include "moc_glyph.cpp"

@@ -82,15 +82,16 @@ def solve(kind, w0, l, length, f, q, nx, ny):
     return interpolate(x, middle, length * np.arange(21) / 20)
 
 
-for kind, w0, l, length, f, q, nx, ny in (
-    ("membrane", 0.03, 0.12, 0.15, 15000.0, 60.0, 56, 20),
-    ("membrane", 0.03, 0.06, 0.10, 18000.0, 200.0, 56, 20),
-    ("plate", 0.014, 0.2, 0.12, 25000.0, 60.0, 56, 18),
-    ("plate", 0.014, 0.1, 0.08, 28000.0, 30.0, 48, 18),
-):
-    coarse = solve(kind, w0, l, length, f, q, nx - 8, ny - 4)
-    fine = solve(kind, w0, l, length, f, q, nx, ny)
-    cells = [kind] + [repr(value) for value in (w0, l, length, f, q)]
-    for value in fine:
-        cells += ["%.10e" % value.real, "%.10e" % value.imag]
-    print(",".join(cells + ["%.1e" % (np.max(np.abs(fine - coarse)) / np.max(np.abs(fine)))]))
+if __name__ == "__main__":
+    for kind, w0, l, length, f, q, nx, ny in (
+        ("membrane", 0.03, 0.12, 0.15, 15000.0, 60.0, 56, 20),
+        ("membrane", 0.03, 0.06, 0.10, 18000.0, 200.0, 56, 20),
+        ("plate", 0.014, 0.2, 0.12, 25000.0, 60.0, 56, 18),
+        ("plate", 0.014, 0.1, 0.08, 28000.0, 30.0, 48, 18),
+    ):
+        coarse = solve(kind, w0, l, length, f, q, nx - 8, ny - 4)
+        fine = solve(kind, w0, l, length, f, q, nx, ny)
+        cells = [kind] + [repr(value) for value in (w0, l, length, f, q)]
+        for value in fine:
+            cells += ["%.10e" % value.real, "%.10e" % value.imag]
+        print(",".join(cells + ["%.1e" % (np.max(np.abs(fine - coarse)) / np.max(np.abs(fine)))]))

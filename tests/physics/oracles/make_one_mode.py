@@ -17,6 +17,7 @@ from mpmath import mp, mpf, mpc, pi, sqrt, besselj, bessely, besselk, log, exp, 
 
 mp.dps = 40
 C = mpf(800)
+QUALITIES = (5, 30, 1000, 1000000, 0)
 
 
 def wavenumber(f, q):
@@ -81,11 +82,10 @@ def main():
         "0.2": ("1.3", "4", "10"), "0.5": ("1.5", "5", "12"),
     }
     frequencies = ("5e3", "2.24e4", "9e4")
-    qualities = (5, 30, 1000, 1000000, 0)
     for d in tapers:
         for ratio in tapers[d]:
             for f in frequencies if d != "0.001" else frequencies[:1]:
-                for q in qualities:
+                for q in QUALITIES:
                     for model in ("seed", "mode"):
                         wc = C / (4 * mpf(f))
                         w0 = mpf(ratio) * wc
@@ -94,19 +94,37 @@ def main():
     for d, ratio, end in (("0.1", "2", "0.9"), ("0.1", "3", "0.55"), ("0.05", "2", "0.52"), ("0.2", "3", "0.3")):
         # `end` is the length of the surface divided by the distance of the apex. Below 1 - 1/ratio,
         # the surface ends before the turning point, where the mode still oscillates.
-        for q in qualities:
+        for q in QUALITIES:
             for model in ("seed", "mode"):
                 wc = C / (4 * mpf("22400"))
                 w0 = mpf(ratio) * wc
                 length = w0 / mpf(d) * mpf(end)
                 row("linear", model, mpf(d), w0, length, "22400", q, min((w0 - wc) / mpf(d), length * mpf("0.9")))
     for l, ratio in (("0.05", "2"), ("0.1", "1.5"), ("0.1", "3"), ("0.3", "2")):
-        for q in qualities:
+        for q in QUALITIES:
             for model in ("seed", "mode"):
                 wc = C / (4 * mpf("22400"))
                 w0 = mpf(ratio) * wc
                 x0 = mpf(l) * log(mpf(ratio))
                 row("exponential", model, mpf(l), w0, x0 + mpf(l) * mpf("2.2"), "22400", q, x0)
+    at_the_edges()
 
 
-main()
+def at_the_edges():
+    """The turning point is exactly at the drive edge or at the clamped end, or within 1e-9 of the length."""
+    for q in QUALITIES:
+        for d, ratio in (("0.03", "1.6"), ("0.2", "3")):
+            for model in ("seed", "mode"):
+                wc = C / (4 * mpf("22400"))
+                # the drive edge is as wide as the cut-off, or a little wider or narrower
+                for w0 in (wc, wc * (1 + mpf("1e-9")), wc * (1 - mpf("1e-9"))):
+                    length = mpf("0.7") * w0 / mpf(d)
+                    row("linear", model, mpf(d), w0, length, "22400", q, length / 5)
+                # the clamped end is as wide as the cut-off
+                for end in (mpf(1), 1 + mpf("1e-9"), 1 - mpf("1e-9")):
+                    length = mpf(ratio) * wc / mpf(d) - end * wc / mpf(d)
+                    row("linear", model, mpf(d), mpf(ratio) * wc, length, "22400", q, length * mpf("0.6"))
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,42 @@
+#pragma once
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "station/analysis/estimate.hpp"
+#include "station/analysis/signal_detection.hpp"
+#include "station/analysis/trial_record.hpp"
+
+namespace turnpoint::analysis {
+
+/// Sensitivity at one lag of the response signal.
+struct LagPoint {
+  double lag_s = 0;   ///< from response_zero to the signal
+  double time_s = 0;  ///< mean response time, from response_zero: the lag and what people need to answer
+  YesNoCounts counts;
+  std::optional<Estimate> d_prime;  ///< as in Detection; empty if one of the two stimuli was never answered
+};
+
+/// How sensitivity grows with time: d'(t) = asymptote (1 - exp(-rate (t - intercept))) after the intercept,
+/// and 0 before (Wickelgren 1977, Acta Psychol. 41:67-85).
+struct SpeedAccuracyCurve {
+  std::string condition;
+  std::vector<LagPoint> points;  ///< ascending by lag
+  /// Medians and 95 % credible intervals. Flat priors: asymptote 0 to 6, logarithm of the rate from 0.3 to 40
+  /// per second, intercept from 0 to the longest time_s. Empty where the data hardly narrow the prior; a
+  /// statement says so.
+  std::optional<Estimate> asymptote, rate_per_s, intercept_s;
+  std::vector<Statement> statements;
+};
+
+/// Returns d'(t) of a curve.
+double d_prime_at(double asymptote, double rate_per_s, double intercept_s, double time_s);
+
+/// Fits the curve to answered experimental trials with a right answer and a lag (TrialRecord::signal_s). The
+/// criterion is free at each lag. `positive` is the choice that counts as "yes". One curve for each condition
+/// that has such trials, first those in `order`.
+std::vector<SpeedAccuracyCurve> response_signal(const std::vector<TrialRecord>& trials,
+                                                const std::vector<std::string>& order, Detecting detecting,
+                                                int positive);
+
+}  // namespace turnpoint::analysis

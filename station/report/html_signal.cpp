@@ -1,0 +1,93 @@
+#include <algorithm>
+
+#include "station/plot/svg.hpp"
+#include "station/report/figures.hpp"
+#include "station/report/html_parts.hpp"
+
+namespace turnpoint::report {
+
+namespace {
+
+using analysis::SpeedAccuracyCurve;
+using plot::escaped;
+
+std::string curve_table(const Summary& summary) {
+  std::string html =
+      "<table><tr><th>Condition</th><th>Asymptote (d\u2032)</th><th>Rate (1/s)</th><th>Intercept "
+      "(s)</th></tr>";
+  for (const auto& curve : summary.curves)
+    html += "<tr><td>" + escaped(name_of(curve.condition)) + "</td>" + cell(curve.asymptote) +
+            cell(curve.rate_per_s) + cell(curve.intercept_s) + "</tr>";
+  return html + "</table>\n";
+}
+
+std::string lag_table(const Summary& summary) {
+  std::string html =
+      "<table><tr><th>Condition</th><th>Signal after (s)</th><th>Mean response time (s)</th><th>Trials</th>"
+      "<th>d\u2032 (standard deviations)</th></tr>";
+  for (const auto& curve : summary.curves)
+    for (const auto& point : curve.points) {
+      const auto& n = point.counts;
+      html += "<tr><td>" + escaped(name_of(curve.condition)) + "</td><td class=\"n\">" + number(point.lag_s) +
+              "</td><td class=\"n\">" + number(point.time_s) + "</td><td class=\"n\">" +
+              std::to_string(n.hits + n.misses + n.false_alarms + n.correct_rejections) + "</td>" +
+              cell(point.d_prime) + "</tr>";
+    }
+  return html + "</table>\n";
+}
+
+}  // namespace
+
+std::optional<plot::Figure> signal_figure(const Summary& summary) {
+  plot::Chart chart{"", {}, {}, {}};
+  std::vector<double> times{0}, heights{0};
+  int series = 0;
+  for (const auto& curve : summary.curves) {
+    plot::Points points;
+    plot::Line line;
+    points.series = line.series = series++;
+    points.name = line.name = name_of(curve.condition);
+    for (const auto& point : curve.points) {
+      if (!point.d_prime) continue;
+      points.x.push_back(point.time_s), points.y.push_back(point.d_prime->value);
+      points.low.push_back(point.d_prime->interval.low), points.high.push_back(point.d_prime->interval.high);
+      times.push_back(point.time_s);
+      heights.insert(heights.end(), {point.d_prime->interval.low, point.d_prime->interval.high});
+    }
+    const double last_s = *std::max_element(times.begin(), times.end());
+    if (curve.asymptote && curve.rate_per_s && curve.intercept_s)
+      for (int i = 0; i <= 200; ++i) {
+        line.x.push_back(1.05 * last_s * i / 200);
+        line.y.push_back(analysis::d_prime_at(curve.asymptote->value, curve.rate_per_s->value,
+                                              curve.intercept_s->value, line.x.back()));
+      }
+    if (!line.x.empty()) chart.layers.push_back(line);
+    chart.layers.push_back(points);
+  }
+  if (times.size() < 2) return std::nullopt;
+  chart.x = plot::fitted("Time from the zero of the response to the answer (s)", times, 0.06);
+  chart.y = plot::fitted("Sensitivity d\u2032", heights, 0.08);
+  plot::Figure figure;
+  figure.title = "Sensitivity over time";
+  figure.chart_width_px = 560;
+  figure.charts.push_back(std::move(chart));
+  return figure;
+}
+
+std::string signal_section(const Summary& summary) {
+  if (summary.curves.empty()) return "";
+  auto html =
+      "<h2>Accuracy at the response signal</h2>\n" + picture(signal_figure(summary)) + curve_table(summary);
+  for (const auto& curve : summary.curves) html += notes(curve.statements);
+  return html + lag_table(summary) +
+         "<p class=\"soft\">Only answers within the window after the signal. The curve is d\u2032(t) = "
+         "asymptote (1 \u2212 "
+         "exp(\u2212rate (t \u2212 intercept))); t is the mean response time at a lag, so it includes the "
+         "time that people "
+         "need to answer the signal. Medians and 95 % credible intervals with flat priors; the criterion is "
+         "free at each "
+         "lag. d\u2032 at each lag has the log-linear correction and the interval of Gourevitch and "
+         "Galanter.</p>\n";
+}
+
+}  // namespace turnpoint::report

@@ -1,0 +1,83 @@
+import QtQuick
+import QtTest
+import Turnpoint
+
+// Tests pages in languages that are written from right to left, and in those that need a font of their own.
+Item {
+    id: stage
+    width: 800
+    height: 480
+
+    ParticipantView {
+        id: view
+        anchors.fill: parent
+        bridge: script.bridge
+        pixelsPerMm: 5.2
+    }
+    Theme { id: theme; width: 800; height: 480; pixelsPerMm: 5.2 }
+    Texts { id: words; language: "en" }
+    Item {
+        id: questions
+        anchors.fill: parent
+        LayoutMirroring.enabled: words.mirrored
+        LayoutMirroring.childrenInherit: true
+        ConsentPage {
+            id: consent
+            anchors.fill: parent
+            theme: theme
+            texts: words
+            version: "1"
+        }
+    }
+
+    TestCase {
+        name: "Languages"
+        when: windowShown
+
+        SignalSpy { id: shown; target: script.bridge; signalName: "shown" }
+
+        function show(page, language) {
+            const before = shown.count
+            script.show(page, language)
+            tryCompare(shown, "count", before + 1)
+        }
+        function leftOf(parent, name) {
+            const item = findChild(parent, name)
+            return item.mapToItem(stage, 0, 0).x
+        }
+
+        function test_questions_are_mirrored_data() {
+            return [{ tag: "en", right: false }, { tag: "zh", right: false }, { tag: "ar", right: true },
+                    { tag: "he-IL", right: true }, { tag: "fa", right: true }]
+        }
+        function test_questions_are_mirrored(row) {
+            words.language = row.tag
+            compare(leftOf(questions, "back") > 400, row.right)
+            compare(leftOf(questions, "declined") > leftOf(questions, "agreed"), row.right)
+        }
+        function test_answers_keep_their_order_data() { return [{ tag: "en" }, { tag: "ar" }] }
+        function test_answers_keep_their_order(row) {
+            show("response", row.tag)
+            verify(leftOf(view, "answer0") < leftOf(view, "answer1"))
+            show("rating-7", row.tag)
+            for (let i = 1; i < 7; ++i) verify(leftOf(view, "answer" + (i - 1)) < leftOf(view, "answer" + i))
+        }
+        function test_the_progress_begins_where_reading_begins() {
+            show("response", "en")
+            verify(findChild(view, "progressDone").x === 0)
+            show("response", "ar")
+            const bar = findChild(view, "progressDone")
+            compare(bar.x + bar.width, bar.parent.width)
+        }
+        function test_fonts_of_languages_data() {
+            return [{ tag: "en", family: "Inter" }, { tag: "ja", family: "Inter" }, { tag: "ar", family: "Inter" },
+                    { tag: "ko", family: "Noto Sans CJK KR" }, { tag: "zh", family: "Noto Sans CJK SC" },
+                    { tag: "zh-Hant", family: "Noto Sans CJK TC" }, { tag: "zh-TW", family: "Noto Sans CJK TC" },
+                    { tag: "zh-HK", family: "Noto Sans CJK HK" }]
+        }
+        function test_fonts_of_languages(row) {
+            Catalogue.shown = row.tag
+            compare(Catalogue.family, row.family)
+        }
+    }
+}
