@@ -1,0 +1,84 @@
+#include "station/protocol/expression.hpp"
+#include "station/protocol/reading.hpp"
+
+namespace turnpoint::protocol {
+
+using text::Range;
+using text::TableReader;
+using text::Value;
+
+namespace {
+
+std::optional<Linear> read_time(TableReader& reader, const std::string& key, const Range& range,
+                                const Reading& reading) {
+  const auto* value = reader.take(key);
+  return value ? linear_from(*value, key, range, reading.protocol.factors, reading.findings) : std::nullopt;
+}
+
+const Range deadline_range{0, 3600, Range::Ends::open_low, "s"};
+
+void read_signal(TableReader& timing, Reading& reading) {
+  const auto* table = timing.maybe_table("response_signal");
+  if (!table) return;
+  for (const char* key : {"deadline_s", "anticipation_s"})
+    if (timing.has(key))
+      timing.problem(key, "\"" + std::string(key) + "\" does not apply if there is a response signal",
+                     "answers count from the signal to the end of its \"window_s\"");
+  TableReader reader(*table, "timing.response_signal", reading.findings);
+  ResponseSignal signal;
+  reader.require(
+      "after_s",
+      "say when the signal comes, in seconds after response_zero: a number, or a factor in quotes");
+  if (const auto after = read_time(reader, "after_s", {0.02, 60, Range::Ends::closed, "s"}, reading))
+    signal.after_s = *after;
+  signal.window_s = reader.number("window_s", {0.05, 10, Range::Ends::closed, "s"});
+  reader.finish();
+  reading.protocol.timing.signal = signal;
+}
+
+}  // namespace
+
+void read_timing(TableReader& file, Reading& reading) {
+  const auto* table = file.table("timing", "a table [timing]");
+  if (!table) return;
+  TableReader reader(*table, "timing", reading.findings);
+  auto& timing = reading.protocol.timing;
+  std::vector<std::string> zeros;
+  for (const auto zero : terms::response_zeros) zeros.emplace_back(name(zero));
+  const auto zero = reader.word("response_zero", zeros);
+  timing.response_zero_place = reader.place("response_zero");
+  for (const auto known : terms::response_zeros)
+    if (zero == name(known)) timing.response_zero = known;
+  timing.explore_s = reader.maybe_number("explore_s", {0, 600, Range::Ends::open_low, "s"});
+  read_signal(reader, reading);
+  timing.deadline_s = read_time(reader, "deadline_s", deadline_range, reading);
+  reader.require("iti_s", "give the pause between trials in seconds: a number or { uniform = [0.8, 1.2] }");
+  timing.iti_s = read_distribution(reader, "iti_s").value_or(Distribution{1, 1});
+  if (!timing.signal && !reader.has("anticipation_s")) reader.defaulted("anticipation_s", "0");
+  timing.anticipation_s =
+      read_time(reader, "anticipation_s", {0, 10, Range::Ends::closed, "s"}, reading).value_or(Linear{});
+  reader.finish();
+}
+
+void read_instructions(TableReader& file, Reading& reading) {
+  const auto* tables = file.maybe_table("instructions");
+  if (!tables) return;
+  for (const auto& entry : tables->entries) {
+    if (entry.value.kind != Value::Kind::table) {
+      reading.findings.add(entry.place, "\"instructions." + entry.key + "\" is " + describe(entry.value),
+                           "write a table [instructions.NAME]");
+      continue;
+    }
+    TableReader reader(entry.value, "instructions." + entry.key, reading.findings);
+    Instruction instruction;
+    instruction.text = read_localised(reader, "text", reading);
+    if (const auto* late = reader.take("late_message"))
+      instruction.late_message = localised_from(*late, "late_message", reading);
+    instruction.deadline_s = read_time(reader, "deadline_s", deadline_range, reading);
+    instruction.target_accuracy = reader.maybe_interval("target_accuracy", {0, 1});
+    reader.finish();
+    reading.protocol.instructions.emplace(entry.key, std::move(instruction));
+  }
+}
+
+}  // namespace turnpoint::protocol
