@@ -9,6 +9,7 @@ namespace turnpoint::system {
 namespace {
 
 struct Destroy {
+  void operator()(FcConfig* config) const { FcConfigDestroy(config); }
   void operator()(FcPattern* pattern) const { FcPatternDestroy(pattern); }
   void operator()(FcCharSet* set) const { FcCharSetDestroy(set); }
   void operator()(FcObjectSet* set) const { FcObjectSetDestroy(set); }
@@ -18,8 +19,10 @@ template <typename T>
 using Owned = std::unique_ptr<T, Destroy>;
 
 bool has_font(FcPattern* pattern) {
+  // Freed at exit, unlike the global one that nullptr would select.
+  static const Owned<FcConfig> config(FcInitLoadConfigAndFonts());
   const Owned<FcObjectSet> no_properties(FcObjectSetCreate());
-  const Owned<FcFontSet> fonts(FcFontList(nullptr, pattern, no_properties.get()));
+  const Owned<FcFontSet> fonts(FcFontList(config.get(), pattern, no_properties.get()));
   return fonts && fonts->nfont > 0;
 }
 
