@@ -6,6 +6,7 @@
 #include <variant>
 #include <vector>
 
+#include "station/terms/check.hpp"
 #include "station/terms/proof.hpp"
 #include "station/terms/trial.hpp"
 
@@ -17,6 +18,7 @@ using terms::Proof;
 using terms::ProofCause;
 using terms::RunMode;
 using terms::TrialType;
+using terms::Verdict;
 
 enum class SessionStatus { running, completed, interrupted, stopped, abandoned };
 /// The reason stored for a session whose process died. It is written when the database is next opened.
@@ -52,6 +54,16 @@ struct SessionStart {
 struct SegmentStart {
   std::string boot_id, reason;  ///< reason: "start", "resume" or "fault"
   std::int64_t monotonic_ns = 0, boottime_ns = 0, realtime_ns = 0;
+};
+
+/// One check of the self-test: what was measured, and how it was judged.
+struct CheckRow {
+  std::string name;  ///< such as "gate" or "tone main"
+  Verdict verdict = Verdict::passed;
+  std::optional<double> value,
+      limit;         ///< measured value and its limit; empty if the check measures no number
+  std::string unit;  ///< unit of both; "" if there is no number
+  std::string what;  ///< what was found, as a sentence for the operator
 };
 
 struct BlockStart {

@@ -109,6 +109,13 @@ class Stage {
 
 /// Returns the configuration of the stream for a rig's output, with a channel for each transducer.
 drive::StreamConfig stream_of(const rig::Rig& rig);
+/// Like stream_of(), with the carrier that excites the bridges of force cells.
+drive::StreamConfig session_stream(const rig::Rig& rig);
+/// True if the rig captures in a simulated room.
+bool simulates_capture(const rig::Rig& rig);
+/// Returns the configuration of a simulated session's stream. It uses no hardware: if the rig's output is a
+/// converter, samples are discarded. Output to files and to plug-ins that the rig allows is kept.
+drive::StreamConfig simulated_stream(const rig::Rig& rig);
 
 /// Makes a stage that runs in real time: CLOCK_MONOTONIC, the audio thread, the amplifier guard, and inputs
 /// from a display and the touch panel. `inputs` must outlive the stage. With a `capture`, the surface is
