@@ -96,8 +96,12 @@ class StageRig : public SelfTestRig {
   explicit StageRig(SelfTestParts parts) : parts_(std::move(parts)), watch_(parts_.clocks()) {}
 
   GateReading drop_heartbeat() override {
-    auto& amplifier = *parts_.amplifier;
     GateReading reading;
+    if (parts_.amplifier == nullptr) {
+      reading.missing = "the session is simulated";
+      return reading;
+    }
+    auto& amplifier = *parts_.amplifier;
     if (!amplifier.gate()) {
       reading.missing = "no line reads the gate; add gate=LINE to the rig's [amplifier] if it is wired";
       return reading;
@@ -211,6 +215,10 @@ class StageRig : public SelfTestRig {
     return met;
   }
 
+  void pass_on(Input input) {
+    if (parts_.other) parts_.other(std::move(input));
+  }
+
   bool pressed(int button, const std::string& name) {
     auto& stage = *parts_.stage;
     static_cast<void>(stage.drain());
@@ -223,23 +231,27 @@ class StageRig : public SelfTestRig {
 
   void play(const rig::Transducer& transducer, ToneReading& reading) {
     auto& stage = *parts_.room;
-    static_cast<void>(stage.drain());
+    for (auto& input : stage.drain()) pass_on(std::move(input));
     require(stage.arm(), "the amplifier cannot be armed");
     require(stage.open_amplifier(), "the amplifier cannot be enabled");
     const auto settled_ns = stage.now_ns() + kQuiet_ns;
-    while (stage.wait_until(settled_ns)) {
-    }
+    while (auto input = stage.wait_until(settled_ns)) pass_on(std::move(*input));
     const auto burst = quiet_tone(*parts_.rig, transducer, reading.frequency_Hz);
     const auto onsets = stage.present({&burst, 1}, stage.now_ns());
     const auto end_ns = stage.now_ns() + kResult_ns;
     reading.proof = terms::Proof::lost;
-    while (const auto input = stage.wait_until(end_ns)) {
+    while (auto input = stage.wait_until(end_ns)) {
       if (input->kind == InputKind::fault) {
         stage.close_amplifier();
-        throw std::runtime_error(terms::describe(Fault{input->fault, input->text}));
+        const Fault fault{input->fault, input->text};
+        pass_on(std::move(*input));
+        throw std::runtime_error(terms::describe(fault));
       }
       if (input->kind == InputKind::heard) break;
-      if (input->kind != InputKind::measured) continue;
+      if (input->kind != InputKind::measured) {
+        pass_on(std::move(*input));
+        continue;
+      }
       if (input->forces) forces_ = input->forces;
       if (!input->measured) continue;
       reading.proof = input->measured->verdict;

@@ -26,7 +26,7 @@ using AskOperator = std::function<void(const Request&)>;
 struct SelfTestParts {
   const rig::Rig* rig = nullptr;
   Stage* stage = nullptr;                 ///< runs in real time
-  drive::Amplifier* amplifier = nullptr;  ///< the amplifier of the stage
+  drive::Amplifier* amplifier = nullptr;  ///< the amplifier of the stage; null if the stage simulates it
   /// Where tones are played: the stage, or a stage in a simulated room; null if the rig captures nothing.
   Stage* room = nullptr;
   std::optional<CaptureSetup> capture;  ///< how the room captures; empty if the rig captures nothing
@@ -35,6 +35,8 @@ struct SelfTestParts {
   std::function<system::Clocks()> clocks = system::read_clocks;
   std::string sensors = "/sys/class/hwmon";
   double longest_press_s = kLongestPress_s;
+  /// Gets inputs that the self-test does not use, such as a request to stop the session; may be empty.
+  std::function<void(Input)> other = {};
 };
 
 /// A rig whose parts are reached through a stage. The amplifier must be armed, or may be armed: call this

@@ -95,6 +95,7 @@ records::SessionStart start_of(const Setup& setup, std::uint64_t seed, const std
   start.realtime_rights = rights;
   start.started_local = local_time();
   start.consent_version = setup.consent_version;
+  start.conditions = setup.conditions;
   if (!setup.calibration_id.empty()) start.calibration_id = setup.calibration_id;
   start.calibration_text = setup.calibration_text;
   return start;

@@ -101,6 +101,11 @@ class Stage {
   /// Asks a simulated observer to set this slider and press Done. Times count from `zero_ns`.
   virtual void adjustment(const observer::Adjustment& adjustment, std::int64_t zero_ns) = 0;
 
+  /// For the self-test: the amplifier and its guard, null in a simulated session; and how a simulated room
+  /// captures, empty without one.
+  virtual drive::Amplifier* guarded_amplifier() { return nullptr; }
+  virtual std::optional<CaptureSetup> capture() const { return std::nullopt; }
+
   virtual std::optional<ClockFit> clock_fit() = 0;
   virtual std::string realtime_rights() const = 0;
   /// Disarms the amplifier. If the output is a file, completes the file. Throws std::system_error.

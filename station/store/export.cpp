@@ -69,7 +69,8 @@ std::vector<ProtocolSelection> select(Database& database, const std::string& dir
 }  // namespace
 
 CsvColumns csv_columns(const ProtocolSelection& selection) {
-  return {trial_columns(selection.factors), interval_columns(), event_columns(), session_columns()};
+  return {trial_columns(selection.factors), interval_columns(), event_columns(), session_columns(),
+          self_test_columns()};
 }
 
 void for_each_row(Database& database, const ProtocolSelection& selection, const CsvColumns& columns,
@@ -77,7 +78,9 @@ void for_each_row(Database& database, const ProtocolSelection& selection, const 
   for (const auto& session : selection.sessions) {
     const auto stored = read_session(database, session);
     const auto spans = stimulus_spans(stored);
-    rows.sessions(cells_of(columns.sessions, {&stored.session}));
+    ExportRow session_cells{&stored.session};
+    session_cells.self_test = newest_self_test(stored);
+    rows.sessions(cells_of(columns.sessions, session_cells));
     for (const auto& block : stored.blocks)
       for (const auto& trial : block.trials) {
         ExportRow row{&stored.session, &block.start, &trial};
@@ -90,8 +93,12 @@ void for_each_row(Database& database, const ProtocolSelection& selection, const 
       }
     for (const auto& event : in_order_of_time(stored.events)) {
       const auto& segment = stored.segments.at(static_cast<std::size_t>(event.segment_index) - 1);
-      rows.events(
-          cells_of(columns.events, {&stored.session, nullptr, nullptr, nullptr, &event, segment.monotonic_ns}));
+      ExportRow row{&stored.session, nullptr, nullptr, nullptr, &event, segment.monotonic_ns};
+      rows.events(cells_of(columns.events, row));
+      for (const auto& check : event.checks) {
+        row.check = &check;
+        if (rows.self_tests) rows.self_tests(cells_of(columns.self_tests, row));
+      }
     }
   }
 }
@@ -103,14 +110,17 @@ void export_csv(Database& database, const ProtocolSelection& selection, const Ta
     return TableFile(selection.folder + "/" + name, style, names_of(all));
   };
   auto trials = table("trials.csv", columns.trials), intervals = table("intervals.csv", columns.intervals),
-       events = table("events.csv", columns.events), sessions = table("sessions.csv", columns.sessions);
+       events = table("events.csv", columns.events), sessions = table("sessions.csv", columns.sessions),
+       checks = table("self_tests.csv", columns.self_tests);
   const auto into = [](TableFile& file) {
     return [&file](const std::vector<Cell>& cells) { file.row(cells); };
   };
-  for_each_row(database, selection, columns, {into(trials), into(intervals), into(events), into(sessions)});
+  for_each_row(database, selection, columns, {into(trials), into(intervals), into(events), into(sessions),
+                into(checks)});
   for (auto* file : {&trials, &intervals, &events, &sessions}) file->finish(files);
   write_file(selection.folder + "/codebook.json", codebook_json(selection.protocol_id, selection.factors));
   files.push_back({selection.folder + "/codebook.json", 0});
+  checks.finish(files);
 }
 
 SelectedSessions select_for_export(const std::string& path, const std::string& directory,

@@ -12,6 +12,11 @@ enum class Verdict {
 
 inline constexpr std::array verdicts{Verdict::passed, Verdict::failed, Verdict::not_possible};
 
+/// Fingers that a session may be run with.
+inline constexpr std::array fingers{"left-thumb",  "left-index",  "left-middle", "left-ring",
+                                    "left-little", "right-thumb", "right-index", "right-middle",
+                                    "right-ring",  "right-little"};
+
 /// Returns the word used in databases and exports: "passed", "failed", "not possible".
 const char* name(Verdict verdict);
 

@@ -1,6 +1,7 @@
 #include <fstream>
 
 #include "station/session/self_test_rig.hpp"
+#include "tests/session/live_room.hpp"
 #include "tests/session/measured_session.hpp"
 #include "tests/support/catch.hpp"
 
@@ -118,7 +119,8 @@ TEST_CASE("the self-test measures the simulated rig and finds nothing wrong",
   SimulatedFaults none;
   none.sensors = folder / "nothing";
   const auto checks = simulated_self_test(simulated(folder), folder.path, none);
-  for (const auto& check : checks) UNSCOPED_INFO(check.name << ": " << name(check.verdict) << ", " << check.what);
+  for (const auto& check : checks)
+    UNSCOPED_INFO(check.name << ": " << name(check.verdict) << ", " << check.what);
   CHECK(failed(checks).empty());
   CHECK(with(Verdict::not_possible, checks) == "temperature");
   // The monostable of the simulated gate lasts 110 ms, and the heartbeat may have toggled 10 ms before.
@@ -178,4 +180,117 @@ TEST_CASE("the hottest sensor of the machine counts", "[system][self-test]") {
     std::ofstream(folder / chip + "/temp1_max") << "90000\n";
   }
   CHECK(system::hottest_C(folder.path).value() == Approx(61));
+}
+
+namespace {
+
+/// Runs a simulated session with the self-test, in a room with this fault.
+struct TestedSession {
+  TemporaryFolder folder;
+  Setup setup = live_room::live_setup(folder / "a.sqlite");
+  Inputs inputs;
+
+  TestedSession() {
+    setup.rig = simulated(folder, measured::kPickUps);
+    setup.run_mode = terms::RunMode::simulated;
+    setup.observer = "sim";
+  }
+
+  Summary run(const std::function<void(SimulatedRoom&)>& spoil = {}) {
+    setup.self_test = true;
+    auto room = std::make_unique<SimulatedRoom>(setup.rig);
+    if (spoil) spoil(*room);
+    return session::run(setup, nullptr, inputs, std::move(room));
+  }
+  records::EventRow tested(const Summary& summary) const {
+    const auto stored = store::read_session(setup.database, summary.session_id);
+    for (const auto& event : stored.events)
+      if (event.kind == "self_test") return event;
+    throw std::runtime_error("no self-test was stored");
+  }
+};
+
+void kill_transducer(SimulatedRoom& room) {
+  room.plant().add({plant::FaultKind::transducer_dead, 0, 100'000});
+}
+
+}  // namespace
+
+TEST_CASE("the self-test runs before the first block and is stored with the session",
+          "[session][self-test]") {
+  TestedSession session;
+  const auto summary = session.run();
+  CHECK(summary.status == records::SessionStatus::completed);
+  const auto event = session.tested(summary);
+  CHECK(event.value == "passed");
+  CHECK(find(event.checks, "tone main").verdict == Verdict::passed);
+  CHECK(find(event.checks, "gate").verdict == Verdict::not_possible);
+  CHECK(find(event.checks, "disk").limit == kLeastDisk_MiB);
+}
+
+TEST_CASE("a failed check stops the session before anybody is stimulated", "[session][self-test]") {
+  TestedSession session;
+  const auto summary = session.run(kill_transducer);
+  CHECK(summary.status == records::SessionStatus::interrupted);
+  CHECK(summary.reason.find("the self-test failed: tone main: ") == 0);
+  CHECK(summary.trials == 0);
+  CHECK(session.tested(summary).value == "failed");
+  CHECK(find(session.tested(summary).checks, "tone main").verdict == Verdict::failed);
+}
+
+TEST_CASE("a session continues in spite of a failed check if the operator gives the reason, which is stored",
+          "[session][self-test]") {
+  TestedSession session;
+  session.setup.despite = "the pick-up is being repaired";
+  const auto summary = session.run(kill_transducer);
+  CHECK(summary.status == records::SessionStatus::completed);
+  CHECK(session.tested(summary).value == "failed; continued: the pick-up is being repaired");
+}
+
+TEST_CASE("what is known about room, surface and finger is stored with the session", "[session][self-test]") {
+  TestedSession session;
+  session.setup.conditions = {45.0, 21.5, false, "left-index", 38.0};
+  const auto summary = session.run();
+  const auto stored =
+      store::read_session(session.setup.database, summary.session_id).session.start.conditions;
+  CHECK(stored.humidity_percent == 45.0);
+  CHECK(stored.room_temperature_C == 21.5);
+  CHECK(stored.surface_cleaned == false);
+  CHECK(stored.finger == "left-index");
+  CHECK(stored.skin_moisture == 38.0);
+}
+
+TEST_CASE("in the room, the operator ends a session after a failed check, or writes why it continues",
+          "[session][self-test][threads]") {
+  TemporaryFolder folder;
+  live_room::Room room;
+  auto setup = live_room::live_setup(folder / "a.sqlite");
+  setup.self_test = true;
+  const bool continues = GENERATE(true, false);
+  room.reacts = [&](const Page& page) {
+    if (page.kind != PageKind::fault || page.fault != FaultKind::self_test) return room.cooperate(page);
+    CHECK(page.detail.find("gate: the gate stays open") == 0);
+    Input input;
+    input.time_ns = system::monotonic_ns();
+    input.kind = continues ? InputKind::note : InputKind::stop;
+    if (continues) input.text = "the oscilloscope shows that it shuts";
+    room.inputs.push(input);
+  };
+  const auto lines = std::make_shared<lines::SimulatedAmplifierLines>();
+  lines->bridge_monostable();
+  auto devices = room.devices();
+  devices.amplifier = lines::simulated_amplifier(lines);
+  const auto summary = session::run(setup, &room, room.inputs, std::move(devices));
+  const auto events = live_room::events_of(setup.database, summary, "self_test");
+  REQUIRE(events.size() == 1);
+  CHECK(find(events[0].checks, "gate").verdict == Verdict::failed);
+  CHECK(find(events[0].checks, "stop").verdict == Verdict::not_possible);
+  if (continues) {
+    CHECK(summary.status == records::SessionStatus::completed);
+    CHECK(events[0].value == "failed; continued: the oscilloscope shows that it shuts");
+  } else {
+    CHECK(summary.status == records::SessionStatus::interrupted);
+    CHECK(room.stimuli == 0);
+    CHECK(events[0].value == "failed");
+  }
 }
