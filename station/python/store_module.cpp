@@ -73,6 +73,7 @@ py::list tables(const std::string& database, const std::string& session, const s
     named["intervals"] = columns(one.intervals);
     named["events"] = columns(one.events);
     named["sessions"] = columns(one.sessions);
+    named["self_tests"] = columns(one.self_tests);
     list.append(named);
   }
   return list;

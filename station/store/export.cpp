@@ -97,7 +97,7 @@ void for_each_row(Database& database, const ProtocolSelection& selection, const 
       rows.events(cells_of(columns.events, row));
       for (const auto& check : event.checks) {
         row.check = &check;
-        if (rows.self_tests) rows.self_tests(cells_of(columns.self_tests, row));
+        rows.self_tests(cells_of(columns.self_tests, row));
       }
     }
   }
@@ -115,8 +115,8 @@ void export_csv(Database& database, const ProtocolSelection& selection, const Ta
   const auto into = [](TableFile& file) {
     return [&file](const std::vector<Cell>& cells) { file.row(cells); };
   };
-  for_each_row(database, selection, columns, {into(trials), into(intervals), into(events), into(sessions),
-                into(checks)});
+  for_each_row(database, selection, columns,
+               {into(trials), into(intervals), into(events), into(sessions), into(checks)});
   for (auto* file : {&trials, &intervals, &events, &sessions}) file->finish(files);
   write_file(selection.folder + "/codebook.json", codebook_json(selection.protocol_id, selection.factors));
   files.push_back({selection.folder + "/codebook.json", 0});

@@ -33,16 +33,15 @@ struct SelectedSessions {
 SelectedSessions select_for_export(const std::string& database, const std::string& directory,
                                    const ExportOptions& options);
 
-/// The columns of the four tables of a protocol.
+/// The columns of the tables of a protocol.
 struct CsvColumns {
   ExportColumns trials, intervals, events, sessions, self_tests;
 };
 CsvColumns csv_columns(const ProtocolSelection& selection);
 
-/// Receives the rows of the four tables one by one.
+/// Receives the rows of these tables one by one.
 struct CsvRows {
-  std::function<void(const std::vector<Cell>&)> trials, intervals, events, sessions;
-  std::function<void(const std::vector<Cell>&)> self_tests = {};  ///< may be empty
+  std::function<void(const std::vector<Cell>&)> trials, intervals, events, sessions, self_tests;
 };
 void for_each_row(Database& database, const ProtocolSelection& selection, const CsvColumns& columns,
                   const CsvRows& rows);
