@@ -7,7 +7,7 @@ install(DIRECTORY protocols deploy/rigs DESTINATION ${CMAKE_INSTALL_DATADIR}/tur
 # Keep the folder structure of the manuals, so that the links between them work.
 file(GLOB drawings RELATIVE ${CMAKE_SOURCE_DIR} CONFIGURE_DEPENDS deploy/drawings/*.svg)
 foreach(manual README.md LICENSE deploy/README.md deploy/boards.md deploy/to-measure.md deploy/rigs/README.md ${drawings} physics/README.md protocols/README.md
-        station/store/README.md tests/README.md)
+        station/store/README.md station/python/README.md tests/README.md)
   cmake_path(GET manual PARENT_PATH folder)
   install(FILES ${manual} DESTINATION ${CMAKE_INSTALL_DOCDIR}/${folder} COMPONENT station)
 endforeach()
@@ -51,6 +51,23 @@ set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "${PROJECT_DESCRIPTION}")
 file(READ deploy/debian/description CPACK_DEBIAN_STATION_DESCRIPTION)
 set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
 set(CPACK_COMPONENTS_ALL station)
+if(TURNPOINT_PYTHON)
+  # python3-turnpoint, for the minor version of Python for which the modules were compiled
+  list(APPEND CPACK_COMPONENTS_ALL python)
+  math(EXPR next_minor "${Python_VERSION_MINOR} + 1")
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-turnpoint)
+  set(CPACK_DEBIAN_PYTHON_FILE_NAME DEB-DEFAULT)
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS
+      "python3 (>= 3.${Python_VERSION_MINOR}), python3 (<< 3.${next_minor}), python3-numpy, python3-pandas")
+  set(CPACK_DEBIAN_PYTHON_DESCRIPTION
+      "Reads sessions, studies and recorded signals of a Turnpoint station as pandas\nframes, from a database or from an export. Its module physics computes the\nwaves on tapered friction displays, with NumPy arrays.")
+  set(python_doc share/doc/python3-turnpoint)
+  install(FILES deploy/debian/copyright station/python/README.md physics/python/the-seed.ipynb station/python/a-study.ipynb
+          DESTINATION ${python_doc} COMPONENT python)
+  install(FILES ${CMAKE_BINARY_DIR}/changelog.gz DESTINATION ${python_doc} COMPONENT python)
+  install(FILES deploy/debian/python-lintian-overrides DESTINATION share/lintian/overrides RENAME python3-turnpoint COMPONENT python)
+endif()
 set(CPACK_STRIP_FILES ON)
 set(CPACK_DEB_COMPONENT_INSTALL ON)
 set(CPACK_DEBIAN_STATION_PACKAGE_NAME turnpoint)

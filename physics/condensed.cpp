@@ -39,6 +39,10 @@ Condensed::Vector Condensed::follow(const Vector& ends) const {
   return -lower_.triangularView<Eigen::UnitLower>().transpose().solve(rows_.transpose() * ends);
 }
 
+Condensed::Vector Condensed::under(const Vector& reduced) const {
+  return lower_.triangularView<Eigen::UnitLower>().transpose().solve(reduced.cwiseQuotient(pivots_));
+}
+
 Condensed::Vector Condensed::reduce(const Vector& load) const {
   return lower_.triangularView<Eigen::UnitLower>().solve(load);
 }

@@ -27,6 +27,8 @@ class Condensed {
   // the ends then feel; quadratic() returns load^T matrix^-1 load for a load on the bubbles alone.
   Vector reduce(const Vector& load) const;
   Vector load_on_ends(const Vector& reduced) const { return -(rows_ * reduced); }
+  // The bubbles under that load, with the ends held.
+  Vector under(const Vector& reduced) const;
   std::complex<double> quadratic(const Vector& reduced) const {
     return reduced.cwiseProduct(reduced).cwiseQuotient(pivots_).sum();
   }

@@ -7,6 +7,7 @@
 
 #include "physics/centre_line.hpp"
 #include "physics/dispersion.hpp"
+#include "physics/modes_bound.hpp"
 #include "physics/planner.hpp"
 
 namespace turnpoint::physics {
@@ -141,7 +142,7 @@ std::string validity_of(const Surface& surface, Model model) {
 
 // Lower limit of the error of `modes` near a resonance. Its resonances, and those of its higher modes, are
 // not where the first mode's conditioning has them, so that the estimate before the solution does not know
-// them.
+// them. Where modes_bound() compares two solutions, it sees them.
 double resonant_error(const Surface& surface, const ToneField& tone, Normalise normalise, double weight) {
   constexpr double shape = 1e-4, largest = 2;
   if (normalise != Normalise::peak) {
@@ -217,7 +218,8 @@ FieldNotes describe(const Surface& surface, std::span<const Tone> tones, const F
   const PlanRequest request{
       {tones.begin(), tones.end()}, static_cast<int>(field.amplitude.size()), {}, field.normalise, {}};
   notes.error_bound = estimate(surface, request, field.model).amplitude_bound;
-  for (std::size_t i = 0; field.model == Model::modes && i < field.tones.size(); ++i) {
+  const bool estimated = field.model == Model::modes && !modes_bound_applies(surface);
+  for (std::size_t i = 0; estimated && i < field.tones.size(); ++i) {
     const double weight = tones[i].amplitude_m / strongest(tones);
     notes.error_bound =
         std::max(notes.error_bound, resonant_error(surface, field.tones[i], field.normalise, weight));

@@ -11,18 +11,6 @@ using Small =
     Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, largest_degree + 4, largest_degree + 4>;
 using Column = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, largest_degree + 4, 1>;
 
-// Second derivative of the half-width. For a tabulated taper it jumps at the knots, where elements end.
-double second_derivative(const Taper& taper, double x) {
-  if (const auto* t = std::get_if<ExponentialTaper>(&taper.form())) {
-    return taper.half_width_m(x) / (t->decay_length_m * t->decay_length_m);
-  }
-  if (std::holds_alternative<TabulatedTaper>(taper.form())) {
-    const Cubic& p = taper.table().piece(x);
-    return 2 * p.c2 + 6 * p.c3 * (x - p.x0);
-  }
-  return 0;
-}
-
 }  // namespace
 
 double take_out_size(Eigen::VectorXcd& unknowns) {
@@ -54,7 +42,7 @@ std::vector<ModalAssembler::Point> ModalAssembler::points(const ModalElement& e)
   const double d = 2 / e.h;
   for (std::size_t q = 0; q < rule_.x.size(); ++q) {
     const double x = e.x0 + e.h * rule_.x[q];
-    Point point{e.h * rule_.w[q], taper_.half_width_m(x), taper_.slope(x), second_derivative(taper_, x),
+    Point point{e.h * rule_.w[q], taper_.half_width_m(x), taper_.slope(x), taper_.second_derivative(x),
                 table_[q]};
     for (int a = 0; a < along_.count(); ++a) {
       const bool slope = along_.per_vertex == 2 && (a == 1 || a == along_.count() - 1);
@@ -101,7 +89,7 @@ Eigen::MatrixXcd ModalAssembler::single_matrix(const ModalElement& e) const {
   std::array<Rows, largest_degree + 1> stiffness{}, mass{};
   for (std::size_t q = 0; q < rule_.x.size(); ++q) {
     const double x = e.x0 + e.h * rule_.x[q], w = taper_.half_width_m(x);
-    const Form f = single_form(w, taper_.slope(x) / w, second_derivative(taper_, x) / w);
+    const Form f = single_form(w, taper_.slope(x) / w, taper_.second_derivative(x) / w);
     const double weight = e.h * rule_.w[q] * w;
     const BasisValues& basis = table_[q];
     Rows s{}, p{}, v{}, fs{}, fp{}, fv{};

@@ -4,6 +4,7 @@
 #include <complex>
 #include <vector>
 
+#include "physics/condensed.hpp"
 #include "physics/element_basis.hpp"
 #include "physics/taper.hpp"
 #include "physics/transverse_basis.hpp"
@@ -25,8 +26,12 @@ struct ModalElement {
   double x0 = 0, h = 0;
   int left = 0, right = 0;
   double ln_scale = 0;
-  // matrix that gives all other unknowns of the element from those of its left vertex
+  // On a plate: gives all other unknowns from those of the left vertex. On a membrane: empty.
   Eigen::MatrixXcd transfer;
+  Condensed inner;                                        // gives the bubbles from the unknowns of both ends
+  Eigen::MatrixXcd pull;                                  // right vertex = -pull (left vertex)
+  Eigen::VectorXcd load;                                  // load on all unknowns; empty if there is none
+  Eigen::VectorXcd bubbles_under_load, right_under_load;  // what the load adds to the unknowns
   Eigen::VectorXcd centre;  // coefficient of each basis function on the centre line
 };
 

@@ -10,17 +10,35 @@
 #include "physics/field.hpp"
 #include "physics/line_search.hpp"
 #include "physics/modal_setup.hpp"
+#include "physics/piston_lift.hpp"
 #include "physics/section_field.hpp"
 
 namespace turnpoint::physics {
 namespace {
 
-using std::numbers::pi;
+// the lift of a piston reaches this many half-widths of the drive edge into the strip
+constexpr double lift_widths = 0.45;
+constexpr int lift_nodes = 12;  // quadrature nodes along x; across, one more for each transverse function
 
-// Eliminates unknowns from the tip to the drive edge. In each element, all other unknowns are expressed by
-// those at the end nearer to the drive edge.
-void eliminate(const ModalAssembler& assembler, const ElementBasis& along,
-               std::vector<ModalElement>& elements) {
+// Expresses the load by its effect on the bubbles and the right vertex. `tail` is the load on everything
+// farther out, seen at the right vertex. Returns the load that the left vertex sees.
+Eigen::VectorXcd eliminate_load(ModalElement& e, const Eigen::PartialPivLU<Eigen::MatrixXcd>& right_stiffness,
+                                Eigen::Index left, const Eigen::VectorXcd& tail) {
+  const Eigen::Index right = e.pull.rows(), bubbles = e.inner.bubbles();
+  const Eigen::VectorXcd reduced = e.inner.reduce(e.load.segment(left, bubbles));
+  const Eigen::VectorXcd on_ends = e.inner.load_on_ends(reduced);
+  Eigen::VectorXcd seen = e.load.head(left) + on_ends.head(left);
+  e.bubbles_under_load = e.inner.under(reduced);
+  if (right == 0) return seen;
+  Eigen::VectorXcd on_right = e.load.tail(right) + on_ends.tail(right);
+  if (tail.size() > 0) on_right += tail;
+  e.right_under_load = right_stiffness.solve(on_right);
+  return seen - e.pull.transpose() * on_right;
+}
+
+// The same as eliminate(), but with pivoting. It is for plates, whose equation is of fourth order.
+void eliminate_plate(const ModalAssembler& assembler, const ElementBasis& along,
+                     std::vector<ModalElement>& elements) {
   Eigen::MatrixXcd tail;  // stiffness of all elements farther out, seen at the right vertex
   for (auto e = elements.rbegin(); e != elements.rend(); ++e) {
     Eigen::MatrixXcd k = assembler.matrix(*e);
@@ -32,6 +50,43 @@ void eliminate(const ModalAssembler& assembler, const ElementBasis& along,
   }
 }
 
+// Eliminates unknowns from the tip to the drive edge: first the bubbles of each element, then its right
+// vertex.
+void eliminate(const ModalAssembler& assembler, const ElementBasis& along,
+               std::vector<ModalElement>& elements) {
+  Eigen::MatrixXcd tail;       // stiffness of all elements farther out, seen at the right vertex
+  Eigen::VectorXcd tail_load;  // load on them, seen at the right vertex; empty if there is none
+  for (auto e = elements.rbegin(); e != elements.rend(); ++e) {
+    const Eigen::MatrixXcd k = assembler.matrix(*e);
+    const Eigen::Index left = along.per_vertex * e->left, right = along.per_vertex * e->right;
+    e->inner = Condensed(k.real(), k.imag(), left, right);
+    const Eigen::MatrixXcd& ends = e->inner.ends();
+    Eigen::PartialPivLU<Eigen::MatrixXcd> right_stiffness;
+    Eigen::MatrixXcd seen = ends.topLeftCorner(left, left);
+    if (right > 0) {
+      right_stiffness.compute(ends.bottomRightCorner(right, right) + tail);
+      e->pull = right_stiffness.solve(ends.bottomLeftCorner(right, left));
+      seen -= ends.topRightCorner(left, right) * e->pull;
+    }
+    tail = seen;
+    if (e->load.size() > 0) tail_load = eliminate_load(*e, right_stiffness, left, tail_load);
+  }
+}
+
+// All unknowns of an element but those of its left vertex, from these.
+Eigen::VectorXcd others(const ModalElement& e, const Eigen::VectorXcd& u) {
+  if (e.transfer.size() > 0) return e.transfer * u;
+  const Eigen::Index right = e.pull.rows(), bubbles = e.inner.bubbles();
+  const double load_scale = std::exp(-e.ln_scale);
+  Eigen::VectorXcd ends(u.size() + right), rest(bubbles + right);
+  ends.head(u.size()) = u;
+  if (right > 0) ends.tail(right) = -(e.pull * u);
+  if (e.right_under_load.size() > 0) ends.tail(right) += load_scale * e.right_under_load;
+  rest << e.inner.follow(ends), ends.tail(right);
+  if (e.bubbles_under_load.size() > 0) rest.head(bubbles) += load_scale * e.bubbles_under_load;
+  return rest;
+}
+
 // Computes the unknowns of all elements, starting at the drive edge. Only the values on the centre line are
 // stored. The logarithm of the unknowns' size is kept separately.
 void substitute(const ModalSetup& s, const ModalAssembler& assembler, const Eigen::VectorXd& drive,
@@ -41,7 +96,7 @@ void substitute(const ModalSetup& s, const ModalAssembler& assembler, const Eige
   for (ModalElement& e : elements) {
     ln_scale += take_out_size(u);
     e.ln_scale = ln_scale;
-    const Eigen::VectorXcd rest = e.transfer * u;
+    const Eigen::VectorXcd rest = others(e, u);
     e.centre = Eigen::VectorXcd::Zero(s.along.count());
     for (int a = 0; a < s.along.count(); ++a) {
       const bool right = a >= s.along.count() - s.along.per_vertex;
@@ -57,7 +112,34 @@ void substitute(const ModalSetup& s, const ModalAssembler& assembler, const Eige
     }
     if (e.right > 0) u = rest.tail(s.along.per_vertex * e.right);
     e.transfer.resize(0, 0);
+    e.inner = {};
+    e.pull.resize(0, 0);
   }
+}
+
+// Load of the elements in the weak form for a field that is the sum of the elements' part and the lift.
+Eigen::VectorXcd lift_load(const ModalSetup& s, const PistonLift& lift, const ModalElement& e) {
+  const Quadrature along = gauss_legendre(lift_nodes), across = gauss_legendre(lift_nodes + e.left);
+  const int bubbles_end = s.along.count() - s.along.per_vertex;
+  Eigen::MatrixXd shapes(e.left, static_cast<Eigen::Index>(across.x.size()));
+  for (std::size_t j = 0; j < across.x.size(); ++j)
+    shapes.col(static_cast<Eigen::Index>(j)) = across.w[j] * bubbles_at(e.left, 1, Parity::even, across.x[j]);
+  Eigen::VectorXcd load = Eigen::VectorXcd::Zero(bubbles_end * e.left + e.right);
+  Eigen::VectorXcd source(shapes.cols());
+  for (std::size_t i = 0; i < along.x.size(); ++i) {
+    const double x = e.x0 + e.h * along.x[i], w = s.taper.half_width_m(x);
+    for (std::size_t j = 0; j < across.x.size(); ++j) {
+      const double y = w * across.x[j];
+      source[static_cast<Eigen::Index>(j)] =
+          s.equation.tension * lift.laplacian(x, y) + s.equation.inertia * lift.value(x, y);
+    }
+    const Eigen::VectorXcd part = e.h * along.w[i] * w * (shapes * source);
+    const BasisValues basis = s.along.at(2 * along.x[i] - 1);
+    for (int a = 0; a < bubbles_end; ++a)
+      load.segment(a * e.left, e.left) += basis.value[static_cast<std::size_t>(a)] * part;
+    load.tail(e.right) += basis.value[static_cast<std::size_t>(bubbles_end)] * part.head(e.right);
+  }
+  return load;
 }
 
 class ModalLine final : public CentreLine {
@@ -81,6 +163,7 @@ class ModalLine final : public CentreLine {
 
  private:
   void solve(const Surface& surface, const ModalSetup& setup, const ModalResolution& resolution);
+  void lift_piston(const ModalSetup& setup);
   Scaled at(double x, int derivative) const;
   Scaled beyond(double x, int derivative) const;
 
@@ -89,6 +172,7 @@ class ModalLine final : public CentreLine {
   TaylorMarch tail_;
   double length_m_, turning_m_ = 0, match_m_ = 0, spacing_m_;
   std::optional<double> peak_m_;
+  std::optional<PistonLift> lift_;  // set if the elements hold the field without it
 };
 
 ModalLine::ModalLine(const Surface& surface, double f, Losses losses, const ModalResolution& resolution)
@@ -108,14 +192,27 @@ ModalLine::ModalLine(const Surface& surface, double f, Losses losses, const Moda
 
 void ModalLine::solve(const Surface& surface, const ModalSetup& s, const ModalResolution& resolution) {
   const ModalAssembler assembler(s.taper, s.across, s.along, s.equation, s.taper.half_width_m(0));
-  eliminate(assembler, s.along, elements_);
+  if (surface.drive == DriveShape::piston && !s.equation.plate() && !resolution.drive) lift_piston(s);
+  (s.equation.plate() ? eliminate_plate : eliminate)(assembler, s.along, elements_);
   Eigen::VectorXd drive = Eigen::VectorXd::Unit(s.along.per_vertex, 0);
-  if (s.across.count() > 1) {
+  if (lift_) {
+    drive = Eigen::VectorXd::Zero(elements_.front().left);
+  } else if (s.across.count() > 1) {
     const auto shape =
         s.across.project(resolution.drive ? resolution.drive : drive_shape(surface, s.equation));
     drive = drive_unknowns(s, s.across, shape, elements_.front().left);
   }
   substitute(s, assembler, drive, elements_);
+}
+
+// Represents the jump of a piston's field at the corners by a PistonLift that ends with an element. The
+// elements then solve for the rest of the field, which is zero at the drive edge and has a load.
+void ModalLine::lift_piston(const ModalSetup& s) {
+  const double reach = lift_widths * s.taper.half_width_m(0);
+  auto last = elements_.begin();
+  while (last + 1 != elements_.end() && last->x0 + last->h < reach) ++last;
+  lift_.emplace(s.taper, last->x0 + last->h);
+  for (auto e = elements_.begin(); e <= last; ++e) e->load = lift_load(s, *lift_, *e);
 }
 
 Scaled ModalLine::at(double x, int derivative) const {
@@ -128,7 +225,10 @@ Scaled ModalLine::at(double x, int derivative) const {
   const auto& part = derivative == 0 ? basis.value : basis.first;
   std::complex<double> sum = 0;
   for (int a = 0; a < along_.count(); ++a) sum += e->centre[a] * part[static_cast<std::size_t>(a)];
-  return {derivative == 0 ? sum : sum * (2 / e->h), e->ln_scale};
+  if (derivative == 1) sum *= 2 / e->h;
+  if (lift_ && x < lift_->end_m())
+    sum += (derivative == 0 ? lift_->value(x, 0) : lift_->centre_slope(x)) * std::exp(-e->ln_scale);
+  return {sum, e->ln_scale};
 }
 
 // Beyond the match point, where the field has decayed to e^-45, the one-mode equation gives the further

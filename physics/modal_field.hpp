@@ -16,7 +16,7 @@ struct ModalResolution {
   // which then agrees with a finer one to 1e-4.
   std::optional<int> degree;
   double radians = 2.5;     // phase (wavenumber times length, in radians) that one element spans
-  int spare_functions = 3;  // number of transverse functions beyond those that can propagate
+  int spare_functions = 3;  // number of transverse functions beyond those that follow waves across the strip
   // Displacement of the drive edge as a function of eta = y/W in [0, 1]. If empty, the surface's `drive` is
   // used. Tests use it to prescribe the drive edge of a field that is known exactly.
   std::function<double(double)> drive;

@@ -17,8 +17,16 @@ constexpr double ln_domain_end = 70;
 constexpr double ln_match = 45;  // the one-mode decay is used where the field has decayed by more than e^-45
 constexpr double widths_per_element = 1.2;
 
-// Number of transverse functions beyond those that can propagate. Tension makes a boundary layer of width
-// sqrt(D/N) along clamped sides, which takes more polynomials to describe.
+// Number of functions of eta that follow cos(kw eta). Legendre's series of this function decays only beyond
+// the degree kw, so there must be more of them than modes that can propagate, which are kw/pi. A plate's
+// functions have a factor (1 - eta^2)^2, and thus two degrees more than a membrane's.
+int functions_for(double kw, bool plate) {
+  const int followed = static_cast<int>(std::ceil(0.5 * kw));
+  return plate ? std::max(static_cast<int>(std::ceil(kw / pi)), followed - 1) : followed;
+}
+
+// Number of transverse functions beyond those that follow waves across the strip. Tension makes a boundary
+// layer of width sqrt(D/N) along clamped sides, which takes more polynomials to describe.
 int spare_functions(const Dispersion& dispersion, double f, const ModalResolution& resolution) {
   if (!dispersion.clamped_bending()) return resolution.spare_functions;
   const double layers =
@@ -36,8 +44,17 @@ TransverseBasis make_across(const Surface& surface, double f, const ModalResolut
         k * w, w * std::sqrt(k * k + dispersion.tension_N_per_m / dispersion.stiffness_N_m));
   }
   const int functions = spare_functions(dispersion, f, resolution) + 2 +
-                        static_cast<int>(std::ceil(k * Taper(surface).half_width_m(0) / pi));
+                        functions_for(k * Taper(surface).half_width_m(0), plate);
   return TransverseBasis::polynomials(std::min(functions, 60), plate ? 2 : 1);
+}
+
+// Shortens an element in which a membrane narrows by a large factor, as in the step of a table. The
+// polynomials along x do not follow such a change, and those of a finer solution hardly better.
+double gently_narrowing(const Taper& taper, double x, double h) {
+  constexpr double least_share = 0.5;
+  const double w = taper.half_width_m(x);
+  while (taper.half_width_m(x + h) < least_share * w) h *= 0.8;
+  return h;
 }
 
 }  // namespace
@@ -107,9 +124,10 @@ std::vector<ModalElement> make_modal_elements(const ModalSetup& s, const ModalRe
     for (const Cubic& piece : s.taper.table().pieces()) {
       if (piece.x0 > x * (1 + 1e-12) && piece.x0 < end) end = piece.x0;
     }
+    if (!s.equation.plate()) h = gently_narrowing(s.taper, x, std::min(h, end - x));
     if (x + 1.5 * h > end) h = x + h >= end ? end - x : 0.5 * (end - x);
     if (!(h > 1e-9 * w0)) break;  // the apex is reached
-    const int wanted = static_cast<int>(std::ceil(s.k * w / pi)) + s.spare;
+    const int wanted = functions_for(s.k * w, s.equation.plate()) + s.spare;
     ModalElement& e = elements.emplace_back();
     e.x0 = x;
     e.h = h;

@@ -16,7 +16,7 @@ struct ModalSetup {
   ElementBasis along;
   ModalEquation equation;
   double turning_m;  // position of the turning point, or the length if there is none
-  int spare;         // number of transverse functions beyond those that can propagate
+  int spare;         // number of transverse functions beyond those that follow waves across the strip
 };
 
 ModalSetup make_modal_setup(const Surface& surface, double frequency_Hz, Losses losses,

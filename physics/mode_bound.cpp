@@ -128,6 +128,7 @@ ModeBound mode_bound(const Surface& surface, double f, double conditioning,
   }
   const double drift = membrane ? 0 : plate_drift * dispersion.wavenumber_per_m(f) * x0;
   if (!membrane && ratio > plate_second_mode) modes *= plate_amplification(surface, taper, f);
+  bound.resonance = coupled > 0 ? modes / coupled : 1;
   bound.higher_modes = std::min(largest, modes);
   bound.shape = std::min(largest, modes + drift + 0.3 * bend + slope_shift * steepest * steepest);
   const double phase = coupled + bend + 1.5 * drift;  // phase error of the first mode at the drive edge

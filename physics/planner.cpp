@@ -12,6 +12,7 @@
 #include "physics/edge_feature.hpp"
 #include "physics/map_bounds.hpp"
 #include "physics/mode_bound.hpp"
+#include "physics/modes_bound.hpp"
 
 namespace turnpoint::physics {
 namespace {
@@ -20,11 +21,11 @@ namespace {
 constexpr double probe_margin = 1.9;
 constexpr int probes = 160;
 constexpr double unknown = 2, unknown_dB = 120;
-// Relative error of the model `modes` at its default resolution, up to `usual_width` cut-off half-widths at
-// the drive edge. A piston's jump at the held sides cannot be followed: the error is largest on the first
-// tenth of a half-width.
-constexpr double modes_accuracy = 5e-4, piston_accuracy = 0.06;
-constexpr double usual_width = 6, usual_piston_width = 12;
+// What is known of the error of `modes` before it is solved, if no higher mode resonates: more than its
+// largest on random surfaces. The field of a clamped plate's piston jumps at the corners of the drive edge.
+constexpr double membrane_accuracy = 2e-3, plate_accuracy = 5e-4, plate_piston_accuracy = 0.15;
+constexpr double modes_resonance = 5e-5;  // how much a higher mode's resonance adds to this error
+constexpr double edge_share = 1;  // shift of an edge over the cut-off half-width, divided by this error
 
 // The profile of one model: logarithms of |v| at the probe points, and the positions of its maximum and edge.
 struct Probe {
@@ -110,12 +111,6 @@ double cost_s(const Surface& surface, double f, Model model, int points) {
   return 1e-3 + (plate ? 1e-4 : 6e-5) * kl + 5e-8 * points;
 }
 
-double modes_error(const Surface& surface, double f) {
-  const double ratio = half_width_m(surface, 0) / cut_off_half_width_m(surface, f);
-  if (surface.drive == DriveShape::piston) return piston_accuracy * std::max(1.0, ratio / usual_piston_width);
-  return modes_accuracy * std::max(1.0, std::pow(ratio / usual_width, 3));
-}
-
 // Error of a solution that is exact but for rounding (see tests/physics/one_mode_test.cpp).
 double rounding_error(const Surface& surface, double f) {
   const double steps = 8 * std::numeric_limits<double>::epsilon();
@@ -160,6 +155,45 @@ RungEstimate edge_estimate(const Surface& surface, const PlanRequest& request, c
   return e;
 }
 
+// The error of boundaries whose frequency another model has computed.
+double placed_elsewhere_m(const PlanRequest& request, const Reference& reference) {
+  const bool graded = request.edge.kind != Edge::Kind::turning;
+  return graded && request.placed_by.value_or(Model::modes) != Model::modes ? reference.bound.position_m()
+                                                                            : 0;
+}
+
+// Bounds of `modes` without solving for it.
+RungEstimate modes_estimate(const Surface& surface, const PlanRequest& request, const Reference& reference) {
+  RungEstimate e;
+  e.cost_s = cost_s(surface, reference.f, Model::modes, request.points);
+  const bool plate = Dispersion(surface).clamped_bending(), piston = surface.drive == DriveShape::piston;
+  const double accuracy = (!plate   ? membrane_accuracy
+                           : piston ? plate_piston_accuracy
+                                    : plate_accuracy) +
+                          modes_resonance * (reference.bound.resonance - 1);
+  const bool drive = request.normalise != Normalise::peak;
+  e.amplitude_bound = accuracy * (drive ? reference.conditioning : 1);
+  e.level_bound_dB = 20 * std::log10(1 + accuracy * reference.conditioning);
+  e.boundary_bound_m = accuracy * edge_share * cut_off_half_width_m(surface, reference.f) +
+                       placed_elsewhere_m(request, reference);
+  e.reason = "two-dimensional field at its default resolution";
+  return e;
+}
+
+// Bounds of `modes` from a second solution.
+RungEstimate compared_modes_estimate(const Surface& surface, const PlanRequest& request,
+                                     const Reference& reference, Comparison comparison) {
+  RungEstimate e = modes_estimate(surface, request, reference);
+  const auto bound = modes_bound(surface, reference.f, request.edge, comparison);
+  e.reason = std::string("two-dimensional field, compared with a ") +
+             (comparison == Comparison::finer ? "finer" : "coarser") + " solution";
+  e.amplitude_bound = !bound ? unknown : request.normalise == Normalise::peak ? bound->shape : bound->drive;
+  e.level_bound_dB = bound ? bound->level_dB : unknown_dB;
+  e.boundary_bound_m =
+      (bound ? bound->position_m : surface.length_m) + placed_elsewhere_m(request, reference);
+  return e;
+}
+
 RungEstimate profile_estimate(const Surface& surface, const PlanRequest& request, const Reference& reference,
                               Model model) {
   RungEstimate e;
@@ -171,17 +205,7 @@ RungEstimate profile_estimate(const Surface& surface, const PlanRequest& request
   if (model == Model::modes && surface.theory != PlateTheory::kirchhoff &&
       surface.drive == DriveShape::piston)
     throw std::domain_error("model modes of a thick plate is not available for drive piston");
-  if (model == Model::modes) {
-    const double error = modes_error(surface, reference.f);
-    e.amplitude_bound = error * (drive ? reference.conditioning : 1);
-    e.level_bound_dB = 20 * std::log10(1 + modes_accuracy * reference.conditioning);
-    e.boundary_bound_m = modes_accuracy * 0.1 * cut_off_half_width_m(surface, reference.f);
-    const bool graded = request.edge.kind != Edge::Kind::turning;
-    if (graded && request.placed_by.value_or(model) != model)
-      e.boundary_bound_m += reference.bound.position_m();
-    e.reason = "two-dimensional field at its default resolution";
-    return e;
-  }
+  if (model == Model::modes) return modes_estimate(surface, request, reference);
   const ModeBound& bound = reference.bound;
   e.amplitude_bound = (drive ? bound.drive : bound.shape) +
                       rounding_error(surface, reference.f) * (drive ? reference.conditioning : 1);
@@ -219,6 +243,15 @@ RungEstimate estimate_with(const Surface& surface, const PlanRequest& request,
   return all;
 }
 
+RungEstimate compared_modes(const Surface& surface, const PlanRequest& request,
+                            const std::vector<Reference>& references, Comparison comparison) {
+  RungEstimate all;
+  all.model = Model::modes;
+  for (const Reference& one : references)
+    merge(all, compared_modes_estimate(surface, request, one, comparison));
+  return all;
+}
+
 std::vector<Reference> references_for(const Surface& surface, const PlanRequest& request) {
   std::vector<Reference> list;
   for (const Tone& tone : request.tones) list.push_back(reference(surface, request, tone.frequency_Hz));
@@ -249,7 +282,10 @@ std::string numbers(const RungEstimate& e, const Tolerance& tolerance) {
 }  // namespace
 
 RungEstimate estimate(const Surface& surface, const PlanRequest& request, Model model) {
-  return estimate_with(surface, request, references_for(surface, request), model);
+  const auto references = references_for(surface, request);
+  return model == Model::modes && modes_bound_applies(surface)
+             ? compared_modes(surface, request, references, Comparison::finer)
+             : estimate_with(surface, request, references, model);
 }
 
 PlanChoice choose_model(const Surface& surface, const PlanRequest& request) {
@@ -261,9 +297,17 @@ PlanChoice choose_model(const Surface& surface, const PlanRequest& request) {
     choice.considered.push_back(estimate_with(surface, request, references, model));
   std::stable_sort(choice.considered.begin(), choice.considered.end(),
                    [](const RungEstimate& a, const RungEstimate& b) { return a.cost_s < b.cost_s; });
-  const auto& rungs = choice.considered;
+  auto& rungs = choice.considered;
   auto chosen = std::find_if(rungs.begin(), rungs.end(),
                              [&](const RungEstimate& e) { return inside(e, request.tolerance); });
+  if (chosen == rungs.end() && modes_bound_applies(surface)) {
+    chosen = std::find_if(rungs.begin(), rungs.end(), [](const auto& e) { return e.model == Model::modes; });
+    for (const auto comparison : {Comparison::coarser, Comparison::finer}) {
+      *chosen = compared_modes(surface, request, references, comparison);
+      if (inside(*chosen, request.tolerance)) break;
+    }
+    if (!inside(*chosen, request.tolerance)) chosen = rungs.end();
+  }
   choice.inside = chosen != rungs.end();
   if (!choice.inside) {
     chosen = std::find_if(rungs.begin(), rungs.end(), [&](const RungEstimate& e) {

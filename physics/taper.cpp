@@ -48,6 +48,18 @@ double Taper::slope(double x) const {
                     form_);
 }
 
+double Taper::second_derivative(double x) const {
+  return std::visit(Overloaded{[](const LinearTaper&) { return 0.0; },
+                               [this, x](const ExponentialTaper& t) {
+                                 return half_width_m(x) / (t.decay_length_m * t.decay_length_m);
+                               },
+                               [this, x](const TabulatedTaper&) {
+                                 const Cubic& p = table_.piece(x);
+                                 return 2 * p.c2 + 6 * p.c3 * (x - p.x0);
+                               }},
+                    form_);
+}
+
 std::optional<double> Taper::position_continued_m(double w) const {
   if (!(w > 0)) return std::nullopt;
   return std::visit(Overloaded{[w](const LinearTaper& t) -> std::optional<double> {

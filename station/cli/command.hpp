@@ -47,6 +47,7 @@ void add_trace(CommandLine& app, Context& context);
 void add_run(CommandLine& app, Context& context);
 void add_amplifier_off(CommandLine& app, Context& context);
 void add_doctor(CommandLine& app, Context& context);
+void add_self_test(CommandLine& app, Context& context);
 void add_calibrate(CommandLine& app, Context& context);
 void add_resume(CommandLine& app, Context& context);
 void add_export(CommandLine& app, Context& context);

@@ -22,9 +22,12 @@ void add_resume(CommandLine& app, Context& context) {
   command->add_flag("--any-age", request->any_age,
                     "Continue a session although it seems older than its protocol allows, because the clock "
                     "is or was wrong");
+  command->add_option("--despite", request->despite,
+                      "Reason to continue although a check of the self-test failed; it is stored");
   command->add_flag("--headless", request->headless, "No screen");
   add_json(*command, context);
   command->footer("Example: turnpoint resume --db lab.sqlite");
+  request->self_test = true;
   command->callback([request, &context] {
     const auto setup = setup::prepare_resume(*request, context.err);
     if (!setup && !request->session_id.empty())

@@ -106,6 +106,33 @@ void show_summary(Context& context, const session::Summary& summary, const std::
   if (interrupted) print_how_to_resume(context.out, summary, resume_options);
 }
 
+namespace run_command {
+
+void add_conditions(Command& command, setup::RunRequest& request) {
+  auto& conditions = request.conditions;
+  command.add_flag(
+      "--self-test", request.self_test,
+      "Run the self-test first, although the observer is simulated; with a person it always runs");
+  command.add_option("--despite", request.despite,
+                     "Reason to continue although a check of the self-test failed; it is stored");
+  command.add_option("--humidity", conditions.humidity_percent, "Relative humidity of the room, in %")
+      ->check(between(0, 100));
+  command
+      .add_option("--temperature", conditions.room_temperature_C,
+                  "Temperature of the room, in degrees Celsius")
+      ->check(between(-20, 60));
+  command.add_option("--cleaned", request.cleaned, "Whether the surface was cleaned just before")
+      ->check(one_of({"yes", "no"}));
+  command.add_option("--finger", conditions.finger, "Hand and finger on the surface, such as right-index")
+      ->check(one_of({terms::fingers.begin(), terms::fingers.end()}));
+  command
+      .add_option("--skin-moisture", conditions.skin_moisture,
+                  "Moisture of the fingertip, as a moisture meter reads it, in the meter's unit")
+      ->check(between(0, 1000));
+}
+
+}  // namespace run_command
+
 std::shared_ptr<setup::RunRequest> add_run_options(Command& command) {
   auto request = std::make_shared<setup::RunRequest>();
   add_protocol(command, request->protocol);
@@ -136,6 +163,7 @@ std::shared_ptr<setup::RunRequest> add_run_options(Command& command) {
       .add_option("--calibration", request->calibration,
                   "Calibration file; by default the newest one beside the rig file")
       ->value("FILE");
+  run_command::add_conditions(command, *request);
   return request;
 }
 
@@ -151,6 +179,7 @@ void add_run(CommandLine& app, Context& context) {
       "kills it.");
   command->callback([request, &context] {
     const bool person = request->observer.empty();
+    request->self_test = request->self_test || person;
     if (person && request->headless && !request->buttons_only)
       throw UsageError(
           "run: without a screen nobody can answer; use --observer sim for a simulated observer, or "

@@ -81,6 +81,34 @@ std::string triggers(const std::vector<records::EventRow>& events) {
          std::to_string(extra) + " that were not sent";
 }
 
+/// The result of the newest self-test, with what failed and how many checks were not possible.
+std::string self_test(const std::vector<records::EventRow>& events) {
+  const records::EventRow* newest = nullptr;
+  for (const auto& event : events)
+    if (event.kind == "self_test") newest = &event;
+  if (newest == nullptr) return "none";
+  auto text = newest->value;
+  int absent = 0;
+  for (const auto& check : newest->checks) {
+    if (check.verdict == records::Verdict::failed) text += "; " + check.name + ": " + check.what;
+    if (check.verdict == records::Verdict::not_possible) ++absent;
+  }
+  return text + "; " + std::to_string(newest->checks.size()) + " checks, " + std::to_string(absent) +
+         " not possible";
+}
+
+/// What was stated about room, surface and finger.
+std::string conditions(const records::Conditions& stated) {
+  std::string text;
+  const auto add = [&text](const std::string& part) { text += (text.empty() ? "" : ", ") + part; };
+  if (stated.humidity_percent) add("humidity " + text::number(*stated.humidity_percent, 3) + " %");
+  if (stated.room_temperature_C) add(text::number(*stated.room_temperature_C, 3) + " °C");
+  if (stated.surface_cleaned) add(*stated.surface_cleaned ? "surface cleaned" : "surface not cleaned");
+  if (!stated.finger.empty()) add("finger " + stated.finger);
+  if (stated.skin_moisture) add("skin moisture " + text::number(*stated.skin_moisture, 4));
+  return text.empty() ? "not stated" : text;
+}
+
 std::vector<report::MeasuredTrial> measured_trials(const std::vector<store::BlockRecord>& blocks) {
   std::vector<report::MeasuredTrial> trials;
   for (const auto& block : blocks)
@@ -115,6 +143,8 @@ void add_health(const store::StoredSession& stored, report::SessionData& data) {
   data.health = {{"Trials stored", std::to_string(trials)},
                  {"Vibration of the surface", proofs(stored.blocks)},
                  {"Force cells", forces(stored.blocks)},
+                 {"Self-test", self_test(stored.events)},
+                 {"Room, surface and finger", conditions(start.conditions)},
                  {"Trigger codes", triggers(stored.events)},
                  {"Underruns and overruns", std::to_string(xruns)},
                  {"Touches that were not answers", std::to_string(extra)},

@@ -3,7 +3,7 @@
 #include <stdexcept>
 
 #include "station/lines/guarded_amplifier.hpp"
-#include "station/lines/simulated_lines.hpp"
+#include "station/lines/simulated_amplifier.hpp"
 #include "station/lines/uri.hpp"
 #include "station/terms/usage_error.hpp"
 
@@ -30,10 +30,11 @@ struct Asked {
 
 Asked read(const std::string& text) {
   Uri uri = parse_uri(text);
-  if (uri.scheme == "sim" && uri.name.empty() && uri.values.empty()) return {{0, 1, 2, 3}, {}};
+  if (uri.scheme == "sim" && uri.name.empty() && uri.values.empty()) return {kSimulatedAmplifier, {}};
   if (uri.scheme != "gpio" || !uri.name.empty())
     throw terms::UsageError("amplifier '" + text +
-                            "'; allowed are sim: and gpio:enable=LINE,fault=LINE,stop=LINE,heartbeat=LINE");
+                            "'; allowed are sim: and "
+                            "gpio:enable=LINE,fault=LINE,stop=LINE,heartbeat=LINE,gate=LINE");
   Asked asked;
   const auto want = [&](const char* key, const char* consumer, LineUse use) {
     const std::string line = uri.take(key, "");
@@ -46,12 +47,16 @@ Asked read(const std::string& text) {
   roles.heartbeat = want("heartbeat", "turnpoint-amp-heartbeat", LineUse::output_low);
   roles.fault = want("fault", "turnpoint-amp-fault", LineUse::input);
   roles.stop = want("stop", "turnpoint-amp-stop", LineUse::input);
+  roles.gate = want("gate", "turnpoint-amp-gate", LineUse::input);
   const std::string active = uri.take("active", "high");
   roles.fault_active_low = is_low(uri.take("fault_active", active), uri);
   roles.stop_active_low = is_low(uri.take("stop_active", active), uri);
   roles.read_back = is_on(uri.take("read_back", "on"), uri);
-  uri.check_empty("enable, heartbeat, fault, stop, active, fault_active, stop_active, read_back");
+  uri.check_empty("enable, heartbeat, fault, stop, gate, active, fault_active, stop_active, read_back");
   if (roles.enable < 0) throw terms::UsageError("amplifier '" + text + "' has no enable line");
+  if (roles.gate >= 0 && roles.heartbeat < 0)
+    throw terms::UsageError("amplifier '" + text +
+                            "': gate needs a heartbeat line, which keeps the gate open");
   return asked;
 }
 
@@ -60,7 +65,7 @@ Asked read(const std::string& text) {
 std::unique_ptr<drive::Amplifier> open_amplifier(const std::string& text) {
   const Asked asked = read(text);
   if (asked.requests.empty())
-    return guard_amplifier([] { return std::make_unique<SimulatedLines>(4); }, asked.roles);
+    return guard_amplifier([] { return std::make_unique<SimulatedAmplifierLines>(); }, asked.roles);
   return guard_amplifier([requests = asked.requests] { return open_gpio_lines(requests); }, asked.roles);
 }
 

@@ -6,11 +6,11 @@
 
 namespace turnpoint::lines {
 
-/// Opens the rig's amplifier: `sim:` or `gpio:enable=AMP_EN,fault=AMP_FAULT,stop=STOP,heartbeat=AMP_HB` (only
-/// enable is required). The fault and stop lines are active high, unless `active=low` (for both),
-/// `fault_active=low` or `stop_active=low` is given. Use `read_back=off` for a chip that reports wrong levels
-/// of its outputs without an error. Both kinds of amplifier have a guard thread (see guarded_amplifier.hpp);
-/// `sim:` keeps its lines in memory. Throws terms::UsageError, LineError.
+/// Opens the rig's amplifier: `sim:` or `gpio:enable=AMP_EN,fault=AMP_FAULT,stop=STOP,heartbeat=AMP_HB,
+/// gate=AMP_GATE` (only enable is required; gate needs heartbeat). The fault and stop lines are active high,
+/// unless `active=low` (for both), `fault_active=low` or `stop_active=low` is given. Use `read_back=off` for
+/// a chip that reports wrong levels of its outputs without an error. Both kinds of amplifier have a guard
+/// thread (see guarded_amplifier.hpp); `sim:` keeps its lines in memory. Throws terms::UsageError, LineError.
 std::unique_ptr<drive::Amplifier> open_amplifier(const std::string& uri);
 
 /// Sets the enable and heartbeat lines of the amplifier at `uri` low, whatever state a dead station left them

@@ -32,6 +32,7 @@ struct Report {
   drive::AmplifierState state = drive::AmplifierState::disarmed;
   Guard::Fault fault;
   std::int64_t reaction_ns = -1;
+  bool gate = false;
 };
 /// The reason why the lines were lost, truncated to fit.
 using Reason = std::array<char, 160>;
@@ -56,9 +57,10 @@ class GuardThread {
   Published<Report> report;
   Published<Reason> gone;
   std::atomic<std::int64_t> audio_ns{-1}, session_ns{-1}, page_ns{-1};
+  std::atomic<bool> holds_heartbeat{false};
 
  private:
-  void publish() noexcept { report.store({guard_.state(), guard_.fault(), reaction_ns_}); }
+  void publish() noexcept { report.store({guard_.state(), guard_.fault(), reaction_ns_, gate_}); }
 
   bool wants_high() const noexcept { return guard_.outputs().enable == 1; }
 
@@ -75,6 +77,7 @@ class GuardThread {
     const std::int64_t now = system::monotonic_ns();
     if (roles_.fault >= 0) guard_.fault_line(now, fault_at(lines_->level(roles_.fault)));
     if (roles_.stop >= 0) guard_.stop_line(now, stop_at(lines_->level(roles_.stop)));
+    if (roles_.gate >= 0) gate_ = lines_->level(roles_.gate);
   }
 
   void take_signs() noexcept {
@@ -106,6 +109,7 @@ class GuardThread {
   /// Handles an edge. If the edge means a fault or a stop, it first sets the enable line low; everything else
   /// comes afterwards.
   void edge(const Edge& edge) {
+    if (edge.line == roles_.gate) return look();
     const bool fault = edge.line == roles_.fault;
     const bool active = fault ? fault_at(edge.rising) : stop_at(edge.rising);
     if (active) {
@@ -137,7 +141,8 @@ class GuardThread {
     if (const auto level = roles_.read_back ? lines_->read_back(roles_.enable) : std::nullopt)
       guard_.enable_line(system::monotonic_ns(), *level);
     drive_enable();
-    if (roles_.heartbeat >= 0) lines_->drive(roles_.heartbeat, guard_.outputs().heartbeat);
+    if (roles_.heartbeat >= 0 && !holds_heartbeat.load())
+      lines_->drive(roles_.heartbeat, guard_.outputs().heartbeat);
     publish();
   }
 
@@ -220,13 +225,14 @@ class GuardThread {
   bool driven_high_ = false;
   std::int64_t lowered_ns_ = 0;  ///< time at which the enable line was last set from high to low
   std::int64_t reaction_ns_ = -1;
+  bool gate_ = false;  ///< level of the gate when it was last read
   std::jthread thread_;
 };
 
 class GuardedAmplifier final : public drive::Amplifier {
  public:
   GuardedAmplifier(OpenLines open, const GuardLines& roles, const GuardOptions& options)
-      : guard_(std::move(open), roles, options) {}
+      : has_gate_(roles.gate >= 0 && roles.heartbeat >= 0), guard_(std::move(open), roles, options) {}
 
   Refusal arm() override { return ask(Ask::arm); }
   Refusal enable() override { return ask(Ask::enable); }
@@ -243,6 +249,12 @@ class GuardedAmplifier final : public drive::Amplifier {
   void audio_alive() noexcept override { guard_.audio_ns.store(system::monotonic_ns()); }
   void session_alive() noexcept override { guard_.session_ns.store(system::monotonic_ns()); }
   void page_alive(std::int64_t time_ns) noexcept override { guard_.page_ns.store(time_ns); }
+
+  void hold_heartbeat() noexcept override { guard_.holds_heartbeat.store(true); }
+  void resume_heartbeat() noexcept override { guard_.holds_heartbeat.store(false); }
+  std::optional<bool> gate() const noexcept override {
+    return has_gate_ ? std::optional(guard_.report.load().gate) : std::nullopt;
+  }
 
   drive::AmplifierState state() const noexcept override { return guard_.report.load().state; }
   drive::AmplifierFault fault() const override {
@@ -269,6 +281,7 @@ class GuardedAmplifier final : public drive::Amplifier {
   mutable std::mutex details_mutex_;  ///< never locked by the guard thread
   /// details of faults that ordinary threads reported
   std::array<std::string, terms::fault_kinds.size()> details_;
+  bool has_gate_;
   GuardThread guard_;
 };
 

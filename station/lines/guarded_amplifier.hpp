@@ -14,6 +14,7 @@ struct GuardLines {
   int heartbeat = -1;
   int fault = -1;
   int stop = -1;
+  int gate = -1;  ///< input that reads the gate behind the external monitor; high while it is open
   bool fault_active_low = false;
   bool stop_active_low = false;
   /// compare the actual level of the enable line with the level that was set; used only if the chip can read

@@ -3,15 +3,10 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <sys/resource.h>
-#include <sys/statvfs.h>
-#include <sys/timex.h>
 #include <unistd.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <cstdlib>
-#include <cstring>
-#include <ctime>
 #include <filesystem>
 #include <fstream>
 #include <string_view>
@@ -19,9 +14,11 @@
 #include "station/drive/alsa_capture.hpp"
 #include "station/drive/alsa_mixer.hpp"
 #include "station/drive/engine.hpp"
+#include "station/session/self_test.hpp"
 #include "station/session/stage.hpp"
 #include "station/setup/places.hpp"
 #include "station/system/clocks.hpp"
+#include "station/system/condition.hpp"
 
 namespace turnpoint::maintenance {
 namespace {
@@ -190,42 +187,36 @@ void input(std::vector<lines::Finding>& checks) {
                       ""});
 }
 
-void disk(const std::string& path, std::vector<lines::Finding>& checks) {
-  std::filesystem::path existing = std::filesystem::absolute(path);
-  std::error_code ignored;
-  while (!std::filesystem::exists(existing, ignored) && existing.has_relative_path())
-    existing = existing.parent_path();
-  struct statvfs state {};
-  if (::statvfs(existing.c_str(), &state) != 0) {
-    checks.push_back({"disk", Status::failed, fmt::format("{}: {}", existing.string(), std::strerror(errno)),
-                      "mount the data disk"});
-    return;
-  }
-  const double free_MiB = static_cast<double>(state.f_bavail) * static_cast<double>(state.f_frsize) / 1048576;
-  const bool writable = ::access(existing.c_str(), W_OK) == 0;
-  checks.push_back(
-      {"disk", free_MiB >= 200 && writable ? Status::ok : Status::failed,
-       fmt::format("{:.0f} MiB free in {}{}", free_MiB, existing.string(), writable ? "" : ", not writable"),
-       free_MiB < 200 ? "free some space: a session needs 200 MiB"
-       : writable     ? ""
-                      : "give the user permission to write to this folder"});
+// A check of the self-test as the doctor reports it; `mend` says what to do if it failed.
+lines::Finding finding(const records::CheckRow& check, const std::string& mend) {
+  if (check.verdict == records::Verdict::failed) return {check.name, Status::failed, check.what, mend};
+  return {check.name, Status::ok, check.what, ""};
 }
 
-void clock(std::vector<lines::Finding>& checks) {
-  std::ifstream file("/sys/devices/system/clocksource/clocksource0/current_clocksource");
-  std::string source = "unknown";
-  file >> source;
-  timex state{};
-  const bool steered = ::adjtimex(&state) != -1 && !(state.status & STA_UNSYNC);
-  const bool plausible = std::time(nullptr) > 1'700'000'000;
-  checks.push_back(
-      {"clock", plausible ? (steered ? Status::ok : Status::warning) : Status::failed,
-       fmt::format("source {}, {}{}", source, steered ? "synchronised" : "not synchronised",
-                   plausible ? "" : ", the date cannot be right"),
-       !plausible ? "set the date; a board without a battery-backed clock needs a time service"
-       : steered
-           ? ""
-           : "dates of records may be wrong (durations are not affected): run systemd-timesyncd or chrony"});
+lines::Finding disk(const std::string& path) {
+  const auto state = system::read_disk(path);
+  return finding(session::judged(state),
+                 !state.error.empty() ? "mount the data disk"
+                 : state.writable
+                     ? fmt::format("free some space: a session needs {} MiB", session::kLeastDisk_MiB)
+                     : "give the user permission to write to this folder");
+}
+
+lines::Finding clock() {
+  const session::ClockReading reading{system::read_wall_clock(), std::nullopt};
+  auto found = finding(session::judged(reading),
+                       "set the date; a board without a battery-backed clock needs a time service");
+  if (found.status == Status::ok && !reading.clock.steered) {
+    found.status = Status::warning;
+    found.mend =
+        "dates of records may be wrong (durations are not affected): run systemd-timesyncd or chrony";
+  }
+  return found;
+}
+
+lines::Finding temperature() {
+  return finding(session::judged_temperature(system::hottest_C()),
+                 "cool the machine: free its vents, add a fan");
 }
 
 }  // namespace
@@ -283,8 +274,9 @@ std::vector<lines::Finding> examine(const rig::Rig& rig, const std::string& data
   rights(checks);
   checks.push_back(check_swap());
   checks.push_back(check_watchdog());
-  disk(data_path, checks);
-  clock(checks);
+  checks.push_back(temperature());
+  checks.push_back(disk(data_path));
+  checks.push_back(clock());
   return checks;
 }
 

@@ -6,6 +6,7 @@
 #include <variant>
 #include <vector>
 
+#include "station/terms/check.hpp"
 #include "station/terms/proof.hpp"
 #include "station/terms/trial.hpp"
 
@@ -17,6 +18,7 @@ using terms::Proof;
 using terms::ProofCause;
 using terms::RunMode;
 using terms::TrialType;
+using terms::Verdict;
 
 enum class SessionStatus { running, completed, interrupted, stopped, abandoned };
 /// The reason stored for a session whose process died. It is written when the database is next opened.
@@ -27,6 +29,15 @@ const char* name(SessionStatus status);
 
 /// The value of a factor in a trial. Exports have one column per factor.
 using FactorValue = std::variant<double, std::string>;
+
+/// What is known about room, surface and finger before a session. Empty members were not stated.
+struct Conditions {
+  std::optional<double> humidity_percent;    ///< relative humidity of the room
+  std::optional<double> room_temperature_C;  ///< temperature of the room
+  std::optional<bool> surface_cleaned;       ///< whether the surface was cleaned just before
+  std::string finger;                        ///< such as "right-index" (terms::fingers); "" if not stated
+  std::optional<double> skin_moisture;       ///< reading of a moisture meter, in its own unit
+};
 
 /// Where the data of a session come from: everything that is needed to run the session again or to explain it
 /// later.
@@ -46,12 +57,23 @@ struct SessionStart {
   std::string software_version, columns_version, kernel, station_id, realtime_rights;
   std::string started_local;  ///< ISO 8601 with time zone
   std::string consent_version;
+  Conditions conditions = {};
 };
 
 /// One process run of a session, with readings of the clocks at its start. Each resume opens another segment.
 struct SegmentStart {
   std::string boot_id, reason;  ///< reason: "start", "resume" or "fault"
   std::int64_t monotonic_ns = 0, boottime_ns = 0, realtime_ns = 0;
+};
+
+/// One check of the self-test: what was measured, and how it was judged.
+struct CheckRow {
+  std::string name;  ///< such as "gate" or "tone main"
+  Verdict verdict = Verdict::passed;
+  std::optional<double> value,
+      limit;         ///< measured value and its limit; empty if the check measures no number
+  std::string unit;  ///< unit of both; "" if there is no number
+  std::string what;  ///< what was found, as a sentence for the operator
 };
 
 struct BlockStart {
@@ -171,7 +193,8 @@ struct EventRow {
   std::string kind;
   std::string value;
   std::optional<int> trial_index;
-  int segment_index = 1;  ///< from 1; set by the session log
+  int segment_index = 1;              ///< from 1; set by the session log
+  std::vector<CheckRow> checks = {};  ///< the checks of a self-test, for an event of the kind self_test
 };
 
 }  // namespace turnpoint::records

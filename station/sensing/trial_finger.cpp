@@ -83,6 +83,22 @@ ForcesState TrialFinger::state_of(std::int64_t first, std::int64_t end) const {
   return next == end ? ForcesState::ok : ForcesState::lost;
 }
 
+/// Computes mean and standard deviation of these readings.
+void TrialFinger::describe(const std::vector<BridgePoint>& quiet) {
+  read_.reset(), noise_.reset();
+  if (static_cast<std::int64_t>(quiet.size()) < points_in(tare_s) / 2) return;
+  Readings mean{}, spread{};
+  const auto n = static_cast<double>(quiet.size());
+  for (std::size_t k = 0; k < mean.size(); ++k) {
+    const double scale = setup_.bridges.full_scale[k];
+    for (const auto& point : quiet) mean[k] += point.ratio[k] / scale / n;
+    for (const auto& point : quiet) spread[k] += std::pow(point.ratio[k] / scale - mean[k], 2) / (n - 1);
+    spread[k] = std::sqrt(spread[k]);
+    if (!std::isfinite(spread[k])) return;
+  }
+  read_ = mean, noise_ = spread;
+}
+
 void TrialFinger::take_tare() {
   if (std::exchange(tared_, true)) return;
   const auto end = index_at(quiet_until_) - points_in(filter_s);
@@ -93,6 +109,7 @@ void TrialFinger::take_tare() {
     if (quiet.empty() && std::isnan(point.ratio[0])) continue;
     quiet.push_back(point);
   }
+  describe(quiet);
   auto taken = tare(quiet, setup_.bridges.band, setup_.calibration, zero_.value_or(Readings{}));
   loaded_ = zero_ && taken.state == TareState::stopped;
   // Without a usable tare, keep the previous one: a finger waiting on the surface must not stop the session.
@@ -137,6 +154,7 @@ TrialForces TrialFinger::result() {
   const auto end = index_at(intervals_.back().end_frame);
   forces.state = state_of(first, end);
   forces.tare_moved_N = tare_moved_N_;
+  forces.zero = read_, forces.noise = noise_;
   if ((!zero_ || loaded_) && forces.state != ForcesState::wire) forces.state = ForcesState::tare;
   const auto last = index_at(intervals_.back().first_frame);
   intervals_.clear();

@@ -34,6 +34,9 @@ const char* name(ForcesState state);
 struct TrialForces {
   ForcesState state = ForcesState::lost;
   double tare_moved_N = 0;  ///< change of the zero since the previous tare
+  /// Reading of each cell (a, b, lateral) before the trial and its standard deviation, relative to the cell's
+  /// full scale; empty if captured frames are missing.
+  std::optional<Readings> zero, noise;
   TrialSummary summary;
   FrictionProfile profile;  ///< friction along the strip during the last interval
   Movement movement = Movement::ok;
@@ -73,6 +76,7 @@ class TrialFinger {
  private:
   void keep_from(std::int64_t index);
   void take_tare();
+  void describe(const std::vector<BridgePoint>& quiet);
   ForcesState state_of(std::int64_t first, std::int64_t end) const;
   std::vector<FingerPoint> track(std::int64_t first, std::int64_t end) const;
   std::int64_t index_at(std::int64_t frame) const { return frame / frames_per_point_; }
@@ -85,8 +89,10 @@ class TrialFinger {
   std::int64_t next_frame_ = 0;  ///< number of the next captured frame, if none is missing
   std::deque<BridgePoint> points_;
   std::optional<Readings> zero_;  ///< the newest tare
-  bool tared_ = false;            ///< take_tare() has been called for the expected trial
-  bool loaded_ = false;           ///< something lay on the surface during the tare
+  /// mean and standard deviation of what was captured for the newest tare, relative to full scale
+  std::optional<Readings> read_, noise_;
+  bool tared_ = false;   ///< take_tare() has been called for the expected trial
+  bool loaded_ = false;  ///< something lay on the surface during the tare
   double tare_moved_N_ = 0;
   std::int64_t quiet_until_ = 0;
   std::vector<Range> intervals_;  ///< empty: no trial is expected

@@ -143,6 +143,21 @@ Flow OperatorGate::recover() {
   return Flow::go_on;
 }
 
+std::string OperatorGate::reason_to_continue(const Fault& why) {
+  if (!setup_.observer.empty()) return "";
+  show(pages_.fault(why.kind, why.detail, director_));
+  while (!stop_asked_) {
+    auto waited = stage_.wait_until(kForever);
+    if (!waited) continue;
+    const auto input = received(std::move(*waited));
+    if (input.kind == InputKind::note && !input.text.empty()) return input.text;
+    note(input);
+  }
+  // stop() below gives the reason why the session ends
+  stop_asked_ = false;
+  return "";
+}
+
 Flow OperatorGate::end_at_limit(const std::string& what) {
   stage_.close_amplifier();
   Input fault;

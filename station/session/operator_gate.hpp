@@ -51,6 +51,10 @@ class OperatorGate {
   /// amplifier. Then the session continues. If the operator presses Continue too early, the page says what is
   /// still missing.
   Flow recover();
+  /// Says what the self-test found, and waits until the operator writes a note with the reason to continue.
+  /// Returns "" if somebody stops the session instead, and in simulated sessions, in which nobody could
+  /// answer.
+  std::string reason_to_continue(const Fault& why);
   /// Ends the session because a limit of the rig was reached. A page names the limit before the summary is
   /// shown.
   Flow end_at_limit(const std::string& what);

@@ -95,6 +95,7 @@ records::SessionStart start_of(const Setup& setup, std::uint64_t seed, const std
   start.realtime_rights = rights;
   start.started_local = local_time();
   start.consent_version = setup.consent_version;
+  start.conditions = setup.conditions;
   if (!setup.calibration_id.empty()) start.calibration_id = setup.calibration_id;
   start.calibration_text = setup.calibration_text;
   return start;
@@ -123,9 +124,6 @@ drive::StreamConfig stream_of(const rig::Rig& rig) {
   return config;
 }
 
-namespace {
-
-/// Like stream_of(), with the carrier that excites the bridges of force cells.
 drive::StreamConfig session_stream(const rig::Rig& rig) {
   auto config = stream_of(rig);
   if (rig.capture && !rig.capture->bridges.empty())
@@ -135,8 +133,6 @@ drive::StreamConfig session_stream(const rig::Rig& rig) {
 
 bool simulates_capture(const rig::Rig& rig) { return rig.capture && rig.capture->uri == "sim:"; }
 
-/// Returns the configuration of a simulated session's stream. It uses no hardware: if the rig's output is a
-/// converter, samples are discarded. Output to files and to plug-ins that the rig allows is kept.
 drive::StreamConfig simulated_stream(const rig::Rig& rig) {
   auto config = session_stream(rig);
   config.virtual_lead_frames = std::int64_t{config.output.periods} * config.output.period_frames;
@@ -146,6 +142,8 @@ drive::StreamConfig simulated_stream(const rig::Rig& rig) {
   if (config.output.uri == "null:" && !simulates_capture(rig)) config.samples = drive::Samples::passed;
   return config;
 }
+
+namespace {
 
 /// Reads the participant's history of exposure. Call this before the log is opened for writing, because both
 /// use the same database.

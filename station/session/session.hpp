@@ -44,6 +44,13 @@ struct Setup {
   /// The source of time stamps (kernel | toolkit) for which response_offset_s was measured. Answers with time
   /// stamps from another source are stored without the offset. "" means that all answers by touch get it.
   std::string response_offset_quality;
+  /// what is known about room, surface and finger; stored with the session
+  records::Conditions conditions = {};
+  /// run the self-test before the first block; without a simulated observer, the operator has then armed the
+  /// amplifier
+  bool self_test = false;
+  /// the operator's reason to continue although a check of the self-test failed; "" asks for it
+  std::string despite = {};
 };
 
 /// The result of a run, for people and for --json.

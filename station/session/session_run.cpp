@@ -33,7 +33,7 @@ Summary SessionRun::run() {
   if (setup_.run_mode != terms::RunMode::live && setup_.rig.amplifier_uri == "sim:")
     // if arming is refused, until_armed() below shows a page
     static_cast<void>(stage_->arm());
-  if (gate_.until_armed({FaultKind::disarmed, ""}) == Flow::go_on)
+  if (gate_.until_armed({FaultKind::disarmed, ""}) == Flow::go_on && pass_self_test() == Flow::go_on)
     while (director_.block() != nullptr)
       if (run_block() == Flow::stop) break;
   if (gate_.stop_asked())

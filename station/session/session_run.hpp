@@ -50,6 +50,7 @@ class SessionRun {
 
   // These functions run blocks and show pages (session_run.cpp).
   Flow run_block();
+  Flow pass_self_test();  // session_run_self_test.cpp
   Flow rest_if_due(int trials_in_block);
   int trial_index() const { return log_.session().trials; }
   void finish(records::SessionStatus status, const std::string& reason);

@@ -96,7 +96,12 @@ sensing::FingerSetup finger_of(const plant::Setup& room) {
 
 }  // namespace
 
-SimulatedRoom::SimulatedRoom(const rig::Rig& rig) : plant_(room_of(rig)) {}
+SimulatedRoom::SimulatedRoom(const rig::Rig& rig, const std::function<void(plant::Setup&)>& change)
+    : plant_([&] {
+        auto room = room_of(rig);
+        if (change) change(room);
+        return room;
+      }()) {}
 
 void SimulatedRoom::expect(std::span<const drive::PreparedBurst> bursts) {
   std::vector<double> frequencies;

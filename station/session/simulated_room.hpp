@@ -1,5 +1,6 @@
 #pragma once
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -13,8 +14,8 @@ namespace turnpoint::session {
 /// model says, pick-ups near the drive edge record it, and force cells feel the finger.
 class SimulatedRoom {
  public:
-  /// Throws std::logic_error if the rig captures nothing.
-  explicit SimulatedRoom(const rig::Rig& rig);
+  /// Throws std::logic_error if the rig captures nothing. A test may `change` the laboratory.
+  explicit SimulatedRoom(const rig::Rig& rig, const std::function<void(plant::Setup&)>& change = {});
 
   /// Names the frequencies that these bursts contain. Call this before they are played.
   void expect(std::span<const drive::PreparedBurst> bursts);

@@ -101,6 +101,11 @@ class Stage {
   /// Asks a simulated observer to set this slider and press Done. Times count from `zero_ns`.
   virtual void adjustment(const observer::Adjustment& adjustment, std::int64_t zero_ns) = 0;
 
+  /// For the self-test: the amplifier and its guard, null in a simulated session; and how a simulated room
+  /// captures, empty without one.
+  virtual drive::Amplifier* guarded_amplifier() { return nullptr; }
+  virtual std::optional<CaptureSetup> capture() const { return std::nullopt; }
+
   virtual std::optional<ClockFit> clock_fit() = 0;
   virtual std::string realtime_rights() const = 0;
   /// Disarms the amplifier. If the output is a file, completes the file. Throws std::system_error.
@@ -109,6 +114,13 @@ class Stage {
 
 /// Returns the configuration of the stream for a rig's output, with a channel for each transducer.
 drive::StreamConfig stream_of(const rig::Rig& rig);
+/// Like stream_of(), with the carrier that excites the bridges of force cells.
+drive::StreamConfig session_stream(const rig::Rig& rig);
+/// True if the rig captures in a simulated room.
+bool simulates_capture(const rig::Rig& rig);
+/// Returns the configuration of a simulated session's stream. It uses no hardware: if the rig's output is a
+/// converter, samples are discarded. Output to files and to plug-ins that the rig allows is kept.
+drive::StreamConfig simulated_stream(const rig::Rig& rig);
 
 /// Makes a stage that runs in real time: CLOCK_MONOTONIC, the audio thread, the amplifier guard, and inputs
 /// from a display and the touch panel. `inputs` must outlive the stage. With a `capture`, the surface is

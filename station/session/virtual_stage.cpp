@@ -176,6 +176,9 @@ class VirtualStage : public Stage {
     script_.push_back(input);
   }
 
+  std::optional<CaptureSetup> capture() const override {
+    return room_ ? std::optional(room_->capture()) : std::nullopt;
+  }
   std::optional<ClockFit> clock_fit() override { return fit_of(*stream_); }
   std::string realtime_rights() const override { return describe(stream_->rights()); }
   void finish() override {

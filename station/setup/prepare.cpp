@@ -176,6 +176,10 @@ session::Setup prepare(const RunRequest& request, const std::stop_token& stop) {
   setup.observer = request.observer;
   setup.seed = request.seed;
   setup.consent_version = request.consent_version;
+  setup.conditions = request.conditions;
+  if (!request.cleaned.empty()) setup.conditions.surface_cleaned = request.cleaned == "yes";
+  setup.self_test = request.self_test;
+  setup.despite = request.despite;
   setup.run_mode = !request.observer.empty() ? terms::RunMode::simulated
                    : request.mode == "live"  ? terms::RunMode::live
                                              : terms::RunMode::pilot;

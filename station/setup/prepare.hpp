@@ -24,6 +24,10 @@ struct RunRequest {
   bool fullscreen = false;  ///< fill the screen of a desktop, too
   /// path of the calibration file; "" uses the newest one beside the rig file, if there is one
   std::string calibration;
+  bool self_test = false;  ///< run the self-test before the first block
+  std::string despite;     ///< reason to continue although a check of the self-test failed; "" asks for it
+  records::Conditions conditions;
+  std::string cleaned;  ///< whether the surface was cleaned just before: yes or no; "" if not stated
 };
 
 /// Loads and checks everything that a session needs, and applies the calibration to the rig. Throws

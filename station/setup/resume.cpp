@@ -59,6 +59,9 @@ std::optional<session::Setup> prepare_resume(const ResumeRequest& request, std::
   setup.language = start.language;
   setup.observer = start.observer;
   setup.seed = start.seed;
+  setup.conditions = start.conditions;
+  setup.self_test = request.self_test && start.observer.empty();
+  setup.despite = request.despite;
   setup.resume_session = found->session.session_id;
   setup.resume_at = resume_at(request.policy, setup.protocol.resume);
   messages << "resume: session " << found->session.session_id << " of participant " << start.participant

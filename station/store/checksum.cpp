@@ -68,6 +68,8 @@ class Encoder {
     if (encoding_ >= 3)
       add(hash, signal_, signal_table(), "trial_index", "trial_index, stream", from.trial, to.trial);
     add(hash, event_, event_table(), "event_index", "event_index", from.event, to.event);
+    if (encoding_ >= 4)
+      add(hash, check_, check_table(), "event_index", "event_index, check_index", from.event, to.event);
   }
 
   Extent extent() {
@@ -118,7 +120,7 @@ class Encoder {
   Database& database_;
   std::string schema_, id_;
   std::int64_t encoding_;
-  std::optional<Statement> segment_, block_, trial_, tone_, signal_, event_, extent_;
+  std::optional<Statement> segment_, block_, trial_, tone_, signal_, event_, check_, extent_;
 };
 
 namespace {

@@ -68,54 +68,80 @@ std::vector<ProtocolSelection> select(Database& database, const std::string& dir
 
 }  // namespace
 
-void export_csv(Database& database, const ProtocolSelection& selection, const TableStyle& style,
-                std::vector<ExportedFile>& files) {
-  const auto trial_row = trial_columns(selection.factors);
-  const auto interval_row = interval_columns(), event_row = event_columns(), session_row = session_columns();
-  const auto table = [&](const char* name, const ExportColumns& columns) {
-    return TableFile(selection.folder + "/" + name, style, names_of(columns));
-  };
-  auto trials = table("trials.csv", trial_row), intervals = table("intervals.csv", interval_row),
-       events = table("events.csv", event_row), sessions = table("sessions.csv", session_row);
+CsvColumns csv_columns(const ProtocolSelection& selection) {
+  return {trial_columns(selection.factors), interval_columns(), event_columns(), session_columns(),
+          self_test_columns()};
+}
+
+void for_each_row(Database& database, const ProtocolSelection& selection, const CsvColumns& columns,
+                  const CsvRows& rows) {
   for (const auto& session : selection.sessions) {
     const auto stored = read_session(database, session);
     const auto spans = stimulus_spans(stored);
-    sessions.row(cells_of(session_row, {&stored.session}));
+    ExportRow session_cells{&stored.session};
+    session_cells.self_test = newest_self_test(stored);
+    rows.sessions(cells_of(columns.sessions, session_cells));
     for (const auto& block : stored.blocks)
       for (const auto& trial : block.trials) {
         ExportRow row{&stored.session, &block.start, &trial};
         row.span = span_of(spans, trial);
-        trials.row(cells_of(trial_row, row));
+        rows.trials(cells_of(columns.trials, row));
         for (const auto& tone : trial.tones) {
           row.tone = &tone;
-          intervals.row(cells_of(interval_row, row));
+          rows.intervals(cells_of(columns.intervals, row));
         }
       }
     for (const auto& event : in_order_of_time(stored.events)) {
       const auto& segment = stored.segments.at(static_cast<std::size_t>(event.segment_index) - 1);
-      events.row(
-          cells_of(event_row, {&stored.session, nullptr, nullptr, nullptr, &event, segment.monotonic_ns}));
+      ExportRow row{&stored.session, nullptr, nullptr, nullptr, &event, segment.monotonic_ns};
+      rows.events(cells_of(columns.events, row));
+      for (const auto& check : event.checks) {
+        row.check = &check;
+        rows.self_tests(cells_of(columns.self_tests, row));
+      }
     }
   }
+}
+
+void export_csv(Database& database, const ProtocolSelection& selection, const TableStyle& style,
+                std::vector<ExportedFile>& files) {
+  const auto columns = csv_columns(selection);
+  const auto table = [&](const char* name, const ExportColumns& all) {
+    return TableFile(selection.folder + "/" + name, style, names_of(all));
+  };
+  auto trials = table("trials.csv", columns.trials), intervals = table("intervals.csv", columns.intervals),
+       events = table("events.csv", columns.events), sessions = table("sessions.csv", columns.sessions),
+       checks = table("self_tests.csv", columns.self_tests);
+  const auto into = [](TableFile& file) {
+    return [&file](const std::vector<Cell>& cells) { file.row(cells); };
+  };
+  for_each_row(database, selection, columns,
+               {into(trials), into(intervals), into(events), into(sessions), into(checks)});
   for (auto* file : {&trials, &intervals, &events, &sessions}) file->finish(files);
   write_file(selection.folder + "/codebook.json", codebook_json(selection.protocol_id, selection.factors));
   files.push_back({selection.folder + "/codebook.json", 0});
+  checks.finish(files);
 }
 
-std::vector<ExportedFile> export_data(const std::string& path, const std::string& directory,
-                                      const ExportOptions& options) {
-  check_style(options);
-  auto database = open_reader(path);
-  check_pages(database);
-  // Read all files from one snapshot of the database, even if a running session adds rows meanwhile.
-  database.execute("BEGIN");
-  auto selections = select(database, directory, options);
-  if (selections.empty())
+SelectedSessions select_for_export(const std::string& path, const std::string& directory,
+                                   const ExportOptions& options) {
+  SelectedSessions selected{open_reader(path), {}};
+  check_pages(selected.database);
+  selected.database.execute("BEGIN");
+  selected.protocols = select(selected.database, directory, options);
+  if (selected.protocols.empty())
     throw StoreError(
         ErrorKind::missing,
         fmt::format(
             "export: no session in {} matches these options; `turnpoint sessions --db {}` lists all sessions",
             path, path));
+  return selected;
+}
+
+std::vector<ExportedFile> export_data(const std::string& path, const std::string& directory,
+                                      const ExportOptions& options) {
+  check_style(options);
+  auto [database, selections] = select_for_export(path, directory, options);
   std::vector<ExportedFile> files;
   if (options.format == ExportFormat::signals) keep_with_signals(database, selections);
   for (const auto& selection : selections) {

@@ -32,6 +32,8 @@ ExportColumn trial(const std::string& csv) { return exported(trial_table(), csv,
 ExportColumn tone(const std::string& csv) { return exported(tone_table(), csv, &ExportRow::tone); }
 ExportColumn event(const std::string& csv) { return exported(event_table(), csv, &ExportRow::event); }
 
+ExportColumn check(const std::string& csv) { return exported(check_table(), csv, &ExportRow::check); }
+
 template <class Make>
 void add(ExportColumns& columns, Make make, std::initializer_list<const char*> names) {
   for (const auto* name : names) columns.push_back(make(name));
@@ -110,6 +112,14 @@ ExportColumn checksum() {
            "compares this checksum with a database",
            "", ""},
           [](const ExportRow& row) { return cell(row.session->checksum); }};
+}
+
+ExportColumn self_test() {
+  return {{"self_test",
+           "Result of the newest self-test before the session, with the operator's reason to continue if a "
+           "check failed; self_tests.csv has the checks",
+           "", "passed | failed | failed; continued: ... | n/a"},
+          [](const ExportRow& row) { return row.self_test ? cell(row.self_test->value) : Cell{}; }};
 }
 
 ExportColumn factor_value(const std::string& factor, const std::string& name) {
@@ -192,10 +202,11 @@ ExportColumns trial_columns(const std::vector<std::string>& factors) {
        "extra_touches", "threshold_est", "threshold_sd"});
   add(columns, session, {"seed", "station_id", "calibration_id", "software_version"});
   add(columns, trial,
-      {"response_zero_onset", "trial_duration", "proof", "proof_cause", "drive_ratio_db", "drive_residual_db",
-       "onset_error_us", "confidence", "confidence_time", "sensing", "contact_s", "strokes", "normal_n",
-       "normal_sd_n", "normal_in_window", "speed_mm_s", "speed_in_window", "mu_low", "mu_high",
-       "boundary_felt_mm", "boundary_se_mm", "lag_mm", "tare_mn"});
+      {"response_zero_onset", "trial_duration",  "proof",      "proof_cause",     "drive_ratio_db",
+       "drive_residual_db",   "onset_error_us",  "confidence", "confidence_time", "sensing",
+       "contact_s",           "strokes",         "normal_n",   "normal_sd_n",     "normal_in_window",
+       "speed_mm_s",          "speed_in_window", "mu_low",     "mu_high",         "boundary_felt_mm",
+       "boundary_se_mm",      "lag_mm",          "tare_mn"});
   columns.push_back(columns_version());
   add_factors(columns, at, factors);
   return columns;
@@ -233,9 +244,27 @@ ExportColumns session_columns() {
        "station_id", "realtime_rights", "consent_version"});
   columns.push_back(annotations());
   columns.push_back(checksum());
-  add(columns, session, {"participant_code"});
+  add(columns, session,
+      {"participant_code", "humidity_percent", "room_temperature_c", "surface_cleaned", "finger",
+       "skin_moisture"});
+  columns.push_back(self_test());
   columns.push_back(columns_version());
   return columns;
+}
+
+ExportColumns self_test_columns() {
+  ExportColumns columns{participant_id(), session_id(), session("run_mode"), event("segment_id"),
+                        event_onset()};
+  add(columns, check, {"check", "verdict", "value", "limit", "unit", "what"});
+  columns.push_back(columns_version());
+  return columns;
+}
+
+const EventRow* newest_self_test(const StoredSession& stored) {
+  const EventRow* newest = nullptr;
+  for (const auto& event : stored.events)
+    if (event.kind == "self_test") newest = &event;
+  return newest;
 }
 
 std::string codebook_json(const std::string& protocol_id, const std::vector<std::string>& factors) {
@@ -246,6 +275,7 @@ std::string codebook_json(const std::string& protocol_id, const std::vector<std:
   json["intervals.csv"] = explained(interval_columns());
   json["events.csv"] = explained(event_columns());
   json["sessions.csv"] = explained(session_columns());
+  json["self_tests.csv"] = explained(self_test_columns());
   return json.dump(2) + "\n";
 }
 

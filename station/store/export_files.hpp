@@ -1,11 +1,14 @@
 #pragma once
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include "station/store/export.hpp"
+#include "station/store/export_tables.hpp"
 #include "station/store/gzip.hpp"
 #include "station/store/read.hpp"
+#include "station/store/sqlite.hpp"
 #include "station/store/text_table.hpp"
 #include "station/system/write_file.hpp"
 
@@ -18,6 +21,30 @@ struct ProtocolSelection {
   std::vector<std::string> factors;
   std::vector<SessionRecord> sessions;
 };
+
+/// The sessions that an export or a reader takes from a database, read from one snapshot even if a running session adds
+/// rows meanwhile.
+struct SelectedSessions {
+  Database database;
+  std::vector<ProtocolSelection> protocols;
+};
+
+/// Opens the database and chooses the sessions. Throws StoreError, also if there are none.
+SelectedSessions select_for_export(const std::string& database, const std::string& directory,
+                                   const ExportOptions& options);
+
+/// The columns of the tables of a protocol.
+struct CsvColumns {
+  ExportColumns trials, intervals, events, sessions, self_tests;
+};
+CsvColumns csv_columns(const ProtocolSelection& selection);
+
+/// Receives the rows of these tables one by one.
+struct CsvRows {
+  std::function<void(const std::vector<Cell>&)> trials, intervals, events, sessions, self_tests;
+};
+void for_each_row(Database& database, const ProtocolSelection& selection, const CsvColumns& columns,
+                  const CsvRows& rows);
 
 /// Makes the name of a file or folder from any text, such as a protocol's id. Characters that could lead out
 /// of the folder are replaced.

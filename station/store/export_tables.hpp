@@ -43,6 +43,8 @@ struct ExportRow {
   const EventRow* event = nullptr;
   std::int64_t origin_ns = 0;             ///< CLOCK_MONOTONIC at the start of the event's segment
   std::optional<StimulusSpan> span = {};  ///< time span of the trial's stimuli
+  const CheckRow* check = nullptr;        ///< a check of the self-test in `event`
+  const EventRow* self_test = nullptr;    ///< the newest self-test of the session; null if there was none
 };
 
 /// A column of an exported table: its description, and the function that computes the column's value in a
@@ -59,6 +61,10 @@ ExportColumns trial_columns(const std::vector<std::string>& factors);
 ExportColumns interval_columns();
 ExportColumns event_columns();
 ExportColumns session_columns();
+ExportColumns self_test_columns();
+
+/// The newest self-test of a session; null if there was none.
+const EventRow* newest_self_test(const StoredSession& stored);
 
 std::vector<std::string> names_of(const ExportColumns& columns);
 std::vector<std::string> names_of(const std::vector<Column>& columns);

@@ -11,6 +11,7 @@ inline void parse(const std::string& word, RunMode& mode) { mode = run_mode_name
 inline void parse(const std::string& word, SessionStatus& status) { status = session_status_named(word); }
 inline void parse(const std::string& word, Outcome& outcome) { outcome = trial_outcome_named(word); }
 inline void parse(const std::string& word, TrialType& type) { type = trial_type_named(word); }
+inline void parse(const std::string& word, Verdict& verdict) { verdict = verdict_named(word); }
 inline void parse(const std::string& word, Proof& proof) { proof = proof_named(word); }
 inline void parse(const std::string& word, ProofCause& cause) { cause = proof_cause_named(word); }
 

@@ -12,6 +12,12 @@ Field<SessionRecord> start(const About& about) {
   return field<&SessionRecord::start, Member>(about);
 }
 
+/// Describes the database column that stores one of the conditions of a session.
+template <auto Member>
+Field<SessionRecord> condition(const About& about) {
+  return since(4, field<&SessionRecord::start, &SessionStart::conditions, Member>(about));
+}
+
 }  // namespace
 
 const Table<SegmentStart>& segment_table() {
@@ -58,6 +64,21 @@ const Table<EventRow>& event_table() {
   return table;
 }
 
+const Table<CheckRow>& check_table() {
+  using C = CheckRow;
+  static const Table<C> table{
+      "self_test",
+      {"session_id", "event_index", "check_index"},
+      {field<&C::name>({"name", "check", "What the self-test checked: gate, stop, tone main, disk, ..."}),
+       field<&C::verdict>(
+           {"verdict", "verdict", "Result of the check", "", "passed | failed | not possible"}),
+       field<&C::value>({"value", "value", "Measured value, in the unit of the row"}),
+       field<&C::limit>({"limit_value", "limit", "Limit of the value, in the unit of the row"}),
+       field<&C::unit>({"unit", "unit", "Unit of value and limit"}),
+       field<&C::what>({"what", "what", "What was found"})}};
+  return table;
+}
+
 const Table<SessionRecord>& session_table() {
   using R = SessionRecord;
   using S = SessionStart;
@@ -91,6 +112,20 @@ const Table<SessionRecord>& session_table() {
        start<&S::started_local>(
            {"started_local", "started", "Start of the session in local time, with time zone", "ISO 8601"}),
        start<&S::consent_version>({"consent_version", "consent_version", "Version of the consent form"}),
+       condition<&Conditions::humidity_percent>(
+           {"humidity_percent", "humidity_percent",
+            "Relative humidity of the room, as stated before the session", "%"}),
+       condition<&Conditions::room_temperature_C>({"room_temperature_C", "room_temperature_c",
+                                                   "Temperature of the room, as stated before the session",
+                                                   "degC"}),
+       condition<&Conditions::surface_cleaned>({"surface_cleaned", "surface_cleaned",
+                                                "1 if the surface was cleaned just before the session", "",
+                                                "0 | 1"}),
+       condition<&Conditions::finger>({"finger", "finger", "Hand and finger that touched the surface", "",
+                                       "left-thumb | ... | right-index | ... | n/a"}),
+       condition<&Conditions::skin_moisture>({"skin_moisture", "skin_moisture",
+                                              "Moisture of the fingertip, as a moisture meter read it before "
+                                              "the session, in the meter's unit"}),
        field<&R::status>({"status", "status", "State of the session", "",
                           "running | completed | interrupted | stopped | abandoned"}),
        field<&R::status_reason>({"status_reason", "status_reason", "Why the session has this state"})}};

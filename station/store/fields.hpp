@@ -16,8 +16,8 @@ namespace turnpoint::store {
 
 /// One column of a database table: where its value is in the C++ struct, its name in the exports, and its
 /// meaning. All code that handles records uses these descriptions: writing, reading, exports, codebook and
-/// checksum. Only the SQL that creates the tables is separate (schema.cpp), because a released schema never
-/// changes. A test compares that SQL with these descriptions.
+/// checksum. Only the SQL that creates the tables is separate (schema_steps.cpp), because a released schema
+/// never changes. A test compares that SQL with these descriptions.
 template <class Record>
 struct Field {
   const char* name;
@@ -48,6 +48,7 @@ const Table<TrialRow>& trial_table();
 const Table<ToneRow>& tone_table();
 const Table<SignalRow>& signal_table();
 const Table<EventRow>& event_table();
+const Table<CheckRow>& check_table();
 
 /// The columns of a session. Its data are in four tables, because many sessions share a protocol, a rig and a
 /// calibration. Status and reason are the last columns, and the only ones that ever change.

@@ -29,6 +29,8 @@ Outcome trial_outcome_named(const std::string& word) { return named(word, terms:
 Proof proof_named(const std::string& word) { return named(word, terms::proofs); }
 ProofCause proof_cause_named(const std::string& word) { return named(word, terms::proof_causes); }
 
+Verdict verdict_named(const std::string& word) { return named(word, terms::verdicts); }
+
 TrialType trial_type_named(const std::string& word) { return named(word, terms::trial_types); }
 
 }  // namespace turnpoint::store

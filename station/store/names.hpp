@@ -16,5 +16,6 @@ Outcome trial_outcome_named(const std::string& word);
 Proof proof_named(const std::string& word);
 ProofCause proof_cause_named(const std::string& word);
 TrialType trial_type_named(const std::string& word);
+Verdict verdict_named(const std::string& word);
 
 }  // namespace turnpoint::store

@@ -163,10 +163,33 @@ std::vector<std::string> participants(const std::string& path) {
   return codes;
 }
 
+namespace {
+
+/// The events of a session, in the order in which they were logged, with the checks of self-tests.
+std::vector<EventRow> read_events(Database& database, const std::string& id) {
+  Statement rows(database, "SELECT " + column_list(event_table()) +
+                               " FROM event WHERE session_id = ? ORDER BY event_index");
+  Statement checks(database, "SELECT " + column_list(check_table()) +
+                                 " FROM self_test WHERE session_id = ? ORDER BY event_index, check_index");
+  rows.bind(id);
+  checks.bind(id);
+  std::vector<EventRow> events;
+  bool check_waits = checks.step();
+  while (rows.step()) {
+    auto event = record_of(rows, event_table());
+    for (; check_waits && checks.integer(1) == rows.integer(1); check_waits = checks.step())
+      event.checks.push_back(record_of(checks, check_table()));
+    events.push_back(std::move(event));
+  }
+  return events;
+}
+
+}  // namespace
+
 StoredSession read_session(Database& database, const SessionRecord& session) {
   const auto& id = session.session_id;
   return {session, read_rows(database, segment_table(), id, "segment_index"), read_blocks(database, id),
-          read_rows(database, event_table(), id, "event_index")};
+          read_events(database, id)};
 }
 
 StoredSession read_session(Database& database, const std::string& session_id) {

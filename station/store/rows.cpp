@@ -8,7 +8,8 @@ RowWriter::RowWriter(Database& database)
     : trial_(database, insert_sql(trial_table())),
       tone_(database, insert_sql(tone_table())),
       signal_(database, insert_sql(signal_table())),
-      event_(database, insert_sql(event_table())) {}
+      event_(database, insert_sql(event_table())),
+      check_(database, insert_sql(check_table())) {}
 
 void RowWriter::trial(const TrialPlace& at, TrialRow row, std::int64_t recorded_realtime_ns) {
   row.segment_index = at.segment_index;
@@ -22,6 +23,9 @@ void RowWriter::trial(const TrialPlace& at, TrialRow row, std::int64_t recorded_
 void RowWriter::event(const TrialPlace& at, std::int64_t event_index, EventRow row) {
   row.segment_index = at.segment_index;
   bind_row(event_, event_table(), row, at.session_id, event_index).run();
+  std::int64_t check_index = 0;
+  for (const auto& check : row.checks)
+    bind_row(check_, check_table(), check, at.session_id, event_index, check_index++).run();
 }
 
 std::map<std::pair<int, int>, std::vector<TrialRow>> read_trials(Database& database,

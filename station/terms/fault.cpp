@@ -31,6 +31,7 @@ constexpr Entry entries[] = {
     {FaultKind::stimulus_missed, "stimulus_missed", "stimulus incomplete"},
     {FaultKind::vibration, "vibration", "the surface did not move as planned"},
     {FaultKind::capture, "capture", "the surface cannot be measured"},
+    {FaultKind::self_test, "self_test", "the self-test failed"},
 };
 static_assert(std::size(entries) == fault_kinds.size());
 

@@ -29,6 +29,7 @@ enum class FaultKind {
   stimulus_missed,  ///< frames were lost during a stimulus, or a stimulus came too late
   vibration,        ///< the pick-up says that the surface did not move as planned
   capture,          ///< what the surface does cannot be measured: no capture device, or no pilot heard
+  self_test,        ///< a check of the self-test before the session failed
 };
 
 inline constexpr std::array fault_kinds{FaultKind::other,           FaultKind::converter_gone,
@@ -40,7 +41,7 @@ inline constexpr std::array fault_kinds{FaultKind::other,           FaultKind::c
                                         FaultKind::touch_gone,      FaultKind::disk_full,
                                         FaultKind::disarmed,        FaultKind::limits,
                                         FaultKind::stimulus_missed, FaultKind::vibration,
-                                        FaultKind::capture};
+                                        FaultKind::capture,         FaultKind::self_test};
 
 /// Returns the kind's name for the log: "converter_gone", ...
 const char* name(FaultKind kind);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <stdexcept>
 
 #include "physics/airy.hpp"
@@ -13,6 +14,7 @@
 #include "physics/field.hpp"
 #include "physics/modal_field.hpp"
 #include "tests/benchmark/scipy.hpp"
+#include "tests/benchmark/scripts.hpp"
 #include "tests/benchmark/solvers.hpp"
 #include "tests/benchmark/stopwatch.hpp"
 
@@ -29,6 +31,7 @@ struct Scene {
   physics::Surface surface;
   double frequency_Hz;
   bool plate = false;
+  bool from_python = false;  // the scene with which the Python module is timed
 };
 
 std::vector<Scene> scenes() {
@@ -37,7 +40,7 @@ std::vector<Scene> scenes() {
   curved.taper = physics::ExponentialTaper{0.03, 0.12};
   return {{"seed brass 19.6 kHz, lossless", lossless, 19600},
           {"seed brass 45 kHz, lossless", lossless, 45000},
-          {"seed brass 19.6 kHz, Q = 60", lossy, 19600},
+          {"seed brass 19.6 kHz, Q = 60", lossy, 19600, false, true},
           {"seed brass 45 kHz, Q = 60", lossy, 45000},
           {"exponential taper 30 kHz, Q = 60", curved, 30000},
           {"aluminium plate 30 kHz, Q = 60", physics::aluminium_plate(), 30000, true}};
@@ -77,6 +80,16 @@ std::vector<Resolution> resolutions() {
   return {{"degree 5, 0 spare", one(5, 3, 0)}, {"default", {}}, {"degree 8, 5 spare", one(8, 2, 5)}};
 }
 
+/// Adds the time of the same call from Python, if the Python package was built and its interpreter is found.
+void time_from_python(const Scene& scene, double budget_s, double error, std::vector<PhysicsRow>& rows) {
+  const auto printed = run_peer("field_from_python.py",
+                                {TURNPOINT_PYTHON_FOLDER, fmt::format("{}", scene.frequency_Hz),
+                                 fmt::format("{}", scene.surface.quality_factor), fmt::format("{}", budget_s)});
+  if (printed.size() == 1)
+    rows.push_back({Task::field, scene.name, "mode", "evaluate() from Python", kPoints,
+                    std::strtod(printed[0].c_str(), nullptr), error});
+}
+
 void bench_field(const Scene& scene, double budget_s, std::vector<PhysicsRow>& rows) {
   const auto x = physics::linspace_points(scene.surface, kPoints);
   physics::ModalResolution fine;
@@ -100,6 +113,7 @@ void bench_field(const Scene& scene, double budget_s, std::vector<PhysicsRow>& r
         physics::evaluate(scene.surface, {&tone, 1}, x, model, physics::Normalise::peak);
       });
       rows.push_back({Task::field, scene.name, "mode", "evaluate()", kPoints, called, error});
+      if (scene.from_python) time_from_python(scene, budget_s, error, rows);
     } catch (const std::domain_error&) {  // this model cannot describe this scene
     }
   }

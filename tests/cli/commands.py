@@ -28,7 +28,8 @@ COMMANDS = {
     "calibrate": {}, "check": {}, "doctor": {"status": (0, 1)}, "export": {"needs": "session"}, "field": {},
     "figures": {}, "join": {"needs": "session"}, "map": {}, "merge": {"needs": "session"}, "new": {},
     "operator-code": {"needs": "code"}, "plan": {}, "power": {}, "preview": {}, "protocols": {},
-    "report": {"needs": "session"}, "resume": {"needs": "session"}, "run": {}, "sessions": {"needs": "session"},
+    "report": {"needs": "session"}, "resume": {"needs": "session"}, "run": {}, "self-test": {"status": (0, 1)},
+    "sessions": {"needs": "session"},
     "station": {"needs": "screen"}, "synth": {}, "trace": {}, "verify": {"needs": "session"},
     "withdraw": {"needs": "session"},
 }
@@ -43,6 +44,7 @@ WITH_RIG = {"amplifier-off": [], "calibrate": ["--sweep"], "check": ["demo"], "d
             "field": ["--tone", "30000", "--points", "3"], "map": ["--boundary", "150"],
             "plan": ["demo", "--scene", "edge"], "power": ["demo", "--observers", "2"], "preview": ["demo", "--out", "looks"],
             "run": ["demo", "--db", "new.sqlite", "--participant", "P01", "--observer", "sim"],
+            "self-test": ["--data", "."],
             "synth": ["--tone", "30000", "--seconds", "1", "--out", "null:"]}
 WITH_DATABASE = {"annotate": ["a note"], "backup": ["--dir", "copies"], "export": ["--out", "export"], "join": ["P01", "P02"],
                  "report": [], "resume": [], "sessions": [], "verify": [], "withdraw": ["--participant", "P01", "--yes"]}
@@ -69,6 +71,9 @@ OUT_OF_RANGE = [
      "did you mean live?"),
     (["run", "demo", "--db", "good.sqlite", "--participant", "P01", "--observer", "sim", "--seed", "-1"],
      "0 to 9007199254740992"),
+    (["run", "demo", "--db", "good.sqlite", "--participant", "P01", "--observer", "sim", "--humidity", "101"], "0 to 100"),
+    (["run", "demo", "--db", "good.sqlite", "--participant", "P01", "--observer", "sim", "--finger", "right-indx"],
+     "did you mean right-index?"),
     (["run", "demo", "--db", "good.sqlite", "--participant", "Anna Miller", "--observer", "sim"], "is not a code"),
     (["synth", "--tone", "30000", "--seconds", "0", "--out", "null:"], "0.001 to 3600"),
     (["synth", "--tone", "30000", "--seconds", "1", "--ramp-ms", "-1", "--out", "null:"], "0 or more"),

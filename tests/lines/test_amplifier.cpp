@@ -110,8 +110,8 @@ TEST_CASE("an amplifier is opened from the text in the rig file, and every mista
   CHECK(open_amplifier("sim:")->state() == AmplifierState::disarmed);
   CHECK_THROWS_WITH(open_amplifier("gpio:fault=F"), "amplifier 'gpio:fault=F' has no enable line");
   CHECK_THROWS_WITH(open_amplifier("gpio:enable=A,foo=B"),
-                    "'gpio:enable=A,foo=B': unknown 'foo'; allowed enable, heartbeat, fault, stop, active, "
-                    "fault_active, stop_active, read_back");
+                    "'gpio:enable=A,foo=B': unknown 'foo'; allowed enable, heartbeat, fault, stop, gate, "
+                    "active, fault_active, stop_active, read_back");
   CHECK_THROWS_AS(open_amplifier("gpio:enable=NO_SUCH_LINE"), LineError);
   CHECK_THROWS_AS(open_amplifier("usb:1"), terms::UsageError);
   CHECK_THROWS_AS(open_amplifier("nothing"), terms::UsageError);

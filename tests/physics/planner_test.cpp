@@ -1,37 +1,19 @@
 #include "physics/planner.hpp"
 
 #include <cmath>
-#include <cstdint>
-#include <cstdlib>
 #include <limits>
 
 #include "physics/boundary_map.hpp"
 #include "physics/centre_line.hpp"
 #include "physics/dispersion.hpp"
+#include "tests/physics/random_scenes.hpp"
 #include "tests/support/catch.hpp"
 
 using namespace turnpoint::physics;
+using turnpoint::physics_test::Draw;
+using turnpoint::physics_test::scenes;
 
 namespace {
-
-// The SplitMix64 random generator, so that the random scenes are the same on every machine.
-class Draw {
- public:
-  explicit Draw(std::uint64_t seed) : state_(seed) {}
-  double between(double low, double high) {
-    return low + (high - low) * static_cast<double>(next() >> 11) * 0x1p-53;
-  }
-  double spread(double low, double high) { return std::exp(between(std::log(low), std::log(high))); }
-  std::uint64_t next() {
-    std::uint64_t z = (state_ += 0x9e3779b97f4a7c15ULL);
-    z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9ULL;
-    z = (z ^ (z >> 27)) * 0x94d049bb133111ebULL;
-    return z ^ (z >> 31);
-  }
-
- private:
-  std::uint64_t state_;
-};
 
 constexpr double frequency_Hz = 20000;
 
@@ -99,18 +81,6 @@ PlanRequest request_for(Normalise normalise) {
   request.edge = Edge::percent(0.5);
   request.normalise = normalise;
   return request;
-}
-
-#if defined(__SANITIZE_ADDRESS__)
-constexpr int share = 4;  // the release build tests all scenes; with a sanitizer a few are enough
-#else
-constexpr int share = 1;
-#endif
-
-/// Number of random scenes: `usual`, or the value of TURNPOINT_SCENES, for example 5000 for a long run.
-int scenes(int usual) {
-  const char* const asked = std::getenv("TURNPOINT_SCENES");
-  return asked ? std::stoi(asked) : usual / share;
 }
 
 }  // namespace

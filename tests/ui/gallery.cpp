@@ -195,6 +195,7 @@ void add_faults(std::vector<Exhibit>& all, const Words& words) {
       {FaultKind::stimulus_missed, "384 frames lost"},
       {FaultKind::capture, "the pilot on output channel 2 is not heard on captured channel 0"},
       {FaultKind::vibration, "the surface does not move; level -62.1 dB; residual -21 dB"},
+      {FaultKind::self_test, "gate: the gate stays open although the heartbeat has stopped"},
       {FaultKind::other, "panel: 3 edges of line 0 were lost"},
   };
   for (const auto& [kind, detail] : faults) {
@@ -208,9 +209,9 @@ void add_faults(std::vector<Exhibit>& all, const Words& words) {
     page.detail = detail;
     if (kind == FaultKind::disarmed) page.amplifier = "disarmed";
     // The amplifier stays armed during these faults.
-    const auto armed = {
-        FaultKind::disarmed,        FaultKind::limits,    FaultKind::touch_gone, FaultKind::disk_full,
-        FaultKind::stimulus_missed, FaultKind::vibration, FaultKind::capture,    FaultKind::other};
+    const auto armed = {FaultKind::disarmed,  FaultKind::limits,          FaultKind::touch_gone,
+                        FaultKind::disk_full, FaultKind::stimulus_missed, FaultKind::vibration,
+                        FaultKind::capture,   FaultKind::self_test,       FaultKind::other};
     if (std::find(armed.begin(), armed.end(), kind) == armed.end()) page.amplifier = "faulted";
     all.push_back({std::string("fault-") + terms::name(kind), page});
   }

@@ -146,6 +146,7 @@ void OperatorController::check_selected() {
 
 setup::RunRequest OperatorController::request_for(const char* mode) const {
   setup::RunRequest request;
+  request.self_test = true;
   request.protocol = entry()->path;
   request.rig = request_.rig;
   request.database = request_.database;
@@ -234,6 +235,7 @@ void OperatorController::resume() {
       [this, arm = armed_](const std::stop_token&) -> Then {
         std::ostringstream messages;
         setup::ResumeRequest request;
+        request.self_test = true;
         request.database = request_.database;
         request.session_id = interrupted_->session_id;
         const auto setup = setup::prepare_resume(request, messages);

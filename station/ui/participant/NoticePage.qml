@@ -201,7 +201,7 @@ Item {
         }
         ActionButton {
             objectName: "proceed"
-            visible: !root.page.awaitsArming
+            visible: !root.page.awaitsArming && !root.page.awaitsNote
             theme: root.theme
             width: Math.max(implicitWidth, 22 * root.theme.unit)
             armed: root.armed

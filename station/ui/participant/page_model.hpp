@@ -53,6 +53,7 @@ class PageModel : public QObject {
   Q_PROPERTY(QString toDo READ to_do NOTIFY changed)
   Q_PROPERTY(QString detail READ detail NOTIFY changed)
   Q_PROPERTY(bool awaitsArming READ awaits_arming NOTIFY changed)
+  Q_PROPERTY(bool awaitsNote READ awaits_note NOTIFY changed)
   Q_PROPERTY(bool resumable READ resumable NOTIFY changed)
   Q_PROPERTY(bool unsaved READ unsaved NOTIFY changed)
   Q_PROPERTY(QStringList summaryLabels READ summary_labels NOTIFY changed)
@@ -125,6 +126,10 @@ class PageModel : public QObject {
   QString detail() const { return QString::fromStdString(page_.detail); }
   /// True if only an operator who arms the amplifier can continue from this page.
   bool awaits_arming() const { return page_.amplifier == "disarmed" || page_.amplifier == "faulted"; }
+  /// True if only an operator who writes why the session continues can continue from this page.
+  bool awaits_note() const {
+    return page_.kind == session::PageKind::fault && page_.fault == session::FaultKind::self_test;
+  }
   bool resumable() const { return page_.resumable; }
   /// True while the last answer is kept in memory only, because the disk is full.
   bool unsaved() const {

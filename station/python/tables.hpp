@@ -1,0 +1,38 @@
+#pragma once
+#include <string>
+#include <vector>
+
+#include "station/store/export.hpp"
+#include "station/store/text_table.hpp"
+
+namespace turnpoint::python {
+
+/// A table in memory, column by column.
+struct MemoryTable {
+  std::vector<std::string> columns;
+  std::vector<std::vector<store::Cell>> cells;  ///< cells[column][row]
+};
+
+/// The tables that export_data() writes for one protocol.
+struct ProtocolTables {
+  std::string protocol_id;
+  MemoryTable trials, intervals, events, sessions, self_tests;
+};
+
+/// Reads what store::export_data() would write with the format csv. Texts that are empty count as missing, as in the files; they
+/// have no apostrophe in front of = + - or @. Throws StoreError like store::export_data().
+std::vector<ProtocolTables> read_tables(const std::string& database, const store::ExportOptions& options);
+
+/// All points of one stream of a session, such as the finger's forces. The vectors have one value per point.
+struct SignalTable {
+  std::string session_id, stream;
+  std::vector<std::int64_t> trial_index, segment_id;
+  std::vector<double> time_s;  ///< from the start of the segment, rounded to 1 us
+  std::vector<std::string> channels;
+  std::vector<std::vector<double>> values;  ///< values[channel][point]; NaN where a point is missing
+};
+
+/// Reads the signals that store::export_data() would write with the format signals. Throws StoreError if there are none.
+std::vector<SignalTable> read_signals(const std::string& database, const store::ExportOptions& options);
+
+}  // namespace turnpoint::python

@@ -1,0 +1,99 @@
+#pragma once
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "station/records/records.hpp"
+#include "station/system/condition.hpp"
+#include "station/terms/proof.hpp"
+
+namespace turnpoint::session {
+
+using records::CheckRow;
+using records::Verdict;
+
+/// What the self-test measures. In each reading, `missing` says why it was not possible; "" if it was.
+
+/// The gate behind the external monitor, after the heartbeat was stopped while the enable line was high.
+struct GateReading {
+  std::string missing;
+  bool opened = false;  ///< the gate was open while the heartbeat ran
+  std::optional<double>
+      dropped_s;  ///< time from the stop of the heartbeat until the gate was shut; empty: never
+};
+
+/// A stop or response button that somebody was asked to press and to release.
+struct PressReading {
+  std::string missing;
+  std::string button;  ///< name of the button; "" for the stop
+  bool pressed = false, released = false;
+};
+
+/// A quiet tone on one transducer, as the pick-ups measured it.
+struct ToneReading {
+  std::string missing;
+  std::string transducer;
+  double frequency_Hz = 0;
+  double ratio_dB = 0;  ///< measured level relative to the calibration
+  terms::Proof proof = terms::Proof::unproven;
+  terms::ProofCause cause = terms::ProofCause::none;
+};
+
+/// One force cell without a finger on the surface.
+struct CellReading {
+  std::string missing;
+  std::string cell;                 ///< "a", "b" or "lateral"
+  std::string fault;                ///< why the cell could not be read although it should; "" if it was
+  double zero_N = 0, noise_mN = 0;  ///< mean, and standard deviation in the band of the force
+};
+
+/// The wall clock, and by how much somebody set it during the self-test.
+struct ClockReading {
+  system::WallClock clock;
+  std::optional<double> jump_s;
+};
+
+/// Limits of the self-test.
+/// The monostable of deploy/README.md lasts 100 to 120 ms; other logic families up to 220 ms.
+inline constexpr double kGateLimit_s = 0.25;
+inline constexpr double kZeroLimit_N = 1;      ///< a tenth of a cell's rated load
+inline constexpr double kNoiseLimit_mN = 2;    ///< as for the tare before a trial
+inline constexpr double kToneLimit_dB = 1;     ///< as for a stimulus that is refused
+inline constexpr double kHottest_C = 80;       ///< from here on, boards reduce their clock frequency
+inline constexpr double kLeastDisk_MiB = 200;  ///< what a session needs
+inline constexpr double kLongestPress_s = 20;  ///< how long the self-test waits for a press or a release
+
+/// Each of these functions judges one reading. They are pure.
+CheckRow judged(const GateReading& reading);
+CheckRow judged(const PressReading& reading);
+CheckRow judged(const ToneReading& reading);
+/// Two checks: the zero and the noise of the cell.
+std::vector<CheckRow> judged(const CellReading& reading);
+CheckRow judged_temperature(std::optional<double> hottest_C);
+CheckRow judged(const ClockReading& reading);
+CheckRow judged(const system::Disk& disk);
+
+/// The rig under test. Each function measures one part; it may take seconds, and throws std::exception if the
+/// part does not work at all.
+class SelfTestRig {
+ public:
+  virtual ~SelfTestRig() = default;
+  virtual GateReading drop_heartbeat() = 0;
+  virtual PressReading press_stop() = 0;
+  virtual std::vector<PressReading> press_buttons() = 0;
+  /// One reading for each transducer.
+  virtual std::vector<ToneReading> play_tones() = 0;
+  /// Called after play_tones().
+  virtual std::vector<CellReading> read_cells() = 0;
+  virtual std::optional<double> hottest_C() = 0;
+  virtual ClockReading clock() = 0;
+  virtual system::Disk disk() = 0;
+};
+
+/// Runs all checks. A part that throws has failed; the other parts are still checked.
+std::vector<CheckRow> self_test(SelfTestRig& rig);
+
+/// True if no check failed. Checks that were not possible do not count.
+bool passed(const std::vector<CheckRow>& checks);
+
+}  // namespace turnpoint::session

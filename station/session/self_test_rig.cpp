@@ -1,0 +1,327 @@
+#include "station/session/self_test_rig.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <utility>
+
+#include "station/lines/uri.hpp"
+#include "station/observer/observer.hpp"
+#include "station/sensing/pick_up.hpp"
+#include "station/system/clock_watch.hpp"
+
+namespace turnpoint::session {
+namespace {
+
+constexpr std::int64_t kGate_ns = 500'000'000;
+constexpr std::int64_t kQuiet_ns = 700'000'000;  // the cells are read for 0.4 s before a tone
+constexpr std::int64_t kResult_ns = 5'000'000'000;
+constexpr double kTone_s = 0.6, kRamp_s = 0.05;
+constexpr double kAmplitude = 0.1, kShareOfLimit = 0.25;
+// Below this frequency people with good hearing may hear the tone.
+constexpr double kInaudible_Hz = 22'400;
+
+void require(const std::optional<Fault>& refusal, const char* what) {
+  if (refusal) throw std::runtime_error(std::string(what) + ": " + terms::describe(*refusal));
+}
+
+/// Lets the heartbeat run again and switches the amplifier off, whatever happens.
+class GateOpened {
+ public:
+  explicit GateOpened(drive::Amplifier& amplifier) : amplifier_(amplifier) {
+    require(amplifier.enable(), "the amplifier cannot be enabled");
+  }
+  ~GateOpened() {
+    amplifier_.disable();
+    amplifier_.resume_heartbeat();
+  }
+  GateOpened(const GateOpened&) = delete;
+  GateOpened& operator=(const GateOpened&) = delete;
+
+ private:
+  drive::Amplifier& amplifier_;
+};
+
+/// A tone that the pick-ups see well.
+struct Choice {
+  double frequency_Hz = 0, response = 0;
+};
+
+/// Returns the frequency in the transducer's band at which the pick-ups respond best: there, a small shift of
+/// the resonances changes the level least. Frequency 0: no pick-up is calibrated for the transducer.
+Choice best_tone(const rig::Transducer& transducer, const std::vector<sensing::PickUp>& pick_ups) {
+  Choice best;
+  const auto low_Hz = std::min(std::max(transducer.low_Hz, kInaudible_Hz), transducer.high_Hz);
+  for (const auto& pick_up : pick_ups)
+    for (const auto& transfer : pick_up.transfers) {
+      if (transfer.drive_channel != transducer.channel) continue;
+      for (double f = low_Hz; f <= transducer.high_Hz; f += 10)
+        if (const auto response = sensing::response(pick_up, transducer.channel, f);
+            response && std::abs(*response) > best.response)
+          best = {f, std::abs(*response)};
+    }
+  return best;
+}
+
+/// Amplitude relative to full scale: small, and far below the rig's limit.
+double quiet_amplitude(const rig::Rig& rig, const rig::Transducer& transducer) {
+  double m_per_full_scale = transducer.m_per_full_scale.value_or(0);
+  for (const auto& point : transducer.response)
+    m_per_full_scale = std::max(m_per_full_scale, point.m_per_full_scale);
+  if (m_per_full_scale <= 0 || rig.limits.displacement_m <= 0) return kAmplitude;
+  return std::min(kAmplitude, kShareOfLimit * rig.limits.displacement_m / m_per_full_scale);
+}
+
+drive::PreparedBurst quiet_tone(const rig::Rig& rig, const rig::Transducer& transducer, double frequency_Hz) {
+  const auto frames = [&](double s) {
+    return static_cast<std::int64_t>(std::llround(s * rig.output.rate_Hz));
+  };
+  drive::Burst burst;
+  burst.length_frames = frames(kTone_s);
+  burst.ramp.frames = frames(kRamp_s);
+  burst.tones.count = 1;
+  burst.tones.tones[0] = {frequency_Hz, quiet_amplitude(rig, transducer), 0, transducer.channel};
+  return drive::prepare(burst, {rig.output.rate_Hz, rig::channels(rig), rig.output.bits});
+}
+
+bool has_stop_line(const std::string& amplifier_uri) {
+  if (amplifier_uri == "sim:") return true;
+  const auto uri = lines::parse_uri(amplifier_uri);
+  return std::any_of(uri.values.begin(), uri.values.end(),
+                     [](const auto& key) { return key.first == "stop"; });
+}
+
+class StageRig : public SelfTestRig {
+ public:
+  explicit StageRig(SelfTestParts parts) : parts_(std::move(parts)), watch_(parts_.clocks()) {}
+
+  GateReading drop_heartbeat() override {
+    GateReading reading;
+    if (parts_.amplifier == nullptr) {
+      reading.missing = "the session is simulated";
+      return reading;
+    }
+    auto& amplifier = *parts_.amplifier;
+    if (!amplifier.gate()) {
+      reading.missing = "no line reads the gate; add gate=LINE to the rig's [amplifier] if it is wired";
+      return reading;
+    }
+    require(parts_.stage->arm(), "the amplifier cannot be armed");
+    // A busy machine can only lengthen the time, so the shortest of three counts.
+    for (int attempt = 0; attempt < 3 && reading.dropped_s.value_or(1) > kGateLimit_s; ++attempt) {
+      const GateOpened opened(amplifier);
+      reading.opened = until([&] { return amplifier.gate() == true; }, kGate_ns);
+      if (!reading.opened) return reading;
+      amplifier.hold_heartbeat();
+      const auto held_ns = system::monotonic_ns();
+      if (!until([&] { return amplifier.gate() == false; }, kGate_ns)) return reading;
+      // The gate must have been shut by the monitor. The guard would shut it too, for a fault.
+      if (amplifier.state() == drive::AmplifierState::faulted)
+        throw std::runtime_error("the amplifier was switched off for another reason: " +
+                                 terms::describe(amplifier.fault()));
+      const auto dropped_s = 1e-9 * static_cast<double>(system::monotonic_ns() - held_ns);
+      reading.dropped_s = std::min(dropped_s, reading.dropped_s.value_or(dropped_s));
+    }
+    return reading;
+  }
+
+  PressReading press_stop() override {
+    PressReading reading;
+    if (!has_stop_line(parts_.rig->amplifier_uri))
+      reading.missing = "the rig has no stop line";
+    else if (!parts_.ask)
+      reading.missing = "nobody was asked to press it";
+    if (!reading.missing.empty()) return reading;
+    auto& amplifier = *parts_.amplifier;
+    require(parts_.stage->arm(), "the amplifier cannot be armed");
+    parts_.ask({Request::Kind::press_stop, 0, ""});
+    reading.pressed = until(
+        [&] {
+          return amplifier.state() == drive::AmplifierState::faulted &&
+                 amplifier.fault().kind == FaultKind::stop_pressed;
+        },
+        press_ns_);
+    if (!reading.pressed) return reading;
+    parts_.ask({Request::Kind::release_stop, 0, ""});
+    reading.released = until([&] { return !parts_.stage->clear(); }, press_ns_);
+    if (reading.released) require(parts_.stage->arm(), "the amplifier cannot be armed");
+    return reading;
+  }
+
+  std::vector<PressReading> press_buttons() override {
+    std::vector<PressReading> readings;
+    const auto& names = parts_.stage->buttons();
+    for (std::size_t k = 0; k < names.size(); ++k) {
+      auto& reading = readings.emplace_back();
+      reading.button = names[k];
+      if (parts_.ask)
+        reading.pressed = reading.released = pressed(static_cast<int>(k), names[k]);
+      else
+        reading.missing = "nobody was asked to press it";
+    }
+    return readings;
+  }
+
+  std::vector<ToneReading> play_tones() override {
+    if (parts_.room == nullptr || !parts_.capture || parts_.capture->pick_ups.empty()) {
+      ToneReading none;
+      none.missing = "the rig has no pick-up";
+      return {none};
+    }
+    std::vector<ToneReading> readings;
+    for (const auto& transducer : parts_.rig->transducers) {
+      auto& reading = readings.emplace_back();
+      reading.transducer = transducer.name;
+      reading.frequency_Hz = best_tone(transducer, parts_.capture->pick_ups).frequency_Hz;
+      if (reading.frequency_Hz > 0) play(transducer, reading);
+    }
+    return readings;
+  }
+
+  std::vector<CellReading> read_cells() override {
+    CellReading reading;
+    if (!parts_.capture || !parts_.capture->finger) {
+      reading.missing = "the rig has no force cells";
+      return {reading};
+    }
+    std::vector<CellReading> readings;
+    for (std::size_t k = 0; k < sensing::bridge_count; ++k) {
+      reading.cell = k == 0 ? "a" : k == 1 ? "b" : "lateral";
+      if (forces_ && forces_->zero && forces_->noise) {
+        reading.zero_N = kRated_N * (*forces_->zero)[k];
+        reading.noise_mN = 1e3 * kRated_N * (*forces_->noise)[k];
+      } else {
+        reading.fault = forces_ && forces_->state == sensing::ForcesState::wire
+                            ? "a wire of the bridges or of the reference is off"
+                            : "captured frames were missing";
+      }
+      readings.push_back(reading);
+    }
+    return readings;
+  }
+
+  std::optional<double> hottest_C() override { return system::hottest_C(parts_.sensors); }
+
+  ClockReading clock() override { return {system::read_wall_clock(), watch_.look(parts_.clocks()).jump_s}; }
+
+  system::Disk disk() override { return system::read_disk(parts_.data_folder); }
+
+ private:
+  /// Waits until the condition is true, for at most this time. Returns whether it is.
+  bool until(const std::function<bool()>& condition, std::int64_t longest_ns) {
+    const auto end_ns = system::monotonic_ns() + longest_ns;
+    bool met = false;
+    parts_.stage->wait_for([&] { return (met = condition()) || system::monotonic_ns() > end_ns; });
+    return met;
+  }
+
+  void pass_on(Input input) {
+    if (parts_.other) parts_.other(std::move(input));
+  }
+
+  bool pressed(int button, const std::string& name) {
+    auto& stage = *parts_.stage;
+    static_cast<void>(stage.drain());
+    parts_.ask({Request::Kind::press_button, button, name});
+    const auto end_ns = stage.now_ns() + press_ns_;
+    while (const auto input = stage.wait_until(end_ns))
+      if (input->kind == InputKind::button && input->value == button) return true;
+    return false;
+  }
+
+  void play(const rig::Transducer& transducer, ToneReading& reading) {
+    auto& stage = *parts_.room;
+    for (auto& input : stage.drain()) pass_on(std::move(input));
+    require(stage.arm(), "the amplifier cannot be armed");
+    require(stage.open_amplifier(), "the amplifier cannot be enabled");
+    const auto settled_ns = stage.now_ns() + kQuiet_ns;
+    while (auto input = stage.wait_until(settled_ns)) pass_on(std::move(*input));
+    const auto burst = quiet_tone(*parts_.rig, transducer, reading.frequency_Hz);
+    const auto onsets = stage.present({&burst, 1}, stage.now_ns());
+    const auto end_ns = stage.now_ns() + kResult_ns;
+    reading.proof = terms::Proof::lost;
+    while (auto input = stage.wait_until(end_ns)) {
+      if (input->kind == InputKind::fault) {
+        stage.close_amplifier();
+        const Fault fault{input->fault, input->text};
+        pass_on(std::move(*input));
+        throw std::runtime_error(terms::describe(fault));
+      }
+      if (input->kind == InputKind::heard) break;
+      if (input->kind != InputKind::measured) {
+        pass_on(std::move(*input));
+        continue;
+      }
+      if (input->forces) forces_ = input->forces;
+      if (!input->measured) continue;
+      reading.proof = input->measured->verdict;
+      reading.cause = input->measured->cause;
+      reading.ratio_dB = input->measured->ratio_dB;
+    }
+    stage.close_amplifier();
+  }
+
+  SelfTestParts parts_;
+  const std::int64_t press_ns_ = static_cast<std::int64_t>(1e9 * parts_.longest_press_s);
+  system::ClockWatch watch_;
+  std::shared_ptr<const sensing::TrialForces> forces_;  ///< with the newest tone
+};
+
+}  // namespace
+
+std::unique_ptr<SelfTestRig> self_test_rig(SelfTestParts parts) {
+  return std::make_unique<StageRig>(std::move(parts));
+}
+
+std::vector<CheckRow> self_test(const rig::Rig& rig, const AskOperator& ask, const std::string& data_folder) {
+  if (rig.amplifier_uri == "sim:") return simulated_self_test(rig, data_folder);
+  Inputs inputs;
+  auto devices = open_devices(rig, inputs);
+  auto* amplifier = devices.amplifier.get();
+  const auto capture = card_capture_of(rig);
+  const auto stage = real_stage(session_stream(rig), std::move(devices), inputs, capture);
+  SelfTestParts parts{&rig, stage.get(), amplifier, capture ? stage.get() : nullptr, {}, ask, data_folder};
+  if (capture) parts.capture = capture->setup;
+  auto checks = self_test(*self_test_rig(std::move(parts)));
+  stage->finish();
+  return checks;
+}
+
+std::vector<CheckRow> simulated_self_test(const rig::Rig& rig, const std::string& data_folder,
+                                          const SimulatedFaults& faults) {
+  Inputs inputs, room_inputs;
+  const auto lines = std::make_shared<lines::SimulatedAmplifierLines>();
+  if (faults.lines) faults.lines(*lines);
+  Devices devices;
+  devices.amplifier = lines::simulated_amplifier(lines);
+  if (rig.buttons_uri)
+    devices.buttons = lines::open_buttons(lines::ButtonsConfig{}, std::nullopt, handlers_for(inputs));
+  auto* amplifier = devices.amplifier.get();
+  auto* buttons = devices.buttons.get();
+  auto stream = stream_of(rig);
+  stream.output.uri = "null:";
+  const auto stage = real_stage(stream, std::move(devices), inputs);
+  SelfTestParts parts{&rig, stage.get(), amplifier,     nullptr,        {},
+                      {},   data_folder, faults.clocks, faults.sensors, faults.longest_press_s};
+  std::unique_ptr<Stage> room_stage;
+  if (simulates_capture(rig)) {
+    auto room = std::make_unique<SimulatedRoom>(rig, faults.laboratory);
+    if (faults.room) faults.room(*room);
+    parts.capture = room->capture();
+    room_stage = virtual_stage(simulated_stream(rig), observer::Observer(observer::parse("sim")), room_inputs,
+                               std::move(room));
+    parts.room = room_stage.get();
+  }
+  parts.ask = [&](const Request& request) {
+    const auto now_ns = system::monotonic_ns();
+    if (request.kind == Request::Kind::press_button && !faults.button_disconnected)
+      buttons->simulate(lines::Press{now_ns, request.button});
+    if (request.kind != Request::Kind::press_button && !faults.stop_disconnected)
+      lines->set(lines::kSimulatedAmplifier.stop, request.kind == Request::Kind::press_stop, now_ns);
+  };
+  auto checks = self_test(*self_test_rig(std::move(parts)));
+  stage->finish();
+  return checks;
+}
+
+}  // namespace turnpoint::session

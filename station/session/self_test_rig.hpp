@@ -1,0 +1,67 @@
+#pragma once
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "station/drive/amplifier.hpp"
+#include "station/lines/simulated_amplifier.hpp"
+#include "station/rig/rig.hpp"
+#include "station/session/self_test.hpp"
+#include "station/session/stage.hpp"
+
+namespace turnpoint::session {
+
+/// What somebody is asked to do during the self-test.
+struct Request {
+  enum class Kind { press_stop, release_stop, press_button };
+  Kind kind = Kind::press_stop;
+  int button = 0;    ///< index of the response button
+  std::string name;  ///< its name
+};
+/// Puts a request to the operator. The self-test then waits until it is fulfilled.
+using AskOperator = std::function<void(const Request&)>;
+
+/// The parts on which a self-test runs. All pointers must outlive it.
+struct SelfTestParts {
+  const rig::Rig* rig = nullptr;
+  Stage* stage = nullptr;                 ///< runs in real time
+  drive::Amplifier* amplifier = nullptr;  ///< the amplifier of the stage; null if the stage simulates it
+  /// Where tones are played: the stage, or a stage in a simulated room; null if the rig captures nothing.
+  Stage* room = nullptr;
+  std::optional<CaptureSetup> capture;  ///< how the room captures; empty if the rig captures nothing
+  AskOperator ask;                      ///< empty: nobody is there, so no button is tested
+  std::string data_folder;
+  std::function<system::Clocks()> clocks = system::read_clocks;
+  std::string sensors = "/sys/class/hwmon";
+  double longest_press_s = kLongestPress_s;
+  /// Gets inputs that the self-test does not use, such as a request to stop the session; may be empty.
+  std::function<void(Input)> other = {};
+};
+
+/// A rig whose parts are reached through a stage. The amplifier must be armed, or may be armed: call this
+/// only if an operator has asked for it. The surface moves quietly; nobody should touch it meanwhile.
+/// Afterwards the amplifier is off, and armed unless somebody has disarmed it.
+std::unique_ptr<SelfTestRig> self_test_rig(SelfTestParts parts);
+
+/// Opens the rig's devices, runs the self-test on them and closes them. Without an `ask`, no button is
+/// tested. Throws what open_devices() and real_stage() throw.
+std::vector<CheckRow> self_test(const rig::Rig& rig, const AskOperator& ask, const std::string& data_folder);
+
+/// Faults of a simulated rig, for tests. Each function changes one part before the self-test.
+struct SimulatedFaults {
+  std::function<void(lines::SimulatedAmplifierLines&)> lines;
+  std::function<void(SimulatedRoom&)> room;
+  std::function<void(plant::Setup&)> laboratory;
+  bool stop_disconnected = false, button_disconnected = false;
+  std::function<system::Clocks()> clocks = system::read_clocks;
+  std::string sensors = "/sys/class/hwmon";
+  double longest_press_s = kLongestPress_s;
+};
+
+/// The self-test of a rig whose amplifier is simulated. The buttons are pressed by a script. Real devices of
+/// the rig are not opened.
+std::vector<CheckRow> simulated_self_test(const rig::Rig& rig, const std::string& data_folder,
+                                          const SimulatedFaults& faults = {});
+
+}  // namespace turnpoint::session

@@ -1,0 +1,383 @@
+#include "station/store/schema.hpp"
+
+namespace turnpoint::store {
+
+namespace {
+
+// Version 1. Each text (protocol, rig, calibration) is stored only once. The keys of a session's rows contain
+// the session's UUID, so databases of several stations can be merged without renumbering.
+const char* const kStep1 = R"sql(
+CREATE TABLE meta (key TEXT PRIMARY KEY, value TEXT NOT NULL) STRICT, WITHOUT ROWID;
+
+CREATE TABLE participant (code TEXT PRIMARY KEY CHECK (code <> '')) STRICT, WITHOUT ROWID;
+
+CREATE TABLE enrolment (
+  station_id TEXT NOT NULL,
+  protocol_id TEXT NOT NULL,
+  participant TEXT NOT NULL REFERENCES participant (code),
+  sequence_index INTEGER NOT NULL CHECK (sequence_index >= 0),
+  PRIMARY KEY (station_id, protocol_id, participant),
+  UNIQUE (station_id, protocol_id, sequence_index)
+) STRICT, WITHOUT ROWID;
+
+CREATE TABLE protocol (
+  protocol_key TEXT PRIMARY KEY,
+  protocol_id TEXT NOT NULL,
+  version TEXT NOT NULL,
+  sha256 TEXT NOT NULL,
+  text TEXT NOT NULL,
+  canonical TEXT NOT NULL
+) STRICT, WITHOUT ROWID;
+
+CREATE TABLE rig (
+  rig_key TEXT PRIMARY KEY,
+  name TEXT NOT NULL,
+  sha256 TEXT NOT NULL,
+  text TEXT NOT NULL
+) STRICT, WITHOUT ROWID;
+
+CREATE TABLE calibration (calibration_id TEXT PRIMARY KEY, text TEXT NOT NULL) STRICT, WITHOUT ROWID;
+
+CREATE TABLE session (
+  session_id TEXT PRIMARY KEY CHECK (length(session_id) = 36),
+  participant TEXT NOT NULL REFERENCES participant (code),
+  protocol_key TEXT NOT NULL REFERENCES protocol (protocol_key),
+  protocol_path TEXT NOT NULL,
+  rig_key TEXT NOT NULL REFERENCES rig (rig_key),
+  rig_path TEXT NOT NULL,
+  calibration_id TEXT REFERENCES calibration (calibration_id),
+  run_mode TEXT NOT NULL CHECK (run_mode IN ('live', 'pilot', 'simulated')),
+  session_index INTEGER NOT NULL CHECK (session_index >= 1),
+  sequence_index INTEGER NOT NULL CHECK (sequence_index >= 0),
+  seed INTEGER NOT NULL,
+  language TEXT NOT NULL,
+  observer TEXT NOT NULL CHECK ((observer <> '') = (run_mode = 'simulated')),
+  factor_columns TEXT NOT NULL CHECK (json_valid(factor_columns)),
+  level_unit TEXT NOT NULL,
+  software_version TEXT NOT NULL,
+  columns_version TEXT NOT NULL,
+  kernel TEXT NOT NULL,
+  station_id TEXT NOT NULL,
+  realtime_rights TEXT NOT NULL,
+  started_local TEXT NOT NULL,
+  consent_version TEXT NOT NULL,
+  status TEXT NOT NULL CHECK (status IN ('running', 'completed', 'interrupted', 'stopped', 'abandoned')),
+  status_reason TEXT NOT NULL
+) STRICT, WITHOUT ROWID;
+
+CREATE TABLE segment (
+  session_id TEXT NOT NULL REFERENCES session (session_id),
+  segment_index INTEGER NOT NULL CHECK (segment_index >= 1),
+  boot_id TEXT NOT NULL,
+  reason TEXT NOT NULL,
+  monotonic_ns INTEGER NOT NULL,
+  boottime_ns INTEGER NOT NULL,
+  realtime_ns INTEGER NOT NULL,
+  PRIMARY KEY (session_id, segment_index)
+) STRICT, WITHOUT ROWID;
+
+CREATE TABLE block (
+  session_id TEXT NOT NULL REFERENCES session (session_id),
+  block_index INTEGER NOT NULL CHECK (block_index >= 0),
+  attempt INTEGER NOT NULL CHECK (attempt >= 0),
+  run_order INTEGER NOT NULL,
+  name TEXT NOT NULL,
+  instruction TEXT NOT NULL,
+  practice INTEGER NOT NULL CHECK (practice IN (0, 1)),
+  PRIMARY KEY (session_id, block_index, attempt),
+  UNIQUE (session_id, run_order)
+) STRICT, WITHOUT ROWID;
+
+CREATE TABLE trial (
+  trial_id INTEGER PRIMARY KEY,
+  session_id TEXT NOT NULL REFERENCES session (session_id),
+  segment_index INTEGER NOT NULL,
+  block_index INTEGER NOT NULL,
+  attempt INTEGER NOT NULL,
+  trial_index INTEGER NOT NULL CHECK (trial_index >= 0),
+  trial_in_block INTEGER NOT NULL,
+  trial_type TEXT NOT NULL CHECK (trial_type IN ('experimental', 'catch', 'practice', 'warmup')),
+  procedure TEXT NOT NULL,
+  level REAL,
+  factors TEXT NOT NULL CHECK (json_valid(factors)),
+  boundary_mm REAL,
+  frequency_Hz REAL,
+  amplitude REAL,
+  correct_response TEXT,
+  response TEXT,
+  correct INTEGER CHECK (correct IN (0, 1)),
+  outcome TEXT NOT NULL CHECK (outcome IN ('answered', 'timeout', 'anticipation', 'aborted', 'fault')),
+  onset_ns INTEGER NOT NULL,
+  onset_s REAL NOT NULL,
+  duration_s REAL NOT NULL CHECK (duration_s >= 0),
+  response_time_s REAL CHECK (response_time_s >= 0),
+  decision_time_s REAL,
+  movement_time_s REAL,
+  response_zero TEXT NOT NULL,
+  response_time_quality TEXT CHECK (response_time_quality IN ('kernel', 'toolkit', 'simulated')),
+  response_offset_s REAL NOT NULL,
+  deadline_s REAL,
+  xruns INTEGER NOT NULL CHECK (xruns >= 0),
+  extra_touches INTEGER NOT NULL CHECK (extra_touches >= 0),
+  threshold_est REAL,
+  threshold_sd REAL,
+  clock_slope_ns_per_frame REAL,
+  clock_residual_ns REAL,
+  state_hash INTEGER NOT NULL,
+  recorded_realtime_ns INTEGER NOT NULL,
+  UNIQUE (session_id, trial_index),
+  FOREIGN KEY (session_id, segment_index) REFERENCES segment (session_id, segment_index),
+  FOREIGN KEY (session_id, block_index, attempt) REFERENCES block (session_id, block_index, attempt),
+  CONSTRAINT no_answer_without_answering CHECK (outcome = 'answered' OR
+    (response IS NULL AND correct IS NULL AND response_time_s IS NULL AND movement_time_s IS NULL
+     AND response_time_quality IS NULL)),
+  CONSTRAINT an_answer_has_its_time CHECK (outcome <> 'answered' OR
+    response_time_s IS NOT NULL),
+  CONSTRAINT score_agrees_with_answer CHECK (correct IS NULL OR
+    (response IS NOT NULL AND correct_response IS NOT NULL AND correct = (response = correct_response)))
+) STRICT;
+
+CREATE TABLE tone (
+  session_id TEXT NOT NULL,
+  trial_index INTEGER NOT NULL,
+  interval_index INTEGER NOT NULL,
+  scene_index INTEGER NOT NULL,
+  tone_index INTEGER NOT NULL,
+  scene TEXT NOT NULL,
+  boundary_mm REAL,
+  frequency_Hz REAL NOT NULL,
+  amplitude_um REAL NOT NULL,
+  displacement_um REAL,
+  friction REAL,
+  rove_dB REAL NOT NULL,
+  model TEXT NOT NULL,
+  error_bound_mm REAL NOT NULL,
+  uncertainty_mm REAL NOT NULL,
+  reason TEXT NOT NULL,
+  onset_frame INTEGER NOT NULL,
+  length_frames INTEGER NOT NULL,
+  PRIMARY KEY (session_id, trial_index, interval_index, scene_index, tone_index),
+  FOREIGN KEY (session_id, trial_index) REFERENCES trial (session_id, trial_index)
+) STRICT, WITHOUT ROWID;
+
+CREATE TABLE event (
+  session_id TEXT NOT NULL,
+  event_index INTEGER NOT NULL,
+  segment_index INTEGER NOT NULL,
+  time_ns INTEGER NOT NULL,
+  kind TEXT NOT NULL CHECK (kind <> ''),
+  value TEXT NOT NULL,
+  trial_index INTEGER,
+  PRIMARY KEY (session_id, event_index),
+  FOREIGN KEY (session_id, segment_index) REFERENCES segment (session_id, segment_index)
+) STRICT, WITHOUT ROWID;
+
+CREATE TABLE annotation (
+  annotation_id TEXT PRIMARY KEY,
+  session_id TEXT NOT NULL REFERENCES session (session_id),
+  realtime_ns INTEGER NOT NULL,
+  text TEXT NOT NULL CHECK (text <> '')
+) STRICT, WITHOUT ROWID;
+
+CREATE TRIGGER trial_is_never_changed BEFORE UPDATE ON trial
+  BEGIN SELECT RAISE(ABORT, 'trial is append-only'); END;
+CREATE TRIGGER trial_is_never_deleted BEFORE DELETE ON trial
+  BEGIN SELECT RAISE(ABORT, 'trial is append-only'); END;
+CREATE TRIGGER tone_is_never_changed BEFORE UPDATE ON tone
+  BEGIN SELECT RAISE(ABORT, 'tone is append-only'); END;
+CREATE TRIGGER tone_is_never_deleted BEFORE DELETE ON tone
+  BEGIN SELECT RAISE(ABORT, 'tone is append-only'); END;
+CREATE TRIGGER event_is_never_changed BEFORE UPDATE ON event
+  BEGIN SELECT RAISE(ABORT, 'event is append-only'); END;
+CREATE TRIGGER event_is_never_deleted BEFORE DELETE ON event
+  BEGIN SELECT RAISE(ABORT, 'event is append-only'); END;
+CREATE TRIGGER session_keeps_its_provenance BEFORE UPDATE OF session_id, participant, protocol_key, protocol_path,
+    rig_key, rig_path, calibration_id, run_mode, session_index, sequence_index, seed, language, observer,
+    factor_columns, level_unit, software_version, columns_version, kernel, station_id, realtime_rights,
+    started_local, consent_version ON session
+  BEGIN SELECT RAISE(ABORT, 'the provenance of a session is never changed'); END;
+)sql";
+
+// Version 2 supports several stations, and withdrawal. A tombstone marks a session that its participant has
+// withdrawn: the session's rows may be deleted and must never come back. The participant's code is kept only
+// as a salted hash, so that the code is not assigned again.
+const char* const kStep2 = R"sql(
+CREATE TABLE tombstone (
+  session_id TEXT PRIMARY KEY CHECK (length(session_id) = 36),
+  salt TEXT NOT NULL,
+  participant_sha256 TEXT NOT NULL,
+  withdrawn_realtime_ns INTEGER NOT NULL
+) STRICT, WITHOUT ROWID;
+
+CREATE TABLE merged (
+  session_id TEXT NOT NULL REFERENCES session (session_id),
+  sha256 TEXT NOT NULL,
+  source_database_id TEXT NOT NULL,
+  realtime_ns INTEGER NOT NULL,
+  PRIMARY KEY (session_id, sha256)
+) STRICT, WITHOUT ROWID;
+
+DROP TRIGGER trial_is_never_deleted;
+DROP TRIGGER tone_is_never_deleted;
+DROP TRIGGER event_is_never_deleted;
+CREATE TRIGGER trial_is_never_deleted BEFORE DELETE ON trial
+  WHEN NOT EXISTS (SELECT 1 FROM tombstone WHERE session_id = OLD.session_id)
+  BEGIN SELECT RAISE(ABORT, 'trial is append-only'); END;
+CREATE TRIGGER tone_is_never_deleted BEFORE DELETE ON tone
+  WHEN NOT EXISTS (SELECT 1 FROM tombstone WHERE session_id = OLD.session_id)
+  BEGIN SELECT RAISE(ABORT, 'tone is append-only'); END;
+CREATE TRIGGER event_is_never_deleted BEFORE DELETE ON event
+  WHEN NOT EXISTS (SELECT 1 FROM tombstone WHERE session_id = OLD.session_id)
+  BEGIN SELECT RAISE(ABORT, 'event is append-only'); END;
+CREATE TRIGGER session_stays_gone BEFORE INSERT ON session
+  WHEN EXISTS (SELECT 1 FROM tombstone WHERE session_id = NEW.session_id)
+  BEGIN SELECT RAISE(ABORT, 'the session was withdrawn'); END;
+)sql";
+
+// Version 3 adds a chain of checksums to each session (checksum.hpp). Sessions of earlier releases have no
+// chain until they are resumed. They are listed here, because otherwise they would look as if somebody had
+// removed their chain.
+const char* const kStep3 = R"sql(
+CREATE TABLE link (
+  session_id TEXT NOT NULL REFERENCES session (session_id),
+  link_index INTEGER NOT NULL CHECK (link_index >= 0),
+  encoding INTEGER NOT NULL CHECK (encoding >= 1),
+  last_segment INTEGER NOT NULL,
+  last_block INTEGER NOT NULL,
+  last_trial INTEGER NOT NULL,
+  last_event INTEGER NOT NULL,
+  status TEXT NOT NULL,
+  status_reason TEXT NOT NULL,
+  sha256 TEXT NOT NULL CHECK (length(sha256) = 64),
+  PRIMARY KEY (session_id, link_index)
+) STRICT, WITHOUT ROWID;
+
+CREATE TABLE unsealed (session_id TEXT PRIMARY KEY REFERENCES session (session_id)) STRICT, WITHOUT ROWID;
+INSERT INTO unsealed SELECT session_id FROM session;
+
+CREATE TRIGGER link_is_never_changed BEFORE UPDATE ON link
+  BEGIN SELECT RAISE(ABORT, 'link is append-only'); END;
+CREATE TRIGGER link_is_never_deleted BEFORE DELETE ON link
+  WHEN NOT EXISTS (SELECT 1 FROM tombstone WHERE session_id = OLD.session_id)
+  BEGIN SELECT RAISE(ABORT, 'link is append-only'); END;
+)sql";
+
+// Version 4. A code belongs to the station that assigned it. Two codes belong to one person only if a row
+// says so. A tombstone names the station of its code; '' in older tombstones means any station. A tombstone
+// without a hash withdraws a single session and leaves the code in use.
+const char* const kStep4 = R"sql(
+CREATE TABLE same_person (
+  station_a TEXT NOT NULL,
+  code_a TEXT NOT NULL,
+  station_b TEXT NOT NULL,
+  code_b TEXT NOT NULL,
+  realtime_ns INTEGER NOT NULL,
+  PRIMARY KEY (station_a, code_a, station_b, code_b),
+  CHECK (station_a <> station_b OR code_a <> code_b)
+) STRICT, WITHOUT ROWID;
+
+ALTER TABLE tombstone ADD COLUMN station_id TEXT NOT NULL DEFAULT '';
+)sql";
+
+// Version 5. What a pick-up on the surface measured during a trial. Earlier trials are unproven.
+const char* const kStep5 = R"sql(
+ALTER TABLE trial ADD COLUMN proof TEXT NOT NULL DEFAULT 'unproven'
+  CHECK (proof IN ('unproven', 'ok', 'flagged', 'refused', 'stopped', 'lost'));
+ALTER TABLE trial ADD COLUMN proof_cause TEXT NOT NULL DEFAULT '';
+ALTER TABLE trial ADD COLUMN drive_ratio_dB REAL;
+ALTER TABLE trial ADD COLUMN drive_residual_dB REAL;
+ALTER TABLE trial ADD COLUMN onset_error_us REAL;
+ALTER TABLE tone ADD COLUMN measured_dB REAL;
+ALTER TABLE tone ADD COLUMN measured_phase_deg REAL;
+)sql";
+
+// Version 6. How sure the participant was of an answer, if the task asks. What force sensors measured of the
+// finger: a summary in each trial, and the signals themselves.
+const char* const kStep6 = R"sql(
+ALTER TABLE trial ADD COLUMN confidence INTEGER
+  CHECK (confidence IS NULL OR (confidence >= 1 AND outcome = 'answered'));
+ALTER TABLE trial ADD COLUMN confidence_time_s REAL
+  CHECK ((confidence_time_s IS NULL) = (confidence IS NULL) AND coalesce(confidence_time_s, 0) >= 0);
+ALTER TABLE trial ADD COLUMN sensing TEXT NOT NULL DEFAULT ''
+  CHECK (sensing IN ('', 'ok', 'strokes', 'light', 'hard', 'slow', 'fast', 'lost', 'wire', 'tare'));
+ALTER TABLE trial ADD COLUMN contact_s REAL CHECK (contact_s >= 0);
+ALTER TABLE trial ADD COLUMN strokes INTEGER CHECK (strokes >= 0);
+ALTER TABLE trial ADD COLUMN normal_N REAL;
+ALTER TABLE trial ADD COLUMN normal_sd_N REAL;
+ALTER TABLE trial ADD COLUMN normal_in_window REAL;
+ALTER TABLE trial ADD COLUMN speed_mm_s REAL;
+ALTER TABLE trial ADD COLUMN speed_in_window REAL;
+ALTER TABLE trial ADD COLUMN mu_low REAL;
+ALTER TABLE trial ADD COLUMN mu_high REAL;
+ALTER TABLE trial ADD COLUMN boundary_felt_mm REAL;
+ALTER TABLE trial ADD COLUMN boundary_se_mm REAL;
+ALTER TABLE trial ADD COLUMN lag_mm REAL;
+ALTER TABLE trial ADD COLUMN tare_mN REAL;
+
+CREATE TABLE signal (
+  session_id TEXT NOT NULL,
+  trial_index INTEGER NOT NULL,
+  stream TEXT NOT NULL CHECK (stream <> ''),
+  start_frame INTEGER NOT NULL,
+  start_s REAL NOT NULL,
+  rate_Hz REAL NOT NULL CHECK (rate_Hz > 0),
+  points INTEGER NOT NULL CHECK (points >= 0),
+  channels TEXT NOT NULL CHECK (json_valid(channels)),
+  encoding TEXT NOT NULL,
+  data BLOB NOT NULL,
+  PRIMARY KEY (session_id, trial_index, stream),
+  FOREIGN KEY (session_id, trial_index) REFERENCES trial (session_id, trial_index)
+) STRICT;
+
+CREATE TRIGGER signal_is_never_changed BEFORE UPDATE ON signal
+  BEGIN SELECT RAISE(ABORT, 'signal is append-only'); END;
+CREATE TRIGGER signal_is_never_deleted BEFORE DELETE ON signal
+  WHEN NOT EXISTS (SELECT 1 FROM tombstone WHERE session_id = OLD.session_id)
+  BEGIN SELECT RAISE(ABORT, 'signal is append-only'); END;
+)sql";
+
+// Version 7. The self-test before a session: its checks belong to an event of the kind self_test. The
+// conditions of a session in the room.
+const char* const kStep7 = R"sql(
+ALTER TABLE session ADD COLUMN humidity_percent REAL CHECK (humidity_percent BETWEEN 0 AND 100);
+ALTER TABLE session ADD COLUMN room_temperature_C REAL CHECK (room_temperature_C BETWEEN -20 AND 60);
+ALTER TABLE session ADD COLUMN surface_cleaned INTEGER CHECK (surface_cleaned IN (0, 1));
+ALTER TABLE session ADD COLUMN finger TEXT NOT NULL DEFAULT '';
+ALTER TABLE session ADD COLUMN skin_moisture REAL CHECK (skin_moisture >= 0);
+
+CREATE TABLE self_test (
+  session_id TEXT NOT NULL,
+  event_index INTEGER NOT NULL,
+  check_index INTEGER NOT NULL,
+  name TEXT NOT NULL CHECK (name <> ''),
+  verdict TEXT NOT NULL CHECK (verdict IN ('passed', 'failed', 'not possible')),
+  value REAL,
+  limit_value REAL,
+  unit TEXT NOT NULL,
+  what TEXT NOT NULL,
+  PRIMARY KEY (session_id, event_index, check_index),
+  FOREIGN KEY (session_id, event_index) REFERENCES event (session_id, event_index)
+) STRICT, WITHOUT ROWID;
+
+CREATE TRIGGER self_test_is_never_changed BEFORE UPDATE ON self_test
+  BEGIN SELECT RAISE(ABORT, 'self_test is append-only'); END;
+CREATE TRIGGER self_test_is_never_deleted BEFORE DELETE ON self_test
+  WHEN NOT EXISTS (SELECT 1 FROM tombstone WHERE session_id = OLD.session_id)
+  BEGIN SELECT RAISE(ABORT, 'self_test is append-only'); END;
+DROP TRIGGER session_keeps_its_provenance;
+CREATE TRIGGER session_keeps_its_provenance BEFORE UPDATE OF session_id, participant, protocol_key, protocol_path,
+    rig_key, rig_path, calibration_id, run_mode, session_index, sequence_index, seed, language, observer,
+    factor_columns, level_unit, software_version, columns_version, kernel, station_id, realtime_rights,
+    started_local, consent_version, humidity_percent, room_temperature_C, surface_cleaned, finger, skin_moisture
+    ON session
+  BEGIN SELECT RAISE(ABORT, 'the provenance of a session is never changed'); END;
+)sql";
+
+}  // namespace
+
+const std::vector<std::string>& schema_steps() {
+  static const std::vector<std::string> steps = {kStep1, kStep2, kStep3, kStep4, kStep5, kStep6, kStep7};
+  return steps;
+}
+
+}  // namespace turnpoint::store

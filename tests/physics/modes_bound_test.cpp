@@ -1,0 +1,255 @@
+// The bounds of `modes` against a solution by collocation.
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <numbers>
+#include <ostream>
+#include <vector>
+
+#include "physics/centre_line.hpp"
+#include "physics/dispersion.hpp"
+#include "physics/modes_bound.hpp"
+#include "physics/piston_lift.hpp"
+#include "physics/planner.hpp"
+#include "tests/physics/collocated_field.hpp"
+#include "tests/physics/random_scenes.hpp"
+#include "tests/support/catch.hpp"
+
+using namespace turnpoint::physics;
+using turnpoint::physics_test::CollocatedField;
+using turnpoint::physics_test::CollocationGrid;
+using turnpoint::physics_test::Draw;
+using turnpoint::physics_test::first_scene;
+using turnpoint::physics_test::median;
+using turnpoint::physics_test::scenes;
+
+namespace {
+
+constexpr double frequency_Hz = 20000;
+
+// A table of 4 to 6 points with long, nearly even parts and steep steps. Higher modes are trapped between the
+// steps.
+TabulatedTaper stepped_table(Draw& draw, double w0, double length) {
+  TabulatedTaper table{{{0, w0}}};
+  const int points = 4 + static_cast<int>(draw.next() % 3);
+  double x = 0, w = w0;
+  for (int i = 1; i < points; ++i) {
+    x += length / (points - 1) * draw.between(0.6, 1.4);
+    const double left = w - 0.05 * w0;
+    const double share = draw.next() % 2 == 0 ? draw.between(0.4, 0.8) : draw.between(0.005, 0.05);
+    w -= i == points - 1 ? left : left * share;
+    table.points.push_back({x, w});
+  }
+  return table;
+}
+
+// Membranes and simply supported plates, whose equation is the same, with every taper and both drives.
+Surface random_membrane(Draw& draw) {
+  Surface s = seed_brass();
+  const double cut = cut_off_half_width_m(s, frequency_Hz);
+  const double ratio = draw.between(1.15, 10), w0 = ratio * cut, slope = draw.spread(0.02, 0.5);
+  s.quality_factor = draw.next() % 3 == 0 ? std::numeric_limits<double>::infinity() : draw.spread(5, 2000);
+  s.drive = draw.next() % 3 == 0 ? DriveShape::piston : DriveShape::cosine;
+  switch (draw.next() % 4) {
+    case 0:
+      s.taper = LinearTaper{w0, slope};
+      s.length_m = w0 / slope * draw.between(0.9, 1);
+      break;
+    case 1:
+      s.taper = ExponentialTaper{w0, cut / slope};
+      s.length_m = cut / slope * (std::log(ratio) + 1.8);
+      break;
+    case 2: {
+      const double length = w0 / slope;
+      s.taper = TabulatedTaper{{{0, w0},
+                                {0.3 * length, w0 * draw.between(0.65, 0.8)},
+                                {0.6 * length, w0 * draw.between(0.35, 0.5)},
+                                {0.95 * length, 0.05 * w0}}};
+      s.length_m = 0.95 * length;
+      break;
+    }
+    default: {
+      const TabulatedTaper table = stepped_table(draw, w0, w0 / slope);
+      s.taper = table;
+      s.length_m = table.points.back().x_m;
+    }
+  }
+  return s;
+}
+
+struct Errors {
+  double amplitude, boundary_m, level_dB;
+};
+
+// Where the field of the reference falls to half its value at `peak`, beyond it. Starts at the place that
+// `modes` gives.
+double edge_of(const CollocatedField& field, double from, double half, double step) {
+  double x0 = from, x1 = from + step;
+  double y0 = std::log(std::abs(field.value(x0)) / half), y1 = std::log(std::abs(field.value(x1)) / half);
+  for (int i = 0; i < 30 && std::abs(x1 - x0) > 1e-13 && y1 != y0; ++i) {
+    const double x2 = x1 - y1 * (x1 - x0) / (y1 - y0);
+    x0 = x1, y0 = y1;
+    x1 = x2, y1 = std::log(std::abs(field.value(x1)) / half);
+  }
+  return x1;
+}
+
+// Height of the last maximum of the reference near the place that `modes` gives.
+double peak_of(const CollocatedField& field, double x, double step) {
+  const double start = std::abs(field.value(x));  // the maximum itself, if it is at the drive edge
+  for (int i = 0; i < 40; ++i, step *= 0.6) {
+    const double a = std::abs(field.value(x - step)), b = std::abs(field.value(x)),
+                 c = std::abs(field.value(x + step));
+    const double bend = a - 2 * b + c;
+    if (bend < 0) x = std::max(step, x + std::clamp(0.5 * step * (a - c) / bend, -step, step));
+    if (step < 1e-6) break;
+  }
+  return std::max(start, std::abs(field.value(x)));
+}
+
+Errors errors(const Surface& s, const CentreLine& line, const CollocatedField& truth, Normalise normalise) {
+  const double peak_m = line.last_peak_m().value(), k = wavenumber_per_m(s, frequency_Hz);
+  const double ln_peak = line.value(peak_m).ln_magnitude();
+  const double true_peak = peak_of(truth, peak_m, 0.02 / k), true_drive = std::abs(truth.value(0));
+  const bool drive = normalise == Normalise::drive;
+  Errors e{};
+  double most = 0;
+  for (int i = 0; i <= 400; ++i) {
+    const double x = s.length_m * i / 400;
+    const double a = std::exp(line.value(x).ln_magnitude() - (drive ? 0 : ln_peak));
+    const double b = std::abs(truth.value(x)) / (drive ? true_drive : true_peak);
+    e.amplitude = std::max(e.amplitude, std::abs(a - b));
+    most = std::max(most, b);
+  }
+  e.amplitude /= most;
+  if (const auto edge = line.level_m(0.5); edge && *edge < s.length_m * (1 - 1e-9))
+    e.boundary_m = std::abs(edge_of(truth, *edge, 0.5 * true_peak, 1e-4 / k) - *edge);
+  e.level_dB = 20 / std::log(10.0) * std::abs(ln_peak - std::log(true_peak / true_drive));
+  return e;
+}
+
+PlanRequest request_for(Normalise normalise) {
+  PlanRequest request;
+  request.tones = {Tone{frequency_Hz, 1, 0}};
+  request.points = 1000;
+  request.edge = Edge::percent(0.5);
+  request.normalise = normalise;
+  return request;
+}
+
+bool inside(const Errors& e, const RungEstimate& bound, double share = 1) {
+  return e.amplitude <= share * bound.amplitude_bound && e.boundary_m <= share * bound.boundary_bound_m &&
+         e.level_dB <= share * bound.level_bound_dB;
+}
+
+}  // namespace
+
+TEST_CASE("the jump of a piston's field is 1 on the drive edge, 0 on the sides, and has the stated Laplacian",
+          "[physics]") {
+  Surface s = seed_brass();
+  for (const TaperForm& form :
+       {TaperForm(LinearTaper{0.03, 0.1}), TaperForm(ExponentialTaper{0.03, 0.08}),
+        TaperForm(TabulatedTaper{{{0, 0.03}, {0.05, 0.02}, {0.1, 0.015}, {0.3, 0.001}}})}) {
+    s.taper = form;
+    const Taper taper(s);
+    const PistonLift lift(taper, 0.02);
+    for (double x = 0.0005; x < 0.0195; x += 0.0013) {
+      CHECK(std::abs(lift.value(x, taper.half_width_m(x))) < 1e-12);
+      CHECK(lift.value(1e-9, 0.029 * x / 0.02) == Approx(1).epsilon(1e-4));
+      CHECK(lift.value(x + 0.02, 0) == 0);
+      for (const double eta : {0.0, 0.4, 0.9}) {
+        const double y = eta * taper.half_width_m(x), h = 2e-5;
+        const double square = x * x + (0.03 - y) * (0.03 - y);  // of the distance from the corner
+        const double sum = lift.value(x + h, y) + lift.value(x - h, y) + lift.value(x, y + h) +
+                           lift.value(x, y - h) - 4 * lift.value(x, y);
+        CHECK(sum / (h * h) ==
+              Approx(lift.laplacian(x, y)).epsilon(1e-2).margin(0.1 + 5 * h * h / (square * square)));
+      }
+      const double h = 1e-6;
+      CHECK((lift.value(x + h, 0) - lift.value(x - h, 0)) / (2 * h) ==
+            Approx(lift.centre_slope(x)).epsilon(1e-5).margin(1e-4));
+    }
+  }
+}
+
+namespace {
+
+// How many bounds there are, how often the true error was outside, and bound / error.
+struct Tally {
+  std::vector<double> amplitude, level, boundary;
+  int outside = 0;
+
+  void add(const Errors& e, const RungEstimate& bound) {
+    outside += inside(e, bound) ? 0 : 1;
+    amplitude.push_back(bound.amplitude_bound / e.amplitude);
+    if (e.level_dB > 0) level.push_back(bound.level_bound_dB / e.level_dB);
+    if (e.boundary_m > 0) boundary.push_back(bound.boundary_bound_m / e.boundary_m);
+  }
+  static double least(const std::vector<double>& list) { return *std::ranges::min_element(list); }
+};
+
+std::ostream& operator<<(std::ostream& out, const Tally& t) {
+  return out << t.outside << " outside; bound / error, median and least: amplitude " << median(t.amplitude)
+             << ", " << Tally::least(t.amplitude) << "; level " << median(t.level) << ", "
+             << Tally::least(t.level) << "; boundary " << median(t.boundary) << ", "
+             << Tally::least(t.boundary);
+}
+
+RungEstimate coarse_estimate(const Surface& s, Normalise normalise) {
+  const ModesBound bound = modes_bound(s, frequency_Hz, Edge::percent(0.5), Comparison::coarser)
+                               .value_or(ModesBound{2, 2, 120, s.length_m});
+  RungEstimate e;
+  e.amplitude_bound = normalise == Normalise::drive ? bound.drive : bound.shape;
+  e.level_bound_dB = bound.level_dB;
+  e.boundary_bound_m = bound.position_m;
+  return e;
+}
+
+}  // namespace
+
+TEST_CASE("the error of the model modes lies inside its bounds on random membranes", "[physics]") {
+  const int usual = 40, count = scenes(usual), first = first_scene();
+  std::vector<double> error;
+  Tally finer, coarser, before;  // bounds from a finer and a coarser solution, and before solving
+  for (int i = first; i < first + count; ++i) {
+    Draw draw(Draw(20260104 + static_cast<std::uint64_t>(i)).next());
+    const Surface s = random_membrane(draw);
+    const Normalise normalise = draw.next() % 2 == 0 ? Normalise::peak : Normalise::drive;
+    const auto x0 = turning_point_m(s, frequency_Hz);
+    if (!x0 || *x0 < 0.02 * s.length_m) continue;
+    const auto line = make_centre_line(s, frequency_Hz, Model::modes);
+    if (!line->last_peak_m()) continue;
+    PlanRequest request = request_for(normalise);
+    const RungEstimate bound = estimate(s, request, Model::modes);
+    request.tolerance.amplitude = 1e9;
+    const auto choice = choose_model(s, request);
+    const auto prior = std::ranges::find(choice.considered, Model::modes, &RungEstimate::model);
+    Errors e = errors(s, *line, CollocatedField(s, frequency_Hz), normalise);
+    if (!inside(e, bound, 0.5)) {  // the reference itself may not be accurate enough
+      const CollocationGrid finest{14, 12, 3, 0.75, 0.8, 30};
+      e = errors(s, *line, CollocatedField(s, frequency_Hz, finest), normalise);
+    }
+    const RungEstimate coarse = coarse_estimate(s, normalise);
+    if (!inside(e, bound) || !inside(e, *prior) || !inside(e, coarse))
+      std::printf(
+          "scene %d is outside: amplitude %.2e of %.2e, %.2e, %.2e; boundary %.2e of %.2e, %.2e, %.2e; "
+          "level %.2e of %.2e, %.2e, %.2e\n",
+          i, e.amplitude, bound.amplitude_bound, coarse.amplitude_bound, prior->amplitude_bound, e.boundary_m,
+          bound.boundary_bound_m, coarse.boundary_bound_m, prior->boundary_bound_m, e.level_dB,
+          bound.level_bound_dB, coarse.level_bound_dB, prior->level_bound_dB);
+    error.push_back(e.amplitude);
+    finer.add(e, bound);
+    coarser.add(e, coarse);
+    before.add(e, *prior);
+  }
+  if (count > usual)
+    WARN(error.size() << " scenes from number " << first << ", median error " << median(error)
+                      << "\nfiner: " << finer << "\ncoarser: " << coarser << "\nbefore solving: " << before);
+  CHECK(error.size() > 0.8 * count);
+  CHECK(finer.outside <= count / 10000);
+  CHECK(coarser.outside <= count / 10000);
+  CHECK(before.outside <= count / 10000);
+  CHECK(median(finer.amplitude) < 10);
+  CHECK(median(finer.level) < 10);
+  CHECK(median(finer.boundary) < 10);
+}

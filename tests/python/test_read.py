@@ -1,0 +1,108 @@
+"""test_read.py MAKE_SAMPLE TURNPOINT README: the readers against exports, the database itself, and the examples."""
+import re
+import sqlite3
+import subprocess
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import turnpoint
+
+MAKE_SAMPLE, TURNPOINT, README = (sys.argv.pop(1) for _ in range(3))
+TABLES = ("trials", "intervals", "events", "sessions", "self_tests")
+
+
+class Reading(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.temporary = tempfile.TemporaryDirectory()
+        cls.folder = Path(cls.temporary.name)
+        subprocess.run([MAKE_SAMPLE, cls.folder], check=True, stdout=subprocess.DEVNULL)
+        cls.database = cls.folder / "lab.sqlite"
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.temporary.cleanup()
+
+    def same(self, left, right):
+        for name in TABLES:
+            pd.testing.assert_frame_equal(getattr(left, name), getattr(right, name), check_dtype=False)
+
+    def test_a_database_and_its_export_give_the_same_frames(self):
+        self.same(turnpoint.read(self.database), turnpoint.read(self.folder / "csv"))
+
+    def test_every_separator_and_decimal_mark(self):
+        for separator, decimal in ((";", ","), ("\t", "."), ("|", ",")):
+            out = self.folder / f"other{ord(separator)}"
+            subprocess.run([TURNPOINT, "export", "--db", self.database, "--out", out, "--separator", separator, "--decimal",
+                            decimal], check=True, stdout=subprocess.DEVNULL)
+            self.same(turnpoint.read(self.database), turnpoint.read(out))
+
+    def test_trials_are_those_of_the_database(self):
+        trials = turnpoint.read(self.database).trials
+        rows = sqlite3.connect(self.database).execute(
+            "SELECT session_id, trial_index, level, response, correct, response_time_s FROM trial").fetchall()
+        self.assertEqual(len(rows), len(trials))
+        by_key = trials.set_index(["session_id", "trial_index"])
+        for session, index, level, response, correct, seconds in rows:
+            row = by_key.loc[(session, index)]
+            for stored, read in ((level, row.level), (correct, row.correct), (seconds, row.response_time)):
+                self.assertTrue(stored == read or (stored is None and np.isnan(read)))
+            self.assertTrue(response == row.response or (response is None and row.response is None))
+
+    def test_a_code_of_digits_stays_a_text(self):
+        database = self.folder / "digits.sqlite"
+        subprocess.run([TURNPOINT, "run", "demo", "--participant", "007", "--db", database, "--headless", "--observer", "sim"],
+                       check=True, stdout=subprocess.DEVNULL)
+        subprocess.run([TURNPOINT, "export", "--db", database, "--out", self.folder / "digits"], check=True,
+                       stdout=subprocess.DEVNULL)
+        for source in (database, self.folder / "digits"):
+            self.assertEqual(set(turnpoint.read(source).trials.participant_id), {"007"})
+
+    def test_sessions_are_chosen(self):
+        whole = turnpoint.read(self.database)
+        for source in (self.database, self.folder / "csv"):
+            one = turnpoint.read(source, session=whole.sessions.session_id[1])
+            self.assertEqual(list(one.sessions.session_id), [whole.sessions.session_id[1]])
+            self.assertEqual(len(one.trials), whole.sessions.trials[1])
+            self.assertEqual(set(turnpoint.read(source, participant="P-02").sessions.participant_code), {"P-02"})
+            for nothing in ({"session": "x"}, {"participant": "nobody"}, {"protocol": "none"}):
+                with self.assertRaises(LookupError):
+                    turnpoint.read(source, **nothing)
+
+    def test_signals_of_a_database_and_of_its_export(self):
+        stored, exported = turnpoint.read_signals(self.database), turnpoint.read_signals(self.folder / "signals")
+        pd.testing.assert_frame_equal(stored, exported, check_dtype=False)
+        self.assertGreater(len(stored), 20000)
+        points = sqlite3.connect(self.database).execute("SELECT sum(points) FROM signal").fetchone()[0]
+        self.assertEqual(len(stored), points)
+        with self.assertRaisesRegex(LookupError, "thumb"):
+            turnpoint.read_signals(self.database, stream="thumb")
+
+    def test_what_cannot_be_read(self):
+        with self.assertRaises(FileNotFoundError):
+            turnpoint.read(self.folder / "none.sqlite")
+        (self.folder / "text.sqlite").write_text("not a database, but long enough to be looked at")
+        with self.assertRaisesRegex(turnpoint.StoreError, "text.sqlite"):
+            turnpoint.read(self.folder / "text.sqlite")
+        (self.folder / "empty").mkdir()
+        with self.assertRaisesRegex(LookupError, "trials.csv"):
+            turnpoint.read(self.folder / "empty")
+        half = self.folder / "half"
+        subprocess.run([TURNPOINT, "export", "--db", self.database, "--out", half], check=True, stdout=subprocess.DEVNULL)
+        (next(half.iterdir()) / "EXPORT-INCOMPLETE.txt").write_text("")
+        with self.assertRaisesRegex(LookupError, "did not finish"):
+            turnpoint.read(half)
+
+    def test_the_examples_of_the_page_run(self):
+        examples = re.findall(r"```python\n(.*?)```", Path(README).read_text(encoding="utf-8"), re.S)
+        self.assertGreaterEqual(len(examples), 2)
+        for example in examples:
+            exec(example.replace("lab.sqlite", str(self.database)), {})
+
+
+if __name__ == "__main__":
+    unittest.main()
