@@ -1,6 +1,7 @@
 #include <algorithm>
 
 #include "station/protocol/advice_list.hpp"
+#include "station/protocol/expression.hpp"
 #include "station/text/number.hpp"
 
 namespace turnpoint::protocol {

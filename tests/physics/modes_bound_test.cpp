@@ -249,6 +249,7 @@ TEST_CASE("the error of the model modes lies inside its bounds on random membran
   CHECK(finer.outside <= count / 10000);
   CHECK(coarser.outside <= count / 10000);
   CHECK(before.outside <= count / 10000);
+  if (count < usual) return;  // a sanitizer's few scenes say nothing of the median
   CHECK(median(finer.amplitude) < 10);
   CHECK(median(finer.level) < 10);
   CHECK(median(finer.boundary) < 10);
