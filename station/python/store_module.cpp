@@ -74,6 +74,7 @@ py::list tables(const std::string& database, const std::string& session, const s
     named["events"] = columns(one.events);
     named["sessions"] = columns(one.sessions);
     named["self_tests"] = columns(one.self_tests);
+    named["answers"] = columns(one.answers);
     list.append(named);
   }
   return list;

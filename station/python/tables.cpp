@@ -50,13 +50,13 @@ std::vector<ProtocolTables> read_tables(const std::string& path, const store::Ex
     auto& tables = all.emplace_back(ProtocolTables{
         selection.protocol_id, empty_table(store::names_of(columns.trials)), empty_table(store::names_of(columns.intervals)),
         empty_table(store::names_of(columns.events)), empty_table(store::names_of(columns.sessions)),
-        empty_table(store::names_of(columns.self_tests))});
+        empty_table(store::names_of(columns.self_tests)), empty_table(store::names_of(columns.answers))});
     const auto into = [](MemoryTable& table) {
       return [&table](const std::vector<Cell>& cells) { add_row(table, cells); };
     };
     store::for_each_row(selected.database, selection, columns,
                  {into(tables.trials), into(tables.intervals), into(tables.events), into(tables.sessions),
-                         into(tables.self_tests)});
+                         into(tables.self_tests), into(tables.answers)});
   }
   return all;
 }

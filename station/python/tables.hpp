@@ -16,7 +16,7 @@ struct MemoryTable {
 /// The tables that export_data() writes for one protocol.
 struct ProtocolTables {
   std::string protocol_id;
-  MemoryTable trials, intervals, events, sessions, self_tests;
+  MemoryTable trials, intervals, events, sessions, self_tests, answers;
 };
 
 /// Reads what store::export_data() would write with the format csv. Texts that are empty count as missing, as in the files; they

@@ -70,6 +70,8 @@ class Encoder {
     add(hash, event_, event_table(), "event_index", "event_index", from.event, to.event);
     if (encoding_ >= 4)
       add(hash, check_, check_table(), "event_index", "event_index, check_index", from.event, to.event);
+    if (encoding_ >= 5)
+      add(hash, answer_, answer_table(), "event_index", "event_index, answer_index", from.event, to.event);
   }
 
   Extent extent() {
@@ -120,7 +122,7 @@ class Encoder {
   Database& database_;
   std::string schema_, id_;
   std::int64_t encoding_;
-  std::optional<Statement> segment_, block_, trial_, tone_, signal_, event_, check_, extent_;
+  std::optional<Statement> segment_, block_, trial_, tone_, signal_, event_, check_, answer_, extent_;
 };
 
 namespace {

@@ -34,6 +34,8 @@ ExportColumn event(const std::string& csv) { return exported(event_table(), csv,
 
 ExportColumn check(const std::string& csv) { return exported(check_table(), csv, &ExportRow::check); }
 
+ExportColumn answer(const std::string& csv) { return exported(answer_table(), csv, &ExportRow::answer); }
+
 template <class Make>
 void add(ExportColumns& columns, Make make, std::initializer_list<const char*> names) {
   for (const auto* name : names) columns.push_back(make(name));
@@ -260,6 +262,14 @@ ExportColumns self_test_columns() {
   return columns;
 }
 
+ExportColumns answer_columns() {
+  ExportColumns columns{participant_id(),    session_id(),        session("session_index"),
+                        session("run_mode"), event("segment_id"), event_onset()};
+  add(columns, answer, {"questionnaire", "item", "occasion", "answer", "response_time"});
+  columns.push_back(columns_version());
+  return columns;
+}
+
 const EventRow* newest_self_test(const StoredSession& stored) {
   const EventRow* newest = nullptr;
   for (const auto& event : stored.events)
@@ -276,6 +286,7 @@ std::string codebook_json(const std::string& protocol_id, const std::vector<std:
   json["events.csv"] = explained(event_columns());
   json["sessions.csv"] = explained(session_columns());
   json["self_tests.csv"] = explained(self_test_columns());
+  json["answers.csv"] = explained(answer_columns());
   return json.dump(2) + "\n";
 }
 

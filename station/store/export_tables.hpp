@@ -44,6 +44,7 @@ struct ExportRow {
   std::int64_t origin_ns = 0;             ///< CLOCK_MONOTONIC at the start of the event's segment
   std::optional<StimulusSpan> span = {};  ///< time span of the trial's stimuli
   const CheckRow* check = nullptr;        ///< a check of the self-test in `event`
+  const AnswerRow* answer = nullptr;      ///< the answer in `event`
   const EventRow* self_test = nullptr;    ///< the newest self-test of the session; null if there was none
 };
 
@@ -62,6 +63,7 @@ ExportColumns interval_columns();
 ExportColumns event_columns();
 ExportColumns session_columns();
 ExportColumns self_test_columns();
+ExportColumns answer_columns();
 
 /// The newest self-test of a session; null if there was none.
 const EventRow* newest_self_test(const StoredSession& stored);

@@ -79,6 +79,23 @@ const Table<CheckRow>& check_table() {
   return table;
 }
 
+const Table<AnswerRow>& answer_table() {
+  using A = AnswerRow;
+  static const Table<A> table{
+      "answer",
+      {"session_id", "event_index", "answer_index"},
+      {field<&A::questionnaire>({"questionnaire", "questionnaire",
+                                 "Name of the questionnaire, consent or screening in the protocol"}),
+       field<&A::item>({"item", "item", "Item of the questionnaire; consent | screening"}),
+       field<&A::occasion>(
+           {"occasion", "occasion",
+            "Number of blocks before it; tells the occasions of the same questionnaire apart"}),
+       field<&A::answer>({"answer", "answer", "Id of the choice, or the number"}),
+       field<&A::response_time_s>(
+           {"response_time_s", "response_time", "Time from the appearance of the question", "s"})}};
+  return table;
+}
+
 const Table<SessionRecord>& session_table() {
   using R = SessionRecord;
   using S = SessionStart;

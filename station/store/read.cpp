@@ -165,20 +165,26 @@ std::vector<std::string> participants(const std::string& path) {
 
 namespace {
 
-/// The events of a session, in the order in which they were logged, with the checks of self-tests.
+/// The events of a session, in the order in which they were logged, with the checks of self-tests
+/// and the answers to questionnaires.
 std::vector<EventRow> read_events(Database& database, const std::string& id) {
   Statement rows(database, "SELECT " + column_list(event_table()) +
                                " FROM event WHERE session_id = ? ORDER BY event_index");
   Statement checks(database, "SELECT " + column_list(check_table()) +
                                  " FROM self_test WHERE session_id = ? ORDER BY event_index, check_index");
+  Statement answers(database, "SELECT " + column_list(answer_table()) +
+                                  " FROM answer WHERE session_id = ? ORDER BY event_index, answer_index");
   rows.bind(id);
   checks.bind(id);
+  answers.bind(id);
   std::vector<EventRow> events;
-  bool check_waits = checks.step();
+  bool check_waits = checks.step(), answer_waits = answers.step();
   while (rows.step()) {
     auto event = record_of(rows, event_table());
     for (; check_waits && checks.integer(1) == rows.integer(1); check_waits = checks.step())
       event.checks.push_back(record_of(checks, check_table()));
+    for (; answer_waits && answers.integer(1) == rows.integer(1); answer_waits = answers.step())
+      event.answers.push_back(record_of(answers, answer_table()));
     events.push_back(std::move(event));
   }
   return events;

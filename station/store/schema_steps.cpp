@@ -373,10 +373,34 @@ CREATE TRIGGER session_keeps_its_provenance BEFORE UPDATE OF session_id, partici
   BEGIN SELECT RAISE(ABORT, 'the provenance of a session is never changed'); END;
 )sql";
 
+// Version 8. The answers to questionnaires, consent forms and screenings: each belongs to an event of the
+// kind questionnaire.
+const char* const kStep8 = R"sql(
+CREATE TABLE answer (
+  session_id TEXT NOT NULL,
+  event_index INTEGER NOT NULL,
+  answer_index INTEGER NOT NULL,
+  questionnaire TEXT NOT NULL CHECK (questionnaire <> ''),
+  item TEXT NOT NULL CHECK (item <> ''),
+  occasion INTEGER NOT NULL CHECK (occasion >= 0),
+  answer TEXT NOT NULL CHECK (answer <> ''),
+  response_time_s REAL NOT NULL CHECK (response_time_s >= 0),
+  PRIMARY KEY (session_id, event_index, answer_index),
+  FOREIGN KEY (session_id, event_index) REFERENCES event (session_id, event_index)
+) STRICT, WITHOUT ROWID;
+
+CREATE TRIGGER answer_is_never_changed BEFORE UPDATE ON answer
+  BEGIN SELECT RAISE(ABORT, 'answer is append-only'); END;
+CREATE TRIGGER answer_is_never_deleted BEFORE DELETE ON answer
+  WHEN NOT EXISTS (SELECT 1 FROM tombstone WHERE session_id = OLD.session_id)
+  BEGIN SELECT RAISE(ABORT, 'answer is append-only'); END;
+)sql";
+
 }  // namespace
 
 const std::vector<std::string>& schema_steps() {
-  static const std::vector<std::string> steps = {kStep1, kStep2, kStep3, kStep4, kStep5, kStep6, kStep7};
+  static const std::vector<std::string> steps = {kStep1, kStep2, kStep3, kStep4,
+                                                 kStep5, kStep6, kStep7, kStep8};
   return steps;
 }
 

@@ -260,6 +260,12 @@ void SessionLog::begin_block(const BlockStart& block) {
 
 void SessionLog::event(EventRow event) { impl_->events.push_back(std::move(event)); }
 
+void SessionLog::keep_events() {
+  Transaction transaction(impl_->writer.database);
+  impl_->write_events();
+  impl_->commit(transaction);
+}
+
 void SessionLog::presented(int trial_index, std::int64_t time_ns) {
   const EventRow row{time_ns, "presented", "", trial_index, impl_->place.segment_index};
   Transaction transaction(impl_->writer.database);

@@ -63,6 +63,8 @@ class SessionLog {
 
   /// Keeps an event in memory. It is written together with the next trial or change of state.
   void event(EventRow event);
+  /// Commits the events kept in memory, such as the answer to a question.
+  void keep_events();
 
   /// Commits a trial, its tones and the events kept in memory, in one transaction. If this throws, nothing
   /// was written and nothing is lost. Make the same call again, for example once there is space on a full

@@ -133,8 +133,8 @@ void remove_sessions(Database& database, const Withdrawal& withdrawal) {
         .bind(id, salt, code_goes ? digest(salt, session.start.participant) : "", system::realtime_ns(),
               session.start.station_id)
         .run();
-    for (const auto* table : {"annotation", "merged", "link", "unsealed", "self_test", "event", "signal",
-                              "tone", "trial", "block", "segment", "session"})
+    for (const auto* table : {"annotation", "merged", "link", "unsealed", "self_test", "answer", "event",
+                              "signal", "tone", "trial", "block", "segment", "session"})
       remove(database, table, id);
   }
   for (const auto& bearer : withdrawal.bearers) remove_bearer(database, bearer);

@@ -45,7 +45,7 @@ TEST_CASE("trials.csv has all fixed columns in order, and the factors at their p
   const auto db = folder / "a.sqlite";
   const auto id = sample::session(db, 5);
   const auto files = export_data(db, folder / "out", {});
-  REQUIRE(files.size() == 6);
+  REQUIRE(files.size() == 7);
   CHECK(files[0].path == folder / "out/two-boundaries/trials.csv");
   CHECK(files[0].rows == 5);
   CHECK(files[1].rows == 20);
@@ -87,6 +87,13 @@ std::string session_of_unlike_values(const std::string& db) {
                      {"disk", Verdict::failed, 199, 200, "MiB", "nearly full"},
                      {"cells", Verdict::not_possible, {}, {}, "", "the rig has none"}};
     log.event(tested);
+    EventRow asked{3'600'000'000, kAnswerEvent, "about-you.hand = left", std::nullopt};
+    asked.answers = {{"about-you", "hand", 0, "left", 2.5}};
+    log.event(asked);
+    log.event({3'700'000'000, kBackEvent, place_name("about-you", 0), std::nullopt});
+    asked = {3'800'000'000, kAnswerEvent, "about-you.hand = right", std::nullopt};
+    asked.answers = {{"about-you", "hand", 0, "right", 1.25}};
+    log.event(asked);
     log.begin_block({0, 0, "try", "accuracy", true});
     auto practice = sample::answered(0, 1);
     practice.type = TrialType::practice;
@@ -127,12 +134,12 @@ std::string session_of_unlike_values(const std::string& db) {
 
 }  // namespace
 
-TEST_CASE("each value in the five tables is in its own column", "[store]") {
+TEST_CASE("each value in the six tables is in its own column", "[store]") {
   TemporaryFolder folder;
   const auto db = folder / "a.sqlite";
   const auto id = session_of_unlike_values(db);
   const auto files = export_data(db, folder / "out", {});
-  for (const std::size_t i : {0, 1, 2, 3, 5}) {
+  for (const std::size_t i : {0, 1, 2, 3, 5, 6}) {
     auto text = sample::bytes_of(files[i].path);
     for (auto at = text.find(id); at != std::string::npos; at = text.find(id))
       text.replace(at, id.size(), "ID");
@@ -152,7 +159,7 @@ TEST_CASE("the codebook explains every column of every table", "[store]") {
   sample::session(db, 2);
   const auto files = export_data(db, folder / "out", {});
   const auto codebook = nlohmann::json::parse(sample::bytes_of(files[4].path));
-  for (const std::size_t i : {0, 1, 2, 3, 5}) {
+  for (const std::size_t i : {0, 1, 2, 3, 5, 6}) {
     const auto name = std::filesystem::path(files[i].path).filename().string();
     std::istringstream header(lines_of(sample::bytes_of(files[i].path), "\r\n")[0]);
     for (std::string column; std::getline(header, column, ',');) {
@@ -190,9 +197,9 @@ TEST_CASE("an export can select sessions, participants and protocols, and each p
   other.factor_columns = {"mask"};
   sample::session(db, 4, other);
   const auto all = export_data(db, folder / "all", {});
-  REQUIRE(all.size() == 12);
+  REQUIRE(all.size() == 14);
   CHECK(all[0].path == folder / "all/_.._other_design/trials.csv");
-  CHECK(all[6].rows == 5);
+  CHECK(all[7].rows == 5);
   ExportOptions options;
   options.session_id = id;
   CHECK(export_data(db, folder / "one", options)[0].rows == 3);
