@@ -425,20 +425,33 @@ STUDY = ["power", "boundary-constant", "--observers", "12", "--intervals", "4"]
 
 
 class LongWork(Folder):
-    def example(self):
+    def example(self, tool):
         with open(os.path.join(SOURCE, "protocols", "README.md"), encoding="utf-8") as page:
             return next(block for block in re.findall(r"^```sh\n(.*?)^```", page.read(), re.DOTALL | re.MULTILINE)
-                        if "xargs" in block)
+                        if tool in block)
 
-    def test_the_example_of_a_divided_study_gives_what_one_process_gives(self):
-        shutil.copy(os.path.join(SOURCE, "protocols", "boundary-constant.toml"), os.path.join(self.folder, "my-study.toml"))
-        example = self.example()
+    def divided(self, tool):
+        """What the page's example with this tool prints, for a smaller study in 5 parts."""
+        example = self.example(tool)
         for text, quick in (("--observers 1000", "--observers 20 --intervals 9"), ("seq 64", "seq 5"), ("/64", "/5")):
             self.assertIn(text, example)
             example = example.replace(text, quick)
         status, joined, err = run("set -eu\n" + example.strip() + " --json", self.folder)
         self.assertEqual(status, 0, err)
         self.assertEqual(len([name for name in os.listdir(self.folder) if name.startswith("part")]), 5)
+        return joined
+
+    @unittest.skipUnless(shutil.which("parallel"), "GNU parallel is not installed (deploy/install test)")
+    def test_the_example_with_gnu_parallel_gives_what_one_process_gives(self):
+        shutil.copy(os.path.join(SOURCE, "protocols", "boundary-constant.toml"), os.path.join(self.folder, "my-study.toml"))
+        joined = self.divided("parallel --joblog")
+        self.assertEqual(joined, run(["power", "my-study.toml", "--observers", "20", "--intervals", "9", "--json"], self.folder)[1])
+        with open(os.path.join(self.folder, "log"), encoding="utf-8") as log:
+            self.assertEqual([line.split("\t")[6] for line in log][1:], ["0"] * 5)   # the exit status of each part
+
+    def test_the_example_of_a_divided_study_gives_what_one_process_gives(self):
+        shutil.copy(os.path.join(SOURCE, "protocols", "boundary-constant.toml"), os.path.join(self.folder, "my-study.toml"))
+        joined = self.divided("xargs")
         whole = ["power", "my-study.toml", "--observers", "20", "--intervals", "9"]
         self.assertEqual(joined, run([*whole, "--json"], self.folder)[1])
         first = min(os.sched_getaffinity(0))
