@@ -322,6 +322,23 @@ std::vector<VerifiedSession> verify_database(Database& database, const std::stri
   return verified;
 }
 
+std::string annotations_checksum(Database& database, const std::string& session_id) {
+  text::Sha256 hash;
+  Statement notes(database,
+                  "SELECT annotation_id, realtime_ns, text FROM annotation WHERE session_id = ?"
+                  " ORDER BY annotation_id");
+  notes.bind(session_id);
+  while (notes.step()) add_row(hash, notes);
+  return hash.hex();
+}
+
+std::optional<Link> link_at(Database& database, const std::string& session_id, std::int64_t index) {
+  Statement row(database,
+                fmt::format("SELECT {} FROM link WHERE session_id = ? AND link_index = ?", kLinkColumns));
+  row.bind(session_id, index);
+  return row.step() ? std::optional(link_from(row)) : std::nullopt;
+}
+
 std::string session_checksum(Database& database, const std::string& schema, const std::string& session_id) {
   text::Sha256 hash;
   Encoder encoder(database, schema, session_id);

@@ -21,14 +21,15 @@ with open(os.path.join(HERE, "json_shapes.json"), encoding="utf-8") as file:
     SHAPES = json.load(file)
 
 # Each command with what its example needs: "session" is a database with sessions of P01 and P02, "screen" is
-# the program with a screen, "code" is a code typed on standard input. `status` lists the exit statuses that the
+# the program with a screen, "code" is a code typed on standard input, "server" is a collector (tests/collector tests
+# that command). `status` lists the exit statuses that the
 # example may have: the doctor finds fault with most machines.
 COMMANDS = {
     "amplifier-off": {}, "annotate": {"needs": "session"}, "backup": {"needs": "session"},
     "calibrate": {}, "check": {}, "doctor": {"status": (0, 1)}, "export": {"needs": "session"}, "field": {},
-    "figures": {}, "join": {"needs": "session"}, "map": {}, "merge": {"needs": "session"}, "new": {},
+    "collector-schema": {}, "figures": {}, "join": {"needs": "session"}, "map": {}, "merge": {"needs": "session"}, "new": {},
     "operator-code": {"needs": "code"}, "plan": {}, "power": {}, "preview": {}, "protocols": {},
-    "report": {"needs": "session"}, "resume": {"needs": "session"}, "run": {}, "self-test": {"status": (0, 1)},
+    "push": {"needs": "server"}, "report": {"needs": "session"}, "resume": {"needs": "session"}, "run": {}, "self-test": {"status": (0, 1)},
     "sessions": {"needs": "session"},
     "station": {"needs": "screen"}, "synth": {}, "trace": {}, "verify": {"needs": "session"},
     "withdraw": {"needs": "session"},
@@ -47,7 +48,7 @@ WITH_RIG = {"amplifier-off": [], "calibrate": ["--sweep"], "check": ["demo"], "d
             "self-test": ["--data", "."],
             "synth": ["--tone", "30000", "--seconds", "1", "--out", "null:"]}
 WITH_DATABASE = {"annotate": ["a note"], "backup": ["--dir", "copies"], "export": ["--out", "export"], "join": ["P01", "P02"],
-                 "report": [], "resume": [], "sessions": [], "verify": [], "withdraw": ["--participant", "P01", "--yes"]}
+                 "push": ["--to", "host=/nowhere"], "report": [], "resume": [], "sessions": [], "verify": [], "withdraw": ["--participant", "P01", "--yes"]}
 CREATES_DATABASE = {"merge": ["good.sqlite"], "run": ["demo", "--participant", "P01", "--observer", "sim"]}
 WRITES_DATABASE = {**CREATES_DATABASE, **{name: WITH_DATABASE[name] for name in ("annotate", "join", "withdraw")}}
 OUT_OF_RANGE = [
@@ -189,7 +190,7 @@ class Examples(Folder):
 
     def test_the_example_in_each_help_works_as_it_stands(self):
         for name in self.names:
-            if COMMANDS.get(name, {}).get("needs") == "screen":
+            if COMMANDS.get(name, {}).get("needs") in ("screen", "server"):
                 continue
             with self.subTest(name):
                 self.fresh(name)
@@ -201,6 +202,8 @@ class Examples(Folder):
 
     def test_json_documents_have_the_recorded_shape(self):
         for name in SHAPES:
+            if COMMANDS[name].get("needs") == "server":
+                continue
             with self.subTest(name):
                 self.fresh(name)
                 self.write("edges.csv", b"frequency_Hz,boundary_mm,sd_mm\n26000,124,1\n30000,147,1\n36000,175,1\n")
