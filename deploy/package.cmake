@@ -6,7 +6,7 @@ endif()
 install(DIRECTORY protocols deploy/rigs DESTINATION ${CMAKE_INSTALL_DATADIR}/turnpoint COMPONENT station)
 # Keep the folder structure of the manuals, so that the links between them work.
 file(GLOB drawings RELATIVE ${CMAKE_SOURCE_DIR} CONFIGURE_DEPENDS deploy/drawings/*.svg)
-foreach(manual README.md LICENSE deploy/README.md deploy/boards.md deploy/to-measure.md deploy/rigs/README.md ${drawings} physics/README.md protocols/README.md
+foreach(manual README.md LICENSE deploy/README.md deploy/boards.md deploy/to-measure.md deploy/rigs/README.md ${drawings} physics/README.md protocols/README.md protocols/a-study-in-an-afternoon.md protocols/coming-from-psychopy.md
         station/store/README.md station/python/README.md tests/README.md)
   cmake_path(GET manual PARENT_PATH folder)
   install(FILES ${manual} DESTINATION ${CMAKE_INSTALL_DOCDIR}/${folder} COMPONENT station)
