@@ -67,6 +67,10 @@ void add_database(Command& command, std::string& target, const std::string& help
   command.add_option("--db", target, help)->value("FILE")->required()->check(database());
 }
 
+void add_databases(Command& command, std::vector<std::string>& target, const std::string& help) {
+  command.add_option("--db", target, help)->value("FILE")->required()->check(database());
+}
+
 void add_new_database(Command& command, std::string& target, const std::string& help) {
   command.add_option("--db", target, help)->value("FILE")->required()->check(database(Missing::allowed));
 }

@@ -21,6 +21,7 @@ Protocol parse(const std::string& source, const std::string& path) {
   read_procedures(file, reading);
   read_plan(file, reading);
   read_analysis(file, reading);
+  read_exclusion(file, reading);
   read_triggers(file, reading);
   read_sensing(file, reading);
   read_resume(file, reading);

@@ -259,6 +259,17 @@ struct Analysis {
   std::optional<double> exclude_mad;
 };
 
+/// The rules by which the report of a study leaves out participants. Shares and medians are over all trials
+/// of a participant, without practice. An empty rule excludes nobody.
+struct Exclusion {
+  std::optional<int> fewer_trials_than;                       ///< answered experimental trials
+  std::optional<double> accuracy_below;                       ///< of the answered experimental trials
+  std::optional<double> catch_accuracy_below;                 ///< of the answered catch trials
+  std::optional<double> timeouts_above, anticipations_above;  ///< shares of the experimental trials
+  std::optional<double> median_time_below_s, median_time_above_s;
+  bool incomplete = false;  ///< a session was not completed
+};
+
 enum class ResumePolicy { ask, resume, restart, block };
 
 struct Resume {
@@ -314,6 +325,7 @@ struct Protocol {
   std::vector<std::variant<Block, Sequence>> plan;  ///< blocks and sequences in the order of the file
   std::map<std::string, Instruction> instructions;
   Analysis analysis;
+  std::optional<Exclusion> exclusion;
   Triggers triggers;
   std::optional<Sensing> sensing;
   Resume resume;

@@ -29,6 +29,7 @@ void read_timing(text::TableReader& file, Reading& reading);
 void read_procedures(text::TableReader& file, Reading& reading);
 void read_plan(text::TableReader& file, Reading& reading);
 void read_analysis(text::TableReader& file, Reading& reading);
+void read_exclusion(text::TableReader& file, Reading& reading);
 void read_triggers(text::TableReader& file, Reading& reading);
 void read_sensing(text::TableReader& file, Reading& reading);
 void read_resume(text::TableReader& file, Reading& reading);

@@ -1,38 +1,12 @@
 #include <cmath>
-#include <nlohmann/json.hpp>
 
 #include "station/analysis/psychometric_posterior.hpp"
 #include "station/report/html.hpp"
+#include "station/report/json_parts.hpp"
 
 namespace turnpoint::report {
 
 namespace {
-
-using Json = nlohmann::ordered_json;
-
-Json value(double number) { return std::isfinite(number) ? Json(number) : Json(nullptr); }
-Json value(const std::optional<double>& number) { return number ? value(*number) : Json(nullptr); }
-Json value(const analysis::Interval& i) { return {{"low", value(i.low)}, {"high", value(i.high)}}; }
-
-Json value(const std::optional<analysis::Estimate>& estimate) {
-  if (!estimate) return nullptr;
-  return {{"value", value(estimate->value)}, {"interval", value(estimate->interval)}};
-}
-
-Json value(const std::optional<analysis::ParameterInterval>& interval) {
-  if (!interval) return nullptr;
-  return {{"low", value(interval->interval.low)},
-          {"high", value(interval->interval.high)},
-          {"touches_low", interval->touches_low},
-          {"touches_high", interval->touches_high}};
-}
-
-Json value(const std::vector<analysis::Statement>& statements) {
-  Json list = Json::array();
-  for (const auto& statement : statements)
-    list.push_back({{"code", statement.code}, {"text", statement.text}});
-  return list;
-}
 
 /// Returns the prior as JSON: for each parameter, the range in which the prior is uniform and, if the prior
 /// falls off beyond this range, where it reaches 0. Returns null for a bootstrap, which has no prior.
