@@ -2,6 +2,7 @@
 //   screenshots --out DIR [--languages en,ja] [--sizes 800x480,1280x800] [--only NAME]
 #include <QCommandLineParser>
 #include <QDir>
+#include <QFile>
 #include <QGuiApplication>
 #include <QQmlApplicationEngine>
 #include <QQmlComponent>
@@ -185,11 +186,13 @@ void wait_for(Ready ready) {
 
 int shoot_operator(const QString& out, const QStringList& sizes) {
   using namespace turnpoint;
-  const QTemporaryDir folder;
   const std::string source = TURNPOINT_SOURCE_DIR;
-  const auto database = ui::interrupted_exhibit(folder.path().toStdString());
-  ui::OperatorController operating(
-      {source + "/protocols", source + "/tests/support/thin_plate.toml", database});
+  // Short relative names, so that a picture in a manual shows no folder of the machine on which it was made.
+  const QTemporaryDir folder;
+  QDir::setCurrent(folder.path());
+  QFile::copy(QString::fromStdString(source + "/tests/support/thin_plate.toml"), "plate.toml");
+  ui::interrupted_exhibit(".");
+  ui::OperatorController operating({source + "/protocols", "plate.toml", "lab.sqlite"});
   operating.select(9);
   wait_for([&] { return !operating.checking(); });
   ui::PreviewController preview(
@@ -251,7 +254,7 @@ int main(int argc, char** argv) {
                      {"only", "One page", "name", ""}});
   parser.process(app);
   turnpoint::ui::set_fonts();
-  const QString out = parser.value("out");
+  const QString out = QDir(parser.value("out")).absolutePath();
   if (!QDir().mkpath(out)) qFatal("cannot make %s", qPrintable(out));
   int count = 0;
   for (const auto& size : parser.value("sizes").split(',')) {
