@@ -8,7 +8,7 @@ install(DIRECTORY protocols deploy/rigs DESTINATION ${CMAKE_INSTALL_DATADIR}/tur
 # Keep the folder structure of the manuals, so that the links between them work.
 file(GLOB drawings RELATIVE ${CMAKE_SOURCE_DIR} CONFIGURE_DEPENDS deploy/drawings/*.svg)
 foreach(manual README.md LICENSE deploy/README.md deploy/boards.md deploy/to-measure.md deploy/rigs/README.md ${drawings} physics/README.md protocols/README.md protocols/a-study-in-an-afternoon.md protocols/coming-from-psychopy.md
-        station/store/README.md station/python/README.md tests/README.md)
+        station/store/README.md station/collector/README.md station/python/README.md tests/README.md)
   cmake_path(GET manual PARENT_PATH folder)
   install(FILES ${manual} DESTINATION ${CMAKE_INSTALL_DOCDIR}/${folder} COMPONENT station)
 endforeach()
@@ -21,8 +21,12 @@ if(TURNPOINT_UI)
   install(FILES deploy/desktop/turnpoint.desktop DESTINATION share/applications COMPONENT station)
   install(FILES deploy/desktop/turnpoint.svg DESTINATION share/icons/hicolor/scalable/apps COMPONENT station)
 endif()
-install(FILES deploy/system/turnpoint.service deploy/system/turnpoint-backup.service deploy/system/turnpoint-backup.timer deploy/system/turnpoint-first-boot.service DESTINATION lib/systemd/system COMPONENT station)
+install(FILES deploy/system/turnpoint.service deploy/system/turnpoint-backup.service deploy/system/turnpoint-backup.timer deploy/system/turnpoint-first-boot.service
+  deploy/system/turnpoint-push.service deploy/system/turnpoint-push.timer deploy/system/turnpoint-receive.service DESTINATION lib/systemd/system COMPONENT station)
 install(DIRECTORY ${CMAKE_BINARY_DIR}/man/ DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 COMPONENT station)
+install(PROGRAMS deploy/collector DESTINATION ${CMAKE_INSTALL_BINDIR} RENAME turnpoint-collector COMPONENT station)
+install(PROGRAMS deploy/collector-join DESTINATION ${CMAKE_INSTALL_BINDIR} RENAME turnpoint-collector-join COMPONENT station)
+install(FILES station/collector/queries.sql DESTINATION ${CMAKE_INSTALL_DATADIR}/turnpoint/collector COMPONENT station)
 install(FILES deploy/system/turnpoint.bash-completion DESTINATION share/bash-completion/completions RENAME turnpoint COMPONENT station)
 install(FILES deploy/system/turnpoint.bash-completion DESTINATION share/bash-completion/completions RENAME turnpoint-ui COMPONENT station)
 install(FILES deploy/system/turnpoint.zsh-completion DESTINATION share/zsh/vendor-completions RENAME _turnpoint COMPONENT station)

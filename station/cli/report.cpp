@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <fmt/ostream.h>
 
+#include <deque>
 #include <memory>
 #include <optional>
 #include <system_error>
@@ -10,6 +11,7 @@
 #include "station/cli/command.hpp"
 #include "station/cli/long_work.hpp"
 #include "station/cli/shared_options.hpp"
+#include "station/collector/fetch.hpp"
 #include "station/desk/study_data.hpp"
 #include "station/report/html.hpp"
 #include "station/system/write_file.hpp"
@@ -122,6 +124,15 @@ void report_study(Options options, Context& context) {
   if (!context.json) print_study(context.out, options.out, study);
 }
 
+void report_databases(Options options, Context& context) {
+  std::deque<collector::ReadableDatabase> readable;
+  for (auto& database : options.databases) database = readable.emplace_back(database).path();
+  if (options.study)
+    report_study(options, context);
+  else
+    report_session(options, context);
+}
+
 }  // namespace report_command
 
 void add_report(CommandLine& app, Context& context) {
@@ -129,7 +140,8 @@ void add_report(CommandLine& app, Context& context) {
   auto options = std::make_shared<Options>();
   auto* command = app.add_subcommand(
       "report", "Write a report of a session, or of a study: fits, speed-accuracy trade-off, effects");
-  add_databases(*command, options->databases, "Database; with --study, one or more");
+  add_databases(*command, options->databases,
+                "Database, or a collector: postgresql://...; with --study, one or more");
   command->add_option("--session", options->filter.session_id,
                       "Session to report; by default the newest one");
   command->add_option("--participant", options->filter.participant,
@@ -156,12 +168,7 @@ void add_report(CommandLine& app, Context& context) {
   add_progress(*command, options->progress);
   add_json(*command, context);
   command->footer("Example: turnpoint report --db lab.sqlite --participant P01 --out P01.html");
-  command->callback([options, &context] {
-    if (options->study)
-      report_study(*options, context);
-    else
-      report_session(*options, context);
-  });
+  command->callback([options, &context] { report_databases(*options, context); });
 }
 
 }  // namespace turnpoint::cli

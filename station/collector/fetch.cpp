@@ -38,6 +38,15 @@ void require_version(Connection& server) {
       "");
 }
 
+/// In a station's file, the newest session has the newest trials. Here, the session whose last trial is
+/// newest.
+std::string order_of(const CollectedTable& table) {
+  if (table.name != "trial") return "ORDER BY " + quoted_list(table.key);
+  return "JOIN (SELECT session_id, max(recorded_realtime_ns) AS newest FROM turnpoint.trial GROUP BY "
+         "session_id) x"
+         " USING (session_id) ORDER BY newest, session_id, trial_index";
+}
+
 void refuse_changed(store::Database& database) {
   for (const auto& session : store::verify_database(database))
     if (!session.problems.empty())
@@ -82,8 +91,8 @@ void ReadableDatabase::fetch(const std::string& address) {
   store::Transaction transaction(database);
   for (const auto& table : collected_tables())
     receive_rows(server,
-                 fmt::format("COPY (SELECT {0} FROM turnpoint.{1} ORDER BY {2}) TO STDOUT (FORMAT binary)",
-                             column_list(table), table.name, quoted_list(table.key)),
+                 fmt::format("COPY (SELECT {0} FROM turnpoint.{1} {2}) TO STDOUT (FORMAT binary)",
+                             column_list(table), table.name, order_of(table)),
                  table, database);
   transaction.commit();
   refuse_changed(database);

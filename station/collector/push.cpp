@@ -4,14 +4,15 @@
 
 #include <algorithm>
 #include <map>
-#include <nlohmann/json.hpp>
 #include <set>
 
 #include "station/collector/postgres.hpp"
+#include "station/collector/received.hpp"
 #include "station/collector/row_stream.hpp"
 #include "station/collector/tables.hpp"
 #include "station/store/checksum.hpp"
 #include "station/store/open.hpp"
+#include "station/store/places.hpp"
 #include "station/store/read.hpp"
 #include "station/store/schema.hpp"
 
@@ -59,17 +60,10 @@ std::set<std::string> greet(Connection& server) {
 
 std::vector<store::Tombstone> exchange_tombstones(Connection& server,
                                                   const std::vector<store::Tombstone>& own) {
-  auto list = nlohmann::json::array();
-  for (const auto& stone : own)
-    list.push_back({{"session_id", stone.session_id},
-                    {"salt", stone.salt},
-                    {"participant_sha256", stone.participant_sha256},
-                    {"withdrawn_realtime_ns", stone.withdrawn_realtime_ns},
-                    {"station_id", stone.station_id}});
   const auto rows = server.query(
       "SELECT session_id, salt, participant_sha256, withdrawn_realtime_ns, station_id"
       " FROM turnpoint.exchange_tombstones($1::json)",
-      {list.dump()});
+      {tombstones_json(own)});
   std::vector<store::Tombstone> theirs;
   for (int i = 0; i < rows.count(); ++i)
     theirs.push_back(
@@ -198,18 +192,52 @@ PushedSession push_session(Database& database, const store::SessionRecord& sessi
   return pushed;
 }
 
-void exchange_withdrawals(const PushOptions& options, Connection& server, PushReport& report) {
-  std::vector<store::Tombstone> own;
-  {
-    auto reader = store::open_reader(options.database);
-    own = store::list_tombstones(reader);
+/// Leases places until this station has `wanted` that are free. Returns all that are leased to it.
+std::vector<std::int64_t> lease_places(Database& database, const std::string& protocol_id,
+                                       std::int64_t wanted, Connection& server, PushReport& report) {
+  const auto used = store::used_places(database, protocol_id);
+  std::vector<std::int64_t> leased;
+  // The first answer says what this station has, also if an earlier answer was lost on the way. The server
+  // may lease places that are used here by a participant whom it does not know yet; then a few more are
+  // needed.
+  for (std::int64_t more = 0, free = 0;; more = wanted - free) {
+    const auto rows = server.query("SELECT place FROM turnpoint.lease_places($1, $2) place",
+                                   {protocol_id, std::to_string(more)});
+    if (more > 0 && rows.count() <= static_cast<int>(leased.size()))
+      throw ServerError("collector: the server leases no more places of " + protocol_id, "");
+    leased.clear();
+    for (int i = 0; i < rows.count(); ++i) leased.push_back(rows.integer(i, 0));
+    free = std::count_if(leased.begin(), leased.end(), [&](const auto place) {
+      return !std::binary_search(used.begin(), used.end(), place);
+    });
+    report.places[protocol_id] = free;
+    if (free >= wanted) return leased;
   }
-  const auto theirs = exchange_tombstones(server, own);
+}
+
+std::vector<store::Tombstone> exchange_tombstones(const PushOptions& options, Connection& server) {
+  auto reader = store::open_reader(options.database);
+  return exchange_tombstones(server, store::list_tombstones(reader));
+}
+
+void use(const Received& received, const PushOptions& options, PushReport& report) {
+  if (!options.received.empty()) return write_received(received, options.received);
   try {
-    report.withdrawn = store::follow_tombstones(options.database, theirs, options.backup_directory);
+    auto withdrawn = carry_out(received, options.database, options.backup_directory);
+    if (!withdrawn.sessions.empty()) report.withdrawn = std::move(withdrawn);
   } catch (const store::StoreError& error) {
     if (error.kind() != store::ErrorKind::busy) throw;
-    report.not_withdrawn = error.what();
+    report.waiting = error.what();
+  }
+}
+
+/// The station gives up its places before the server may lease them to another.
+void return_places(const PushOptions& options, Connection& server) {
+  for (const auto& protocol_id : options.return_places) {
+    std::string list;
+    for (const auto place : store::give_up_places(options.database, protocol_id))
+      list += (list.empty() ? "" : ",") + std::to_string(place);
+    server.query("SELECT turnpoint.return_places($1, $2)", {protocol_id, "[" + list + "]"});
   }
 }
 
@@ -230,27 +258,23 @@ const char* name(PushedSession::What what) {
 }
 
 bool PushReport::complete() const {
-  return not_withdrawn.empty() && std::none_of(sessions.begin(), sessions.end(), [](const auto& session) {
-           return session.what == What::refused;
-         });
+  return waiting.empty() && std::none_of(sessions.begin(), sessions.end(),
+                                         [](const auto& session) { return session.what == What::refused; });
 }
 
-PushReport push(const PushOptions& options) {
-  PushReport report;
-  Connection server(options.to);
-  const auto stations = greet(server);
-  exchange_withdrawals(options, server, report);
-  Database snapshot("", Database::Access::create);
-  {
-    auto reader = store::open_reader(options.database);
-    store::copy_database(reader, snapshot);
-  }
+namespace {
+
+/// Sends the sessions in a snapshot of the database.
+void push_sessions(Database& snapshot, const std::set<std::string>& stations, const Received& received,
+                   Connection& server, PushReport& report) {
+  std::set<std::string> withdrawn, foreign;
+  for (const auto& stone : received.tombstones) withdrawn.insert(stone.session_id);
   server.query("SELECT turnpoint.prepare()");
   const auto known = known_sessions(server);
-  std::set<std::string> foreign;
   for (const auto& session : store::list_sessions(snapshot)) {
     const auto& station = session.start.station_id;
     const auto it = known.find(session.session_id);
+    if (withdrawn.count(session.session_id) != 0) continue;  // still to be deleted here
     if (stations.count(station) == 0)
       foreign.insert(station);
     else if (session.status == store::SessionStatus::running)
@@ -260,6 +284,28 @@ PushReport push(const PushOptions& options) {
           push_session(snapshot, session, it == known.end() ? nullptr : &it->second, server));
   }
   report.foreign.assign(foreign.begin(), foreign.end());
+}
+
+}  // namespace
+
+PushReport push(const PushOptions& options) {
+  PushReport report;
+  Connection server(options.to);
+  const auto stations = greet(server);
+  Received received;
+  received.tombstones = exchange_tombstones(options, server);
+  use(received, options, report);
+  Database snapshot("", Database::Access::create);
+  {
+    auto reader = store::open_reader(options.database);
+    store::copy_database(reader, snapshot);
+  }
+  push_sessions(snapshot, stations, received, server, report);
+  // After the sessions, because they tell the server which places are taken.
+  for (const auto& [protocol_id, wanted] : options.places)
+    received.places[protocol_id] = lease_places(snapshot, protocol_id, wanted, server, report);
+  if (!received.places.empty()) use(received, options, report);
+  return_places(options, server);
   return report;
 }
 

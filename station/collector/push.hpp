@@ -1,5 +1,6 @@
 #pragma once
 #include <cstdint>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -11,6 +12,12 @@ struct PushOptions {
   std::string database;
   std::string to;                ///< connection string of libpq
   std::string backup_directory;  ///< as in store::WithdrawOptions, for withdrawals that come from the server
+  /// File for what the server sent (received.hpp); "" carries it out at once on the database.
+  std::string received;
+  /// for each protocol, how many free places in its counterbalancing this station is to have in hand
+  std::map<std::string, std::int64_t> places;
+  /// protocols whose leased places are given back; this station then counts alone again
+  std::vector<std::string> return_places;
 };
 
 struct PushedSession {
@@ -32,16 +39,17 @@ const char* name(PushedSession::What what);
 struct PushReport {
   std::vector<PushedSession> sessions;  ///< sessions of the stations for which the server knows this role
   std::int64_t running = 0;             ///< sessions that have not ended; they are sent later
-  std::vector<std::string> foreign;     ///< stations in the database for which this role may not speak
-  store::Withdrawal withdrawn;          ///< what was withdrawn here because the server says so
-  /// why the server's withdrawals could not be carried out here, for example because a session is running;
-  /// "" if they were
-  std::string not_withdrawn;
+  std::map<std::string, std::int64_t> places;  ///< for each protocol asked for, the free places in hand
+  std::vector<std::string> foreign;            ///< stations in the database for which this role may not speak
+  store::Withdrawal withdrawn;                 ///< what was withdrawn here because the server says so
+  /// why what the server sent could not be carried out here, for example because a session is running; "" if
+  /// it was
+  std::string waiting;
 
-  bool complete() const;  ///< false if a session was refused or a withdrawal is still to be carried out
+  bool complete() const;  ///< false if a session was refused, or what the server sent still waits
 };
 
-/// Sends the sessions that have ended to a collector, and exchanges withdrawals with it.
+/// Sends the sessions that have ended to a collector, exchanges withdrawals with it, and leases places.
 ///
 /// The sessions are read from a snapshot, so a session may run meanwhile. Each is checked against its
 /// checksum chain before it is sent, and sent in a transaction of its own, in which the server calculates the

@@ -151,7 +151,7 @@ std::string schema_sql() {
       "INSERT INTO turnpoint.version (schema, encoding) VALUES ({0}, {1})\n"
       "  ON CONFLICT (only_row) DO UPDATE SET schema = {0}, encoding = {1};\n",
       store::schema_version(), store::kEncoding);
-  return sql + checksum_sql() + functions_sql() + "COMMIT;\n";
+  return sql + checksum_sql() + functions_sql() + views_sql() + "COMMIT;\n";
 }
 
 }  // namespace turnpoint::collector

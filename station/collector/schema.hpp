@@ -13,6 +13,7 @@ std::string schema_sql();
 
 // Parts of schema_sql().
 std::string functions_sql();  ///< what stations and administrators call
+std::string views_sql();      ///< what readers look at
 std::string checksum_sql();   ///< the functions that calculate the checksum chain on the server
 
 }  // namespace turnpoint::collector

@@ -308,6 +308,49 @@ BEGIN
   RETURN QUERY SELECT * FROM turnpoint.tombstone t ORDER BY t.session_id;
 END $fn$;
 
+-- The station of a role that speaks for one station only.
+CREATE OR REPLACE FUNCTION turnpoint.own_station() RETURNS text LANGUAGE plpgsql STABLE AS $fn$
+DECLARE mine text[] := ARRAY(SELECT s.station_id FROM turnpoint.station s WHERE s.role = session_user);
+BEGIN
+  IF cardinality(mine) <> 1 THEN
+    RAISE EXCEPTION 'role % speaks for % stations; places are leased to one', session_user, cardinality(mine)
+      USING ERRCODE = 'TP003';
+  END IF;
+  RETURN mine[1];
+END $fn$;
+
+-- Leases this many more places in the counterbalancing of a protocol to the caller: the lowest that no station has.
+-- Returns all places that are leased to the caller.
+CREATE OR REPLACE FUNCTION turnpoint.lease_places(protocol text, more bigint) RETURNS SETOF bigint
+LANGUAGE plpgsql SECURITY DEFINER SET search_path = pg_catalog, pg_temp AS $fn$
+DECLARE mine text := turnpoint.own_station();
+BEGIN
+  IF more NOT BETWEEN 0 AND 10000 THEN
+    RAISE EXCEPTION 'a station cannot lease % places; allowed are 0 to 10000', more USING ERRCODE = 'TP003';
+  END IF;
+  PERFORM pg_advisory_xact_lock(hashtextextended('lease ' || protocol, 0));
+  INSERT INTO turnpoint.lease (protocol_id, sequence_index, station_id)
+    SELECT protocol, i, mine FROM generate_series(0::bigint,
+      (SELECT count(*) FROM turnpoint.lease t WHERE t.protocol_id = protocol)
+      + (SELECT count(*) FROM turnpoint.enrolment t WHERE t.protocol_id = protocol) + more) i
+    WHERE NOT EXISTS (SELECT FROM turnpoint.lease t WHERE t.protocol_id = protocol AND t.sequence_index = i)
+      AND NOT EXISTS (SELECT FROM turnpoint.enrolment t WHERE t.protocol_id = protocol AND t.sequence_index = i)
+    ORDER BY i LIMIT more;
+  RETURN QUERY SELECT t.sequence_index FROM turnpoint.lease t
+    WHERE t.protocol_id = protocol AND t.station_id = mine ORDER BY t.sequence_index;
+END $fn$;
+
+-- Takes back places that the caller has not used, as a JSON list, so that another station can lease them.
+CREATE OR REPLACE FUNCTION turnpoint.return_places(protocol text, places json) RETURNS void
+LANGUAGE plpgsql SECURITY DEFINER SET search_path = pg_catalog, pg_temp AS $fn$
+DECLARE mine text := turnpoint.own_station();
+BEGIN
+  DELETE FROM turnpoint.lease t WHERE t.protocol_id = protocol AND t.station_id = mine
+    AND t.sequence_index IN (SELECT value::bigint FROM json_array_elements_text(places))
+    AND NOT EXISTS (SELECT FROM turnpoint.enrolment e WHERE e.protocol_id = protocol
+                      AND e.sequence_index = t.sequence_index);
+END $fn$;
+
 -- For an administrator: withdraws a participant of a station. The stations follow at their next contact.
 CREATE OR REPLACE FUNCTION turnpoint.withdraw(station text, code text) RETURNS bigint LANGUAGE plpgsql
 SET search_path = pg_catalog, pg_temp AS $fn$
@@ -327,7 +370,8 @@ END $fn$;
 constexpr const char* kRights = R"sql(
 REVOKE ALL ON ALL FUNCTIONS IN SCHEMA turnpoint FROM PUBLIC;
 GRANT EXECUTE ON FUNCTION turnpoint.hello(), turnpoint.chains(), turnpoint.prepare(), turnpoint.store_session(text),
-  turnpoint.exchange_tombstones(json) TO turnpoint_station;
+  turnpoint.exchange_tombstones(json), turnpoint.lease_places(text, bigint), turnpoint.return_places(text, json)
+  TO turnpoint_station;
 GRANT EXECUTE ON FUNCTION turnpoint.hello() TO turnpoint_reader;
 )sql";
 

@@ -156,6 +156,10 @@ void add_health(const store::StoredSession& stored, report::SessionData& data) {
                  {"Calibration", start.calibration_id.value_or("none")},
                  {"Real-time rights", start.realtime_rights},
                  {"Kernel", start.kernel},
+                 {"Place in the counterbalancing",
+                  text::number(stored.session.sequence_index, 6) +
+                      (stored.session.leased_place ? ", leased from the collector: unique among its stations"
+                                                   : ", given by this station alone")},
                  {"Checksum of the data", stored.session.checksum.empty()
                                               ? "none, because an earlier release recorded the session"
                                               : stored.session.checksum},

@@ -143,6 +143,7 @@ const Table<SessionRecord>& session_table() {
        condition<&Conditions::skin_moisture>({"skin_moisture", "skin_moisture",
                                               "Moisture of the fingertip, as a moisture meter read it before "
                                               "the session, in the meter's unit"}),
+       since(5, field<&R::leased_place>({"leased_place"})),
        field<&R::status>({"status", "status", "State of the session", "",
                           "running | completed | interrupted | stopped | abandoned"}),
        field<&R::status_reason>({"status_reason", "status_reason", "Why the session has this state"})}};

@@ -374,7 +374,8 @@ CREATE TRIGGER session_keeps_its_provenance BEFORE UPDATE OF session_id, partici
 )sql";
 
 // Version 8. The answers to questionnaires, consent forms and screenings: each belongs to an event of the
-// kind questionnaire.
+// kind questionnaire. The places in the counterbalancing that a collector has leased to this station, and whether the
+// place of a session is one of them.
 const char* const kStep8 = R"sql(
 CREATE TABLE answer (
   session_id TEXT NOT NULL,
@@ -394,6 +395,15 @@ CREATE TRIGGER answer_is_never_changed BEFORE UPDATE ON answer
 CREATE TRIGGER answer_is_never_deleted BEFORE DELETE ON answer
   WHEN NOT EXISTS (SELECT 1 FROM tombstone WHERE session_id = OLD.session_id)
   BEGIN SELECT RAISE(ABORT, 'answer is append-only'); END;
+
+CREATE TABLE lease (
+  protocol_id TEXT NOT NULL,
+  sequence_index INTEGER NOT NULL CHECK (sequence_index >= 0),
+  PRIMARY KEY (protocol_id, sequence_index)
+) STRICT, WITHOUT ROWID;
+ALTER TABLE session ADD COLUMN leased_place INTEGER NOT NULL DEFAULT 0 CHECK (leased_place IN (0, 1));
+CREATE TRIGGER session_keeps_its_place BEFORE UPDATE OF leased_place ON session
+  BEGIN SELECT RAISE(ABORT, 'the provenance of a session is never changed'); END;
 )sql";
 
 }  // namespace

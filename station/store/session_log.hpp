@@ -10,9 +10,10 @@ namespace turnpoint::store {
 
 /// What a database knows about a session. Needed to resume the session and to report on it.
 struct SessionRecord {
-  std::string session_id;  ///< UUID
-  int session_index = 0;   ///< number of the session, from 1, for this participant and protocol
-  int sequence_index = 0;  ///< the participant's number in the protocol's counterbalancing, from 0
+  std::string session_id;     ///< UUID
+  int session_index = 0;      ///< number of the session, from 1, for this participant and protocol
+  int sequence_index = 0;     ///< the participant's number in the protocol's counterbalancing, from 0
+  bool leased_place = false;  ///< true if a collector leased that number, so that no other station gives it
   SessionStatus status = SessionStatus::running;
   std::string status_reason;
   SessionStart start;

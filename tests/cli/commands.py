@@ -29,7 +29,7 @@ COMMANDS = {
     "calibrate": {}, "check": {}, "doctor": {"status": (0, 1)}, "export": {"needs": "session"}, "field": {},
     "collector-schema": {}, "figures": {}, "join": {"needs": "session"}, "map": {}, "merge": {"needs": "session"}, "new": {},
     "operator-code": {"needs": "code"}, "plan": {}, "power": {}, "preview": {}, "protocols": {},
-    "push": {"needs": "server"}, "report": {"needs": "session"}, "resume": {"needs": "session"}, "run": {}, "self-test": {"status": (0, 1)},
+    "push": {"needs": "server"}, "receive": {"needs": "server"}, "report": {"needs": "session"}, "resume": {"needs": "session"}, "run": {}, "self-test": {"status": (0, 1)},
     "sessions": {"needs": "session"},
     "station": {"needs": "screen"}, "synth": {}, "trace": {}, "verify": {"needs": "session"},
     "withdraw": {"needs": "session"},
@@ -48,7 +48,7 @@ WITH_RIG = {"amplifier-off": [], "calibrate": ["--sweep"], "check": ["demo"], "d
             "self-test": ["--data", "."],
             "synth": ["--tone", "30000", "--seconds", "1", "--out", "null:"]}
 WITH_DATABASE = {"annotate": ["a note"], "backup": ["--dir", "copies"], "export": ["--out", "export"], "join": ["P01", "P02"],
-                 "push": ["--to", "host=/nowhere"], "report": [], "resume": [], "sessions": [], "verify": [], "withdraw": ["--participant", "P01", "--yes"]}
+                 "push": ["--to", "host=/nowhere"], "receive": ["received.json"], "report": [], "resume": [], "sessions": [], "verify": [], "withdraw": ["--participant", "P01", "--yes"]}
 CREATES_DATABASE = {"merge": ["good.sqlite"], "run": ["demo", "--participant", "P01", "--observer", "sim"]}
 WRITES_DATABASE = {**CREATES_DATABASE, **{name: WITH_DATABASE[name] for name in ("annotate", "join", "withdraw")}}
 OUT_OF_RANGE = [

@@ -63,7 +63,7 @@ TEST_CASE("a push that is cut at any place leaves whole sessions, and the next p
   const auto connections = [&] { return trouble; };
   {
     Proxy proxy(postgres.socket(), connections);
-    REQUIRE(collector::push({db, through(proxy, "station_a"), ""}).complete());
+    REQUIRE(collector::push({db, through(proxy, "station_a"), "", "", {}, {}}).complete());
     // The proxy serves one connection after another, so the first is counted when the next is served.
     collector::Connection(through(proxy, "station_a")).query("SELECT 1");
     sent = proxy.sent();
@@ -83,7 +83,7 @@ TEST_CASE("a push that is cut at any place leaves whole sessions, and the next p
     {
       Proxy proxy(postgres.socket(), connections);
       try {
-        collector::push({db, through(proxy, "station_a"), ""});
+        collector::push({db, through(proxy, "station_a"), "", "", {}, {}});
       } catch (const collector::ServerError&) {
         ++failures;
       }
@@ -93,7 +93,7 @@ TEST_CASE("a push that is cut at any place leaves whole sessions, and the next p
     trouble = {};
     trouble.slow_sent = 1000;
     Proxy proxy(postgres.socket(), connections);
-    const auto report = collector::push({db, through(proxy, "station_a"), ""});
+    const auto report = collector::push({db, through(proxy, "station_a"), "", "", {}, {}});
     REQUIRE(report.complete());
     CHECK(whole_sessions(postgres, db) == 2);
     int unchanged = 0;
@@ -120,14 +120,14 @@ TEST_CASE("bytes that change on the way are found, and nothing is stored", "[col
     {
       Proxy proxy(postgres.socket(), [&] { return trouble; });
       try {
-        refused += collector::push({db, through(proxy, "station_a"), ""}).complete() ? 0 : 1;
+        refused += collector::push({db, through(proxy, "station_a"), "", "", {}, {}}).complete() ? 0 : 1;
       } catch (const collector::ServerError&) {
         ++refused;
       }
     }
     // Whatever the server accepted is what the station has.
     whole_sessions(postgres, db);
-    CHECK(collector::push({db, postgres.as("station_a"), ""}).complete());
+    CHECK(collector::push({db, postgres.as("station_a"), "", "", {}, {}}).complete());
     CHECK(whole_sessions(postgres, db) == 1);
     empty(postgres);
   }
@@ -167,7 +167,8 @@ TEST_CASE("many stations push at once through a network that cuts, and nothing i
           return trouble;
         });
         for (bool done = false; !done;) try {
-            done = collector::push({file(k), through(proxy, fmt::format("station_{}", k)), ""}).complete();
+            done = collector::push({file(k), through(proxy, fmt::format("station_{}", k)), "", "", {}, {}})
+                       .complete();
           } catch (const collector::ServerError&) {
             ++cuts;
           }

@@ -64,7 +64,7 @@ TEST_CASE("a push sends each session once, and a continued session is extended",
   const auto db = folder / "lab.sqlite";
   const auto first = sample::session(db, 12);
   const auto second = sample::session(db, 7, sample::start("P02"), store::SessionStatus::interrupted);
-  const collector::PushOptions options{db, postgres.as("station_a"), ""};
+  const collector::PushOptions options{db, postgres.as("station_a"), "", "", {}, {}};
 
   auto report = collector::push(options);
   REQUIRE(report.sessions.size() == 2);
@@ -117,8 +117,8 @@ TEST_CASE("a server gives the same exports as the merged files of its stations",
   sample::session(a, 3, sample::start("P02"), store::SessionStatus::interrupted);
   sample::session(b, 5, at_station("bench-b", "P01"));
   sample::session(b, 4, at_station("bench-b", "P09"));
-  collector::push({b, postgres.as("station_b"), ""});
-  collector::push({a, postgres.as("station_a"), ""});
+  collector::push({b, postgres.as("station_b"), "", "", {}, {}});
+  collector::push({a, postgres.as("station_a"), "", "", {}, {}});
   store::merge(merged, a);
   store::merge(merged, b);
   const collector::ReadableDatabase fetched(uri(postgres, "reader"));
@@ -132,7 +132,7 @@ TEST_CASE("rows that were changed on the server are not read", "[collector]") {
   const PostgresServer postgres;
   const TemporaryFolder folder;
   sample::session(folder / "a.sqlite", 3);
-  collector::push({folder / "a.sqlite", postgres.as("station_a"), ""});
+  collector::push({folder / "a.sqlite", postgres.as("station_a"), "", "", {}, {}});
   postgres.admin().query("UPDATE turnpoint.trial SET level = level + 1 WHERE trial_index = 1");
   const auto message = message_of([&] { collector::ReadableDatabase fetched(uri(postgres, "reader")); });
   CHECK(sample::contains(message, "trial 1"));
@@ -177,13 +177,13 @@ TEST_CASE("the server calculates each checksum from what it stored", "[collector
     server.query(fmt::format(
         "CREATE TRIGGER change BEFORE INSERT ON turnpoint.{} FOR EACH ROW EXECUTE FUNCTION public.change()",
         table));
-    const auto report = collector::push({db, postgres.as("station_a"), ""});
+    const auto report = collector::push({db, postgres.as("station_a"), "", "", {}, {}});
     CHECK(report.sessions.at(0).what == What::refused);
     CHECK_FALSE(report.complete());
     CHECK(server.query("SELECT count(*) FROM turnpoint.session").integer(0, 0) == 0);
     server.query(fmt::format("DROP TRIGGER change ON turnpoint.{}", table));
   }
-  CHECK(collector::push({db, postgres.as("station_a"), ""}).complete());
+  CHECK(collector::push({db, postgres.as("station_a"), "", "", {}, {}}).complete());
 }
 
 TEST_CASE("a session that was changed on the station is not sent, and the others are", "[collector]") {
@@ -195,7 +195,7 @@ TEST_CASE("a session that was changed on the station is not sent, and the others
   auto raw = sample::raw(db);
   raw.execute("DROP TRIGGER trial_is_never_changed; UPDATE trial SET level = 0 WHERE session_id = '" + bad +
               "'");
-  const auto report = collector::push({db, postgres.as("station_a"), ""});
+  const auto report = collector::push({db, postgres.as("station_a"), "", "", {}, {}});
   REQUIRE(report.sessions.size() == 2);
   CHECK(report.sessions[0].what == What::refused);
   CHECK(report.sessions[0].session_id == bad);
@@ -216,8 +216,8 @@ TEST_CASE("two continuations of one session are not mixed", "[collector]") {
   };
   go_on(db, 1);
   go_on(copy, 2);
-  CHECK(collector::push({db, postgres.as("station_a"), ""}).complete());
-  const auto report = collector::push({copy, postgres.as("station_a"), ""});
+  CHECK(collector::push({db, postgres.as("station_a"), "", "", {}, {}}).complete());
+  const auto report = collector::push({copy, postgres.as("station_a"), "", "", {}, {}});
   CHECK(report.sessions.at(0).what == What::refused);
   CHECK(sample::contains(report.sessions.at(0).problem, "another continuation"));
   CHECK(postgres.admin().query("SELECT count(*) FROM turnpoint.trial").integer(0, 0) == 4);
@@ -227,7 +227,7 @@ TEST_CASE("a server with another schema is refused with what to do", "[collector
   const PostgresServer postgres;
   const TemporaryFolder folder;
   sample::session(folder / "a.sqlite", 2);
-  const auto push = [&] { collector::push({folder / "a.sqlite", postgres.as("station_a"), ""}); };
+  const auto push = [&] { collector::push({folder / "a.sqlite", postgres.as("station_a"), "", "", {}, {}}); };
   postgres.admin().query("UPDATE turnpoint.version SET schema = schema - 1");
   CHECK(sample::contains(message_of(push), "update the server first"));
   CHECK(sample::contains(message_of([&] { collector::ReadableDatabase fetched(uri(postgres, "reader")); }),
@@ -252,12 +252,12 @@ TEST_CASE("sessions wait for a server that is away, and wrong clocks do not matt
   }
   postgres.stop();
   CHECK(sample::contains(message_of([&] {
-                           collector::push({db, postgres.as("station_a"), ""});
+                           collector::push({db, postgres.as("station_a"), "", "", {}, {}});
                          }),
                          "collector:"));
   sample::session(db, 2, sample::start("P02"));
   postgres.start();
-  const auto report = collector::push({db, postgres.as("station_a"), ""});
+  const auto report = collector::push({db, postgres.as("station_a"), "", "", {}, {}});
   CHECK(report.sessions.size() == 2);
   CHECK(report.complete());
 }

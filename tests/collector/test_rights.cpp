@@ -26,7 +26,7 @@ TEST_CASE("a station reads nothing, changes nothing and stores nothing that is a
   const TemporaryFolder folder;
   const auto db = folder / "a.sqlite";
   const auto id = sample::session(db, 3);
-  REQUIRE(collector::push({db, postgres.as("station_a"), ""}).complete());
+  REQUIRE(collector::push({db, postgres.as("station_a"), "", "", {}, {}}).complete());
   collector::Connection b(postgres.as("station_b"));
   for (const auto& table : collector::collected_tables()) {
     INFO(table.name);
@@ -56,7 +56,7 @@ TEST_CASE("a station reads nothing, changes nothing and stores nothing that is a
   CHECK(postgres.admin().query("SELECT 1 FROM turnpoint.session").count() == 1);
   CHECK(postgres.admin().query("SELECT 1 FROM turnpoint.tombstone").count() == 0);
   // The same database under another station's role.
-  const auto report = collector::push({db, postgres.as("station_b"), ""});
+  const auto report = collector::push({db, postgres.as("station_b"), "", "", {}, {}});
   CHECK(report.sessions.empty());
   CHECK(report.foreign == std::vector<std::string>{"bench-a"});
   // A reader reads, and cannot change.

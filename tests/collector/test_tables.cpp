@@ -62,12 +62,12 @@ TEST_CASE("the schema may be applied again, and an older program does not bring 
   const PostgresServer postgres;
   auto server = postgres.admin();
   // A column that an earlier version of the server did not have is added.
-  server.query("ALTER TABLE turnpoint.trial DROP COLUMN proof");
+  server.query("ALTER TABLE turnpoint.trial DROP COLUMN confidence");
   const auto apply = [&] {
     postgres.run("psql", "-q -h " + postgres.folder() + " -U postgres -d turnpoint -f schema.sql");
   };
   apply();
-  CHECK(server.query("SELECT proof FROM turnpoint.trial").count() == 0);
+  CHECK(server.query("SELECT confidence FROM turnpoint.trial").count() == 0);
   server.query("UPDATE turnpoint.version SET schema = 99");
   CHECK_THROWS(apply());
   CHECK(server.query("SELECT schema FROM turnpoint.version").integer(0, 0) == 99);

@@ -25,7 +25,7 @@ TEST_CASE("what is withdrawn on a station is deleted on the server", "[collector
   const TemporaryFolder folder;
   const auto db = folder / "a.sqlite";
   const auto gone = sample::session(db, 4), kept = sample::session(db, 3, sample::start("P02"));
-  const collector::PushOptions options{db, postgres.as("station_a"), ""};
+  const collector::PushOptions options{db, postgres.as("station_a"), "", "", {}, {}};
   REQUIRE(collector::push(options).complete());
   CHECK(rows_about(postgres, gone) > 0);
   postgres.run("pg_dump", "-h " + postgres.folder() + " -U postgres -d turnpoint -f before.sql");
@@ -54,7 +54,7 @@ TEST_CASE("what is withdrawn on the server is deleted on the station at its next
   auto start = sample::start("SECRET-CODE");
   start.protocol_id = "only-here";
   const auto gone = sample::session(db, 4, start), kept = sample::session(db, 3, sample::start("P02"));
-  const collector::PushOptions options{db, postgres.as("station_a"), ""};
+  const collector::PushOptions options{db, postgres.as("station_a"), "", "", {}, {}};
   REQUIRE(collector::push(options).complete());
   CHECK(postgres.admin().query("SELECT turnpoint.withdraw('bench-a', 'SECRET-CODE')").integer(0, 0) == 1);
   CHECK(rows_about(postgres, gone) == 0);
@@ -64,7 +64,7 @@ TEST_CASE("what is withdrawn on the server is deleted on the station at its next
     auto log = store::SessionLog::begin(db, sample::start("P03"), sample::segment());
     const auto report = collector::push(options);
     CHECK_FALSE(report.complete());
-    CHECK(sample::contains(report.not_withdrawn, "another station process"));
+    CHECK(sample::contains(report.waiting, "another station process"));
     CHECK(rows_about(postgres, gone) == 0);
     log.finish(store::SessionStatus::completed, "");
   }
