@@ -120,8 +120,12 @@ def steps(lab):
     for source, out in (("lab.sqlite", "from-file"), (address, "from-server")):
         lab.run(PROGRAM, "export", "--db", source, "--out", out, PGPASSWORD=password)
         lab.run(PROGRAM, "report", "--db", source, "--out", out + ".html", PGPASSWORD=password)
+        lab.run(PROGRAM, "report", "--study", "--db", source, "--protocol", "demo", "--out", out + "-study.html", PGPASSWORD=password)
     check("the exports are equal", subprocess.run(["diff", "-r", lab.at("from-file"), lab.at("from-server")], check=False).returncode == 0)
     check("the reports are equal", subprocess.run(["cmp", lab.at("from-file.html"), lab.at("from-server.html")], check=False).returncode == 0)
+
+    check("the study reports are equal",
+          subprocess.run(["cmp", lab.at("from-file-study.html"), lab.at("from-server-study.html")], check=False).returncode == 0)
 
     # Backup; then P01 withdraws, which the next backup notes; then the server is lost and the older dump restored.
     dump = lab.collector("backup", "lab", lab.at("dumps")).strip()
