@@ -23,7 +23,7 @@ namespace turnpoint::cli {
 namespace report_command {
 
 struct Options {
-  std::vector<std::string> databases;
+  std::vector<std::string> databases, names;
   std::string out, tables;
   store::SessionFilter filter;
   bool study = false, progress = false;
@@ -105,7 +105,7 @@ void report_study(Options options, Context& context) {
   LongWork work(options.progress);
   TrialFile trials(options.tables);
   const auto study = desk::study_data(
-      {options.databases, options.filter.protocol_id, options.protocol_version, options.mode},
+      {options.databases, options.names, options.filter.protocol_id, options.protocol_version, options.mode},
       [&](const auto& person, const auto& data) { trials.add(person, data); },
       [&](int done, int of) {
         work.show("participants", done, of);
@@ -126,7 +126,11 @@ void report_study(Options options, Context& context) {
 
 void report_databases(Options options, Context& context) {
   std::deque<collector::ReadableDatabase> readable;
-  for (auto& database : options.databases) database = readable.emplace_back(database).path();
+  for (auto& database : options.databases) {
+    // The address of a collector may contain a password.
+    options.names.push_back(collector::is_server(database) ? "collector" : database);
+    database = readable.emplace_back(database).path();
+  }
   if (options.study)
     report_study(options, context);
   else

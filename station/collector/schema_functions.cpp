@@ -9,16 +9,17 @@ namespace turnpoint::collector {
 namespace {
 
 constexpr const char* kCoded = R"sql(
+-- These use immutable functions only; otherwise PostgreSQL would call them for each value instead of inlining them.
 CREATE OR REPLACE FUNCTION turnpoint.coded(v text) RETURNS text LANGUAGE sql IMMUTABLE AS
-  $$ SELECT CASE WHEN v IS NULL THEN 'n0:' ELSE 't' || octet_length(v) || ':' || v END $$;
+  $$ SELECT CASE WHEN v IS NULL THEN 'n0:' ELSE 't' || octet_length(v)::text || ':' || v END $$;
 CREATE OR REPLACE FUNCTION turnpoint.coded(v bigint) RETURNS text LANGUAGE sql IMMUTABLE AS
-  $$ SELECT CASE WHEN v IS NULL THEN 'n0:' ELSE 'i' || length(v::text) || ':' || v::text END $$;
+  $$ SELECT CASE WHEN v IS NULL THEN 'n0:' ELSE 'i' || length(v::text)::text || ':' || v::text END $$;
 CREATE OR REPLACE FUNCTION turnpoint.bits(v double precision) RETURNS text LANGUAGE sql IMMUTABLE AS
   $$ SELECT ('x' || encode(float8send(v), 'hex'))::bit(64)::bigint::text $$;
 CREATE OR REPLACE FUNCTION turnpoint.coded(v double precision) RETURNS text LANGUAGE sql IMMUTABLE AS
-  $$ SELECT CASE WHEN v IS NULL THEN 'n0:' ELSE 'r' || length(turnpoint.bits(v)) || ':' || turnpoint.bits(v) END $$;
+  $$ SELECT CASE WHEN v IS NULL THEN 'n0:' ELSE 'r' || length(turnpoint.bits(v))::text || ':' || turnpoint.bits(v) END $$;
 CREATE OR REPLACE FUNCTION turnpoint.coded(v bytea) RETURNS bytea LANGUAGE sql IMMUTABLE AS
-  $$ SELECT CASE WHEN v IS NULL THEN 'n0:'::bytea ELSE convert_to('b' || octet_length(v) || ':', 'UTF8') || v END $$;
+  $$ SELECT CASE WHEN v IS NULL THEN 'n0:'::bytea ELSE ('b' || octet_length(v)::text || ':')::bytea || v END $$;
 )sql";
 
 /// Returns an expression of type bytea: a row as store/checksum.cpp hashes it, without the end of the line.
@@ -146,7 +147,8 @@ std::string store_function() {
 -- new links from what is then stored. Returns the last checksum, and one over the session's annotations.
 CREATE OR REPLACE FUNCTION turnpoint.store_session(id text)
 RETURNS TABLE (last_index bigint, last_sha256 text, annotations_sha256 text) LANGUAGE plpgsql SECURITY DEFINER
-SET search_path = pg_catalog, pg_temp SET enable_seqscan = off SET enable_bitmapscan = off SET jit = off AS $fn$
+SET search_path = pg_catalog, pg_temp SET enable_seqscan = off SET enable_bitmapscan = off SET jit = off
+SET plan_cache_mode = force_generic_plan AS $fn$
 #variable_conflict use_column
 DECLARE p turnpoint.link; l turnpoint.link; s turnpoint.session; known boolean;
 BEGIN

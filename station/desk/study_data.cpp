@@ -140,7 +140,7 @@ report::Study head_of(const StudyChoice& choice, const std::vector<Found>& all, 
   }
   study.facts = {{"Protocol", start.protocol_id + " " + start.protocol_version},
                  {"Protocol SHA-256", start.protocol_sha256},
-                 {"Databases", fmt::format("{}", fmt::join(choice.databases, ", "))},
+                 {"Databases", fmt::format("{}", fmt::join(choice.names, ", "))},
                  {"Sessions", std::to_string(all.size())},
                  {"Stations", fmt::format("{}", fmt::join(stations, ", "))},
                  {"Recorded by version", fmt::format("{}", fmt::join(versions, ", "))}};

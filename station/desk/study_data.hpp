@@ -11,7 +11,8 @@ namespace turnpoint::desk {
 /// Which sessions belong to a study.
 struct StudyChoice {
   std::vector<std::string> databases;
-  std::string protocol_id;       ///< "" if the databases have sessions of one protocol only
+  std::vector<std::string> names;  ///< of the databases, for the report
+  std::string protocol_id;         ///< "" if the databases have sessions of one protocol only
   std::string protocol_version;  ///< version, or the beginning of the SHA-256 of its text; "" if there is one
   std::string mode;              ///< live, pilot or simulated; "" if all sessions have the same
 };

@@ -124,8 +124,11 @@ def steps(lab):
     check("the exports are equal", subprocess.run(["diff", "-r", lab.at("from-file"), lab.at("from-server")], check=False).returncode == 0)
     check("the reports are equal", subprocess.run(["cmp", lab.at("from-file.html"), lab.at("from-server.html")], check=False).returncode == 0)
 
-    check("the study reports are equal",
-          subprocess.run(["cmp", lab.at("from-file-study.html"), lab.at("from-server-study.html")], check=False).returncode == 0)
+    texts = []
+    for name in ("lab.sqlite", "collector"):
+        with open(lab.at(f"from-{'file' if name == 'lab.sqlite' else 'server'}-study.html"), encoding="utf-8") as file:
+            texts.append(file.read().replace(f">{name}<", "><"))
+    check("the study reports are equal, except for the name of the database", texts[0] == texts[1])
 
     # Backup; then P01 withdraws, which the next backup notes; then the server is lost and the older dump restored.
     dump = lab.collector("backup", "lab", lab.at("dumps")).strip()
