@@ -24,10 +24,10 @@ constexpr double unknown = 2, unknown_dB = 120;
 // What is known of the error of `modes` before it is solved, if no higher mode resonates: more than its
 // largest on random surfaces. Tension makes thin boundary layers along clamped sides. The field of a clamped
 // plate's piston jumps at the corners of the drive edge.
-constexpr double membrane_accuracy = 2e-3, plate_accuracy = 5e-4, thick_plate_accuracy = 2e-3,
-                 tense_plate_accuracy = 5e-3, plate_piston_accuracy = 0.15;
+constexpr double membrane_accuracy = 2e-3, plate_accuracy = 1e-3, tense_plate_accuracy = 5e-3,
+                 plate_piston_accuracy = 0.15;
 constexpr double modes_resonance = 5e-5;  // how much a higher mode's resonance adds to this error
-constexpr double edge_share = 1;  // shift of an edge over the cut-off half-width, divided by this error
+constexpr double edge_share = 0.8;  // shift of an edge over the cut-off half-width, divided by this error
 
 // The profile of one model: logarithms of |v| at the probe points, and the positions of its maximum and edge.
 struct Probe {
@@ -169,7 +169,6 @@ double placed_elsewhere_m(const PlanRequest& request, const Reference& reference
 double modes_accuracy(const Surface& surface) {
   if (!Dispersion(surface).clamped_bending()) return membrane_accuracy;
   if (surface.drive == DriveShape::piston) return plate_piston_accuracy;
-  if (surface.theory != PlateTheory::kirchhoff) return thick_plate_accuracy;
   return surface.tension_Pa > 0 ? tense_plate_accuracy : plate_accuracy;
 }
 

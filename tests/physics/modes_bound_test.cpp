@@ -84,15 +84,24 @@ Errors errors(const Surface& s, const CentreLine& line, double ln_drive, const C
   return e;
 }
 
-// Largest difference of |v| between two solutions with v(0) = 1, relative to the largest |v|.
-double difference(const CollocatedField& one, const CollocatedField& other, const Surface& s) {
-  double worst = 0, most = 0;
+// How much two references differ, in the same quantities.
+Errors difference(const CollocatedField& one, const CollocatedField& other, const Surface& s,
+                  const CentreLine& line) {
+  const double peak_m = line.last_peak_m().value(), k = wavenumber_per_m(s, frequency_Hz);
+  const double peak = peak_of(one, peak_m, 0.02 / k), other_peak = peak_of(other, peak_m, 0.02 / k);
+  Errors e{};
+  double most = 0;
   for (int i = 0; i <= 400; ++i) {
     const double x = s.length_m * i / 400, v = std::abs(other.value(x));
-    worst = std::max(worst, std::abs(std::abs(one.value(x)) - v));
+    e.amplitude = std::max(e.amplitude, std::abs(std::abs(one.value(x)) - v));
     most = std::max(most, v);
   }
-  return worst / most;
+  e.amplitude /= most;
+  if (const auto edge = line.level_m(0.5))
+    e.boundary_m = std::abs(edge_of(one, *edge, 0.5 * peak, 1e-4 / k) -
+                            edge_of(other, *edge, 0.5 * other_peak, 1e-4 / k));
+  e.level_dB = 20 / std::log(10.0) * std::abs(std::log(peak / other_peak));
+  return e;
 }
 
 PlanRequest request_for(Normalise normalise) {
@@ -225,10 +234,14 @@ void Campaign::add(int number, const Surface& s, Normalise normalise, const Coll
     const CollocatedField usual = *truth;
     truth = std::make_unique<CollocatedField>(s, frequency_Hz, finest);
     e = errors(s, *line, 0, *truth, normalise);
-    // At the corners of a steep clamped plate's drive edge, collocation converges slowly. The error that is
-    // left is about as large as this change.
-    if (bending_modelled(s) && s.edges == Edges::clamped)
-      e.amplitude = std::max(1e-12, e.amplitude - difference(usual, *truth, s));
+    // At the corners of a steep clamped plate's drive edge, and near the resonances of any plate, collocation
+    // converges slowly. The error that is left is about as large as this change.
+    if (bending_modelled(s) && s.edges == Edges::clamped) {
+      const Errors own = difference(usual, *truth, s, *line);
+      e.amplitude = std::max(1e-12, e.amplitude - own.amplitude);
+      e.boundary_m = std::max(1e-15, e.boundary_m - own.boundary_m);
+      e.level_dB = std::max(1e-12, e.level_dB - own.level_dB);
+    }
   }
   const RungEstimate coarse = coarse_estimate(s, normalise);
   if (!inside(e, bound) || !inside(e, *prior) || !inside(e, coarse))
