@@ -59,8 +59,9 @@ void check_fineness(AdviceList& advice, const procedure::Spec& spec) {
   }
 }
 
-// If everybody feels every level, no threshold can be found.
+// If everybody feels every level, no threshold can be found. Training to a criterion finds none.
 void check_coarseness(AdviceList& advice, const procedure::Spec& spec) {
+  if (spec.stop.right) return;
   auto levels = spec.values;
   levels.insert(levels.end(), spec.stimuli.values.begin(), spec.stimuli.values.end());
   if (spec.min) levels.push_back(*spec.min);
