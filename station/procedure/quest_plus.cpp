@@ -102,7 +102,8 @@ void read_axes(text::TableReader& reader, Spec& spec) {
   }
 }
 
-void read_posterior(text::TableReader& reader, Spec& spec) {
+/// Reads the keys of every procedure with a posterior.
+void read_grids(text::TableReader& reader, Spec& spec) {
   read_tracks(reader, spec);
   read_scale(reader, spec);
   const auto function = reader.word("function", {"weibull", "normal", "logistic"});
@@ -113,6 +114,11 @@ void read_posterior(text::TableReader& reader, Spec& spec) {
           reader.require("stimuli", "give the levels from which to choose: { from, to, step }"))
     spec.stimuli = read_grid(*stimuli, reader.path("stimuli"), Axis::stimuli, reader.findings());
   read_axes(reader, spec);
+  read_stop(reader, spec);
+}
+
+void read_posterior(text::TableReader& reader, Spec& spec) {
+  read_grids(reader, spec);
   const std::vector<std::string> parameters{"threshold", "slope", "guess", "lapse"};
   spec.nuisance = reader.maybe_strings("nuisance");
   for (const auto& name : spec.nuisance)
@@ -120,22 +126,6 @@ void read_posterior(text::TableReader& reader, Spec& spec) {
       reader.problem("nuisance", "\"" + name + "\" is not a parameter of the psychometric function",
                      "allowed: " + text::quoted_list(parameters));
   reader.word("select", {"min-expected-entropy"}, "min-expected-entropy");
-  read_stop(reader, spec);
-}
-
-/// Reads the keys of procedures that place trials at the estimate of the threshold.
-void read_at_threshold(text::TableReader& reader, Spec& spec) {
-  read_tracks(reader, spec);
-  read_scale(reader, spec);
-  const auto function = reader.word("function", {"weibull", "normal", "logistic"});
-  spec.function = function == "normal"     ? terms::Function::normal
-                  : function == "logistic" ? terms::Function::logistic
-                                           : terms::Function::weibull;
-  if (const auto* stimuli =
-          reader.require("stimuli", "give the levels from which to choose: { from, to, step }"))
-    spec.stimuli = read_grid(*stimuli, reader.path("stimuli"), Axis::stimuli, reader.findings());
-  read_axes(reader, spec);
-  read_stop(reader, spec);
 }
 
 void validate_rate(const char* key, const Grid& grid, std::vector<Problem>& problems) {
@@ -219,11 +209,10 @@ extern const Description psi_marginal{Kind::psi_marginal, "psi-marginal",  Choic
                                       validate_posterior, make_quest_plus, share_at_threshold};
 
 extern const Description zest{
-    Kind::zest,        "zest", Choice::posterior, read_at_threshold, validate_at_threshold, make_quest_plus,
+    Kind::zest,        "zest", Choice::posterior, read_grids, validate_at_threshold, make_quest_plus,
     share_at_threshold};
 
-extern const Description best_pest{Kind::best_pest,   "best-pest",           Choice::posterior,
-                                   read_at_threshold, validate_at_threshold, make_quest_plus,
-                                   share_at_threshold};
+extern const Description best_pest{Kind::best_pest,       "best-pest",     Choice::posterior, read_grids,
+                                   validate_at_threshold, make_quest_plus, share_at_threshold};
 
 }  // namespace turnpoint::procedure
