@@ -186,6 +186,12 @@ report::SessionData report_data(const std::string& database, const std::string& 
                 {"Seed", std::to_string(start.seed)},
                 {"Error of the boundaries", boundary_errors(stored.blocks)}};
   for (const auto& note : stored.session.annotations) data.facts.emplace_back("Note", note);
+  for (const auto* event : records::standing_answers(stored.events))
+    for (const auto& answer : event->answers)
+      data.facts.emplace_back(
+          answer.questionnaire + ": " + answer.item +
+              (answer.occasion > 0 ? " (after block " + std::to_string(answer.occasion) + ")" : ""),
+          answer.answer);
   data.seed = start.seed;
   report::add_trials(stored.blocks, protocol, data);
   add_health(stored, data);

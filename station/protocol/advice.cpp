@@ -106,7 +106,10 @@ void check_unused(AdviceList& advice) {
     if (!used.count(factor.name) && std::none_of(sources.begin(), sources.end(), sets))
       advice.add("factor." + factor.name + ".name", "the factor \"" + factor.name + "\" is not used", "");
   }
-  const auto scenes = scenes_used(protocol);
+  auto scenes = scenes_used(protocol);
+  for (const auto& interlude : protocol.interludes)
+    for (const auto& page : interlude.pages)
+      for (const auto& example : page.examples) scenes.push_back(example.scene);
   for (const auto& [name, scene] : protocol.scenes) {
     const auto is_base = [&, base = name](const auto& other) { return other.second.base == base; };
     if (std::find(scenes.begin(), scenes.end(), name) == scenes.end() &&
@@ -146,6 +149,7 @@ std::vector<text::Problem> advice(const Protocol& protocol) {
   advise_on_times(advice);
   advise_on_grids(advice);
   advise_on_plan(advice);
+  advise_on_interludes(advice);
   return std::move(advice.found);
 }
 

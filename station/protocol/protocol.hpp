@@ -233,6 +233,7 @@ struct Block {
   std::optional<Catch> catch_trials;
   std::optional<Break> break_after;
   Factors fixed;  ///< factors that the sequence sets for the whole block, such as instruction = "speed"
+  std::size_t part = 0;  ///< set by block_order(): which part of the plan the block belongs to
   Place place;
 };
 
@@ -248,6 +249,70 @@ struct Instruction {
   Localised text, late_message;
   std::optional<Linear> deadline_s;
   std::optional<std::pair<double, double>> target_accuracy;
+};
+
+/// What a participant can be asked to compare with: an earlier answer ("about-you.age"), or the proportion
+/// correct in a block ("practice.accuracy").
+struct AnswerCondition {
+  std::string about;
+  Relation relation = Relation::equal;
+  bool unequal = false;  ///< `!=`; `relation` is then `equal`
+  FactorValue value;
+  std::string source;
+  Place place;
+};
+
+/// A scale of points (`choices`, which are 1, 2, ...) or a line (`value`).
+struct Scale {
+  std::vector<Choice> choices;
+  std::vector<Anchor> anchors;  ///< texts at some of the points
+  std::optional<ValueAnswer> value;
+};
+
+/// One question of a questionnaire. It has choices or, if the answer is a number, a `value`.
+struct Item {
+  std::string id;
+  Localised question;
+  std::vector<Choice> choices;
+  bool rating = false;          ///< the choices are the points of a scale, in ascending order
+  std::vector<Anchor> anchors;  ///< texts at some of the points
+  std::optional<ValueAnswer> value;
+  std::vector<AnswerCondition> when;  ///< asked only if all of them hold
+  /// what a simulated participant answers; if empty, the answer is drawn at random
+  std::optional<FactorValue> simulated;
+  Place place;
+};
+
+/// A stimulus that the participant can feel as often as wished.
+struct Example {
+  Localised label;
+  std::string scene;
+  Factors with;  ///< values of the factors on which the scene depends
+  double duration_s = 2;
+};
+
+/// One page of an explanation.
+struct ExplanationPage {
+  Localised text;
+  std::string picture;  ///< path of a picture, relative to the protocol file; "" if there is none
+  std::vector<Example> examples;
+  Place place, picture_place;
+};
+
+enum class InterludeKind { questionnaire, consent, explanation, screening };
+
+/// What comes before, between or after the blocks.
+struct Interlude {
+  InterludeKind kind = InterludeKind::questionnaire;
+  std::string name;
+  std::size_t above = 0;    ///< how many parts of the plan stand above it in the file
+  std::string after_each;   ///< name of a block or sequence: it comes after each of its blocks
+  std::vector<Item> items;  ///< of a questionnaire; a consent has one, "consent": agree, refuse
+  std::vector<ExplanationPage> pages;
+  std::vector<AnswerCondition> pass;  ///< of a screening: the session goes on if all of them hold
+  /// what a participant reads who has refused, or did not pass the screening
+  Localised farewell;
+  Place place;
 };
 
 struct Analysis {
@@ -324,6 +389,7 @@ struct Protocol {
   std::vector<procedure::Spec> procedures;
   std::vector<std::variant<Block, Sequence>> plan;  ///< blocks and sequences in the order of the file
   std::map<std::string, Instruction> instructions;
+  std::vector<Interlude> interludes;  ///< in the order of the file
   Analysis analysis;
   std::optional<Exclusion> exclusion;
   Triggers triggers;

@@ -23,6 +23,10 @@ enum class PageKind {
   rest,      ///< a break of `remaining_s`; Continue appears once it is over
   /// the surface is silent; after the answer, the participant says how sure it was
   confidence,
+  /// a question of a questionnaire or a consent: a text, perhaps long, and answers of equal size
+  question,
+  /// a text, perhaps with a picture and with examples to feel (`answers`); Continue, and Back if `back`
+  explanation,
   line,    ///< a rating on a line: nothing is marked until the first touch; Done confirms the mark
   number,  ///< a number is typed; Done confirms it
   adjust,  ///< a slider moves the boundary in steps; Done ends the adjustment
@@ -60,6 +64,9 @@ struct Page {
   std::string text;   ///< the question, instruction or message, in the session's language
   std::vector<AnswerButton> answers;
   bool answers_open = false;
+  bool back = false;            ///< the participant can return to the previous question or page
+  bool playing = false;         ///< an example is being presented
+  std::string picture;          ///< on an explanation: path of the picture; may be ""
   bool answer_now = false;      ///< the response signal has been given
   std::optional<bool> correct;  ///< whether the answer was right; for feedback only
   /// "", "speed", "accuracy", ...: determines the block's style, which never differs by colour alone

@@ -3,6 +3,7 @@
 #include <map>
 
 #include "station/protocol/answers.hpp"
+#include "station/protocol/interludes.hpp"
 #include "station/scene/planner.hpp"
 #include "station/text/number.hpp"
 #include "station/texts/texts.hpp"
@@ -112,7 +113,11 @@ Page Pages::of_phase(Phase phase, int interval, const trial::TrialSpec& spec, co
     page.answers.push_back({choice.id, task.rating ? choice.id : text(choice.label)});
   for (const auto& anchor : task.anchors)
     page.answers.at(static_cast<std::size_t>(anchor.at) - 1).caption = text(anchor.text);
-  if (task.value && page.answers_open) add_value(page, task);
+  if (task.value && page.answers_open) add_value(page, *task.value);
+  if (task.value && page.answers_open && task.modulus) {
+    page.value.first = texts::text("first_is", setup_.language);
+    page.value.first.replace(page.value.first.find("%1"), 2, turnpoint::text::number(*task.modulus));
+  }
   if (phase == Phase::confidence) {
     page.text = text(task.confidence->question);
     page.answers_open = true;
@@ -143,8 +148,7 @@ std::string Pages::movement(const std::string& word) const {
   return texts::text(keys.at(word), setup_.language);
 }
 
-void Pages::add_value(Page& page, const protocol::Task& task) const {
-  const auto& value = *task.value;
+void Pages::add_value(Page& page, const protocol::ValueAnswer& value) const {
   page.kind = value.typed ? PageKind::number : PageKind::line;
   page.answers.clear();
   page.value = {value.low, value.high, value.decimals, {}, {}, ""};
@@ -152,9 +156,34 @@ void Pages::add_value(Page& page, const protocol::Task& task) const {
     page.value.places.push_back((anchor.at - value.low) / (value.high - value.low));
     page.value.texts.push_back(text(anchor.text));
   }
-  if (!task.modulus) return;
-  page.value.first = texts::text("first_is", setup_.language);
-  page.value.first.replace(page.value.first.find("%1"), 2, turnpoint::text::number(*task.modulus));
+}
+
+Page Pages::question(const protocol::Item& item, const trial::Director& director) const {
+  auto page = blank(PageKind::question, nullptr, &director);
+  page.text = text(item.question);
+  page.answers_open = true;
+  for (const auto& choice : item.choices)
+    page.answers.push_back({choice.id, item.rating ? choice.id : text(choice.label)});
+  for (const auto& anchor : item.anchors)
+    page.answers.at(static_cast<std::size_t>(anchor.at) - 1).caption = text(anchor.text);
+  if (item.value) add_value(page, *item.value);
+  return page;
+}
+
+Page Pages::explanation(const protocol::ExplanationPage& explanation, const trial::Director& director) const {
+  auto page = blank(PageKind::explanation, nullptr, &director);
+  page.text = text(explanation.text);
+  if (!explanation.picture.empty())
+    page.picture = protocol::picture_path(setup_.protocol, explanation.picture);
+  for (const auto& example : explanation.examples)
+    page.answers.push_back({example.scene, text(example.label)});
+  return page;
+}
+
+Page Pages::farewell(const protocol::Localised& words, const trial::Director& director) const {
+  auto page = blank(PageKind::explanation, nullptr, &director);
+  page.text = text(words);
+  return page;
 }
 
 void Pages::add_slider(Page& page, const trial::SliderSpan& span, double setting) const {
@@ -165,8 +194,8 @@ void Pages::add_slider(Page& page, const trial::SliderSpan& span, double setting
   page.slider_step = span.step;
 }
 
-Page Pages::between_trials(const protocol::Block& block, const trial::Director& director) const {
-  return blank(PageKind::interval, &block, &director);
+Page Pages::between_trials(const protocol::Block* block, const trial::Director& director) const {
+  return blank(PageKind::interval, block, &director);
 }
 
 Page Pages::rest(const protocol::Block& block, double min_s, const trial::Director& director) const {

@@ -154,6 +154,7 @@ class RealStage : public Stage {
   std::string missing() const override { return devices_.buttons ? devices_.buttons->missing() : ""; }
   void question(const observer::Question&, std::int64_t) override {}
   void adjustment(const observer::Adjustment&, std::int64_t) override {}
+  void simulate(Input) override {}
   drive::Amplifier* guarded_amplifier() override { return devices_.amplifier.get(); }
   std::optional<ClockFit> clock_fit() override { return fit_of(*stream_); }
   std::string realtime_rights() const override {

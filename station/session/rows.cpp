@@ -22,6 +22,8 @@ const char* kind_of(InputKind kind) {
       return "value";
     case InputKind::next:
       return "next";
+    case InputKind::back:
+      return "back";
     case InputKind::slider:
       return "slider";
     case InputKind::touch_down:

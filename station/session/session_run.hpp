@@ -3,6 +3,7 @@
 #include <optional>
 
 #include "station/limits/finger_account.hpp"
+#include "station/session/interludes.hpp"
 #include "station/session/operator_gate.hpp"
 #include "station/session/pages.hpp"
 #include "station/session/plan_ahead.hpp"
@@ -19,8 +20,9 @@ namespace turnpoint::session {
 /// next trial.
 class SessionRun {
  public:
-  /// `director` must be in the state that corresponds to the log.
-  SessionRun(const Setup& setup, trial::Director director, store::SessionLog log,
+  /// `director` must be in the state that corresponds to the log, and to `earlier`, which is empty for a new
+  /// session.
+  SessionRun(const Setup& setup, trial::Director director, store::SessionLog log, const Earlier& earlier,
              std::unique_ptr<Stage> stage, limits::FingerAccount account, Display* display, Monitor* monitor);
 
   /// Runs until the last block has ended or somebody stops the session.
@@ -49,8 +51,11 @@ class SessionRun {
   };
 
   // These functions run blocks and show pages (session_run.cpp).
+  Flow run_parts();
   Flow run_block();
-  Flow pass_self_test();  // session_run_self_test.cpp
+  Flow leave_block();
+  Flow play_example(const protocol::Example& example, Page page);  // session_run_example.cpp
+  Flow pass_self_test();                                           // session_run_self_test.cpp
   Flow rest_if_due(int trials_in_block);
   int trial_index() const { return log_.session().trials; }
   void finish(records::SessionStatus status, const std::string& reason);
@@ -93,7 +98,9 @@ class SessionRun {
   trial::Director director_;
   Pages pages_;
   OperatorGate gate_;
+  Interludes interludes_;
   Summary summary_;
+  int examples_ = 0;  ///< examples presented so far
   int scored_ = 0, right_ = 0;
   int voids_in_a_row_ = 0, refused_in_a_row_ = 0, repeats_in_a_row_ = 0;
   std::int64_t started_ns_ = 0;

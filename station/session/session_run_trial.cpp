@@ -92,7 +92,7 @@ Flow SessionRun::keep_limits(const trial::TrialSpec& spec) {
   const double stretch_s = static_cast<double>(begin - now) * 1e-9;
   summary_.stretched_s += stretch_s;
   log_.event(event(now, "interval_stretched", stretch_s, trial_index()));
-  const auto page = pages_.between_trials(*director_.block(), director_);
+  const auto page = pages_.between_trials(director_.block(), director_);
   gate_.show(page);
   while (stage_->now_ns() < begin)
     if (auto input = stage_->wait_until(begin))
@@ -307,6 +307,8 @@ void SessionRun::count(const trial::TrialSpec& spec, const records::TrialRow& ro
       ++summary_.voided;
       break;
   }
+  if (spec.type != terms::TrialType::warmup && row.correct)
+    interludes_.score(spec.block_index, spec.attempt, director_.block()->name, *row.correct);
   if (spec.type == terms::TrialType::experimental && row.correct) ++scored_, right_ += *row.correct ? 1 : 0;
 }
 

@@ -176,6 +176,12 @@ class VirtualStage : public Stage {
     script_.push_back(input);
   }
 
+  void simulate(Input input) override {
+    input.quality = TimeQuality::simulated;
+    input.time_ns = std::max(now_ns_, input.time_ns);
+    script_ = {std::move(input)};
+  }
+
   std::optional<CaptureSetup> capture() const override {
     return room_ ? std::optional(room_->capture()) : std::nullopt;
   }

@@ -26,6 +26,7 @@ struct TrialSpec {
   std::optional<int> correct;
   std::optional<SliderSpan> slider;  ///< the slider; only for an adjustment
   double iti_s = 0, foreperiod_s = 0;
+  std::optional<double> length_s = {};  ///< length of the interval, if not that of the task: for an example
   double deadline_s = 0, anticipation_s = 0;
   std::optional<double>
       signal_s;  ///< when the response signal comes, after response_zero; empty if there is none

@@ -23,7 +23,7 @@ std::vector<IntervalTimes> interval_times(const protocol::Protocol& protocol, co
     const double whole = protocol::explored(task)
                              ? protocol.timing.explore_s.value_or(spec.foreperiod_s + spec.deadline_s)
                              : task.duration_s.value_or(0);
-    interval.length_s = whole;
+    interval.length_s = spec.length_s.value_or(whole);
     const double step =
         scenes.size() > 1 ? (task.foreperiod_s ? spec.foreperiod_s : whole / scenes.size()) : 0;
     for (std::size_t i = 1; i < scenes.size(); ++i)

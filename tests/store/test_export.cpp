@@ -153,6 +153,20 @@ TEST_CASE("each value in the six tables is in its own column", "[store]") {
   }
 }
 
+TEST_CASE("BIDS has the answers of each questionnaire as a phenotype", "[store]") {
+  TemporaryFolder folder;
+  const auto db = folder / "a.sqlite";
+  session_of_unlike_values(db);
+  ExportOptions options;
+  options.format = ExportFormat::bids;
+  export_data(db, folder / "out", options);
+  const auto phenotype = folder / "out/two-boundaries/phenotype/";
+  CHECK(sample::bytes_of(phenotype + "about-you.tsv") ==
+        "participant_id\tsession_id\toccasion\thand\nsub-P07\tses-01\t0\tright\n");
+  const auto json = nlohmann::json::parse(sample::bytes_of(phenotype + "about-you.json"));
+  CHECK(json.contains("hand"));
+}
+
 TEST_CASE("the codebook explains every column of every table", "[store]") {
   TemporaryFolder folder;
   const auto db = folder / "a.sqlite";

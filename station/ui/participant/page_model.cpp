@@ -1,5 +1,7 @@
 #include "station/ui/participant/page_model.hpp"
 
+#include <QUrl>
+
 namespace turnpoint::ui {
 
 void PageModel::set(session::Page page) {
@@ -22,6 +24,10 @@ PageModel::Kind PageModel::kind() const {
       return Kind::Response;
     case PageKind::confidence:
       return Kind::Confidence;
+    case PageKind::question:
+      return Kind::Question;
+    case PageKind::explanation:
+      return Kind::Explanation;
     case PageKind::line:
       return Kind::Line;
     case PageKind::number:
@@ -44,6 +50,11 @@ PageModel::Kind PageModel::kind() const {
       return Kind::Failed;
   }
   return Kind::Interval;
+}
+
+QString PageModel::picture() const {
+  return page_.picture.empty() ? QString()
+                               : QUrl::fromLocalFile(QString::fromStdString(page_.picture)).toString();
 }
 
 PageModel::Verdict PageModel::verdict() const {

@@ -28,6 +28,9 @@ class PageModel : public QObject {
   Q_PROPERTY(QStringList anchorTexts READ anchor_texts NOTIFY changed)
   Q_PROPERTY(QString first READ first NOTIFY changed)
   Q_PROPERTY(bool answersOpen READ answers_open NOTIFY changed)
+  Q_PROPERTY(bool back READ back NOTIFY changed)
+  Q_PROPERTY(bool playing READ playing NOTIFY changed)
+  Q_PROPERTY(QString picture READ picture NOTIFY changed)
   Q_PROPERTY(bool answerNow READ answer_now NOTIFY changed)
   Q_PROPERTY(Verdict verdict READ verdict NOTIFY changed)
   Q_PROPERTY(QString instruction READ instruction NOTIFY changed)
@@ -68,6 +71,8 @@ class PageModel : public QObject {
     Pause,
     Response,
     Confidence,
+    Question,
+    Explanation,
     Line,
     Number,
     Feedback,
@@ -100,6 +105,9 @@ class PageModel : public QObject {
   QStringList anchor_texts() const;
   QString first() const { return QString::fromStdString(page_.value.first); }
   bool answers_open() const { return page_.answers_open; }
+  bool back() const { return page_.back; }
+  bool playing() const { return page_.playing; }
+  QString picture() const;
   bool answer_now() const { return page_.answer_now; }
   Verdict verdict() const;
   QString instruction() const { return QString::fromStdString(page_.instruction); }

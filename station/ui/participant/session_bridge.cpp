@@ -78,6 +78,10 @@ void SessionBridge::push_touch(session::InputKind kind, int value, const Pending
 void SessionBridge::next() {
   if (!std::exchange(left_, true)) push(session::InputKind::next);
 }
+void SessionBridge::back() {
+  if (!std::exchange(left_, true)) push(session::InputKind::back);
+}
+void SessionBridge::choose(int index) { push(session::InputKind::answer, index); }
 void SessionBridge::moveSlider(double value) { push(session::InputKind::slider, 0, value); }
 void SessionBridge::answerValue(double value) { push(session::InputKind::value, 0, value); }
 void SessionBridge::pause() { push(session::InputKind::pause); }

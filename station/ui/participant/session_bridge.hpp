@@ -63,6 +63,10 @@ class SessionBridge : public QObject, public session::Display {
 
   /// Reports Continue or Done. Only the first press on a page counts.
   Q_INVOKABLE void next();
+  /// Reports Back on a question or an explanation. Only the first press on a page counts.
+  Q_INVOKABLE void back();
+  /// Reports that an example of an explanation was chosen.
+  Q_INVOKABLE void choose(int index);
   Q_INVOKABLE void moveSlider(double value);
   Q_INVOKABLE void answerValue(double value);
   Q_INVOKABLE void pause();
