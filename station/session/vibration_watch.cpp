@@ -1,10 +1,37 @@
 #include "station/session/vibration_watch.hpp"
 
 #include <algorithm>
+#include <complex>
 #include <limits>
 #include <utility>
 
 namespace turnpoint::session {
+
+std::vector<sensing::PickUp> calibrated_pick_ups(const rig::Capture& capture) {
+  std::vector<sensing::PickUp> pick_ups;
+  for (const int channel : capture.pick_ups) {
+    sensing::PickUp pick_up{channel, {}};
+    for (const auto& response : capture.responses) {
+      if (response.channel != channel) continue;
+      sensing::Transfer transfer{response.drive_channel, {}, {}};
+      for (const auto& point : response.points) {
+        transfer.frequency_Hz.push_back(point.frequency_Hz);
+        transfer.response.push_back(std::polar(point.amplitude, point.phase_rad));
+      }
+      pick_up.transfers.push_back(std::move(transfer));
+    }
+    pick_ups.push_back(std::move(pick_up));
+  }
+  return pick_ups;
+}
+
+void use(const rig::ForceCells& cells, sensing::FingerSetup& finger) {
+  finger.calibration = sensing::ForceCalibration(cells.matrix, cells.changes);
+  finger.bridges.carrier_Hz = cells.carrier_Hz;
+  finger.bridges.reference_amplitude = cells.reference_amplitude;
+  finger.bridges.rotation_rad = cells.rotation_rad;
+  finger.bridges.full_scale = cells.rated_ratio;
+}
 
 VibrationWatch::VibrationWatch(CaptureSetup setup) : setup_(std::move(setup)) {
   if (setup_.finger) finger_.emplace(*setup_.finger);

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "station/drive/prepared_burst.hpp"
+#include "station/rig/rig.hpp"
 #include "station/sensing/interval_proof.hpp"
 #include "station/sensing/trial_finger.hpp"
 
@@ -26,6 +27,12 @@ struct CaptureSetup {
   sensing::ProofLimits limits;
   std::optional<sensing::FingerSetup> finger;  ///< the force cells, if there are any
 };
+
+/// The pick-ups of a rig, with the responses of its calibration.
+std::vector<sensing::PickUp> calibrated_pick_ups(const rig::Capture& capture);
+
+/// Lets `finger` use the rig's calibration of the force cells.
+void use(const rig::ForceCells& cells, sensing::FingerSetup& finger);
 
 /// Proves the intervals of a trial from what the pick-ups capture, and measures the finger with the force
 /// cells. One thread may push samples while the session thread calls the other functions.

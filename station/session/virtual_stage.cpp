@@ -94,6 +94,7 @@ class VirtualStage : public Stage {
       earliest_ns = std::max(earliest_ns, stream_->time_of(triggers_.free_from()).value());
     const auto onsets = schedule(*stream_, intervals, earliest_ns, presented_);
     unheard_ = presented_;
+    measured_ = false;  // a fault may have ended the last trial between the two reports of an interval
     if (watch_) {
       const auto bursts = scheduled(intervals, presented_);
       room_->expect(intervals);

@@ -157,7 +157,7 @@ void StationRoom::calibrate() {
   measurements.sound_csv = path("sound.csv");
   const auto rig = rig::load(path("rig.toml"));
   auto made = maintenance::calibrate(rig, measurements, 30, "");
-  made.panel = maintenance::known_panel(rig);
+  maintenance::keep_devices(rig, made);
   write(calibration::file_for(rig.path, made.made_on), calibration::to_toml(made));
 }
 
