@@ -11,6 +11,7 @@
 #include "station/cli/shared_options.hpp"
 #include "station/collector/received.hpp"
 #include "station/collector/schema.hpp"
+#include "station/store/open.hpp"
 
 namespace turnpoint::cli {
 
@@ -138,6 +139,7 @@ void add_receive(CommandLine& app, Context& context) {
       ->value("FOLDER");
   command->footer("Example: turnpoint receive --db lab.sqlite received.json");
   command->callback([options, &context] {
+    store::open_reader(options->database);  // A wrong database is reported before a wrong file.
     const auto gone = collector::carry_out(collector::read_received(options->file), options->database,
                                            options->backup_directory);
     fmt::print(context.out, "{} sessions withdrawn\n", gone.sessions.size());

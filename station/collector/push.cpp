@@ -290,6 +290,7 @@ void push_sessions(Database& snapshot, const std::set<std::string>& stations, co
 
 PushReport push(const PushOptions& options) {
   PushReport report;
+  store::open_reader(options.database);  // A wrong file is reported before the server is asked.
   Connection server(options.to);
   const auto stations = greet(server);
   Received received;
