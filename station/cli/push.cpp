@@ -153,7 +153,7 @@ void add_receive(CommandLine& app, Context& context) {
 void add_collector_schema(CommandLine& app, Context& context) {
   auto* command = app.add_subcommand(
       "collector-schema", "Print the SQL that makes a PostgreSQL database a collector, or updates one");
-  command->footer("Example: turnpoint collector-schema | psql --dbname turnpoint");
+  command->footer("Example: turnpoint collector-schema");
   command->callback([&context] { context.out << collector::schema_sql(); });
 }
 
