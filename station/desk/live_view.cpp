@@ -76,6 +76,22 @@ std::string vibration(const LiveTrial& trial) {
   return records::name(trial.proof) + (measured ? ": " + trial.measured : std::string());
 }
 
+/// The latest estimate of each procedure that keeps one, with its 95 % interval.
+void add_estimates(const std::vector<LiveTrial>& trials, Facts& facts) {
+  std::map<std::string, const LiveTrial*> latest;
+  for (const auto& trial : trials)
+    if (trial.threshold_est && std::isfinite(*trial.threshold_est)) latest[trial.procedure] = &trial;
+  for (const auto& [procedure, trial] : latest) {
+    auto value = number(*trial->threshold_est, 3);
+    if (trial->threshold_sd && std::isfinite(*trial->threshold_sd)) {
+      const double half = 1.96 * *trial->threshold_sd;
+      value += fmt::format(" (95 %: {} to {})", number(*trial->threshold_est - half, 3),
+                           number(*trial->threshold_est + half, 3));
+    }
+    facts.emplace_back("Estimate, " + procedure, value);
+  }
+}
+
 }  // namespace
 
 Facts course_of(const std::vector<LiveTrial>& trials) {
@@ -94,6 +110,7 @@ Facts course_of(const std::vector<LiveTrial>& trials) {
                                                        percent(static_cast<double>(right) / scored))
                                          : "none scored yet");
   if (catches > 0) facts.emplace_back("Catch trials right", fmt::format("{} of {}", caught, catches));
+  add_estimates(trials, facts);
   facts.emplace_back("Response time", times.empty() ? "none yet"
                                                     : "median " + number(median(times), 3) + " s, last " +
                                                           number(times.back(), 3) + " s");

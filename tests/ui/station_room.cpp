@@ -124,6 +124,14 @@ QStringList StationRoom::filesIn(const QString& folder) const {
   return files;
 }
 
+QString StationRoom::startOf(const QString& folder, const QString& ending, int bytes) const {
+  for (const auto& name : filesIn(folder)) {
+    QFile file(folder_->filePath(folder + "/" + name));
+    if (name.endsWith(ending) && file.open(QIODevice::ReadOnly)) return QString::fromLatin1(file.read(bytes));
+  }
+  return {};
+}
+
 void StationRoom::pressKey(int key) { QTest::keyPress(&station_->window(), static_cast<Qt::Key>(key)); }
 void StationRoom::releaseKey(int key) { QTest::keyRelease(&station_->window(), static_cast<Qt::Key>(key)); }
 

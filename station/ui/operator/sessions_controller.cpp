@@ -77,7 +77,9 @@ SessionsController::SessionsController(const setup::StationRequest& request, mai
     : QObject(parent),
       database_(fs::absolute(request.database).string()),
       sources_(std::move(disks)),
-      worker_(*this) {}
+      worker_(*this) {
+  report_.save_in((fs::path(database_).parent_path() / "figures").string());
+}
 
 void SessionsController::open() {
   said_.clear();
