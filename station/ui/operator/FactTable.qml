@@ -12,6 +12,7 @@ Column {
 
     PlainText {
         visible: root.heading !== "" && root.facts.length > 0
+        width: root.width
         text: root.heading
         color: root.theme.action
         font { pixelSize: root.theme.textBody; weight: Font.Bold }

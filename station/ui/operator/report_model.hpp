@@ -24,7 +24,7 @@ class ReportModel : public QObject {
   Q_PROPERTY(QVariantList pictures READ pictures NOTIFY changed)
   /// where the last figure was saved, or why it could not be; "" before that
   Q_PROPERTY(QString saved READ saved NOTIFY changed)
-  Q_PROPERTY(bool maySave READ may_save CONSTANT)
+  Q_PROPERTY(bool maySave READ may_save NOTIFY changed)
 
  public:
   using QObject::QObject;
