@@ -18,8 +18,9 @@ namespace turnpoint::session {
 namespace {
 
 /// Returns a text that is equal for two trials exactly if their stimuli are equal.
-std::string key_of(const trial::TrialSpec& trial) {
-  std::string key = fmt::format("{}/{}/{}", trial.block_index, trial.attempt, trial.trial_in_block);
+std::string key_of(const trial::TrialSpec& trial, double drift) {
+  std::string key =
+      fmt::format("{}/{}/{}/{}", trial.block_index, trial.attempt, trial.trial_in_block, text::exact(drift));
   for (const auto& [name, value] : trial.factors) {
     key += "|" + name + "=";
     if (const auto* number = std::get_if<double>(&value))
@@ -43,9 +44,14 @@ PlanAhead::PlanAhead(const rig::Rig& rig, const protocol::Protocol& protocol, st
 
 PlanAhead::~PlanAhead() = default;
 
-void PlanAhead::begin(const trial::TrialSpec& trial) {
-  auto key = key_of(trial);
+void PlanAhead::set_drift(double share) {
   const std::lock_guard lock(mutex_);
+  drift_ = share;
+}
+
+void PlanAhead::begin(const trial::TrialSpec& trial) {
+  const std::lock_guard lock(mutex_);
+  auto key = key_of(trial, drift_);
   if (key == wanted_key_) return;
   wanted_key_ = std::move(key);
   wanted_ = trial;
@@ -53,15 +59,14 @@ void PlanAhead::begin(const trial::TrialSpec& trial) {
 }
 
 bool PlanAhead::ready(const trial::TrialSpec& trial) {
-  const auto key = key_of(trial);
   const std::lock_guard lock(mutex_);
-  return done_key_ == key;
+  return done_key_ == key_of(trial, drift_);
 }
 
 const PlanAhead::Planned& PlanAhead::take(const trial::TrialSpec& trial) {
   begin(trial);
-  const auto key = key_of(trial);
   std::unique_lock lock(mutex_);
+  const auto key = key_of(trial, drift_);
   changed_.wait(lock, [&] { return done_key_ == key; });
   if (failed_) std::rethrow_exception(failed_);
   return done_;
@@ -71,28 +76,31 @@ void PlanAhead::run(const std::stop_token& stop) {
   std::unique_lock lock(mutex_);
   while (changed_.wait(lock, stop, [this] { return wanted_.has_value(); })) {
     const trial::TrialSpec trial = *std::exchange(wanted_, std::nullopt);
+    const double drift = drift_;
     lock.unlock();
     Planned planned;
     std::exception_ptr failed;
     try {
-      planned = plan(trial);
+      planned = plan(trial, drift);
     } catch (...) {
       failed = std::current_exception();
     }
     lock.lock();
     done_ = std::move(planned);
     failed_ = failed;
-    done_key_ = key_of(trial);
+    done_key_ = key_of(trial, drift);
     changed_.notify_all();
   }
 }
 
-PlanAhead::Planned PlanAhead::plan(const trial::TrialSpec& trial) {
+PlanAhead::Planned PlanAhead::plan(const trial::TrialSpec& trial, double drift) {
   Planned planned;
   for (std::size_t i = 0; i < trial.intervals.size(); ++i) {
     auto& scenes = planned.plans.emplace_back();
     for (const auto& name : trial.intervals[i])
       scenes.push_back(planner_.plan(protocol::resolve(protocol_, name, trial.factors, trial.rove_dB[i])));
+    for (auto& made : scenes)
+      for (auto& tone : made.tones) tone.frequency_Hz *= 1 + drift;
   }
   planned.bursts = bursts_of(trial, planned.plans);
   return planned;

@@ -42,9 +42,13 @@ class PlanAhead {
   /// Returns the plans of a trial, and waits for them if necessary. If planning failed, throws its exception.
   const Planned& take(const trial::TrialSpec& trial);
 
+  /// The resonances of the surface have moved by this share: all frequencies are multiplied by 1 + share, so
+  /// that boundaries stay where they were planned. Plans that were made before are made again.
+  void set_drift(double share);
+
  private:
   void run(const std::stop_token& stop);
-  Planned plan(const trial::TrialSpec& trial);
+  Planned plan(const trial::TrialSpec& trial, double drift);
   std::vector<drive::PreparedBurst> bursts_of(const trial::TrialSpec& trial,
                                               const std::vector<std::vector<scene::DrivePlan>>& plans) const;
 
@@ -55,6 +59,7 @@ class PlanAhead {
   std::mutex mutex_;
   std::condition_variable_any changed_;
   std::optional<trial::TrialSpec> wanted_;  ///< the newest requested trial, if its planning has not begun
+  double drift_ = 0;
   std::string wanted_key_, done_key_;
   Planned done_;
   std::exception_ptr failed_;

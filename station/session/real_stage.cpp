@@ -156,6 +156,9 @@ class RealStage : public Stage {
   void adjustment(const observer::Adjustment&, std::int64_t) override {}
   void simulate(Input) override {}
   drive::Amplifier* guarded_amplifier() override { return devices_.amplifier.get(); }
+  void set_drift(double share) override {
+    if (feed_) feed_->watch().set_drift(share);
+  }
   std::optional<ClockFit> clock_fit() override { return fit_of(*stream_); }
   std::string realtime_rights() const override {
     const auto playback = describe(stream_->rights());

@@ -34,6 +34,7 @@ SessionRun::SessionRun(const Setup& setup, trial::Director director, store::Sess
 
 Summary SessionRun::run() {
   started_ns_ = stage_->now_ns();
+  begin_drift();
   // In a pilot session without a real amplifier, nobody has to arm it.
   if (setup_.run_mode != terms::RunMode::live && setup_.rig.amplifier_uri == "sim:")
     // if arming is refused, until_armed() below shows a page

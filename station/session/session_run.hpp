@@ -1,8 +1,12 @@
 #pragma once
+#include <array>
 #include <memory>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "station/limits/finger_account.hpp"
+#include "station/sensing/phase_drift.hpp"
 #include "station/session/interludes.hpp"
 #include "station/session/operator_gate.hpp"
 #include "station/session/pages.hpp"
@@ -78,6 +82,12 @@ class SessionRun {
   void leave_surface();
   void count(const trial::TrialSpec& spec, const records::TrialRow& row);
 
+  // These functions follow temperature and resonances (session_run_drift.cpp).
+  void begin_drift();
+  void log_temperature();
+  void follow_drift(const sensing::IntervalResult& measured);
+  void correct_drift();
+
   // These functions give out trigger codes (session_run_triggers.cpp).
   void trigger(protocol::TriggerEvent event, const Running& trial);
   void trigger_intervals(const Running& trial);
@@ -105,6 +115,16 @@ class SessionRun {
   int voids_in_a_row_ = 0, refused_in_a_row_ = 0, repeats_in_a_row_ = 0;
   std::int64_t started_ns_ = 0;
   std::vector<OnSurface> surface_;
+  std::vector<std::string> thermometers_;  ///< files of plate and frame; empty if the rig has none
+  std::array<std::optional<double>, 2> first_C_;
+  std::array<bool, 2> warm_{};
+  std::optional<sensing::DriftTracker> drift_;       ///< empty without pick-ups
+  std::optional<sensing::PhaseDrift> newest_drift_;  ///< found in the running trial
+  double applied_drift_ = 0;                         ///< share by which frequencies are corrected
 };
+
+/// How far the boundary of a tone moves (m, towards the narrow edge) if all resonances of the surface move by
+/// this share.
+double boundary_shift_m(const physics::Surface& surface, double frequency_Hz, double share);
 
 }  // namespace turnpoint::session

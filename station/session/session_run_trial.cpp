@@ -34,6 +34,7 @@ records::EventRow event(std::int64_t time_ns, const char* kind, double value, in
 
 Flow SessionRun::run_trial(const trial::TrialSpec& spec) {
   if (prepare_trial(spec) == Flow::stop) return Flow::stop;
+  log_temperature();
   Running trial{spec,
                 trial::Machine(trial::timing_of(setup_.protocol, *director_.block(), spec)),
                 trial::row_of(spec, setup_.protocol, trial_index()),
@@ -53,6 +54,7 @@ Flow SessionRun::run_trial(const trial::TrialSpec& spec) {
   finish_row(trial);
   gate_.keep([&] { log_.append(trial.row); });
   count(spec, trial.row);
+  correct_drift();
   if (monitor_ != nullptr) monitor_->trial_ended(spec, trial.row);
   return after_trial(trial);
 }
@@ -159,6 +161,7 @@ void SessionRun::handle_in_trial(Input raw, Running& trial) {
   const bool by_button = raw.kind == InputKind::button;
   const auto input = gate_.received(std::move(raw));
   gate_.note(input);
+  if (input.measured) follow_drift(*input.measured);
   if (input.measured) add_measured(trial.row, *input.measured, input.value, trial.measured++ == 0);
   if (input.forces && !trial.onsets.empty()) {
     const auto& onset = trial.onsets.front();

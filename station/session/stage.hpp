@@ -109,6 +109,9 @@ class Stage {
   virtual drive::Amplifier* guarded_amplifier() { return nullptr; }
   virtual std::optional<CaptureSetup> capture() const { return std::nullopt; }
 
+  /// The resonances of the surface have moved by this share since the calibration of its pick-ups.
+  virtual void set_drift(double) {}
+
   virtual std::optional<ClockFit> clock_fit() = 0;
   virtual std::string realtime_rights() const = 0;
   /// Disarms the amplifier. If the output is a file, completes the file. Throws std::system_error.

@@ -5,6 +5,8 @@
 #include <limits>
 #include <utility>
 
+#include "station/sensing/phase_drift.hpp"
+
 namespace turnpoint::session {
 
 std::vector<sensing::PickUp> calibrated_pick_ups(const rig::Capture& capture) {
@@ -33,13 +35,18 @@ void use(const rig::ForceCells& cells, sensing::FingerSetup& finger) {
   finger.bridges.full_scale = cells.rated_ratio;
 }
 
-VibrationWatch::VibrationWatch(CaptureSetup setup) : setup_(std::move(setup)) {
+VibrationWatch::VibrationWatch(CaptureSetup setup) : setup_(std::move(setup)), calibrated_(setup_.pick_ups) {
   if (setup_.finger) finger_.emplace(*setup_.finger);
 }
 
 void VibrationWatch::set_delay(double frames) {
   const std::lock_guard lock(mutex_);
   setup_.delay_frames = frames;
+}
+
+void VibrationWatch::set_drift(double share) {
+  const std::lock_guard lock(mutex_);
+  setup_.pick_ups = sensing::scaled(calibrated_, share);
 }
 
 void VibrationWatch::expect(std::span<const drive::PreparedBurst> intervals, std::int64_t quiet_until) {

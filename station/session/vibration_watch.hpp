@@ -42,6 +42,8 @@ class VibrationWatch {
 
   /// The delay that the newest pilot has measured; it applies from the next trial on.
   void set_delay(double frames);
+  /// The resonances have moved by this share since the calibration; it applies from the next trial on.
+  void set_drift(double share);
 
   /// The intervals of a trial, with absolute start frames, in order. Replaces those of the previous trial.
   /// Until playback frame `quiet_until` the participant has not been asked to touch the surface.
@@ -66,6 +68,7 @@ class VibrationWatch {
 
  private:
   CaptureSetup setup_;
+  const std::vector<sensing::PickUp> calibrated_;
   mutable std::mutex mutex_;
   std::vector<std::unique_ptr<sensing::IntervalProof>> proofs_;  ///< null: will not be proven
   std::optional<sensing::TrialFinger> finger_;

@@ -186,6 +186,9 @@ class VirtualStage : public Stage {
   std::optional<CaptureSetup> capture() const override {
     return room_ ? std::optional(room_->capture()) : std::nullopt;
   }
+  void set_drift(double share) override {
+    if (watch_) watch_->set_drift(share);
+  }
   std::optional<ClockFit> clock_fit() override { return fit_of(*stream_); }
   std::string realtime_rights() const override { return describe(stream_->rights()); }
   void finish() override {
