@@ -97,6 +97,8 @@ void describe_chain(CollectedTable& table) {
     part(store::check_table(), "event_index", "event_index,check_index", "last_event", 4);
   if (name == "answer")
     part(store::answer_table(), "event_index", "event_index,answer_index", "last_event", 5);
+  if (name == "friction_level")
+    part(store::friction_level_table(), "event_index", "event_index,level_index", "last_event", 5);
   if (name == "session") {
     table.provenance = describe(table, store::session_table());
     table.provenance.resize(table.provenance.size() - 2);  // status and reason are part of each link
@@ -110,9 +112,10 @@ std::vector<CollectedTable> read_tables() {
   Database database(":memory:", Database::Access::create);
   store::create_schema(database, store::schema_version());
   std::vector<CollectedTable> tables;
-  for (const auto* name : {"participant", "enrolment", "protocol", "rig", "calibration", "session", "segment",
-                           "block", "trial", "tone", "signal", "event", "self_test", "answer", "link",
-                           "unsealed", "annotation", "same_person", "tombstone"}) {
+  for (const auto* name :
+       {"participant",    "enrolment", "protocol", "rig",        "calibration", "session",   "segment",
+        "block",          "trial",     "tone",     "signal",     "event",       "self_test", "answer",
+        "friction_level", "link",      "unsealed", "annotation", "same_person", "tombstone"}) {
     CollectedTable table;
     table.name = name;
     read_columns(database, table);

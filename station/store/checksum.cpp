@@ -72,6 +72,9 @@ class Encoder {
       add(hash, check_, check_table(), "event_index", "event_index, check_index", from.event, to.event);
     if (encoding_ >= 5)
       add(hash, answer_, answer_table(), "event_index", "event_index, answer_index", from.event, to.event);
+    if (encoding_ >= 5)
+      add(hash, friction_, friction_level_table(), "event_index", "event_index, level_index", from.event,
+          to.event);
   }
 
   Extent extent() {
@@ -122,7 +125,8 @@ class Encoder {
   Database& database_;
   std::string schema_, id_;
   std::int64_t encoding_;
-  std::optional<Statement> segment_, block_, trial_, tone_, signal_, event_, check_, answer_, extent_;
+  std::optional<Statement> segment_, block_, trial_, tone_, signal_, event_, check_, answer_, friction_,
+      extent_;
 };
 
 namespace {

@@ -96,6 +96,26 @@ const Table<AnswerRow>& answer_table() {
   return table;
 }
 
+const Table<FrictionLevelRow>& friction_level_table() {
+  using F = FrictionLevelRow;
+  static const Table<F> table{
+      "friction_level",
+      {"session_id", "event_index", "level_index"},
+      {field<&F::displacement_um>({"displacement_um", "displacement_um",
+                                   "Displacement without a finger, rms over the measured part of the surface",
+                                   "um"}),
+       field<&F::trials>({"trials", "trials", "Number of trials at this displacement that count"}),
+       field<&F::measured>({"measured", "measured",
+                            "Friction relative to the surface at rest, geometric mean of the trials"}),
+       field<&F::relative_friction>(
+           {"relative_friction", "relative_friction",
+            "The same after a monotone regression over the displacements; plans use this value"}),
+       field<&F::sd>({"sd", "sd", "Standard error of relative_friction"}),
+       field<&F::low>({"low", "low", "Lower end of the 95 % interval of relative_friction"}),
+       field<&F::high>({"high", "high", "Upper end of the 95 % interval of relative_friction"})}};
+  return table;
+}
+
 const Table<SessionRecord>& session_table() {
   using R = SessionRecord;
   using S = SessionStart;

@@ -142,8 +142,9 @@ void remove_sessions(Database& database, const std::vector<Tombstone>& tombstone
         .bind(stone.session_id, stone.salt, stone.participant_sha256, stone.withdrawn_realtime_ns,
               stone.station_id)
         .run();
-    for (const auto* table : {"annotation", "merged", "link", "unsealed", "self_test", "answer", "event",
-                              "signal", "tone", "trial", "block", "segment", "session"})
+    for (const auto* table :
+         {"annotation", "merged", "link", "unsealed", "self_test", "answer", "friction_level", "event",
+          "signal", "tone", "trial", "block", "segment", "session"})
       remove(database, table, stone.session_id);
   }
   for (const auto& bearer : bearers) remove_bearer(database, bearer);

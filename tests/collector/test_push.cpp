@@ -148,11 +148,13 @@ TEST_CASE("the server calculates each checksum from what it stored", "[collector
     auto log = store::SessionLog::begin(db, sample::start(), sample::segment());
     id = log.session().session_id;
     store::EventRow test{1, "self_test", "passed", std::nullopt},
-        question{2, "questionnaire", "", std::nullopt};
+        question{2, "questionnaire", "", std::nullopt}, table{3, "friction_table", "used", std::nullopt};
     test.checks.push_back({"disk", store::Verdict::passed, 12.5, 1.0, "GB", "free"});
     question.answers.push_back({"sleep", "hours", 0, "7", 2.5});
     log.event(test);
+    table.friction_levels.push_back({0.5, 6, 0.71, 0.7, 0.03, 0.63, 0.78});
     log.event(question);
+    log.event(table);
     log.begin_block(sample::block());
     for (int i = 0; i < 3; ++i) log.append(sample::answered(i));
     log.finish(store::SessionStatus::completed, "");
@@ -161,13 +163,18 @@ TEST_CASE("the server calculates each checksum from what it stored", "[collector
   auto server = postgres.admin();
   server.query("GRANT USAGE ON SCHEMA public TO turnpoint_owner");
   // A server that stores something else than what arrived.
-  const std::pair<std::string, std::string> changes[] = {
-      {"trial", "NEW.\"threshold_sd\" := 1.25"},     {"tone", "NEW.\"friction\" := NULL"},
-      {"signal", "NEW.data := NEW.data || '\\x00'"}, {"event", "NEW.value := NEW.value || ' '"},
-      {"self_test", "NEW.limit_value := 2"},         {"answer", "NEW.answer := '8'"},
-      {"segment", "NEW.boottime_ns := 0"},           {"block", "NEW.instruction := 'accuracy'"},
-      {"session", "NEW.kernel := 'other'"},          {"rig", "NEW.text := 'other'"},
-      {"annotation", "NEW.text := 'other'"}};
+  const std::pair<std::string, std::string> changes[] = {{"trial", "NEW.\"threshold_sd\" := 1.25"},
+                                                         {"tone", "NEW.\"friction\" := NULL"},
+                                                         {"signal", "NEW.data := NEW.data || '\\x00'"},
+                                                         {"event", "NEW.value := NEW.value || ' '"},
+                                                         {"self_test", "NEW.limit_value := 2"},
+                                                         {"answer", "NEW.answer := '8'"},
+                                                         {"friction_level", "NEW.sd := 0.04"},
+                                                         {"segment", "NEW.boottime_ns := 0"},
+                                                         {"block", "NEW.instruction := 'accuracy'"},
+                                                         {"session", "NEW.kernel := 'other'"},
+                                                         {"rig", "NEW.text := 'other'"},
+                                                         {"annotation", "NEW.text := 'other'"}};
   for (const auto& [table, change] : changes) {
     INFO(table);
     server.query(

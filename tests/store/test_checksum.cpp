@@ -382,7 +382,7 @@ TEST_CASE("the answers to a questionnaire are read back, merged, and covered by 
   CHECK_FALSE(verify(db).good());
 }
 
-TEST_CASE("the checks of a self-test are read back, merged, and covered by the checksum", "[store]") {
+TEST_CASE("self-tests and friction tables are read back, merged, and covered by the checksum", "[store]") {
   TemporaryFolder folder;
   const auto db = folder / "a.sqlite", other = folder / "b.sqlite";
   std::string id;
@@ -393,6 +393,9 @@ TEST_CASE("the checks of a self-test are read back, merged, and covered by the c
                      {"cells", Verdict::not_possible, {}, {}, "", "the rig has none"}};
     log.event({1'400'000'000, "touch", "0.1 0.2", std::nullopt});
     log.event(tested);
+    EventRow measured{1'600'000'000, "friction_table", "used", std::nullopt};
+    measured.friction_levels = {{0.5, 6, 0.71, 0.7, 0.03, 0.63, 0.78}, {1.5, 5, 0.2, 0.21, 0.01, 0.18, 0.24}};
+    log.event(measured);
     log.begin_block(sample::block());
     log.append(sample::answered(0));
     log.finish(SessionStatus::completed, "");
@@ -400,8 +403,13 @@ TEST_CASE("the checks of a self-test are read back, merged, and covered by the c
   }
   const auto check = [&](const std::string& path) {
     const auto events = read_session(path, id).events;
-    REQUIRE(events.size() == 2);
+    REQUIRE(events.size() == 3);
     CHECK(events[0].checks.empty());
+    CHECK(events[1].friction_levels.empty());
+    REQUIRE(events[2].friction_levels.size() == 2);
+    CHECK(events[2].friction_levels[1].displacement_um == 1.5);
+    CHECK(events[2].friction_levels[1].trials == 5);
+    CHECK(events[2].friction_levels[1].high == 0.24);
     REQUIRE(events[1].checks.size() == 2);
     CHECK(events[1].checks[0].limit == 250.0);
     CHECK(events[1].checks[1].verdict == Verdict::not_possible);
@@ -416,7 +424,15 @@ TEST_CASE("the checks of a self-test are read back, merged, and covered by the c
   check(other);
   auto database = sample::raw(db);
   CHECK_THROWS(database.execute("DELETE FROM self_test"));
-  database.execute("DROP TRIGGER self_test_is_never_changed");
-  database.execute("UPDATE self_test SET verdict = 'failed' WHERE name = 'gate'");
-  CHECK_FALSE(verify(db).good());
+  CHECK_THROWS(database.execute("DELETE FROM friction_level"));
+  SECTION("an edited check") {
+    database.execute("DROP TRIGGER self_test_is_never_changed");
+    database.execute("UPDATE self_test SET verdict = 'failed' WHERE name = 'gate'");
+    CHECK_FALSE(verify(db).good());
+  }
+  SECTION("an edited friction table") {
+    database.execute("DROP TRIGGER friction_level_is_never_changed");
+    database.execute("UPDATE friction_level SET relative_friction = 0.22 WHERE level_index = 1");
+    CHECK_FALSE(verify(db).good());
+  }
 }

@@ -7,7 +7,7 @@ import pandas as pd
 
 from . import _store
 
-TABLES = ("trials", "intervals", "events", "sessions", "self_tests", "answers")
+TABLES = ("trials", "intervals", "events", "sessions", "self_tests", "answers", "friction_tables")
 PREFIXED = ("=", "+", "-", "@")  # exports put an apostrophe in front of texts that begin so
 # Columns that are texts even if they look like numbers: a participant's code may be 007.
 TEXTS = ("participant_id participant_code session_id run_mode protocol_id protocol_version protocol_sha256 block_name "
@@ -29,6 +29,7 @@ class Study:
     sessions: pd.DataFrame  #: one row per session
     self_tests: pd.DataFrame  #: one row per check of a self-test before a session
     answers: pd.DataFrame  #: one row per answer to a questionnaire, consent or screening
+    friction_tables: pd.DataFrame  #: one row per displacement of a friction table measured in a session
 
 
 def read(source, *, session="", participant="", protocol="") -> Study:
