@@ -110,6 +110,7 @@ void check_unused(AdviceList& advice) {
   for (const auto& interlude : protocol.interludes)
     for (const auto& page : interlude.pages)
       for (const auto& example : page.examples) scenes.push_back(example.scene);
+  for (const auto& part : protocol.plan) scenes.push_back(block_of(part).strokes.scene);
   for (const auto& [name, scene] : protocol.scenes) {
     const auto is_base = [&, base = name](const auto& other) { return other.second.base == base; };
     if (std::find(scenes.begin(), scenes.end(), name) == scenes.end() &&

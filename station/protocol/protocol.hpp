@@ -218,10 +218,31 @@ struct Break {
   double min_s = 0;
 };
 
+/// What a block is for. In blocks other than `trials` nothing is asked: the finger strokes the surface.
+enum class BlockKind {
+  trials,
+  training,       ///< practice of the movement that [sensing] asks for, on the surface at rest
+  friction_table  ///< measures friction at several displacements, with this finger on this surface
+};
+
+/// How the finger strokes in a block of strokes.
+struct Strokes {
+  double duration_s = 0;  ///< length of each trial
+  std::string scene;      ///< friction table: the scene whose strength is changed
+  /// Friction table: the part of the surface in which displacement and friction are averaged.
+  double from_mm = 0, to_mm = 0;
+  std::vector<double> levels_um;  ///< friction table: displacements, as rms over that part, ascending
+  int repeats = 0;                ///< friction table: trials at each displacement
+  /// Friction table: trials after the block are planned with the measured table instead of the rig's.
+  bool used = false;
+};
+
 /// A block as it runs for one participant. block_order() makes such blocks from the `sequence` tables of the
 /// file.
 struct Block {
   std::string name;
+  BlockKind kind = BlockKind::trials;
+  Strokes strokes;  ///< for blocks other than `trials`
   std::vector<std::string> procedures;
   std::string level;           ///< for practice with fixed levels: the factor to which the levels belong
   std::vector<double> levels;  ///< the fixed levels, presented in shuffled order
@@ -371,6 +392,8 @@ struct Sensing {
   /// How often a trial whose movement was wrong is presented again. After that, and with 0, the trial counts,
   /// and its row says what was wrong.
   int repeats = 0;
+  /// Whether pages show bars with normal force and speed, and whether the bars also move during stimuli.
+  bool guidance = false, live_guidance = false;
   Place place;
 };
 

@@ -29,6 +29,10 @@ void read_timing(text::TableReader& file, Reading& reading);
 void read_procedures(text::TableReader& file, Reading& reading);
 void read_plan(text::TableReader& file, Reading& reading);
 void read_interludes(text::TableReader& file, Reading& reading);
+/// Reads the keys of a block of strokes (kind "training" or "friction-table").
+void read_strokes(text::TableReader& block_reader, const std::string& kind, Block& block,
+                  const Reading& reading);
+void read_break(text::TableReader& block_reader, Block& block, const Reading& reading);
 void read_analysis(text::TableReader& file, Reading& reading);
 void read_exclusion(text::TableReader& file, Reading& reading);
 void read_triggers(text::TableReader& file, Reading& reading);

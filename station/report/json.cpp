@@ -129,6 +129,23 @@ Json finger_json(const std::optional<analysis::Finger>& finger) {
   return json;
 }
 
+Json strip_json(const std::vector<analysis::FrictionCurve>& curves) {
+  Json json = Json::array();
+  for (const auto& curve : curves)
+    json.push_back({{"direction", curve.direction},
+                    {"from_boundary_mm", curve.from_boundary_mm},
+                    {"friction", curve.friction},
+                    {"se", curve.se}});
+  return json;
+}
+
+Json repeats_json(const std::vector<analysis::RepeatedTrials>& repeats) {
+  Json json = Json::array();
+  for (const auto& at : repeats)
+    json.push_back({{"level", value(at.level)}, {"presented", at.presented}, {"repeated", at.repeated}});
+  return json;
+}
+
 Json proportion_json(const std::optional<analysis::Proportion>& proportion) {
   if (!proportion) return nullptr;
   return {{"right", proportion->right},
@@ -275,6 +292,8 @@ std::string to_json(const Summary& summary) {
                      {"trials", summary.catch_trials->trials},
                      {"interval", value(summary.catch_trials->interval)}};
   json["finger"] = finger_json(summary.finger);
+  json["friction_along_strip"] = strip_json(summary.data.strip);
+  json["repeated_trials"] = repeats_json(summary.data.repeats);
   json["trend_response_time_s"] = trend_json(summary.fatigue.response_time_s);
   json["trend_proportion_correct"] = trend_json(summary.fatigue.proportion_correct);
   json["statements"] = value(summary.fatigue.statements);

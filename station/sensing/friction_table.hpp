@@ -12,12 +12,8 @@ namespace turnpoint::sensing {
 /// One stroke over the vibrating surface, or over the surface at rest (displacement 0).
 struct TableStroke {
   double displacement_m = 0;  ///< peak displacement under the finger
-  double friction = 0;        ///< from stroke_friction(); NaN if the stroke did not count
+  double friction = 0;        ///< NaN if the stroke did not count
 };
-
-/// The displacements to present, in order: each level `strokes` times, in random order, with a stroke over
-/// the surface at rest (0) before, between and after them.
-std::vector<double> friction_table_order(std::span<const double> levels_m, int strokes, std::uint64_t seed);
 
 /// Friction at one displacement, relative to friction on the surface at rest.
 struct FrictionLevel {

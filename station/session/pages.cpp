@@ -91,6 +91,12 @@ Page Pages::instructions(const protocol::Block& block, const trial::Director& di
   page.title = texts::text(block.practice ? "practice" : "get_ready", setup_.language);
   const auto found = setup_.protocol.instructions.find(page.instruction);
   if (found != setup_.protocol.instructions.end()) page.text = text(found->second.text);
+  if (block.kind != protocol::BlockKind::trials) {
+    const bool training = block.kind == protocol::BlockKind::training;
+    page.title = texts::text(training ? "training" : "measuring", setup_.language);
+    page.text = texts::text(training ? "training_text" : "measuring_text", setup_.language);
+    return page;
+  }
   const auto question = text(setup_.protocol.task.question);
   page.text += (page.text.empty() ? "" : "\n\n") + question;
   return page;
@@ -103,6 +109,12 @@ Page Pages::of_phase(Phase phase, int interval, const trial::TrialSpec& spec, co
   auto page = blank(kind_of(phase), &block, &director);
   const auto& task = setup_.protocol.task;
   const bool explored = task.kind == protocol::TaskKind::single_interval && protocol::explored(task);
+  if (spec.strokes) {
+    const bool hush = phase == Phase::interval;
+    page.text = hush ? "" : texts::text("stroke_now", setup_.language);
+    page.correct = result.correct;
+    return page;
+  }
   page.mark_mm = mark_of(spec);
   page.interval = interval + 1;
   page.intervals = static_cast<int>(spec.intervals.size());
@@ -140,11 +152,9 @@ Page Pages::of_phase(Phase phase, int interval, const trial::TrialSpec& spec, co
 }
 
 std::string Pages::movement(const std::string& word) const {
-  static const std::map<std::string, const char*> keys{{"strokes", "movement_strokes"},
-                                                       {"light", "movement_light"},
-                                                       {"hard", "movement_hard"},
-                                                       {"slow", "movement_slow"},
-                                                       {"fast", "movement_fast"}};
+  static const std::map<std::string, const char*> keys{
+      {"ok", "movement_ok"},     {"strokes", "movement_strokes"}, {"light", "movement_light"},
+      {"hard", "movement_hard"}, {"slow", "movement_slow"},       {"fast", "movement_fast"}};
   return texts::text(keys.at(word), setup_.language);
 }
 

@@ -159,6 +159,9 @@ class RealStage : public Stage {
   void set_drift(double share) override {
     if (feed_) feed_->watch().set_drift(share);
   }
+  std::optional<sensing::FingerNow> finger_now() override {
+    return feed_ ? feed_->watch().finger_now() : std::nullopt;
+  }
   std::optional<ClockFit> clock_fit() override { return fit_of(*stream_); }
   std::string realtime_rights() const override {
     const auto playback = describe(stream_->rights());

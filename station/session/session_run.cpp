@@ -13,6 +13,7 @@ SessionRun::SessionRun(const Setup& setup, trial::Director director, store::Sess
       log_(std::move(log)),
       stage_(std::move(stage)),
       account_(std::move(account)),
+      display_(display),
       monitor_(monitor),
       plans_(setup.rig, setup.protocol, log_.session().start.seed),
       director_(std::move(director)),
@@ -21,7 +22,8 @@ SessionRun::SessionRun(const Setup& setup, trial::Director director, store::Sess
       interludes_(setup, pages_, director_, gate_, *stage_, log_,
                   [this](const protocol::Example& example, Page page) {
                     return play_example(example, std::move(page));
-                  }) {
+                  }),
+      guide_(setup.protocol.sensing) {
   interludes_.restore(earlier);
   summary_.session_id = log_.session().session_id;
   summary_.participant = setup.participant;
@@ -30,6 +32,7 @@ SessionRun::SessionRun(const Setup& setup, trial::Director director, store::Sess
   summary_.run_mode = store::name(setup.run_mode);
   summary_.realtime_rights = stage_->realtime_rights();
   summary_.seed = log_.session().start.seed;
+  use_measured_friction();
 }
 
 Summary SessionRun::run() {
@@ -87,6 +90,8 @@ Flow SessionRun::run_block() {
 
 Flow SessionRun::leave_block() {
   for (auto& e : director_.estimates()) summary_.estimates.push_back(std::move(e));
+  if (director_.block()->kind == protocol::BlockKind::friction_table && finish_friction_table() == Flow::stop)
+    return Flow::stop;
   ++summary_.blocks;
   director_.finish_block();
   return Flow::go_on;

@@ -6,7 +6,9 @@
 #include <vector>
 
 #include "station/limits/finger_account.hpp"
+#include "station/sensing/friction_table.hpp"
 #include "station/sensing/phase_drift.hpp"
+#include "station/session/guidance.hpp"
 #include "station/session/interludes.hpp"
 #include "station/session/operator_gate.hpp"
 #include "station/session/pages.hpp"
@@ -94,6 +96,17 @@ class SessionRun {
   void log_triggers();
   void finish_triggers();
 
+  // These functions guide the finger (session_run_guidance.cpp).
+  void move_bars();
+  void hold_bars(trial::Phase phase, const Running& trial);
+
+  // These functions are for blocks of strokes (session_run_strokes.cpp).
+  bool is_training() const;
+  void judge_strokes(const Input& input, Running& trial);
+  Flow finish_friction_table();
+  void use_measured_friction();
+  sensing::FrictionTable measured_friction(int block_index) const;
+
   // These functions are for adjustments (session_run_adjustment.cpp).
   void show_phase(trial::Phase phase, const Running& trial);
   std::optional<trial::Event> event_in_trial(const Input& input, Running& trial, bool by_button);
@@ -103,6 +116,7 @@ class SessionRun {
   store::SessionLog log_;
   std::unique_ptr<Stage> stage_;
   limits::FingerAccount account_;
+  Display* display_;
   Monitor* monitor_;
   PlanAhead plans_;
   trial::Director director_;
@@ -121,6 +135,8 @@ class SessionRun {
   std::optional<sensing::DriftTracker> drift_;       ///< empty without pick-ups
   std::optional<sensing::PhaseDrift> newest_drift_;  ///< found in the running trial
   double applied_drift_ = 0;                         ///< share by which frequencies are corrected
+  Guide guide_;
+  std::int64_t guide_due_ns_ = 0;
 };
 
 /// How far the boundary of a tone moves (m, towards the narrow edge) if all resonances of the surface move by

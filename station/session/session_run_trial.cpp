@@ -147,9 +147,12 @@ void SessionRun::drive_trial(Running& trial, std::optional<trial::EventKind> cut
     const auto wake = machine.wake_ns();
     const auto follow_ns = trial.slider ? trial.slider->glide_due_ns().value_or(kForever) : kForever;
     const auto until = std::min(wake.value_or(kForever), follow_ns);
-    auto input = stage_->wait_until(until);
+    const auto bars_ns = guide_.guides() ? guide_due_ns_ : kForever;
+    auto input = stage_->wait_until(std::min(until, bars_ns));
     if (input)
       handle_in_trial(std::move(*input), trial);
+    else if (bars_ns < until)
+      move_bars();
     else if (follow_ns <= until && follow_ns != kForever)
       glide(trial);
     else
@@ -165,16 +168,19 @@ void SessionRun::handle_in_trial(Input raw, Running& trial) {
   if (input.measured) add_measured(trial.row, *input.measured, input.value, trial.measured++ == 0);
   if (input.forces && !trial.onsets.empty()) {
     const auto& onset = trial.onsets.front();
-    add_forces(trial.row, *input.forces, trial.friction_level, setup_.rig.output.rate_Hz,
+    add_forces(trial.row, *input.forces, {trial.friction_level, part_of(trial.spec)},
+               setup_.rig.output.rate_Hz,
                {onset.frame, 1e-9 * static_cast<double>(onset.time_ns - started_ns_)});
     const bool asked = setup_.protocol.sensing && input.forces->state == sensing::ForcesState::ok;
-    trial.outside = asked && input.forces->movement != sensing::Movement::ok;
+    trial.outside = asked && !is_training() && input.forces->movement != sensing::Movement::ok;
     if (trial.outside && repeats_in_a_row_ < setup_.protocol.sensing->repeats)
       perform(trial.machine.handle({input.time_ns, trial::EventKind::outside, 0}), trial);
+    else if (trial.spec.strokes)
+      judge_strokes(input, trial);
   }
   const bool answers = input.kind == InputKind::answer || input.kind == InputKind::value ||
                        (trial.slider && input.kind == InputKind::next);
-  if (answers && !trial.machine.result().response) {
+  if (answers && !trial.spec.strokes && !trial.machine.result().response) {
     trial.row.response_time_quality = name(input.quality);
     trial.by_button = by_button;
   }
@@ -238,6 +244,7 @@ void SessionRun::interval_begins(Running& trial) {
 }
 
 void SessionRun::ask_observer(const Running& trial, std::int64_t onset_ns) {
+  if (trial.spec.strokes) return;
   const auto last = trial::interval_times(setup_.protocol, trial.spec).back();
   const auto ns = [](double s) { return static_cast<std::int64_t>(s * 1e9); };
   auto zero_ns = onset_ns;
@@ -257,8 +264,9 @@ void SessionRun::decide(Running& trial) {
   auto& row = trial.row;
   if (trial.slider) trial.value = trial.slider->felt();
   trial::fill_result(row, trial.machine.result(), trial.spec, setup_.protocol, started_ns_, trial.value);
-  trial::TrialEnd end{row.outcome, trial.machine.result().response, row.correct, {}};
+  trial::TrialEnd end{row.outcome, trial.machine.result().response, row.correct, {}, {}};
   if (trial.slider && end.response) end.setting = trial.value;
+  end.friction = row.finger.mu;
   director_.record(end);
   row.state_hash = director_.state_hash();
   if (const auto threshold = director_.threshold()) {

@@ -111,6 +111,8 @@ class Stage {
 
   /// The resonances of the surface have moved by this share since the calibration of its pick-ups.
   virtual void set_drift(double) {}
+  /// The finger at this moment, if force cells measure it.
+  virtual std::optional<sensing::FingerNow> finger_now() { return std::nullopt; }
 
   virtual std::optional<ClockFit> clock_fit() = 0;
   virtual std::string realtime_rights() const = 0;

@@ -105,6 +105,11 @@ std::shared_ptr<const sensing::IntervalResult> VibrationWatch::result(std::size_
   return std::make_shared<sensing::IntervalResult>(proofs_[interval]->result(contact));
 }
 
+std::optional<sensing::FingerNow> VibrationWatch::finger_now() {
+  const std::lock_guard lock(mutex_);
+  return finger_ ? finger_->now() : std::nullopt;
+}
+
 std::shared_ptr<const sensing::TrialForces> VibrationWatch::forces(std::size_t interval) {
   const std::lock_guard lock(mutex_);
   if (!finger_ || interval + 1 != proofs_.size()) return nullptr;

@@ -62,6 +62,8 @@ class VibrationWatch {
   /// The result of an interval. Frames that were not captured by now count as lost. Null if the interval is
   /// not expected.
   std::shared_ptr<const sensing::IntervalResult> result(std::size_t interval);
+  /// The finger at this moment. Empty if it is not known, and without force cells.
+  std::optional<sensing::FingerNow> finger_now();
   /// What the force cells say about the trial, once its last interval is known. Null for the other intervals,
   /// and without force cells.
   std::shared_ptr<const sensing::TrialForces> forces(std::size_t interval);

@@ -73,6 +73,7 @@ class VirtualStage : public Stage {
   std::vector<Input> drain() override {
     script_.clear();
     unheard_.clear();
+    measured_ = false;
     touchable_ = false;
     std::vector<Input> stops;
     for (auto& input : inputs_.drain()) {
@@ -188,6 +189,9 @@ class VirtualStage : public Stage {
   }
   void set_drift(double share) override {
     if (watch_) watch_->set_drift(share);
+  }
+  std::optional<sensing::FingerNow> finger_now() override {
+    return watch_ ? watch_->finger_now() : std::nullopt;
   }
   std::optional<ClockFit> clock_fit() override { return fit_of(*stream_); }
   std::string realtime_rights() const override { return describe(stream_->rights()); }

@@ -206,6 +206,40 @@ void add_interludes(std::vector<Exhibit>& all, const Words& words) {
   all.push_back({"explanation-playing", explained});
 }
 
+/// Bars with a finger that presses well and moves too slowly.
+Page guided(Page page, bool frozen = false) {
+  session::Guidance bars;
+  bars.force = session::Guidance::Bar{0.5, 0.36, 0.67};
+  bars.speed = session::Guidance::Bar{0.12, 0.22, 0.67};
+  bars.frozen = frozen;
+  page.guidance = bars;
+  return page;
+}
+
+/// Pages of a training and of a friction table, in which nothing is asked.
+void add_strokes(std::vector<Exhibit>& all, const Words& words) {
+  const auto page = [&](PageKind kind, const char* text) {
+    Page made = base(words, kind);
+    made.text = texts::text(text, words.language);
+    return made;
+  };
+  Page training = page(PageKind::instructions, "training_text");
+  training.title = texts::text("training", words.language);
+  all.push_back({"training", training});
+  Page measuring = page(PageKind::instructions, "measuring_text");
+  measuring.title = texts::text("measuring", words.language);
+  all.push_back({"measuring", measuring});
+  all.push_back({"stroke", guided(page(PageKind::stimulus, "stroke_now"))});
+  Page good = page(PageKind::feedback, "movement_ok"), bad = page(PageKind::feedback, "movement_hard");
+  good.correct = true, bad.correct = false;
+  all.push_back({"stroke-right", good});
+  all.push_back({"stroke-wrong", bad});
+  all.push_back({"cue-guided", guided(boundary(words, PageKind::cue))});
+  all.push_back({"explore-guided", guided(boundary(words, PageKind::stimulus), true)});
+  all.push_back({"gap-guided", guided(oddity(words, PageKind::pause, 2))});
+  all.push_back({"response-guided", guided(oddity(words, PageKind::response, 3))});
+}
+
 void add_trials(std::vector<Exhibit>& all, const Words& words) {
   Page cue = boundary(words, PageKind::cue);
   cue.text.clear();
@@ -360,6 +394,7 @@ std::vector<Exhibit> gallery(const std::string& language) {
   std::vector<Exhibit> all;
   add_starts(all, words);
   add_trials(all, words);
+  add_strokes(all, words);
   add_judgements(all, words);
   add_interludes(all, words);
   add_notices(all, words);

@@ -7,6 +7,29 @@ namespace turnpoint::ui {
 void PageModel::set(session::Page page) {
   page_ = std::move(page);
   Q_EMIT changed();
+  Q_EMIT barsMoved();
+}
+
+void PageModel::guide(const session::Guidance& guidance) {
+  if (!page_.guidance) return;  // the page changed meanwhile
+  page_.guidance = guidance;
+  Q_EMIT barsMoved();
+}
+
+namespace {
+
+QList<double> bar_of(const std::optional<session::Guidance::Bar>& bar) {
+  return bar ? QList<double>{bar->value.value_or(-1), bar->low, bar->high} : QList<double>{};
+}
+
+}  // namespace
+
+QList<double> PageModel::force_bar() const {
+  return page_.guidance ? bar_of(page_.guidance->force) : QList<double>{};
+}
+
+QList<double> PageModel::speed_bar() const {
+  return page_.guidance ? bar_of(page_.guidance->speed) : QList<double>{};
 }
 
 PageModel::Kind PageModel::kind() const {

@@ -61,6 +61,11 @@ class PageModel : public QObject {
   Q_PROPERTY(bool unsaved READ unsaved NOTIFY changed)
   Q_PROPERTY(QStringList summaryLabels READ summary_labels NOTIFY changed)
   Q_PROPERTY(QStringList summaryValues READ summary_values NOTIFY changed)
+  // The bars that guide the finger. Shares are from 0 to 1; below 0 there is no value.
+  Q_PROPERTY(bool guided READ is_guided NOTIFY barsMoved)
+  Q_PROPERTY(bool barsFrozen READ bars_frozen NOTIFY barsMoved)
+  Q_PROPERTY(QList<double> forceBar READ force_bar NOTIFY barsMoved)
+  Q_PROPERTY(QList<double> speedBar READ speed_bar NOTIFY barsMoved)
 
  public:
   /// The values of session::PageKind under names that QML can use.
@@ -91,8 +96,14 @@ class PageModel : public QObject {
 
   using QObject::QObject;
   void set(session::Page page);
+  void guide(const session::Guidance& guidance);
   const session::Page& page() const { return page_; }
 
+  bool is_guided() const { return page_.guidance.has_value(); }
+  bool bars_frozen() const { return page_.guidance && page_.guidance->frozen; }
+  /// Value, and lower and upper end of the range that is asked for; empty if there is no such bar.
+  QList<double> force_bar() const;
+  QList<double> speed_bar() const;
   Kind kind() const;
   QString title() const { return QString::fromStdString(page_.title); }
   QString text() const { return QString::fromStdString(page_.text); }
@@ -148,6 +159,7 @@ class PageModel : public QObject {
 
  Q_SIGNALS:
   void changed();
+  void barsMoved();  ///< Emitted when bars have moved.
 
  private:
   session::Page page_;

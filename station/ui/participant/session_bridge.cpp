@@ -28,6 +28,11 @@ void SessionBridge::show(const session::Page& page) {
       Qt::QueuedConnection);
 }
 
+void SessionBridge::guide(const session::Guidance& guidance) {
+  QMetaObject::invokeMethod(
+      this, [this, guidance] { page_.guide(guidance); }, Qt::QueuedConnection);
+}
+
 void SessionBridge::watch(QObject* window) { window->installEventFilter(this); }
 
 std::int64_t SessionBridge::began_ns(int touch_id) const {
