@@ -1,5 +1,5 @@
 # Where `cmake --install` puts the files, and the Debian package (run `cpack -G DEB` in the build folder).
-install(DIRECTORY station/report/scripts/ DESTINATION ${CMAKE_INSTALL_DATADIR}/turnpoint/study COMPONENT station)
+install(DIRECTORY station/report/scripts/ DESTINATION ${CMAKE_INSTALL_DATADIR}/turnpoint/study USE_SOURCE_PERMISSIONS COMPONENT station)
 install(TARGETS turnpoint RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT station)
 if(TURNPOINT_UI)
   install(TARGETS turnpoint-ui RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT station)
@@ -24,6 +24,10 @@ endif()
 install(FILES deploy/system/turnpoint.service deploy/system/turnpoint-backup.service deploy/system/turnpoint-backup.timer deploy/system/turnpoint-first-boot.service
   deploy/system/turnpoint-push.service deploy/system/turnpoint-push.timer deploy/system/turnpoint-receive.service DESTINATION lib/systemd/system COMPONENT station)
 install(DIRECTORY ${CMAKE_BINARY_DIR}/man/ DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 COMPONENT station)
+foreach(program turnpoint-collector turnpoint-collector-join)
+  execute_process(COMMAND gzip -9nc ${CMAKE_SOURCE_DIR}/deploy/debian/${program}.1 OUTPUT_FILE ${CMAKE_BINARY_DIR}/${program}.1.gz)
+  install(FILES ${CMAKE_BINARY_DIR}/${program}.1.gz DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 COMPONENT station)
+endforeach()
 install(PROGRAMS deploy/collector DESTINATION ${CMAKE_INSTALL_BINDIR} RENAME turnpoint-collector COMPONENT station)
 install(PROGRAMS deploy/collector-join DESTINATION ${CMAKE_INSTALL_BINDIR} RENAME turnpoint-collector-join COMPONENT station)
 install(FILES station/collector/queries.sql DESTINATION ${CMAKE_INSTALL_DATADIR}/turnpoint/collector COMPONENT station)

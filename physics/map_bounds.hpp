@@ -17,8 +17,8 @@ struct MapBounds {
 MapBounds map_bounds(const Surface& surface, const MapOptions& options, double frequency_Hz,
                      double boundary_m);
 
-// Whether slightly more loss would hide the first mode's last maximum, or move it far. The two-dimensional
-// field may then have another last maximum. Such a maximum exists only if loss is strong.
+// True if slightly more loss would remove the last maximum of the first mode, or move it a long way; then that
+// of the two-dimensional field may lie elsewhere. This happens only with strong loss.
 bool peak_is_shallow(const Surface& surface, double frequency_Hz, double last_peak_m);
 
 // Explains why an edge has no position at a frequency.

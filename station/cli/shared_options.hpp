@@ -24,7 +24,7 @@ Option* add_calibration(Command& command, std::string& target);
 /// Adds --db, which is required. The file must exist, and begin as a database does.
 void add_database(Command& command, std::string& target, const std::string& help = "Database");
 
-/// Like add_database(), for a command that also reads what a collector has: postgresql://...
+/// Like add_database(), but also accepts the address of a collector (postgresql://...). For commands that only read.
 void add_readable_database(Command& command, std::string& target);
 
 /// Like add_readable_database(), for a command that can read several databases at once.

@@ -38,11 +38,11 @@ struct FrictionTable {
 };
 
 /// Estimates the friction table from strokes in the order in which they were made. Friction of skin drifts by
-/// tens of per cent within minutes, so each driven stroke is compared with its two neighbours at rest: its
-/// value is the logarithm of friction, minus the mean logarithm of the neighbours. The means of the levels go
+/// tens of per cent within minutes, so each driven stroke is compared with the undriven ones before and after it: its
+/// value is the logarithm of friction, minus the mean logarithm of those two. The means of the levels go
 /// through a monotone regression (pool adjacent violators) and are joined by monotone cubics. (A curve with
 /// few parameters would be wrong where friction no longer falls.) Standard errors and intervals come from a
-/// bootstrap over the strokes of each level, enlarged because the strokes are few. Throws terms::UsageError
+/// bootstrap over the strokes of each level, widened to allow for the small number of strokes. Throws terms::UsageError
 /// if a level has fewer than three usable strokes or if there are no levels.
 FrictionTable friction_table(std::span<const TableStroke> strokes, std::uint64_t seed, int replicates = 1000);
 

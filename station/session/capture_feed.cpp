@@ -101,7 +101,7 @@ void CaptureFeed::run(const std::stop_token& stop) {
   }
 }
 
-// Returns true if the pilot should be in what has been captured.
+// Takes over a block. Returns true once enough has been captured to contain the whole pilot.
 bool CaptureFeed::take(const drive::CapturedBlock& captured) {
   const std::lock_guard lock(mutex_);
   const sensing::CaptureBlock block{captured.used(), plan_.device.channels, captured.first_frame + shift_,

@@ -90,7 +90,7 @@ class SessionRun {
   void follow_drift(const sensing::IntervalResult& measured);
   void correct_drift();
 
-  // These functions give out trigger codes (session_run_triggers.cpp).
+  // These functions send trigger codes (session_run_triggers.cpp).
   void trigger(protocol::TriggerEvent event, const Running& trial);
   void trigger_intervals(const Running& trial);
   void log_triggers();

@@ -67,6 +67,7 @@ OUT_OF_RANGE = [
     (["power", "demo", "--part", "9/8"], "write 1/8 to 8/8"),
     (["power", "demo", "--part", "2"], "write 1/8 to 8/8"),
     (["power", "demo", "--part", "1/8", "--observers", "7"], "use fewer parts"),
+    (["report", "--db", "good.sqlite", "--study", "--mode", "lve"], "did you mean live?"),
     (["resume", "--db", "good.sqlite", "--policy", "restrt"], "did you mean restart?"),
     (["run", "demo", "--db", "good.sqlite", "--participant", "P01", "--observer", "sim", "--mode", "lve"],
      "did you mean live?"),
@@ -225,7 +226,8 @@ class Examples(Folder):
         _, out, _ = run(["protocols", "--json"], self.folder)
         for protocol in json.loads(out):
             for name in (protocol["id"], protocol["id"] + ".toml"):
-                status, _, err = run(["check", name, "--sessions", "0"], self.folder)
+                rig = "simulated-forces" if protocol["id"] == "friction-measured" else "simulated"
+                status, _, err = run(["check", name, "--rig", rig, "--sessions", "0"], self.folder)
                 self.assertEqual(status, 0, err)
         self.write("demo", b"")  # a file of that name is preferred
         self.refused(["check", "demo"], "demo: the file needs the key")
@@ -601,7 +603,7 @@ class Manual(Folder):
                              ("export --db lab.sqlite --out l", ["locker"]), ("export --format b", ["bids"]),
                              ("run friction-c", ["friction-confidence"]), ("check s", ["smoothness-line", "smoothness-points",
                                                                                        "speed-accuracy", "study.toml"]),
-                             ("check demo --rig sim", ["simulated"]), ("power --join lab.sqlite s", ["study.toml"]),
+                             ("check demo --rig sim", ["simulated", "simulated-forces"]), ("power --join lab.sqlite s", ["study.toml"]),
                              ("backup --db lab.sqlite --db", []), ("plan demo --scene x --j", ["--json"]),
                              ("join P01 P02 x", []), ("run --participant lab", []), ("nonsense l", [])):
             found = sorted(word for word in self.completed(line) if not word.startswith("--database"))

@@ -216,7 +216,7 @@ Page guided(Page page, bool frozen = false) {
   return page;
 }
 
-/// Pages of a training and of a friction table, in which nothing is asked.
+/// Pages of a training block and of a friction-table block. Neither asks the participant a question.
 void add_strokes(std::vector<Exhibit>& all, const Words& words) {
   const auto page = [&](PageKind kind, const char* text) {
     Page made = base(words, kind);

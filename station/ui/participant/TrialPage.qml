@@ -17,7 +17,7 @@ Item {
     readonly property bool asks: page.answersOpen && page.answers.length > 0
     readonly property bool counted: page.intervals > 1
 
-    // A second tap of the answer must not become the confidence.
+    // Tapping an answer twice by accident must not also give a confidence: the page ignores taps for a moment.
     readonly property bool confides: page.kind === PageModel.Confidence
     onConfidesChanged: if (confides) second.restart()
     Timer {
