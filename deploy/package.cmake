@@ -1,5 +1,5 @@
 # Where `cmake --install` puts the files, and the Debian package (run `cpack -G DEB` in the build folder).
-install(DIRECTORY station/report/scripts/ DESTINATION ${CMAKE_INSTALL_DATADIR}/turnpoint/study USE_SOURCE_PERMISSIONS COMPONENT station)
+install(DIRECTORY station/report/scripts/ DESTINATION ${CMAKE_INSTALL_DATADIR}/turnpoint/study COMPONENT station)
 install(TARGETS turnpoint RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT station)
 if(TURNPOINT_UI)
   install(TARGETS turnpoint-ui RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT station)

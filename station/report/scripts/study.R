@@ -1,4 +1,3 @@
-#!/usr/bin/env Rscript
 # Fits the tables of a study with lme4, and compares them with the report.
 #   turnpoint report --study --db lab.sqlite --tables tables
 #   Rscript study.R tables

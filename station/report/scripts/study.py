@@ -1,4 +1,3 @@
-#!/usr/bin/env python3
 """Reads the tables of a study with pandas and computes the effects of the conditions.
 
 turnpoint report --study --db lab.sqlite --tables tables

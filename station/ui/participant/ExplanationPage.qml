@@ -24,7 +24,7 @@ Item {
             objectName: "picture"
             visible: root.illustrated
             anchors { left: parent.left; right: parent.right; top: parent.top }
-            height: root.illustrated ? 0.58 * parent.height : 0
+            height: root.illustrated ? (root.feels ? 0.4 : 0.58) * parent.height : 0
             source: root.page.picture
             fillMode: Image.PreserveAspectFit
             mirror: false
