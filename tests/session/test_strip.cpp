@@ -34,7 +34,7 @@ std::string demo_with(const TemporaryFolder& folder, const std::string& sensing)
   return path;
 }
 
-/// Keeps the newest row, and what the operator is told of it.
+/// Keeps the newest row, and what the page of the operator shows about it.
 struct Sensors : session::Monitor {
   std::optional<protocol::Sensing> asked;
   std::map<std::string, std::string> facts;
