@@ -9,6 +9,7 @@
 #include "physics/dispersion.hpp"
 #include "physics/modes_bound.hpp"
 #include "physics/planner.hpp"
+#include "physics/taylor_kernel.hpp"
 
 namespace turnpoint::physics {
 namespace {
@@ -93,18 +94,12 @@ Reference reference(const Solved& s, const Tone& tone, Normalise normalise, doub
   return {phase, unit.ln_magnitude() - (weight > 0 ? std::log(weight) : -700.0)};
 }
 
-// Use std::abs() only where overflow is possible: because it guards against overflow, it takes ten times as
-// long.
-double magnitude(std::complex<double> v) {
-  const double square = std::norm(v);
-  return square > 1e-280 && square < 1e280 ? std::sqrt(square) : std::abs(v);
-}
-
 void sum_tones(Field& field, std::size_t points) {
   field.amplitude.resize(points);
   if (field.tones.size() == 1) {
     field.ln_amplitude = field.tones[0].ln_amplitude;
-    for (std::size_t i = 0; i < points; ++i) field.amplitude[i] = magnitude(field.tones[0].v[i]);
+    const auto& v = field.tones[0].v;
+    magnitudes(reinterpret_cast<const double*>(v.data()), points, field.amplitude.data());
     return;
   }
   field.ln_amplitude.resize(points);

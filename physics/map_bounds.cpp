@@ -4,6 +4,7 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "physics/centre_line.hpp"
 #include "physics/dispersion.hpp"
 #include "physics/edge_feature.hpp"
 #include "physics/mode_bound.hpp"
@@ -45,6 +46,7 @@ MapBounds map_bounds(const Surface& surface, const MapOptions& options, double f
       std::holds_alternative<LinearTaper>(surface.taper) && !Dispersion(surface).clamped_bending();
   if (!wedge) bounds.equation_m += mode.equation_m;
   bounds.drive_modes_m = mode.drive_m;
+  if (drawn_peak_m && peak_is_shallow(surface, f, *drawn_peak_m)) bounds.drive_modes_m += surface.length_m;
   bounds.reason = " of the first transverse mode";
   if (std::isfinite(surface.quality_factor)) {
     std::ostringstream loss;
@@ -52,6 +54,14 @@ MapBounds map_bounds(const Surface& surface, const MapOptions& options, double f
     bounds.reason += loss.str();
   }
   return bounds;
+}
+
+bool peak_is_shallow(const Surface& surface, double f, double last_peak_m) {
+  if (surface.quality_factor >= strong_loss_below) return false;
+  Surface lossier = surface;
+  lossier.quality_factor *= 0.85;
+  const auto moved = make_centre_line(lossier, f, Model::mode)->last_peak_m();
+  return !moved || std::abs(*moved - last_peak_m) > 0.5 * cut_off_half_width_m(surface, f);
 }
 
 std::string why_no_boundary(const Surface& surface, const MapOptions& options, double f) {

@@ -17,6 +17,10 @@ struct MapBounds {
 MapBounds map_bounds(const Surface& surface, const MapOptions& options, double frequency_Hz,
                      double boundary_m);
 
+// True if slightly more loss would remove the last maximum of the first mode, or move it a long way; then that
+// of the two-dimensional field may lie elsewhere. This happens only with strong loss.
+bool peak_is_shallow(const Surface& surface, double frequency_Hz, double last_peak_m);
+
 // Explains why an edge has no position at a frequency.
 std::string why_no_boundary(const Surface& surface, const MapOptions& options, double frequency_Hz);
 

@@ -29,13 +29,20 @@ constexpr double plate_piston = 0.9;
 // cut-off half-width of the second symmetric mode divided by that of the first
 constexpr double plate_second_mode = 2.3246;
 constexpr double plate_shift = 1.2e-3;  // shift of an edge at any taper
+// The boundary layer along clamped sides under tension has a width of its own, and the shape of `mode` has
+// the layer of the cut-off at every W. Added to plate_shift when the layer is a third of the half-width or
+// thinner.
+constexpr double layer_shift = 4.8e-3;
 // shift of an edge at any taper, for the plate theories mindlin and elastic
 constexpr double thick_shift = 2.5e-3;
 constexpr double plate_slope_shift = 0.15;  // shift of an edge divided by W'^2
-// shift of an edge divided by W'^2, caused by a clamped end just beyond the turning point
-constexpr double end_shift = 0.15;
+// shift of an edge divided by W'^2, caused by a clamped end just beyond the turning point; and divided by W',
+// if the end is at the turning point
+constexpr double end_shift = 0.15, close_end_shift = 0.09;
 // shift of an edge, divided by the amplitude of higher modes near this edge
 constexpr double shallow = 6;
+constexpr double other_peak =
+    0.5;                       // the largest such shift, beyond which the last maximum may be another one
 constexpr double largest = 2;  // bounds are limited to this value, because a larger one would say nothing
 
 // The equation of the n-th symmetric transverse mode, n = 1, 2, ... On a wedge the solution is a Bessel
@@ -85,6 +92,43 @@ double curvature_times_width(const Taper& taper, double x) {
   return std::abs(taper.slope(high) - taper.slope(low)) / (high - low) * w;
 }
 
+double airy_length_m(double cut, double slope) {
+  return cut * std::cbrt(2 / (pi * pi * std::max(slope, 1e-6)));
+}
+
+// Steepness and curvature of the taper where they disturb the first mode.
+struct Steepness {
+  double at_turning = 0;  // |W'| near the turning point
+  double before = 0;   // largest |W'| W / (cut-off half-width) between the drive edge and the turning point
+  double bend = 0;     // largest |W''| W near the turning point
+  double reach_m = 0;  // what is near: two cut-off half-widths, or more where the strip is nearly even
+};
+
+Steepness steepness(const Taper& taper, double cut, double x0, double last_peak) {
+  Steepness s;
+  s.at_turning = std::max(std::abs(taper.slope(x0)), std::abs(taper.slope(std::max(0.0, x0 - 2 * cut))));
+  for (int i = 0; i <= 48; ++i) {
+    const double x = x0 * i / 48;
+    s.before = std::max(s.before, std::abs(taper.slope(x)) * taper.half_width_m(x) / cut);
+  }
+  // Where the strip is nearly even, the mode decays slowly, and an edge may lie far from the turning point.
+  s.reach_m = std::max(2 * cut, 1.2 * airy_length_m(cut, std::abs(taper.slope(x0))));
+  const double low = std::clamp(std::min(x0 - s.reach_m, last_peak), 0.0, taper.length_m());
+  const double high = std::clamp(x0 + 0.5 * s.reach_m, 0.0, taper.length_m());
+  constexpr int points = 24;
+  for (int i = 0; i <= points; ++i)
+    s.bend = std::max(s.bend, curvature_times_width(taper, low + (high - low) * i / points));
+  return s;
+}
+
+// Shift of an edge because `mode` of a clamped plate has one shape across, relative to the cut-off
+// half-width.
+double plate_shift_of(const Surface& surface, const Dispersion& dispersion, double cut) {
+  if (surface.theory != PlateTheory::kirchhoff) return thick_shift;
+  const double layers = cut * std::sqrt(dispersion.tension_N_per_m / dispersion.stiffness_N_m);
+  return plate_shift + layer_shift * std::min(1.0, layers / 3);
+}
+
 }  // namespace
 
 double higher_mode_decay(const Surface& surface, double f, double x) {
@@ -107,18 +151,12 @@ ModeBound mode_bound(const Surface& surface, double f, double conditioning,
   const Taper taper(surface);
   const double cut = dispersion.cut_off_half_width_m(f);
   const double ratio = taper.half_width_m(0) / cut;
-  const double slope0 = std::abs(taper.slope(0));
   const double x0 = taper.position_m(cut).value_or(taper.length_m());
-  const double steepest =
-      std::max(std::abs(taper.slope(x0)), std::abs(taper.slope(std::max(0.0, x0 - 2 * cut))));
-  double bend = 0;
-  for (int i = -4; i <= 2; ++i) {
-    bend =
-        std::max(bend, curvature_times_width(taper, std::clamp(x0 + 0.5 * i * cut, 0.0, taper.length_m())));
-  }
+  const Steepness taper_is = steepness(taper, cut, x0, last_peak_m.value_or(x0));
+  const double steepest = taper_is.at_turning, bend = taper_is.bend;
   const bool membrane = !dispersion.clamped_bending();
   const bool piston = surface.drive == DriveShape::piston;
-  const double coupled = coupling * std::max(slope0, steepest) * ratio + coupling * bend +
+  const double coupled = coupling * std::max(taper_is.before, steepest * ratio) + coupling * bend +
                          (!piston    ? 0
                           : membrane ? piston_coupling
                                      : plate_piston);
@@ -138,15 +176,29 @@ ModeBound mode_bound(const Surface& surface, double f, double conditioning,
   bound.level_dB = -20 * std::log10(std::max(1e-6, 1 - (phase + modes) * conditioning));
   // The outermost maximum is about one Airy length before the turning point. If the turning point is close to
   // the drive edge, the maximum is shallow, and even weak higher modes move it far.
-  const double airy_length = cut * std::cbrt(2 / (pi * pi * std::max(steepest, 1e-6)));
+  const double airy_length = airy_length_m(cut, steepest);
   const double near = std::max(0.0, std::min(x0 - 1.1 * airy_length, last_peak_m.value_or(x0)));
-  const double polluted = shallow * bound.higher_modes * higher_mode_decay(surface, f, near);
+  const double polluted = shallow * modes * higher_mode_decay(surface, f, near);
   // A straight clamped end just beyond the turning point intersects the curved wave fronts.
-  const double end = taper.half_width_m(taper.length_m()) > 0.5 * cut ? end_shift * steepest * steepest : 0;
-  bound.drive_m = cut * (end + std::min(1.0, polluted));
-  bound.equation_m = cut * (curvature_shift * bend + slope_shift * std::pow(steepest, 3));
-  const double shift = surface.theory == PlateTheory::kirchhoff ? plate_shift : thick_shift;
-  if (!membrane) bound.equation_m += cut * (shift + plate_slope_shift * steepest * steepest);
+  const double end_width = taper.half_width_m(taper.length_m()) / cut;
+  double end = end_width > 0.5 ? end_shift * steepest * steepest : 0;
+  end = std::max(end, close_end_shift * steepest * std::clamp((end_width - 0.75) / 0.1, 0.0, 1.0));
+  // Higher modes that are strong near the last maximum may replace it by another one.
+  const bool same_peak = polluted < other_peak;
+  bound.drive_m = cut * (end + (same_peak ? polluted : 1)) + (same_peak ? 0 : x0);
+  if (!same_peak) {
+    bound.shape = bound.drive = std::max(largest, bound.drive);
+    bound.level_dB = 120;
+  }
+  const double even = taper_is.reach_m / (2 * cut);
+  bound.equation_m = cut * (curvature_shift * bend * even * even + slope_shift * std::pow(steepest, 3));
+  if (!membrane)
+    bound.equation_m +=
+        cut * (plate_shift_of(surface, dispersion, cut) + plate_slope_shift * steepest * steepest);
+  // Strong loss moves the last maximum towards the drive edge. The edges beyond it are then less steep, and
+  // the same error of the field moves them farther.
+  const double stretched = (x0 - last_peak_m.value_or(x0)) / (1.5 * airy_length);
+  bound.equation_m *= std::max(1.0, stretched * stretched);
   return bound;
 }
 

@@ -48,7 +48,7 @@ std::optional<double> edge_m(const Line& one, const Edge& edge) {
 }  // namespace
 
 bool modes_bound_applies(const Surface& surface) {
-  if (surface.theory != PlateTheory::kirchhoff) return false;
+  if (surface.theory == PlateTheory::elastic) return false;
   return surface.drive != DriveShape::piston || !Dispersion(surface).clamped_bending();
 }
 

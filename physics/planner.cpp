@@ -22,10 +22,12 @@ constexpr double probe_margin = 1.9;
 constexpr int probes = 160;
 constexpr double unknown = 2, unknown_dB = 120;
 // What is known of the error of `modes` before it is solved, if no higher mode resonates: more than its
-// largest on random surfaces. The field of a clamped plate's piston jumps at the corners of the drive edge.
-constexpr double membrane_accuracy = 2e-3, plate_accuracy = 5e-4, plate_piston_accuracy = 0.15;
+// largest on random surfaces. Tension makes thin boundary layers along clamped sides. The field of a clamped
+// plate's piston jumps at the corners of the drive edge.
+constexpr double membrane_accuracy = 2e-3, plate_accuracy = 1e-3, tense_plate_accuracy = 5e-3,
+                 plate_piston_accuracy = 0.15;
 constexpr double modes_resonance = 5e-5;  // how much a higher mode's resonance adds to this error
-constexpr double edge_share = 1;  // shift of an edge over the cut-off half-width, divided by this error
+constexpr double edge_share = 0.8;  // shift of an edge over the cut-off half-width, divided by this error
 
 // The profile of one model: logarithms of |v| at the probe points, and the positions of its maximum and edge.
 struct Probe {
@@ -132,13 +134,15 @@ struct Reference {
   Probe mode;
   double conditioning;
   ModeBound bound;
+  bool shallow_peak;  // slightly more loss would hide the last maximum
 };
 
 Reference reference(const Surface& surface, const PlanRequest& request, double f) {
   Probe mode = probe(surface, request, f, Model::mode);
   const double conditioning = mode.line->drive_conditioning(wavenumber_per_m(surface, f));
   const auto bound = mode_bound(surface, f, conditioning, mode.peak);
-  return {f, std::move(mode), conditioning, bound};
+  const bool uncertain_peak = mode.peak && peak_is_shallow(surface, f, *mode.peak);
+  return {f, std::move(mode), conditioning, bound, uncertain_peak};
 }
 
 RungEstimate edge_estimate(const Surface& surface, const PlanRequest& request, const Reference& reference) {
@@ -150,7 +154,7 @@ RungEstimate edge_estimate(const Surface& surface, const PlanRequest& request, c
   const MapOptions options{
       request.edge.kind == Edge::Kind::friction ? Edge::peak() : request.edge, {}, {}, {}};
   const auto x = solve_edge_m(surface, options, reference.f, Model::edge, Wave::exact);
-  e.boundary_bound_m = reference.bound.position_m();
+  e.boundary_bound_m = reference.bound.position_m() + (reference.shallow_peak ? surface.length_m : 0);
   if (x.has_value() != reference.mode.edge.has_value()) e.boundary_bound_m += surface.length_m;
   return e;
 }
@@ -162,15 +166,17 @@ double placed_elsewhere_m(const PlanRequest& request, const Reference& reference
                                                                             : 0;
 }
 
+double modes_accuracy(const Surface& surface) {
+  if (!Dispersion(surface).clamped_bending()) return membrane_accuracy;
+  if (surface.drive == DriveShape::piston) return plate_piston_accuracy;
+  return surface.tension_Pa > 0 ? tense_plate_accuracy : plate_accuracy;
+}
+
 // Bounds of `modes` without solving for it.
 RungEstimate modes_estimate(const Surface& surface, const PlanRequest& request, const Reference& reference) {
   RungEstimate e;
   e.cost_s = cost_s(surface, reference.f, Model::modes, request.points);
-  const bool plate = Dispersion(surface).clamped_bending(), piston = surface.drive == DriveShape::piston;
-  const double accuracy = (!plate   ? membrane_accuracy
-                           : piston ? plate_piston_accuracy
-                                    : plate_accuracy) +
-                          modes_resonance * (reference.bound.resonance - 1);
+  const double accuracy = modes_accuracy(surface) + modes_resonance * (reference.bound.resonance - 1);
   const bool drive = request.normalise != Normalise::peak;
   e.amplitude_bound = accuracy * (drive ? reference.conditioning : 1);
   e.level_bound_dB = 20 * std::log10(1 + accuracy * reference.conditioning);
@@ -211,8 +217,9 @@ RungEstimate profile_estimate(const Surface& surface, const PlanRequest& request
                       rounding_error(surface, reference.f) * (drive ? reference.conditioning : 1);
   e.level_bound_dB = bound.level_dB;
   e.boundary_bound_m = request.edge.kind == Edge::Kind::turning ? 0 : bound.position_m();
-  // The two-dimensional field may have a last maximum although the model `mode` has none.
-  if (!reference.mode.peak) {
+  // The two-dimensional field may have a last maximum although the model `mode` has none, or another one.
+  if (reference.shallow_peak) e.boundary_bound_m += surface.length_m;
+  if (!reference.mode.peak || reference.shallow_peak) {
     e.amplitude_bound += unknown;
     e.level_bound_dB += unknown_dB;
   }

@@ -114,4 +114,16 @@ bool half_log_square(const double* re, const double* im, std::size_t n, double o
   return any_small == 0;
 }
 
+TURNPOINT_CLONES
+void magnitudes(const double* pairs, std::size_t n, double* out) {
+  constexpr std::uint64_t exponent = 0x7ff0000000000000ULL, inverse = 0x7fe0000000000000ULL;
+  for (std::size_t i = 0; i < n; ++i) {
+    const double sum = std::abs(pairs[2 * i]) + std::abs(pairs[2 * i + 1]);
+    const std::uint64_t bits = std::bit_cast<std::uint64_t>(sum) & exponent;
+    const double scale = std::bit_cast<double>(inverse - bits);  // 2^-e for a sum of 1 to 2 times 2^e
+    const double re = scale * pairs[2 * i], im = scale * pairs[2 * i + 1];
+    out[i] = std::sqrt(re * re + im * im) * std::bit_cast<double>(bits);
+  }
+}
+
 }  // namespace turnpoint::physics

@@ -37,4 +37,9 @@ void rotate(const double* re, const double* im, std::size_t n, double factor_re,
 // + im^2 is 1e-289 or less at some point; the result at this point is then not valid.
 bool half_log_square(const double* re, const double* im, std::size_t n, double offset, double* out);
 
+// Computes the magnitudes of n complex numbers, given as pairs of real and imaginary part. Like std::abs(),
+// it scales them first so that their squares neither overflow nor underflow. A magnitude below 1e-307 becomes
+// 0.
+void magnitudes(const double* pairs, std::size_t n, double* out);
+
 }  // namespace turnpoint::physics

@@ -54,6 +54,7 @@ struct TaylorMarch::State {
   const TaylorStep* step_at(double x) const;
   Local local(double x, double& ln_scale) const;
   double rise(const Local& g, double x) const;
+  double bend(const Local& g, double x) const;
   std::optional<double> peak_in(const TaylorStep& step, double outermost) const;
   bool hidden_by_loss(double x) const;
   double outermost_maximum() const;
@@ -117,10 +118,28 @@ double TaylorMarch::State::rise(const Local& g, double x) const {
   return (std::conj(g.g) * g.dg).real() - bend;
 }
 
+// The derivative of rise() by x.
+double TaylorMarch::State::bend(const Local& g, double x) const {
+  const double w = taper.half_width_m(x), w1 = taper.slope(x), ratio = w1 / w, power = equation.w_power;
+  const double square = std::norm(g.g), along = (std::conj(g.g) * g.dg).real();
+  const double bracket = equation.a.real() - (equation.b + equation.c * w1 * w1) / (w * w);
+  return std::norm(g.dg) - bracket * square -
+         power * (2 * along * ratio + square * (taper.second_derivative(x) / w - ratio * ratio));
+}
+
 // The outermost position at which |v| can have a maximum. On a linear taper there is none in the evanescent
 // zone, where Re p < 0: |g|^2 is convex there and starts from zero, so it grows at least in proportion to the
-// distance from the tip, while W grows at most in that proportion.
+// distance from the tip, while W grows at most in that proportion. On an exponential taper of decay length l,
+// v'' - v'/l + (a - b/W^2 - (c - w_power/2)/l^2) v = 0, and |v| has no maximum where the real part of the
+// bracket is negative.
 double TaylorMarch::State::outermost_maximum() const {
+  if (const auto* curved = std::get_if<ExponentialTaper>(&taper.form())) {
+    const double l = curved->decay_length_m;
+    const double square = equation.a.real() - (equation.c - 0.5 * equation.w_power) / (l * l);
+    if (!(square > 0)) return 0;
+    return std::clamp(l * std::log(curved->half_width_m * std::sqrt(square / equation.b)), 0.0,
+                      taper.length_m());
+  }
   const auto* linear = std::get_if<LinearTaper>(&taper.form());
   if (linear == nullptr || linear->slope == 0) return taper.length_m();
   const double b = equation.b + equation.c * linear->slope * linear->slope;
@@ -145,9 +164,15 @@ std::optional<double> TaylorMarch::State::peak_in(const TaylorStep& step, double
       f_outer = f_inner;
       continue;
     }
-    return false_position(
-        {inner, f_inner, outer, f_outer}, [&](double x) { return rise(at(step, x), x); }, {3}, 0,
-        [](const Chord&) { return false; });
+    const auto tangent = [&](double x) {
+      const Local g = at(step, x);
+      const double f = rise(g, x);
+      return Tangent{f, x - f / bend(g, x)};
+    };
+    const double start = Chord{inner, f_inner, outer, f_outer}.meets_0();
+    // the error of a Newton step is proportional to the square of its length
+    return newton({inner, outer}, start, tangent,
+                  [&](double next, double x) { return std::abs(next - x) <= 1e-12 * step.length; });
   }
   return std::nullopt;
 }

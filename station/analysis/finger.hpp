@@ -45,6 +45,19 @@ struct FeltBoundaries {
   std::vector<AtBoundary> shift_mm, mu_low, mu_high;  ///< in the order of planned boundaries
 };
 
+/// Friction in one direction of movement, by distance from the planned boundary: means and standard errors
+/// over strokes, where there are 3 or more.
+struct FrictionCurve {
+  std::string direction;
+  std::vector<double> from_boundary_mm, friction, se;
+};
+
+/// How many of the trials presented at a level were presented again because of the finger's movement.
+struct RepeatedTrials {
+  std::optional<double> level;
+  int presented = 0, repeated = 0;
+};
+
 struct Finger {
   std::vector<FingerTrial> trials;          ///< in the order given
   std::vector<FingerCondition> conditions;  ///< conditions in `order` come first

@@ -109,8 +109,9 @@ struct BootstrapOptions {
 ///
 /// Threshold, slope and 75 % point get profile-likelihood intervals. Their critical value comes from the
 /// likelihood ratios of the replicates instead of chi-square. Percentile intervals of the slope would be
-/// worse: with ten trials per level they would miss the true value one time in seven, because the estimate is
-/// biased. BCa intervals of a Weibull's threshold are no better. Lapse and guess get percentile intervals.
+/// worse: with ten trials per level they would miss the true value in 1 case of 7 instead of 1 of 20, because
+/// the estimate is biased. BCa intervals of a Weibull's threshold are no better. Lapse and guess get percentile
+/// intervals.
 ///
 /// Use this only if the levels were fixed before the session. If a procedure chose the levels from the
 /// answers, these intervals are too short: use fit_posterior().

@@ -48,6 +48,12 @@ void apply(const rig::PickUpResponse& measured, rig::Rig& rig) {
   capture->responses.push_back(measured);
 }
 
+void apply(const rig::ForceCells& measured, rig::Rig& rig) {
+  if (!rig.capture || rig.capture->bridges.empty())
+    throw terms::UsageError("the calibration has force cells, but the rig does not");
+  rig.capture->forces = measured;
+}
+
 std::string stem_of(const std::string& rig_path) {
   const std::filesystem::path path(rig_path);
   return (path.parent_path() / path.stem()).string() + ".calibration-";
@@ -57,7 +63,8 @@ std::string stem_of(const std::string& rig_path) {
 
 rig::Rig applied(const Calibration& calibration, rig::Rig rig) {
   for (const auto& transducer : calibration.transducers) apply(transducer, rig);
-  for (const auto& pick_up : calibration.pick_ups) apply(pick_up, rig);
+  for (const auto& pick_up : calibration.pick_ups) apply(pick_up.response, rig);
+  if (calibration.forces) apply(*calibration.forces, rig);
   if (calibration.quality_factor) rig.surface.quality_factor = *calibration.quality_factor;
   if (calibration.boundary) rig.surface.fit = calibration.boundary->surface;
   if (!calibration.friction) return rig;

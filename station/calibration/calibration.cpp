@@ -91,7 +91,7 @@ std::vector<std::string> problems(const Calibration& calibration, const std::str
         fmt::format("the date of the calibration, {}, is in the future according to this computer's clock",
                     calibration.made_on));
   if (calibration.transducers.empty() && !calibration.panel && !calibration.boundary &&
-      calibration.pick_ups.empty())
+      calibration.pick_ups.empty() && !calibration.forces)
     found.push_back("the calibration contains neither boundaries nor the response of any transducer");
   return found;
 }

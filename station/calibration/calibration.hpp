@@ -6,6 +6,7 @@
 
 #include "station/calibration/fits.hpp"
 #include "station/calibration/panel_latency.hpp"
+#include "station/calibration/pick_up_fit.hpp"
 
 namespace turnpoint::calibration {
 
@@ -33,7 +34,8 @@ struct Calibration {
   std::optional<FrictionFit> friction;
   std::vector<SoundPoint> sound;
   std::optional<PanelLatency> panel;
-  std::vector<rig::PickUpResponse> pick_ups;
+  std::vector<PickUp> pick_ups;
+  std::optional<rig::ForceCells> forces;
 };
 
 /// Names of the files with measurements; "" if there is no such file. Their columns are:

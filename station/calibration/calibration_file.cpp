@@ -2,6 +2,7 @@
 
 #include "physics/boundary_budget.hpp"
 #include "station/calibration/calibration.hpp"
+#include "station/calibration/calibration_tables.hpp"
 #include "station/text/number.hpp"
 #include "station/text/reader.hpp"
 
@@ -12,23 +13,6 @@ using text::exact;
 using text::Range;
 using Ends = text::Range::Ends;
 constexpr double large = 1e300;
-
-std::string quoted(const std::string& plain) {
-  std::string out = "\"";
-  for (const char c : plain) {
-    if (c == '"' || c == '\\') out += '\\';
-    out += c == '\n' ? ' ' : c;
-  }
-  return out + "\"";
-}
-
-// Writes one line `key = [...]` per key. Each list has one number for each point.
-template <typename Points, typename Get>
-std::string numbers(const char* key, const Points& points, Get&& get) {
-  std::string out = fmt::format("{} = [", key);
-  for (std::size_t k = 0; k < points.size(); ++k) out += (k ? ", " : "") + exact(get(points[k]));
-  return out + "]\n";
-}
 
 std::string boundary_toml(const BoundaryFit& fit) {
   std::string out =
@@ -58,14 +42,6 @@ std::string transducer_toml(const Calibration::Transducer& transducer) {
   out += numbers("frequency_Hz", fit.points, [](const auto& p) { return p.frequency_Hz; });
   out += numbers("um_per_full_scale", fit.points, [](const auto& p) { return p.m_per_full_scale * 1e6; });
   return out + numbers("phase_deg", fit.points, [](const auto& p) { return p.phase_rad / kDegree_rad; });
-}
-
-std::string pick_up_toml(const rig::PickUpResponse& pick_up) {
-  std::string out =
-      fmt::format("\n[[pickup]]\nchannel = {}\ndrive_channel = {}\n", pick_up.channel, pick_up.drive_channel);
-  out += numbers("frequency_Hz", pick_up.points, [](const auto& p) { return p.frequency_Hz; });
-  out += numbers("amplitude", pick_up.points, [](const auto& p) { return p.amplitude; });
-  return out + numbers("phase_deg", pick_up.points, [](const auto& p) { return p.phase_rad / kDegree_rad; });
 }
 
 std::string delay_toml(const char* name, const std::optional<Delay>& delay) {
@@ -104,14 +80,6 @@ PanelLatency read_panel(const text::Value& table, text::Findings& findings) {
   return panel;
 }
 
-// Returns true if the columns have equal length; otherwise reports a problem.
-bool same_length(text::TableReader& reader, const char* key, std::size_t length, std::size_t wanted) {
-  if (length == wanted) return true;
-  reader.problem(key, fmt::format("{} values", length),
-                 fmt::format("there must be {} values, as in the other columns", wanted));
-  return false;
-}
-
 Calibration::Transducer read_transducer(const text::Value& table, text::Findings& findings) {
   text::TableReader reader(table, text::titled("transducer", table), findings);
   Calibration::Transducer transducer;
@@ -134,25 +102,6 @@ Calibration::Transducer read_transducer(const text::Value& table, text::Findings
     }
   reader.finish();
   return transducer;
-}
-
-rig::PickUpResponse read_pick_up(const text::Value& table, text::Findings& findings) {
-  text::TableReader reader(table, "pickup", findings);
-  rig::PickUpResponse pick_up;
-  pick_up.channel = reader.integer("channel", 0, 31);
-  pick_up.drive_channel = reader.integer("drive_channel", 0, 31);
-  const auto frequency = reader.numbers("frequency_Hz", {0, 1e6, Ends::open_low, "Hz"}, 2);
-  const auto amplitude = reader.numbers("amplitude", {0, 1e6}, 2);
-  const auto phase = reader.numbers("phase_deg", {-1e6, 1e6}, 2);
-  if (same_length(reader, "amplitude", amplitude.size(), frequency.size()) &&
-      same_length(reader, "phase_deg", phase.size(), frequency.size()))
-    for (std::size_t k = 0; k < frequency.size(); ++k) {
-      if (k > 0 && frequency[k] <= frequency[k - 1])
-        reader.problem("frequency_Hz", "the values are not in ascending order");
-      pick_up.points.push_back({frequency[k], amplitude[k], phase[k] * kDegree_rad});
-    }
-  reader.finish();
-  return pick_up;
 }
 
 rig::SurfaceFit::Parameter read_parameter(const text::Value& table, std::size_t before,
@@ -209,6 +158,8 @@ void read_tables(text::TableReader& reader, Calibration& calibration) {
     calibration.pick_ups.push_back(read_pick_up(*table, findings));
   if (const text::Value* table = reader.maybe_table("boundary"))
     calibration.boundary = read_boundary(*table, findings);
+  if (const text::Value* table = reader.maybe_table("forces"))
+    calibration.forces = read_forces(*table, findings);
   if (const text::Value* table = reader.maybe_table("panel"))
     calibration.panel = read_panel(*table, findings);
   if (const text::Value* table = reader.maybe_table("friction")) {
@@ -255,6 +206,7 @@ std::string to_toml(const Calibration& c) {
   }
   if (c.panel) out += panel_toml(*c.panel);
   for (const auto& transducer : c.transducers) out += transducer_toml(transducer);
+  if (c.forces) out += forces_toml(*c.forces);
   for (const auto& pick_up : c.pick_ups) out += pick_up_toml(pick_up);
   return out;
 }

@@ -62,6 +62,7 @@ ResponseFit fit_response(const std::vector<ResponsePoint>& sweep, int window = 5
 struct Resonance {
   double frequency_Hz = 0;
   double quality_factor = 0;
+  double frequency_sd_Hz = 0, quality_sd = 0;  ///< standard errors; 0: unknown
 };
 
 /// Finds resonances by a linear fit: near a peak, 1/|u|^2 (u is the displacement) is a parabola in f whose

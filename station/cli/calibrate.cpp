@@ -7,6 +7,7 @@
 
 #include "physics/boundary_budget.hpp"
 #include "station/calibration/apply.hpp"
+#include "station/cli/calibrate_sensors.hpp"
 #include "station/cli/command.hpp"
 #include "station/cli/json.hpp"
 #include "station/cli/run.hpp"
@@ -29,6 +30,7 @@ struct Options {
   double full_scale = 1;
   int valid_days = 90;
   bool sweep = false, arm = false, panel = false;
+  SensorOptions sensors;
   std::string reference = "button";
   maintenance::SweepOptions plan;
 };
@@ -178,9 +180,15 @@ void calibrate(const Options& options, Context& context) {
   const auto rig = rig::load(options.rig);
   if (options.sweep) return sweep(options, rig, context);
   if (options.panel) return calibrate_panel(options, rig, context);
+  if (options.sensors.pick_up) {
+    auto sensors = options.sensors;
+    sensors.full_scale = options.plan.full_scale, sensors.table_full_scale = options.full_scale;
+    sensors.arm = options.arm, sensors.rig_path = options.rig, sensors.out = options.out;
+    return calibrate_pick_ups(sensors, rig, context);
+  }
   const auto measurements = measurements_of(options);
   auto made = maintenance::calibrate(rig, measurements, options.valid_days, options.note);
-  made.panel = maintenance::known_panel(rig);
+  maintenance::keep_devices(rig, made);
   const auto out = options.out.empty() ? calibration::file_for(options.rig, made.made_on) : options.out;
   const auto plots = options.plots.empty() ? out + ".svg" : options.plots;
   system::write_file(plots, plot::render(maintenance::calibration_figure(made, measurements)));
@@ -246,13 +254,17 @@ void add_calibrate(CommandLine& app, Context& context) {
                    "photodiode on the flashing square; measures display latency")
       ->capture_default_str()
       ->check(one_of({"button", "photodiode"}));
+  add_sensor_options(*command, options->sensors);
   command->add_flag("--sweep", options->sweep, "Print the tones of the test sweep as CSV");
   command->add_option("--sweep-out", options->sweep_out,
                       "With --sweep: play the sweep to wav:FILE or alsa:NAME");
-  command->add_flag("--arm", options->arm, "With --sweep-out alsa:...: arm the amplifier");
+  command->add_flag("--arm", options->arm,
+                    "With --sweep-out alsa:..., or --pickup on a real rig: arm the amplifier");
   command->add_option("--points", options->plan.points, "Number of tones in the sweep, for each transducer")
       ->capture_default_str();
-  command->add_option("--amplitude", options->plan.full_scale, "Amplitude of the sweep, 1 is full scale")
+  command
+      ->add_option("--amplitude", options->plan.full_scale,
+                   "Amplitude of the sweep (also of --pickup), 1 is full scale")
       ->capture_default_str();
   add_json(*command, context);
   command->footer(

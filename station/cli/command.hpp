@@ -66,6 +66,9 @@ void add_figures(CommandLine& app, Context& context);
 void add_power(CommandLine& app, Context& context);
 void add_preview(CommandLine& app, Context& context);
 void add_station(CommandLine& app, Context& context);
+void add_push(CommandLine& app, Context& context);
+void add_receive(CommandLine& app, Context& context);
+void add_collector_schema(CommandLine& app, Context& context);
 void add_operator_code(CommandLine& app, Context& context);
 
 void add_json(Command& command, Context& context);

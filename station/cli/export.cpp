@@ -9,6 +9,7 @@
 #include "station/cli/json.hpp"
 #include "station/cli/shared_options.hpp"
 #include "station/cli/sign.hpp"
+#include "station/collector/fetch.hpp"
 
 namespace turnpoint::cli {
 
@@ -47,7 +48,8 @@ void export_data(Options options, Context& context) {
   selection.format = format_named(options.format);
   selection.separator = single("--separator", options.separator);
   selection.decimal = single("--decimal", options.decimal);
-  auto files = store::export_data(options.database, options.out, selection);
+  const collector::ReadableDatabase database(options.database);
+  auto files = store::export_data(database.path(), options.out, selection);
   if (!options.sign.empty()) {
     std::vector<std::string> paths;
     for (const auto& file : files) paths.push_back(file.path);
@@ -72,7 +74,7 @@ void add_export(CommandLine& app, Context& context) {
   auto options = std::make_shared<Options>();
   auto* command = app.add_subcommand(
       "export", "Write sessions as CSV or BIDS, or their signals, with one folder for each protocol");
-  add_database(*command, options->database);
+  add_readable_database(*command, options->database);
   command->add_option("--out", options->out, "Folder to write to")->value("FOLDER")->required();
   command->add_option("--session", options->selection.session_id, "Export only this session");
   command->add_option("--participant", options->selection.participant,

@@ -42,9 +42,12 @@ const char* name(PageKind kind) {
       return "response: a button";
     case PageKind::confidence:
       return "confidence: on the screen";
+    case PageKind::question:
     case PageKind::line:
     case PageKind::number:
       return "answer on the screen";
+    case PageKind::explanation:
+      return "explanation: on the screen, or type next";
     case PageKind::feedback:
       return "feedback";
     case PageKind::interval:

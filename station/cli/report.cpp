@@ -3,14 +3,19 @@
 #include <fmt/format.h>
 #include <fmt/ostream.h>
 
-#include <cerrno>
+#include <deque>
 #include <memory>
+#include <optional>
 #include <system_error>
 
 #include "station/cli/command.hpp"
+#include "station/cli/long_work.hpp"
 #include "station/cli/shared_options.hpp"
+#include "station/collector/fetch.hpp"
+#include "station/desk/study_data.hpp"
 #include "station/report/html.hpp"
 #include "station/system/write_file.hpp"
+#include "station/terms/usage_error.hpp"
 #include "station/text/number.hpp"
 
 namespace turnpoint::cli {
@@ -18,13 +23,23 @@ namespace turnpoint::cli {
 namespace report_command {
 
 struct Options {
-  std::string database, out;
+  std::vector<std::string> databases, names;
+  std::string out, tables;
   store::SessionFilter filter;
+  bool study = false, progress = false;
+  std::string protocol_version, mode;
 };
 
 void report_session(Options options, Context& context) {
-  const auto id = desk::session_to_report(options.database, options.filter);
-  const auto summary = report::summarise(desk::report_data(options.database, id));
+  if (options.databases.size() > 1)
+    throw terms::UsageError("--db names " + std::to_string(options.databases.size()) +
+                            " files; the report of one session reads one, that of a study (--study) several");
+  if (!options.tables.empty() || !options.protocol_version.empty() || !options.mode.empty())
+    throw terms::UsageError(
+        "--tables, --protocol-version and --mode belong to the report of a study: add --study");
+  const auto& database = options.databases.front();
+  const auto id = desk::session_to_report(database, options.filter);
+  const auto summary = report::summarise(desk::report_data(database, id));
   if (context.json) context.out << report::to_json(summary) << "\n";
   if (options.out.empty() && !context.json) options.out = "report-" + id + ".html";
   if (options.out.empty()) return;
@@ -39,27 +54,125 @@ void report_session(Options options, Context& context) {
                estimate.sd ? fmt::format(" (SD {})", text::number(*estimate.sd, 3)) : "");
 }
 
+/// The file trials.csv, written participant by participant.
+class TrialFile {
+ public:
+  explicit TrialFile(const std::string& folder) {
+    if (folder.empty()) return;
+    system::make_folder(folder);
+    file_.emplace(folder + "/trials.csv");
+    file_->write(report::trial_table_header());
+  }
+  void add(const report::StudyPerson& person, const report::SessionData& data) {
+    if (file_) file_->write(report::trial_table_rows(person, data));
+  }
+  void commit() {
+    if (file_) file_->commit();
+  }
+
+ private:
+  std::optional<system::FileWriter> file_;
+};
+
+std::string interval_in_words(double value, double low, double high) {
+  return fmt::format("{} [{}, {}]", text::number(value, 3), text::number(low, 3), text::number(high, 3));
+}
+
+void print_study(std::ostream& out, const std::string& file, const report::Study& study) {
+  std::size_t excluded = 0;
+  for (const auto& person : study.persons) excluded += !person.excluded.empty();
+  fmt::print(out, "{}: {} participants, {} excluded\n", file, study.persons.size(), excluded);
+  for (const auto& group : study.groups) {
+    const auto name = group.condition.empty() ? "all trials" : group.condition;
+    if (group.result.fit && group.result.fit->threshold) {
+      const auto& [value, interval] = *group.result.fit->threshold;
+      fmt::print(out, "  {}: threshold of the group {} {}\n", name,
+                 interval_in_words(value, interval.low, interval.high), study.settings.level_unit);
+    }
+    for (const auto& statement : group.result.statements) fmt::print(out, "  {}: {}\n", name, statement.text);
+  }
+  for (const auto& effect : study.effects) {
+    if (!effect.difference) continue;
+    const auto& [value, interval] = *effect.difference;
+    fmt::print(out, "  {}, {} - {}: {}\n", effect.measure, effect.second, effect.first,
+               interval_in_words(value, interval.low, interval.high));
+  }
+}
+
+void report_study(Options options, Context& context) {
+  if (!options.filter.session_id.empty() || !options.filter.participant.empty())
+    throw terms::UsageError("--study covers all participants: leave out --session and --participant");
+  LongWork work(options.progress);
+  TrialFile trials(options.tables);
+  const auto study = desk::study_data(
+      {options.databases, options.names, options.filter.protocol_id, options.protocol_version, options.mode},
+      [&](const auto& person, const auto& data) { trials.add(person, data); },
+      [&](int done, int of) {
+        work.show("participants", done, of);
+        return !work.stop().stop_requested();
+      });
+  const auto told = work.end(context);
+  if (!options.tables.empty()) {
+    trials.commit();
+    for (const auto& table : report::study_tables(study))
+      system::write_file(options.tables + "/" + table.name, table.csv);
+  }
+  if (context.json) context.out << report::to_json(study) << "\n";
+  if (options.out.empty() && !context.json) options.out = "study.html";
+  if (options.out.empty()) return;
+  system::write_file(options.out, report::to_html(study));
+  if (!context.json) print_study(context.out, options.out, study);
+}
+
+void report_databases(Options options, Context& context) {
+  std::deque<collector::ReadableDatabase> readable;
+  for (auto& database : options.databases) {
+    // The address of a collector may contain a password.
+    options.names.push_back(collector::is_server(database) ? "collector" : database);
+    database = readable.emplace_back(database).path();
+  }
+  if (options.study)
+    report_study(options, context);
+  else
+    report_session(options, context);
+}
+
 }  // namespace report_command
 
 void add_report(CommandLine& app, Context& context) {
   using namespace report_command;
   auto options = std::make_shared<Options>();
   auto* command = app.add_subcommand(
-      "report", "Write a report of a session: fits, bias, speed-accuracy trade-off, health");
-  add_database(*command, options->database);
+      "report", "Write a report of a session, or of a study: fits, speed-accuracy trade-off, effects");
+  add_databases(*command, options->databases,
+                "Database, or a collector: postgresql://...; with --study, one or more");
   command->add_option("--session", options->filter.session_id,
                       "Session to report; by default the newest one");
   command->add_option("--participant", options->filter.participant,
                       "Report the newest session of this participant: CODE or CODE@STATION");
   command->add_option("--protocol", options->filter.protocol_id,
-                      "Report the newest session of this protocol");
+                      "Report the newest session of this protocol, or the study with this protocol");
+  command->add_flag(
+      "--study", options->study,
+      "Report all participants of a protocol together, without those whom its [exclusion] leaves "
+      "out");
+  command->add_option(
+      "--protocol-version", options->protocol_version,
+      "With --study: only sessions with this version, or with a text whose SHA-256 begins so");
+  command->add_option("--mode", options->mode, "With --study: only sessions of this mode")
+      ->check(one_of({"live", "pilot", "simulated"}));
+  command
+      ->add_option("--tables", options->tables,
+                   "With --study: write tidy CSV tables for R and Python to this folder")
+      ->value("FOLDER");
   command
       ->add_option("--out", options->out,
-                   "HTML file to write; by default report-SESSION.html, or no file with --json")
+                   "HTML file to write; by default report-SESSION.html or study.html, or no file with --json")
       ->value("FILE");
+  add_progress(*command, options->progress);
   add_json(*command, context);
   command->footer("Example: turnpoint report --db lab.sqlite --participant P01 --out P01.html");
-  command->callback([options, &context] { report_session(*options, context); });
+  command->callback([options, &context] { report_databases(*options, context); });
 }
 
 }  // namespace turnpoint::cli

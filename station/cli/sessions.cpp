@@ -6,6 +6,7 @@
 #include "station/cli/command.hpp"
 #include "station/cli/json.hpp"
 #include "station/cli/shared_options.hpp"
+#include "station/collector/fetch.hpp"
 #include "station/store/read.hpp"
 
 namespace turnpoint::cli {
@@ -53,7 +54,8 @@ void print(std::ostream& out, const std::vector<store::SessionRecord>& sessions)
 }
 
 void sessions(const Options& options, Context& context) {
-  const auto list = store::list_sessions(options.database, options.filter);
+  const collector::ReadableDatabase database(options.database);
+  const auto list = store::list_sessions(database.path(), options.filter);
   if (!context.json) return print(context.out, list);
   Json json = Json::array();
   for (const auto& session : list) json.push_back(to_json(session));
@@ -66,7 +68,7 @@ void add_sessions(CommandLine& app, Context& context) {
   using namespace sessions_command;
   auto options = std::make_shared<Options>();
   auto* command = app.add_subcommand("sessions", "List the sessions of a database");
-  add_database(*command, options->database);
+  add_readable_database(*command, options->database);
   command->add_option("--session", options->filter.session_id, "List only this session");
   command->add_option("--participant", options->filter.participant,
                       "List only this participant: CODE or CODE@STATION");

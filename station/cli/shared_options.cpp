@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "station/collector/fetch.hpp"
 #include "station/setup/places.hpp"
 
 namespace turnpoint::cli {
@@ -39,6 +40,13 @@ Check database(Missing missing) {
   return {"", [missing](const std::string& path) { return problem_of(path, missing); }};
 }
 
+/// Accepts what database() accepts, and the address of a collector.
+Check readable_database() {
+  return {"", [](const std::string& path) {
+            return collector::is_server(path) ? "" : problem_of(path, Missing::refused);
+          }};
+}
+
 }  // namespace
 
 Check database() { return database(Missing::refused); }
@@ -65,6 +73,17 @@ Option* add_rig(Command& command, std::string& target, const std::string& when) 
 
 void add_database(Command& command, std::string& target, const std::string& help) {
   command.add_option("--db", target, help)->value("FILE")->required()->check(database());
+}
+
+void add_databases(Command& command, std::vector<std::string>& target, const std::string& help) {
+  command.add_option("--db", target, help)->value("FILE")->required()->check(readable_database());
+}
+
+void add_readable_database(Command& command, std::string& target) {
+  command.add_option("--db", target, "Database, or a collector: postgresql://USER@HOST/DATABASE")
+      ->value("FILE")
+      ->required()
+      ->check(readable_database());
 }
 
 void add_new_database(Command& command, std::string& target, const std::string& help) {

@@ -1,5 +1,6 @@
 #pragma once
 #include <string>
+#include <vector>
 
 #include "station/cli/command_line.hpp"
 
@@ -22,6 +23,12 @@ Option* add_calibration(Command& command, std::string& target);
 
 /// Adds --db, which is required. The file must exist, and begin as a database does.
 void add_database(Command& command, std::string& target, const std::string& help = "Database");
+
+/// Like add_database(), but also accepts the address of a collector (postgresql://...). For commands that only read.
+void add_readable_database(Command& command, std::string& target);
+
+/// Like add_readable_database(), for a command that can read several databases at once.
+void add_databases(Command& command, std::vector<std::string>& target, const std::string& help);
 
 /// Like add_database(), for a command that creates a missing database.
 void add_new_database(Command& command, std::string& target, const std::string& help);

@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <set>
 
+#include "station/desk/cue_advice.hpp"
 #include "station/store/backup.hpp"
 #include "station/store/read.hpp"
 #include "station/system/clocks.hpp"
@@ -47,6 +48,13 @@ void add_tones(const simulation::Check& check, CheckWords& words) {
   words.facts.emplace_back("Surface moves at most", number(moved_um, 3) + " \u00b5m");
   words.facts.emplace_back("Lowest friction", number(friction, 3) + " of the surface at rest");
   words.facts.emplace_back("Models", joined(check.survey.models));
+}
+
+void add_remarks(const std::vector<text::Problem>& problems, CheckWords::Remark::Kind kind,
+                 CheckWords& words) {
+  for (const auto& problem : problems)
+    words.remarks.push_back({kind, fs::path(problem.place.file).filename().string(), problem.place.line,
+                             problem.what, problem.allowed});
 }
 
 }  // namespace
@@ -104,6 +112,10 @@ CheckWords words_of(const simulation::Check& check) {
   CheckWords words;
   for (const auto& problem : check.problems) words.problems.push_back(format(problem));
   for (const auto& warning : check.warnings) words.warnings.push_back(format(warning));
+  using Kind = CheckWords::Remark::Kind;
+  add_remarks(check.problems, Kind::problem, words);
+  add_remarks(check.warnings, Kind::warning, words);
+  add_remarks(check.notes, Kind::note, words);
   if (!check.problems.empty()) return words;
   words.facts.emplace_back("Rig", check.rig_name);
   words.facts.emplace_back("Trials", range(check.trials, 1));
@@ -121,7 +133,7 @@ CheckWords words_of(const simulation::Check& check) {
     words.cues.push_back({cue.cue,
                           fmt::format("{} % right with this cue alone (chance {} %)",
                                       std::lround(100 * cue.accuracy), std::lround(100 * cue.chance)),
-                          leaks});
+                          leaks, leaks ? cue_advice(cue.cue) : ""});
   }
   std::stable_sort(words.cues.begin(), words.cues.end(),
                    [](const auto& a, const auto& b) { return a.leaks > b.leaks; });

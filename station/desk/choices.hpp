@@ -52,8 +52,17 @@ struct CheckWords {
   struct Cue {
     std::string name, says;
     bool leaks = false;
+    std::string advice;  ///< what can be done about it; "" if the cue does not help
   };
   std::vector<Cue> cues;
+  /// What the check says about one place of the protocol or of the rig. Problems come first, notes last.
+  struct Remark {
+    enum class Kind { problem, warning, note } kind = Kind::problem;
+    std::string file;  ///< name of the file, without its folder
+    int line = 0;      ///< 0: the file as a whole
+    std::string what, hint;
+  };
+  std::vector<Remark> remarks;
 };
 CheckWords words_of(const simulation::Check& check);
 

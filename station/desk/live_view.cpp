@@ -6,7 +6,9 @@
 #include <cmath>
 #include <map>
 
+#include "station/desk/report_data.hpp"
 #include "station/desk/scene_figures.hpp"
+#include "station/report/figures.hpp"
 #include "station/session/rows.hpp"
 #include "station/text/number.hpp"
 
@@ -76,6 +78,22 @@ std::string vibration(const LiveTrial& trial) {
   return records::name(trial.proof) + (measured ? ": " + trial.measured : std::string());
 }
 
+/// The latest estimate of each procedure that keeps one, with its 95 % interval.
+void add_estimates(const std::vector<LiveTrial>& trials, Facts& facts) {
+  std::map<std::string, const LiveTrial*> latest;
+  for (const auto& trial : trials)
+    if (trial.threshold_est && std::isfinite(*trial.threshold_est)) latest[trial.procedure] = &trial;
+  for (const auto& [procedure, trial] : latest) {
+    auto value = number(*trial->threshold_est, 3);
+    if (trial->threshold_sd && std::isfinite(*trial->threshold_sd)) {
+      const double half = 1.96 * *trial->threshold_sd;
+      value += fmt::format(" (95 %: {} to {})", number(*trial->threshold_est - half, 3),
+                           number(*trial->threshold_est + half, 3));
+    }
+    facts.emplace_back("Estimate, " + procedure, value);
+  }
+}
+
 }  // namespace
 
 Facts course_of(const std::vector<LiveTrial>& trials) {
@@ -94,6 +112,7 @@ Facts course_of(const std::vector<LiveTrial>& trials) {
                                                        percent(static_cast<double>(right) / scored))
                                          : "none scored yet");
   if (catches > 0) facts.emplace_back("Catch trials right", fmt::format("{} of {}", caught, catches));
+  add_estimates(trials, facts);
   facts.emplace_back("Response time", times.empty() ? "none yet"
                                                     : "median " + number(median(times), 3) + " s, last " +
                                                           number(times.back(), 3) + " s");
@@ -126,6 +145,44 @@ Facts limits_used(const std::vector<LiveTrial>& trials, std::optional<double> pe
                      percent(on_s / window_s) + " (limit " + percent(limits.duty) + ")");
   facts.emplace_back("Session",
                      fmt::format("{} of {} min", number(now_s / 60, 3), number(limits.session_minutes, 3)));
+  return facts;
+}
+
+Facts sensors_of(const records::TrialRow& row, const std::optional<protocol::Sensing>& asked) {
+  Facts facts;
+  const auto& finger = row.finger;
+  const auto range = [](const std::optional<std::pair<double, double>>& wanted, const char* unit) {
+    return wanted ? fmt::format(" (asked for {} to {} {})", number(wanted->first, 3),
+                                number(wanted->second, 3), unit)
+                  : std::string();
+  };
+  const auto share = [](const std::optional<double>& inside) {
+    return inside ? ", " + percent(*inside) + " of the time in range" : std::string();
+  };
+  if (!finger.sensing.empty()) facts.emplace_back("Finger", finger.sensing);
+  if (finger.normal_N)
+    facts.emplace_back(
+        "Normal force",
+        fmt::format("{} N, SD {}{}{}", number(*finger.normal_N, 3), number(finger.normal_sd_N.value_or(0), 2),
+                    range(asked ? asked->normal_N : std::nullopt, "N"), share(finger.normal_in_window)));
+  if (finger.speed_mm_s)
+    facts.emplace_back("Speed", fmt::format("{} mm/s{}{}", number(*finger.speed_mm_s, 3),
+                                            range(asked ? asked->speed_mm_s : std::nullopt, "mm/s"),
+                                            share(finger.speed_in_window)));
+  if (finger.strokes) facts.emplace_back("Strokes", std::to_string(*finger.strokes));
+  if (finger.mu) facts.emplace_back("Friction", number(*finger.mu, 3));
+  if (finger.tare_mN)
+    facts.emplace_back("Zero of the cells",
+                       "moved " + number(*finger.tare_mN, 2) + " mN (flag at 5, stop at 20)");
+  if (row.drive_ratio_dB)
+    facts.emplace_back("Pick-up, level",
+                       fmt::format("{:+.2f} dB of the plan (flag at 0.5, void at 1)", *row.drive_ratio_dB));
+  if (row.drive_residual_dB)
+    facts.emplace_back("Pick-up, residual",
+                       fmt::format("{:.0f} dB (flag at -40, void at -30)", *row.drive_residual_dB));
+  if (row.onset_error_us)
+    facts.emplace_back("Pick-up, onset",
+                       fmt::format("{:+.0f} us (flag at 200, void at 1000)", *row.onset_error_us));
   return facts;
 }
 
@@ -185,6 +242,7 @@ std::optional<plot::Figure> live_times(const std::vector<LiveTrial>& trials) {
 LiveView::LiveView(const protocol::Protocol& protocol, const rig::Rig& rig, OnState on_state)
     : on_state_(std::move(on_state)),
       level_(protocol.procedures.empty() ? "Level" : protocol.procedures.front().level),
+      asked_(protocol.sensing),
       adjusted_(protocol.task.adjusts),
       rig_(rig),
       planner_(rig_),
@@ -218,7 +276,7 @@ void LiveView::trial_ended(const trial::TrialSpec& spec, const records::TrialRow
   trial.extra_touches = row.extra_touches;
   trial.proof = row.proof;
   trial.measured = session::describe_proof(row);
-  push({{}, {}, trial});
+  push({{}, {}, trial, std::make_shared<records::TrialRow>(row)});
 }
 
 void LiveView::push(News news) {
@@ -266,6 +324,12 @@ void LiveView::take(const News& news) {
   const auto times = live_times(trials_);
   state_.trace = trace ? drawing_of(*trace) : Drawing();
   state_.times = times ? drawing_of(*times) : Drawing();
+  state_.sensors = sensors_of(*news.row, asked_);
+  if (news.row->type == terms::TrialType::practice || news.row->outcome != terms::Outcome::answered) return;
+  for (const auto& signal : news.row->signal_rows)
+    if (signal.stream == "finger") along_.add(*news.row, signal, rig_.output.rate_Hz);
+  const auto strip = report::strip_chart(curves_of(along_));
+  state_.strip = strip ? drawing_of(alone("Friction along the strip", *strip)) : Drawing();
 }
 
 void LiveView::show() {

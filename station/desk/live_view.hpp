@@ -14,6 +14,7 @@
 #include "station/desk/preview.hpp"
 #include "station/desk/scene_figures.hpp"
 #include "station/plot/chart.hpp"
+#include "station/session/along_strip.hpp"
 #include "station/session/monitor.hpp"
 
 namespace turnpoint::desk {
@@ -23,11 +24,13 @@ struct LiveState {
   /// number and level of the current trial
   std::string heading;
   std::vector<std::pair<std::string, std::string>> scene, course, limits;  ///< pairs of a label and a value
+  /// what pick-ups and force cells measured in the last trial; empty if the rig has neither
+  std::vector<std::pair<std::string, std::string>> sensors;
   /// drawings of the surface, one for each scene, in the order of presentation
   std::vector<Drawing> surfaces;
-  /// figures: displacement profile of all scenes, levels, and response times; each is empty if there are no
-  /// data
-  Drawing profile, trace, times;
+  /// figures: displacement profile of all scenes, levels, response times, and friction along the strip; each
+  /// is empty if there are no data
+  Drawing profile, trace, times, strip;
 };
 
 /// What the live view keeps about a finished trial.
@@ -53,6 +56,10 @@ std::vector<std::pair<std::string, std::string>> course_of(const std::vector<Liv
 std::vector<std::pair<std::string, std::string>> limits_used(const std::vector<LiveTrial>& trials,
                                                              std::optional<double> peak_displacement_m,
                                                              const rig::Rig& rig);
+
+/// Describes what the sensors measured in a trial, beside the limits. Pure.
+std::vector<std::pair<std::string, std::string>> sensors_of(const records::TrialRow& row,
+                                                            const std::optional<protocol::Sensing>& asked);
 
 /// Plots the levels in order, one series per procedure. Open markers are wrong answers; a line shows the
 /// running estimate.
@@ -87,6 +94,7 @@ class LiveView : public session::Monitor {
     std::optional<Begun> begun;
     std::optional<Setting> setting;
     std::optional<LiveTrial> ended;
+    std::shared_ptr<const records::TrialRow> row = nullptr;  ///< row of the ended trial, with its signal
   };
   void push(News news);
   void work(const std::stop_token& stop);
@@ -95,7 +103,8 @@ class LiveView : public session::Monitor {
   void tell();
 
   OnState on_state_;
-  std::string level_;     ///< name of the level in the protocol
+  std::string level_;  ///< name of the level in the protocol
+  std::optional<protocol::Sensing> asked_;
   std::string adjusted_;  ///< the factor that a slider sets; "" if there is none
   rig::Rig rig_;
   // The worker thread alone uses the members from `planner_` to `state_`.
@@ -104,6 +113,7 @@ class LiveView : public session::Monitor {
   std::optional<double> setting_;  ///< the slider's setting; empty until it has been moved
   std::chrono::steady_clock::time_point next_setting_;
   std::vector<LiveTrial> trials_;
+  session::AlongStrip along_;
   std::optional<double> peak_displacement_m_;
   LiveState state_;
   std::mutex mutex_;

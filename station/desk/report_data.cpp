@@ -5,6 +5,8 @@
 
 #include "station/protocol/protocol.hpp"
 #include "station/report/stored_trials.hpp"
+#include "station/store/open.hpp"
+#include "station/store/stored_signals.hpp"
 #include "station/text/number.hpp"
 
 namespace turnpoint::desk {
@@ -156,13 +158,46 @@ void add_health(const store::StoredSession& stored, report::SessionData& data) {
                  {"Calibration", start.calibration_id.value_or("none")},
                  {"Real-time rights", start.realtime_rights},
                  {"Kernel", start.kernel},
+                 {"Place in the counterbalancing",
+                  text::number(stored.session.sequence_index, 6) +
+                      (stored.session.leased_place ? ", leased from the collector: unique among its stations"
+                                                   : ", given by this station alone")},
                  {"Checksum of the data", stored.session.checksum.empty()
                                               ? "none, because an earlier release recorded the session"
                                               : stored.session.checksum},
                  {"Software", start.software_version}};
 }
 
+/// Adds friction along the strip, from the stored signals of the trials that count.
+void add_strip(const std::string& path, const store::StoredSession& stored, report::SessionData& data) {
+  if (data.finger.empty()) return;
+  std::map<int, const records::TrialRow*> rows;
+  for (const auto& block : stored.blocks)
+    for (const auto& row : block.trials) rows[row.trial_index] = &row;
+  std::map<int, bool> counts;
+  for (const auto& trial : data.finger) counts[trial.trial_index] = true;
+  const auto rate_Hz = store::playback_rate_Hz(stored.session.start);
+  if (!rate_Hz) return;
+  session::AlongStrip along;
+  auto database = store::open_reader(path);
+  store::SignalReader signals(database, stored.session.session_id, "finger");
+  while (const auto signal = signals.next())
+    if (counts.contains(signal->trial_index)) along.add(*rows.at(signal->trial_index), signal->row, *rate_Hz);
+  data.strip = curves_of(along);
+}
+
 }  // namespace
+
+std::vector<analysis::FrictionCurve> curves_of(const session::AlongStrip& along) {
+  std::vector<analysis::FrictionCurve> curves;
+  for (const int direction : {1, -1}) {
+    auto curve = along.curve(direction);
+    if (curve.friction.empty()) continue;
+    curves.push_back({direction > 0 ? "towards the narrow end" : "towards the wide end",
+                      std::move(curve.from_boundary_mm), std::move(curve.friction), std::move(curve.se)});
+  }
+  return curves;
+}
 
 report::SessionData report_data(const std::string& database, const std::string& session_id) {
   const auto stored = store::read_session(database, session_id);
@@ -182,10 +217,17 @@ report::SessionData report_data(const std::string& database, const std::string& 
                 {"Seed", std::to_string(start.seed)},
                 {"Error of the boundaries", boundary_errors(stored.blocks)}};
   for (const auto& note : stored.session.annotations) data.facts.emplace_back("Note", note);
+  for (const auto* event : records::standing_answers(stored.events))
+    for (const auto& answer : event->answers)
+      data.facts.emplace_back(
+          answer.questionnaire + ": " + answer.item +
+              (answer.occasion > 0 ? " (after block " + std::to_string(answer.occasion) + ")" : ""),
+          answer.answer);
   data.seed = start.seed;
   report::add_trials(stored.blocks, protocol, data);
   add_health(stored, data);
   data.measured = measured_trials(stored.blocks);
+  add_strip(database, stored, data);
   return data;
 }
 

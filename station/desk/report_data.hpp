@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "station/report/summary.hpp"
+#include "station/session/along_strip.hpp"
 #include "station/store/read.hpp"
 
 namespace turnpoint::desk {
@@ -11,6 +12,9 @@ namespace turnpoint::desk {
 /// with the session. If a block was repeated, its last attempt counts. Throws StoreError, or text::BadInput
 /// if this program can no longer read the protocol text.
 report::SessionData report_data(const std::string& database, const std::string& session_id);
+
+/// Friction along the strip as curves of a report, one for each direction with strokes.
+std::vector<analysis::FrictionCurve> curves_of(const session::AlongStrip& along);
 
 /// Returns the session to report: the named one or, without a name, the newest session that matches the
 /// filter and has trials. Throws StoreError (missing) if there is none.

@@ -21,7 +21,7 @@ constexpr int kFifoPriority = 69;  // below that of the playback, whose deadline
 
 std::string device_name(const std::string& uri) {
   if (!uri.starts_with("alsa:") || uri.size() == 5)
-    throw terms::UsageError(fmt::format("capture '{}'; allowed is alsa:NAME", uri));
+    throw terms::UsageError(fmt::format("capture '{}' is not supported; allowed: alsa:NAME", uri));
   return uri.substr(5);
 }
 

@@ -122,7 +122,7 @@ lines::Finding pick_ups(const rig::Rig& rig) {
   if (unproven.empty()) return {"pick-ups", Status::ok, "calibrated for all transducers", ""};
   return {"pick-ups", Status::warning,
           fmt::format("not calibrated for {}: these stimuli will be unproven", fmt::join(unproven, ", ")),
-          "add [[pickup]] tables to the calibration file (deploy/rigs/README.md, Pick-ups)"};
+          "measure them with `turnpoint calibrate --pickup` (deploy/rigs/README.md, Pick-ups)"};
 }
 
 // Warns if the touch panel is simulated although the converter is real. A new rig file has a simulated panel,

@@ -39,13 +39,18 @@ std::optional<std::int64_t> LatencyDevices::claim(double x, double y, std::int64
   return touch_ ? touch_->claim(x, y, seen_ns) : std::nullopt;
 }
 
-calibration::Calibration with_panel(const rig::Rig& rig, const calibration::PanelLatency& measured) {
+calibration::Calibration known_calibration(const rig::Rig& rig) {
   auto made = in_force(rig).value_or(calibration::Calibration{});
   if (made.rig_sha256.empty()) {
     made.rig_name = rig.name;
     made.rig_sha256 = rig.sha256;
     made.made_on = calibration::today();
   }
+  return made;
+}
+
+calibration::Calibration with_panel(const rig::Rig& rig, const calibration::PanelLatency& measured) {
+  auto made = known_calibration(rig);
   auto panel = measured;
   panel.made_on = calibration::today();
   if (made.panel && made.panel->quality == panel.quality) {
@@ -56,9 +61,11 @@ calibration::Calibration with_panel(const rig::Rig& rig, const calibration::Pane
   return made;
 }
 
-std::optional<calibration::PanelLatency> known_panel(const rig::Rig& rig) {
-  const auto known = in_force(rig);
-  return known ? known->panel : std::nullopt;
+void keep_devices(const rig::Rig& rig, calibration::Calibration& made) {
+  const auto known = known_calibration(rig);
+  made.panel = known.panel;
+  made.pick_ups = known.pick_ups;
+  made.forces = known.forces;
 }
 
 }  // namespace turnpoint::maintenance

@@ -51,7 +51,11 @@ class LatencyDevices {
 /// calibration gets today's date.
 calibration::Calibration with_panel(const rig::Rig& rig, const calibration::PanelLatency& measured);
 
-/// Returns the panel's latency from the newest valid calibration beside the rig file.
-std::optional<calibration::PanelLatency> known_panel(const rig::Rig& rig);
+/// Returns the newest valid calibration beside the rig file; without one, a calibration with nothing in it.
+calibration::Calibration known_calibration(const rig::Rig& rig);
+
+/// Copies what is measured by commands of its own (panel, pick-ups, force cells) from the newest valid
+/// calibration beside the rig file.
+void keep_devices(const rig::Rig& rig, calibration::Calibration& made);
 
 }  // namespace turnpoint::maintenance

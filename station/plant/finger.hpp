@@ -33,8 +33,8 @@ class FingerModel {
   void lift(std::int64_t frame);
   /// Position at which the finger touches before the next step. step() needs the friction at this position.
   double contact_m() const { return state_.contact_m; }
-  /// Advances to the step that begins at frame `frame` of the laboratory. `relative_friction` is the factor
-  /// by which a steady vibration reduces friction at contact_m(); the film follows it with a lag.
+  /// Advances to the step that begins at audio frame `frame`. `relative_friction` is the factor
+  /// by which a steady vibration reduces friction at contact_m(); the air film follows it with a lag.
   const FingerState& step(std::int64_t frame, double relative_friction, bool lifted);
 
  private:

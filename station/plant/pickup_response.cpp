@@ -174,6 +174,15 @@ Complex PickupFilter::response(std::size_t place, double frequency_Hz) const {
   return sum;
 }
 
+std::vector<std::pair<double, double>> PickupFilter::resonators() const {
+  std::vector<std::pair<double, double>> found;
+  for (std::size_t n = 0; n < pole_re_.size(); ++n) {
+    const Complex turn = std::log(Complex(pole_re_[n], pole_im_[n]));
+    found.emplace_back(turn.imag() * rate_Hz_ / (2 * pi), -turn.imag() / (2 * turn.real()));
+  }
+  return found;
+}
+
 void PickupFilter::continue_from(const PickupFilter& other) {
   state_re_ = other.state_re_;
   state_im_ = other.state_im_;

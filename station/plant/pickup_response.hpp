@@ -2,6 +2,7 @@
 #include <complex>
 #include <cstddef>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "physics/surface.hpp"
@@ -31,6 +32,8 @@ class PickupFilter {
   std::complex<double> response(std::size_t place, double frequency_Hz) const;
   double fit_error() const { return fit_error_; }
   std::size_t resonances() const { return pole_re_.size(); }
+  /// Frequency (Hz) and quality factor of each resonator.
+  std::vector<std::pair<double, double>> resonators() const;
   /// Copies the state of another filter, so that the surface continues its motion without a jump.
   void continue_from(const PickupFilter& other);
 

@@ -77,6 +77,8 @@ class Plant {
   /// Displacement at a pick-up per displacement of the drive edge, which really moves at `frequency_Hz` (see
   /// FaultKind::frequency_off).
   std::complex<double> pickup_response(std::size_t pickup, double frequency_Hz) const;
+  /// Frequency (Hz) and quality factor of each simulated resonance.
+  std::vector<std::pair<double, double>> resonances() const { return filters_[filter_].second.resonators(); }
   /// Largest difference between the simulated response of a pick-up and the surface's model, within the band.
   double pickup_error() const { return filters_.front().second.fit_error(); }
 

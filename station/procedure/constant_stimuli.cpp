@@ -119,6 +119,8 @@ void ConstantStimuli::break_runs(std::vector<Item>& items, random::Draws& draws)
 
 std::optional<Proposal> ConstantStimuli::next() const {
   if (position_ >= queue_.size()) return std::nullopt;
+  if (enough_right(spec_.stop, answers_.size(), [this](std::size_t i) { return answers_[i]; }))
+    return std::nullopt;
   const auto& item = queue_[position_];
   Proposal proposal{spec_.values[item.value], {}};
   for (std::size_t i = 0; i < spec_.balance.size(); ++i)
@@ -128,6 +130,7 @@ std::optional<Proposal> ConstantStimuli::next() const {
 
 void ConstantStimuli::record(Answer answer) {
   const auto item = queue_[position_++];
+  if (spec_.stop.right && answer != Answer::none) answers_.push_back(answer == Answer::one);
   if (answer != Answer::none || context_.unanswered_are_data) {
     ++recorded_;
     return;
@@ -144,6 +147,7 @@ std::uint64_t ConstantStimuli::state_hash() const {
   StateHash hash;
   hash.add(position_);
   hash.add(static_cast<std::uint64_t>(recorded_));
+  for (const bool right : answers_) hash.add(right ? 1 : 0);
   for (std::size_t i = position_; i < queue_.size(); ++i) hash.add(queue_[i].value);
   return hash.value();
 }
@@ -155,6 +159,13 @@ extern const Description constant_stimuli{
     [](text::TableReader& reader, Spec& spec) {
       spec.values = reader.numbers("values", any_level);
       read_list(reader, spec);
+      if (const auto* stop = reader.maybe_table("stop")) {
+        text::TableReader inner(*stop, reader.path("stop"), reader.findings());
+        read_right_of_last(inner, spec);
+        if (!inner.has("right") && !inner.has("of_last"))
+          reader.problem("stop", "\"stop\" does not contain a rule", "stop = { right = 8, of_last = 10 }");
+        inner.finish();
+      }
     },
     [](const Spec& spec, std::vector<Problem>& problems) {
       if (spec.values.empty()) problems.push_back({"values", "missing", "list one or more levels"});

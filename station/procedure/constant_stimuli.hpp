@@ -8,7 +8,7 @@ namespace turnpoint::procedure {
 
 /// Presents every value `repeats` times. Combinations of the balanced factors occur as equally often as
 /// possible. The order is shuffled so that at most max_run trials in a row have the same right answer.
-/// Unanswered trials are repeated later.
+/// Unanswered trials are repeated later. Ends early if Stop::right is met.
 class ConstantStimuli : public Procedure {
  public:
   ConstantStimuli(const Spec& spec, const Context& context, const random::Key& key);
@@ -34,6 +34,7 @@ class ConstantStimuli : public Procedure {
   random::Key key_;
   std::vector<Item> queue_;
   std::size_t position_ = 0;
+  std::vector<bool> answers_;  ///< kept only for the rule "right of the last"
   int recorded_ = 0, requeued_ = 0, total_ = 0;
 };
 

@@ -45,11 +45,12 @@ void read_stop(TableReader& reader, Spec& spec) {
   spec.stop.min_trials = inner.maybe_integer("min_trials", 1, 100000);
   spec.stop.threshold_sd = inner.maybe_number("threshold_sd", {0, 1e6, Range::Ends::open_low});
   spec.stop.entropy_nats = inner.maybe_number("entropy_nats", {-100, 100});
-  const int rules =
-      inner.has("trials") + inner.has("reversals") + inner.has("threshold_sd") + inner.has("entropy_nats");
+  read_right_of_last(inner, spec);
+  const int rules = inner.has("right") + inner.has("trials") + inner.has("reversals") +
+                    inner.has("threshold_sd") + inner.has("entropy_nats");
   if (rules == 0)
     reader.findings().add(table->place, "\"stop\" does not contain a stopping rule",
-                          "add \"trials\", \"reversals\", \"threshold_sd\" or \"entropy_nats\"");
+                          "add \"trials\", \"reversals\", \"threshold_sd\", \"entropy_nats\" or \"right\"");
   if (rules > 1 && !inner.has("rule"))
     reader.findings().add(
         table->place, "\"stop\" contains several stopping rules",
@@ -57,6 +58,17 @@ void read_stop(TableReader& reader, Spec& spec) {
   spec.stop.rule =
       inner.maybe_word("rule", {"or", "and"}).value_or("or") == "and" ? StopRule::all : StopRule::any;
   inner.finish();
+}
+
+void read_right_of_last(TableReader& stop, Spec& spec) {
+  spec.stop.right = stop.maybe_integer("right", 1, 1000);
+  spec.stop.of_last = stop.maybe_integer("of_last", 1, 1000);
+  if (stop.has("right") != stop.has("of_last"))
+    stop.problem(stop.has("right") ? "right" : "of_last", "\"right\" and \"of_last\" belong together",
+                 "right = 8, of_last = 10 ends after 8 right answers among the last 10");
+  else if (spec.stop.right && spec.stop.of_last && *spec.stop.right > *spec.stop.of_last)
+    stop.problem("right", "more right answers than answers", "at most \"of_last\"");
+  if (!spec.stop.right || !spec.stop.of_last) spec.stop.right.reset(), spec.stop.of_last.reset();
 }
 
 void read_list(TableReader& reader, Spec& spec) {

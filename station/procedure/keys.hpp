@@ -10,6 +10,8 @@ inline constexpr text::Range any_level{-1e6, 1e6};
 
 void read_scale(text::TableReader& reader, Spec& spec);
 void read_stop(text::TableReader& reader, Spec& spec);
+/// Reads "right" and "of_last" of a table `stop`.
+void read_right_of_last(text::TableReader& stop, Spec& spec);
 void read_tracks(text::TableReader& reader, Spec& spec);
 /// Reads "repeats", "balance" and "order" of a list of levels.
 void read_list(text::TableReader& reader, Spec& spec);

@@ -338,6 +338,26 @@ std::size_t Posterior::best_stimulus() const {
   return static_cast<std::size_t>(std::max_element(all.begin(), all.end()) - all.begin());
 }
 
+std::size_t Posterior::nearest_stimulus(double level, Scale scale) const {
+  std::size_t nearest = 0;
+  double least = 2 * kBeyond;
+  for (std::size_t i = 0; i < stimuli_.size(); ++i)
+    if (const double away = std::fabs(distance(scale, stimuli_[i], level)); away < least)
+      nearest = i, least = away;
+  return nearest;
+}
+
+double Posterior::most_likely_threshold() const {
+  const auto weights = marginal(threshold);
+  // products of the same factors in another order differ by rounding
+  const double most = *std::max_element(weights.begin(), weights.end()) * (1 - 1e-9);
+  double sum = 0;
+  int count = 0;
+  for (std::size_t i = 0; i < weights.size(); ++i)
+    if (weights[i] >= most) sum += values_[threshold][i], ++count;
+  return sum / count;
+}
+
 void Posterior::update(std::size_t stimulus, bool one) {
   double total = 0;
   for (std::size_t t = 0; t < values_[threshold].size(); ++t)

@@ -27,6 +27,12 @@ class Posterior {
   /// the one with the largest mutual information, that is, the smallest expected entropy. If several are
   /// equal, returns the first.
   std::size_t best_stimulus() const;
+  /// Returns the index of the stimulus that is nearest to a level on this scale; of two equally near, the
+  /// first.
+  std::size_t nearest_stimulus(double level, Scale scale) const;
+  /// Returns the threshold of largest weight, summed over the other parameters. If several are equal, as
+  /// before the first answer, returns their mean.
+  double most_likely_threshold() const;
   /// Returns the mutual information (nats) of each stimulus.
   std::vector<double> information() const;
   /// Returns the posterior predictive probability of answer 1 at this stimulus.

@@ -15,6 +15,8 @@ extern const Description weighted_up_down;
 extern const Description quest_plus;
 extern const Description psi;
 extern const Description psi_marginal;
+extern const Description zest;
+extern const Description best_pest;
 extern const Description adjustment;
 extern const Description accelerated_stochastic_approximation;
 extern const Description limits;
@@ -22,14 +24,8 @@ extern const Description limits;
 namespace {
 
 constexpr std::array kDescriptions{
-    &constant_stimuli,
-    &up_down,
-    &weighted_up_down,
-    &quest_plus,
-    &psi,
-    &psi_marginal,
-    &adjustment,
-    &accelerated_stochastic_approximation,
+    &constant_stimuli, &up_down, &weighted_up_down, &quest_plus, &psi,
+    &psi_marginal,     &zest,    &best_pest,        &adjustment, &accelerated_stochastic_approximation,
     &limits,
 };
 

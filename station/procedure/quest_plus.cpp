@@ -16,8 +16,15 @@ constexpr int kUnansweredInARow = 3;
 
 }  // namespace
 
-QuestPlus::QuestPlus(const Spec& spec)
-    : spec_(spec), posterior_(spec), stimulus_(posterior_.best_stimulus()) {}
+QuestPlus::QuestPlus(const Spec& spec) : spec_(spec), posterior_(spec), stimulus_(chosen()) {}
+
+std::size_t QuestPlus::chosen() const {
+  if (spec_.kind == Kind::zest)
+    return posterior_.nearest_stimulus(posterior_.estimate(Posterior::threshold).mean, spec_.scale);
+  if (spec_.kind == Kind::best_pest)
+    return posterior_.nearest_stimulus(posterior_.most_likely_threshold(), spec_.scale);
+  return posterior_.best_stimulus();
+}
 
 bool QuestPlus::done() const {
   const auto& stop = spec_.stop;
@@ -27,8 +34,11 @@ bool QuestPlus::done() const {
   if (stop.min_trials && trials < *stop.min_trials) return false;
   const bool by_sd = stop.threshold_sd && *posterior_.estimate(Posterior::threshold).sd <= *stop.threshold_sd;
   const bool by_entropy = stop.entropy_nats && posterior_.entropy_nats() <= *stop.entropy_nats;
-  if (stop.rule == StopRule::any) return by_trials || by_sd || by_entropy;
-  return (!stop.trials || by_trials) && (!stop.threshold_sd || by_sd) && (!stop.entropy_nats || by_entropy);
+  const bool by_right =
+      enough_right(stop, history_.size(), [this](std::size_t i) { return history_[i] % 2 == 1; });
+  if (stop.rule == StopRule::any) return by_trials || by_sd || by_entropy || by_right;
+  return (!stop.right || by_right) && (!stop.trials || by_trials) && (!stop.threshold_sd || by_sd) &&
+         (!stop.entropy_nats || by_entropy);
 }
 
 std::optional<Proposal> QuestPlus::next() const {
@@ -46,7 +56,7 @@ void QuestPlus::record(Answer answer) {
   const bool one = answer == Answer::one;
   posterior_.update(stimulus_, one);
   history_.push_back(2 * stimulus_ + (one ? 1 : 0));
-  stimulus_ = posterior_.best_stimulus();
+  stimulus_ = chosen();
 }
 
 int QuestPlus::expected() const { return std::max(spec_.stop.trials.value_or(60), recorded_ + spent_); }
@@ -92,7 +102,8 @@ void read_axes(text::TableReader& reader, Spec& spec) {
   }
 }
 
-void read_posterior(text::TableReader& reader, Spec& spec) {
+/// Reads the keys of every procedure with a posterior.
+void read_grids(text::TableReader& reader, Spec& spec) {
   read_tracks(reader, spec);
   read_scale(reader, spec);
   const auto function = reader.word("function", {"weibull", "normal", "logistic"});
@@ -103,6 +114,11 @@ void read_posterior(text::TableReader& reader, Spec& spec) {
           reader.require("stimuli", "give the levels from which to choose: { from, to, step }"))
     spec.stimuli = read_grid(*stimuli, reader.path("stimuli"), Axis::stimuli, reader.findings());
   read_axes(reader, spec);
+  read_stop(reader, spec);
+}
+
+void read_posterior(text::TableReader& reader, Spec& spec) {
+  read_grids(reader, spec);
   const std::vector<std::string> parameters{"threshold", "slope", "guess", "lapse"};
   spec.nuisance = reader.maybe_strings("nuisance");
   for (const auto& name : spec.nuisance)
@@ -110,7 +126,6 @@ void read_posterior(text::TableReader& reader, Spec& spec) {
       reader.problem("nuisance", "\"" + name + "\" is not a parameter of the psychometric function",
                      "allowed: " + text::quoted_list(parameters));
   reader.word("select", {"min-expected-entropy"}, "min-expected-entropy");
-  read_stop(reader, spec);
 }
 
 void validate_rate(const char* key, const Grid& grid, std::vector<Problem>& problems) {
@@ -155,8 +170,20 @@ void validate_posterior(const Spec& spec, std::vector<Problem>& problems) {
     problems.push_back({"grid.threshold",
                         "the stimuli and grids have too many combinations to choose a level in time",
                         "allow at most 50 million combinations"});
-  if (!spec.stop.trials && !spec.stop.threshold_sd && !spec.stop.entropy_nats)
+  if (!spec.stop.trials && !spec.stop.threshold_sd && !spec.stop.entropy_nats && !spec.stop.right)
     problems.push_back({"stop", "no rule ends the procedure", "add trials or threshold_sd"});
+}
+
+void validate_at_threshold(const Spec& spec, std::vector<Problem>& problems) {
+  validate_posterior(spec, problems);
+  for (const auto& [key, grid] : {std::pair("grid.slope", &spec.slope), std::pair("grid.guess", &spec.guess),
+                                  std::pair("grid.lapse", &spec.lapse)})
+    if (grid->values.size() > 1)
+      problems.push_back({key, "only the threshold is estimated", "one value, or quest-plus or psi instead"});
+  const auto& prior = spec.prior_threshold;
+  if (spec.kind == Kind::best_pest && (prior.normal || !prior.weights.empty()))
+    problems.push_back({"prior.threshold", "the most likely threshold has no prior",
+                        "leave it out, or write kind = \"zest\""});
 }
 
 std::unique_ptr<Procedure> make_quest_plus(const Spec& spec, const Context&, const random::Key&) {
@@ -180,5 +207,12 @@ extern const Description psi{Kind::psi,          "psi",           Choice::poster
 
 extern const Description psi_marginal{Kind::psi_marginal, "psi-marginal",  Choice::posterior, read_posterior,
                                       validate_posterior, make_quest_plus, share_at_threshold};
+
+extern const Description zest{
+    Kind::zest,        "zest", Choice::posterior, read_grids, validate_at_threshold, make_quest_plus,
+    share_at_threshold};
+
+extern const Description best_pest{Kind::best_pest,       "best-pest",     Choice::posterior, read_grids,
+                                   validate_at_threshold, make_quest_plus, share_at_threshold};
 
 }  // namespace turnpoint::procedure

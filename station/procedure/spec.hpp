@@ -1,4 +1,5 @@
 #pragma once
+#include <cstddef>
 #include <map>
 #include <optional>
 #include <string>
@@ -16,6 +17,8 @@ enum class Kind {
   quest_plus,
   psi,
   psi_marginal,
+  zest,
+  best_pest,
   adjustment,
   accelerated_stochastic_approximation,
   limits
@@ -50,6 +53,8 @@ struct Prior {
 struct Stop {
   std::optional<int> trials, reversals, min_trials;
   std::optional<double> threshold_sd, entropy_nats;
+  /// ends the procedure when this many of the last `of_last` answers were 1; both are set, or neither
+  std::optional<int> right, of_last;
   StopRule rule = StopRule::any;
 };
 
@@ -108,6 +113,17 @@ struct Spec {
 
   Stop stop;
 };
+
+/// True if the rule `right` of `of_last` is set and met. `answer_at(i)` says whether the i-th of `answers`
+/// answers was 1.
+template <class AnswerAt>
+bool enough_right(const Stop& stop, std::size_t answers, const AnswerAt& answer_at) {
+  if (!stop.right || answers < static_cast<std::size_t>(*stop.of_last)) return false;
+  int right = 0;
+  for (std::size_t i = answers - static_cast<std::size_t>(*stop.of_last); i < answers; ++i)
+    right += answer_at(i) ? 1 : 0;
+  return right >= *stop.right;
+}
 
 const char* name(Kind kind);  ///< the kind's name in a protocol: "constant-stimuli", "up-down", ...
 std::optional<Kind> parse_kind(const std::string& text);

@@ -114,7 +114,7 @@ void validate_staircase(const Spec& spec, std::vector<Problem>& problems) {
   if (spec.kind == Kind::up_down && spec.step.empty() && (spec.step_down.empty() || spec.step_up.empty()))
     problems.push_back(
         {"step", "the step is missing for one direction", "give step, or both step_down and step_up"});
-  if (!spec.stop.trials && !spec.stop.reversals)
+  if (!spec.stop.trials && !spec.stop.reversals && !spec.stop.right)
     problems.push_back({"stop", "no rule ends the procedure", "add trials or reversals"});
   if (spec.discard_reversals < 0 || (spec.stop.reversals && spec.stop.rule == StopRule::any &&
                                      spec.discard_reversals + 2 > *spec.stop.reversals))

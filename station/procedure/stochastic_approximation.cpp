@@ -65,7 +65,7 @@ extern const Description accelerated_stochastic_approximation{
         problems.push_back({"step", "missing or not above 0", "one number above 0"});
       if (!spec.target || !(*spec.target > 0 && *spec.target < 1))
         problems.push_back({"target", "missing or outside (0, 1)", "a probability between 0 and 1"});
-      if (!spec.stop.trials && !spec.stop.reversals)
+      if (!spec.stop.trials && !spec.stop.reversals && !spec.stop.right)
         problems.push_back({"stop", "no rule ends the procedure", "add trials or reversals"});
     },
     [](const Spec& spec, const Context&, const random::Key&) -> std::unique_ptr<Procedure> {

@@ -26,9 +26,12 @@ bool Track::done() const {
   const auto& stop = spec_.stop;
   if (stop.min_trials && recorded_ + spent_ < *stop.min_trials) return false;
   const bool by_trials = stop.trials ? recorded_ + spent_ >= *stop.trials : spent_ >= kSpentAtMost;
+  const bool by_right =
+      enough_right(stop, answers_.size(), [this](std::size_t i) { return answers_[i] == Answer::one; });
   const bool by_reversals = stop.reversals && static_cast<int>(reversals_.size()) >= *stop.reversals;
-  if (stop.rule == StopRule::any) return by_trials || by_reversals;
-  return spent_ >= kSpentAtMost || ((!stop.trials || by_trials) && (!stop.reversals || by_reversals));
+  if (stop.rule == StopRule::any) return by_trials || by_reversals || by_right;
+  return spent_ >= kSpentAtMost ||
+         ((!stop.trials || by_trials) && (!stop.reversals || by_reversals) && (!stop.right || by_right));
 }
 
 std::optional<Proposal> Track::next() const {

@@ -59,8 +59,9 @@ void check_fineness(AdviceList& advice, const procedure::Spec& spec) {
   }
 }
 
-// If everybody feels every level, no threshold can be found.
+// If everybody feels every level, no threshold can be found. Training to a criterion finds none.
 void check_coarseness(AdviceList& advice, const procedure::Spec& spec) {
+  if (spec.stop.right) return;
   auto levels = spec.values;
   levels.insert(levels.end(), spec.stimuli.values.begin(), spec.stimuli.values.end());
   if (spec.min) levels.push_back(*spec.min);
@@ -105,7 +106,11 @@ void check_unused(AdviceList& advice) {
     if (!used.count(factor.name) && std::none_of(sources.begin(), sources.end(), sets))
       advice.add("factor." + factor.name + ".name", "the factor \"" + factor.name + "\" is not used", "");
   }
-  const auto scenes = scenes_used(protocol);
+  auto scenes = scenes_used(protocol);
+  for (const auto& interlude : protocol.interludes)
+    for (const auto& page : interlude.pages)
+      for (const auto& example : page.examples) scenes.push_back(example.scene);
+  for (const auto& part : protocol.plan) scenes.push_back(block_of(part).strokes.scene);
   for (const auto& [name, scene] : protocol.scenes) {
     const auto is_base = [&, base = name](const auto& other) { return other.second.base == base; };
     if (std::find(scenes.begin(), scenes.end(), name) == scenes.end() &&
@@ -145,6 +150,7 @@ std::vector<text::Problem> advice(const Protocol& protocol) {
   advise_on_times(advice);
   advise_on_grids(advice);
   advise_on_plan(advice);
+  advise_on_interludes(advice);
   return std::move(advice.found);
 }
 

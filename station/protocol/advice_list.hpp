@@ -53,5 +53,7 @@ void advise_on_times(AdviceList& advice);
 void advise_on_grids(AdviceList& advice);
 /// Checks blocks, instructions, labels and questions, and the analysis.
 void advise_on_plan(AdviceList& advice);
+/// Finds questions that ask for what identifies a person, and answers that look the same.
+void advise_on_interludes(AdviceList& advice);
 
 }  // namespace turnpoint::protocol

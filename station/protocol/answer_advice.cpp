@@ -155,7 +155,7 @@ double one_key_share(const Protocol& protocol, const Block& block) {
 
 void check_pass(AdviceList& advice, const std::variant<Block, Sequence>& part) {
   const auto& block = block_of(part);
-  if (!block.pass) return;
+  if (!block.pass || block.kind != BlockKind::trials) return;
   const double share = one_key_share(advice.protocol, block);
   if (share >= block.pass->accuracy)
     advice.add(key_of(part, "pass"),

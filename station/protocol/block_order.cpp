@@ -21,7 +21,8 @@ std::vector<int> williams_row(int n, int row) {
   return order;
 }
 
-void unroll(const Sequence& sequence, const Protocol& protocol, int index, std::vector<Block>& blocks) {
+void unroll(const Sequence& sequence, const Protocol& protocol, int index, std::size_t part,
+            std::vector<Block>& blocks) {
   const auto same = [&](const Factor& factor) { return factor.name == sequence.over; };
   const auto factor = std::find_if(protocol.factors.begin(), protocol.factors.end(), same);
   if (factor == protocol.factors.end() || factor->levels.empty())
@@ -32,6 +33,7 @@ void unroll(const Sequence& sequence, const Protocol& protocol, int index, std::
     for (const int level : order) {
       auto block = sequence.block;
       block.fixed[sequence.over] = factor->levels[static_cast<std::size_t>(level)];
+      block.part = part;
       blocks.push_back(std::move(block));
     }
     if (sequence.mirror) std::reverse(order.begin(), order.end());
@@ -44,11 +46,13 @@ std::vector<Block> block_order(const Protocol& protocol, int sequence_index) {
   if (sequence_index < 0)
     throw std::invalid_argument("sequence index " + std::to_string(sequence_index) + ": from 0");
   std::vector<Block> blocks;
-  for (const auto& part : protocol.plan) {
-    if (const auto* block = std::get_if<Block>(&part))
+  for (std::size_t part = 0; part < protocol.plan.size(); ++part) {
+    if (const auto* block = std::get_if<Block>(&protocol.plan[part])) {
       blocks.push_back(*block);
-    else
-      unroll(std::get<Sequence>(part), protocol, sequence_index, blocks);
+      blocks.back().part = part;
+    } else {
+      unroll(std::get<Sequence>(protocol.plan[part]), protocol, sequence_index, part, blocks);
+    }
   }
   return blocks;
 }

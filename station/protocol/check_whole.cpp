@@ -71,6 +71,7 @@ void check_scored(text::TableReader& file, const Reading& reading) {
   }
   for (const auto& part : protocol.plan) {
     const auto& block = block_of(part);
+    if (block.kind != BlockKind::trials) continue;  // judges movements
     for (const auto* key : {"pass", "feedback"})
       if (key == std::string("pass") ? block.pass.has_value() : block.feedback != Feedback::none)
         reading.findings.add(reading.places.of(key_of(part, key)),

@@ -162,6 +162,7 @@ void check_blocks(AdviceList& advice) {
   for (const auto& part : protocol.plan) {
     const auto& block = block_of(part);
     check_counts(advice, part);
+    if (block.kind != BlockKind::trials) continue;
     if (advice.places.has(key_of(part, "interleave")) && block.procedures.size() < 2)
       advice.add(key_of(part, "interleave"), "\"interleave\" has no effect in a block with one procedure",
                  "use two or more procedures");

@@ -8,7 +8,7 @@ namespace turnpoint::protocol {
 
 namespace {
 
-// Latin letters with all their accents end at U+024F.
+// Fonts for any script also have the Latin letters of Europe, which end at U+024F. Others are looked up.
 bool in_every_font(char32_t c) { return c <= 0x24F; }
 
 // Joiners, marks of direction, word joiners, variation selectors and the byte order mark change how their

@@ -1,8 +1,23 @@
+#include <fstream>
+
 #include "station/protocol/expression.hpp"
+#include "station/protocol/interludes.hpp"
 #include "station/protocol/reading.hpp"
 #include "station/text/number.hpp"
 
 namespace turnpoint::protocol {
+
+namespace {
+
+/// True if the file begins like a PNG or a JPEG file.
+bool is_picture(const std::string& path) {
+  std::string start(4, '\0');
+  std::ifstream file(path, std::ios::binary);
+  file.read(start.data(), 4);
+  return file && (start == "\x89PNG" || start.substr(0, 3) == "\xFF\xD8\xFF");
+}
+
+}  // namespace
 
 Protocol parse(const std::string& source, const std::string& path) {
   const auto document = text::parse_toml(source, path);
@@ -20,7 +35,9 @@ Protocol parse(const std::string& source, const std::string& path) {
   read_timing(file, reading);
   read_procedures(file, reading);
   read_plan(file, reading);
+  read_interludes(file, reading);
   read_analysis(file, reading);
+  read_exclusion(file, reading);
   read_triggers(file, reading);
   read_sensing(file, reading);
   read_resume(file, reading);
@@ -31,6 +48,16 @@ Protocol parse(const std::string& source, const std::string& path) {
   return protocol;
 }
 
-Protocol load(const std::string& path) { return parse(text::read_text_file(path), path); }
+Protocol load(const std::string& path) {
+  auto protocol = parse(text::read_text_file(path), path);
+  text::Findings findings;
+  for (const auto& picture : pictures(protocol))
+    if (!is_picture(picture.path))
+      findings.add(picture.place,
+                   "the picture " + picture.path + " does not exist, or is neither PNG nor JPEG",
+                   "a path relative to the protocol file");
+  findings.throw_if_any();
+  return protocol;
+}
 
 }  // namespace turnpoint::protocol

@@ -218,10 +218,31 @@ struct Break {
   double min_s = 0;
 };
 
+/// What a block is for. In blocks other than `trials` nothing is asked: the finger strokes the surface.
+enum class BlockKind {
+  trials,
+  training,       ///< practice of the movement that [sensing] asks for, on the surface at rest
+  friction_table  ///< measures friction at several displacements, with this finger on this surface
+};
+
+/// How the finger strokes in a block of strokes.
+struct Strokes {
+  double duration_s = 0;  ///< length of each trial
+  std::string scene;      ///< friction table: the scene whose strength is changed
+  /// Friction table: the part of the surface in which displacement and friction are averaged.
+  double from_mm = 0, to_mm = 0;
+  std::vector<double> levels_um;  ///< friction table: displacements, as rms over that part, ascending
+  int repeats = 0;                ///< friction table: trials at each displacement
+  /// Friction table: trials after the block are planned with the measured table instead of the rig's.
+  bool used = false;
+};
+
 /// A block as it runs for one participant. block_order() makes such blocks from the `sequence` tables of the
 /// file.
 struct Block {
   std::string name;
+  BlockKind kind = BlockKind::trials;
+  Strokes strokes;  ///< for blocks other than `trials`
   std::vector<std::string> procedures;
   std::string level;           ///< for practice with fixed levels: the factor to which the levels belong
   std::vector<double> levels;  ///< the fixed levels, presented in shuffled order
@@ -233,6 +254,7 @@ struct Block {
   std::optional<Catch> catch_trials;
   std::optional<Break> break_after;
   Factors fixed;  ///< factors that the sequence sets for the whole block, such as instruction = "speed"
+  std::size_t part = 0;  ///< set by block_order(): which part of the plan the block belongs to
   Place place;
 };
 
@@ -250,6 +272,70 @@ struct Instruction {
   std::optional<std::pair<double, double>> target_accuracy;
 };
 
+/// What a participant can be asked to compare with: an earlier answer ("about-you.age"), or the proportion
+/// correct in a block ("practice.accuracy").
+struct AnswerCondition {
+  std::string about;
+  Relation relation = Relation::equal;
+  bool unequal = false;  ///< `!=`; `relation` is then `equal`
+  FactorValue value;
+  std::string source;
+  Place place;
+};
+
+/// A scale of points (`choices`, which are 1, 2, ...) or a line (`value`).
+struct Scale {
+  std::vector<Choice> choices;
+  std::vector<Anchor> anchors;  ///< texts at some of the points
+  std::optional<ValueAnswer> value;
+};
+
+/// One question of a questionnaire. It has choices or, if the answer is a number, a `value`.
+struct Item {
+  std::string id;
+  Localised question;
+  std::vector<Choice> choices;
+  bool rating = false;          ///< the choices are the points of a scale, in ascending order
+  std::vector<Anchor> anchors;  ///< texts at some of the points
+  std::optional<ValueAnswer> value;
+  std::vector<AnswerCondition> when;  ///< asked only if all of them hold
+  /// what a simulated participant answers; if empty, the answer is drawn at random
+  std::optional<FactorValue> simulated;
+  Place place;
+};
+
+/// A stimulus that the participant can feel as often as wished.
+struct Example {
+  Localised label;
+  std::string scene;
+  Factors with;  ///< values of the factors on which the scene depends
+  double duration_s = 2;
+};
+
+/// One page of an explanation.
+struct ExplanationPage {
+  Localised text;
+  std::string picture;  ///< path of a picture, relative to the protocol file; "" if there is none
+  std::vector<Example> examples;
+  Place place, picture_place;
+};
+
+enum class InterludeKind { questionnaire, consent, explanation, screening };
+
+/// What comes before, between or after the blocks.
+struct Interlude {
+  InterludeKind kind = InterludeKind::questionnaire;
+  std::string name;
+  std::size_t above = 0;    ///< how many parts of the plan stand above it in the file
+  std::string after_each;   ///< name of a block or sequence: it comes after each of its blocks
+  std::vector<Item> items;  ///< of a questionnaire; a consent has one, "consent": agree, refuse
+  std::vector<ExplanationPage> pages;
+  std::vector<AnswerCondition> pass;  ///< of a screening: the session goes on if all of them hold
+  /// what a participant reads who has refused, or did not pass the screening
+  Localised farewell;
+  Place place;
+};
+
 struct Analysis {
   std::vector<std::string> by;  ///< factors with levels: each combination of them is analysed separately
   std::optional<Linear> difficulty;
@@ -257,6 +343,17 @@ struct Analysis {
   std::optional<std::vector<std::string>> show;
   double exclude_below_s = 0;
   std::optional<double> exclude_mad;
+};
+
+/// The rules by which the report of a study leaves out participants. Shares and medians are over all trials
+/// of a participant, without practice. An empty rule excludes nobody.
+struct Exclusion {
+  std::optional<int> fewer_trials_than;                       ///< answered experimental trials
+  std::optional<double> accuracy_below;                       ///< of the answered experimental trials
+  std::optional<double> catch_accuracy_below;                 ///< of the answered catch trials
+  std::optional<double> timeouts_above, anticipations_above;  ///< shares of the experimental trials
+  std::optional<double> median_time_below_s, median_time_above_s;
+  bool incomplete = false;  ///< a session was not completed
 };
 
 enum class ResumePolicy { ask, resume, restart, block };
@@ -295,6 +392,8 @@ struct Sensing {
   /// How often a trial whose movement was wrong is presented again. After that, and with 0, the trial counts,
   /// and its row says what was wrong.
   int repeats = 0;
+  /// Whether pages show bars with normal force and speed, and whether the bars also move during stimuli.
+  bool guidance = false, live_guidance = false;
   Place place;
 };
 
@@ -313,7 +412,9 @@ struct Protocol {
   std::vector<procedure::Spec> procedures;
   std::vector<std::variant<Block, Sequence>> plan;  ///< blocks and sequences in the order of the file
   std::map<std::string, Instruction> instructions;
+  std::vector<Interlude> interludes;  ///< in the order of the file
   Analysis analysis;
+  std::optional<Exclusion> exclusion;
   Triggers triggers;
   std::optional<Sensing> sensing;
   Resume resume;

@@ -89,15 +89,6 @@ void read_practice(TableReader& reader, Block& block, const Reading& reading) {
   inner.finish();
 }
 
-void read_break(TableReader& reader, Block& block, const Reading& reading) {
-  const auto* table = reader.maybe_table("break_after");
-  if (!table) return;
-  TableReader inner(*table, reader.path("break_after"), reading.findings);
-  block.break_after = Break{inner.integer("trials", 1, 100000),
-                            inner.number("min_s", {0, 3600, Range::Ends::closed, "s"}, 0)};
-  inner.finish();
-}
-
 void read_block_keys(TableReader& reader, Block& block, const Reading& reading) {
   block.place = reader.place();
   read_what(reader, block, reading);
@@ -129,7 +120,11 @@ Block read_block(const Value& table, const Reading& reading) {
   TableReader reader(table, titled("block", table), reading.findings);
   Block block;
   block.name = read_name(reader, "name", "choose a name, which is stored with the data");
-  read_block_keys(reader, block, reading);
+  const auto kind = reader.word("kind", {"trials", "training", "friction-table"}, "trials");
+  if (kind == "trials")
+    read_block_keys(reader, block, reading);
+  else
+    read_strokes(reader, kind, block, reading);
   reader.finish();
   return block;
 }
@@ -174,6 +169,15 @@ Sequence read_sequence(const Value& table, const Reading& reading) {
 }
 
 }  // namespace
+
+void read_break(TableReader& reader, Block& block, const Reading& reading) {
+  const auto* table = reader.maybe_table("break_after");
+  if (!table) return;
+  TableReader inner(*table, reader.path("break_after"), reading.findings);
+  block.break_after = Break{inner.integer("trials", 1, 100000),
+                            inner.number("min_s", {0, 3600, Range::Ends::closed, "s"}, 0)};
+  inner.finish();
+}
 
 void read_plan(TableReader& file, Reading& reading) {
   std::vector<std::pair<const Value*, bool>> tables;  // each table, and true if it is a sequence

@@ -7,7 +7,13 @@ using text::TableReader;
 
 void read_sensing(TableReader& file, Reading& reading) {
   const auto* table = file.maybe_table("sensing");
-  if (!table) return;
+  if (!table) {
+    for (const auto& part : reading.protocol.plan)
+      if (const auto* block = std::get_if<Block>(&part); block && block->kind != BlockKind::trials)
+        reading.findings.add(block->place, "the block \"" + block->name + "\" needs a [sensing] table",
+                             "add [sensing] with the movement to make");
+    return;
+  }
   TableReader reader(*table, "sensing", reading.findings);
   auto& sensing = reading.protocol.sensing.emplace();
   sensing.place = table->place;
@@ -22,6 +28,13 @@ void read_sensing(TableReader& file, Reading& reading) {
     reader.problem("repeats", "\"repeats\" has no effect", "outside = \"repeat\", or leave \"repeats\" out");
   if (reading.protocol.task.kind == TaskKind::adjustment && sensing.repeats > 0)
     reader.problem("outside", "an adjustment is not presented again", "outside = \"mark\"");
+  sensing.guidance = reader.boolean("guidance", "false");
+  if (sensing.guidance && !sensing.normal_N && !sensing.speed_mm_s)
+    reader.problem("guidance", "there is nothing to guide to", "add \"normal_N\" or \"speed_mm_s\"");
+  if (sensing.guidance)
+    sensing.live_guidance = reader.boolean("live_guidance", "false");
+  else if (reader.take("live_guidance"))
+    reader.problem("live_guidance", "\"live_guidance\" has no effect", "guidance = true");
   reader.finish();
 }
 

@@ -128,15 +128,17 @@ std::vector<Anchor> read_anchors(TableReader& reader, double low, double high, c
   return anchors;
 }
 
-void read_rating(const Value& table, Task& task, const Reading& reading) {
-  TableReader reader(table, "task.rating", reading.findings);
+}  // namespace
+
+Scale read_scale(const Value& table, const std::string& path, const Reading& reading) {
+  TableReader reader(table, path, reading.findings);
+  Scale scale;
   if (reader.has("points") == reader.has("line"))
     reader.problem("points", "a rating needs either \"points\" or a \"line\"",
                    "points = 7 for seven buttons, or line = [0, 100] for a line without points");
   if (const auto points = reader.maybe_integer("points", 2, most_choices)) {
-    task.rating = true;
-    for (int i = 1; i <= *points; ++i) task.choices.push_back({std::to_string(i), {}});
-    task.anchors = read_anchors(reader, 1, *points, reading);
+    for (int i = 1; i <= *points; ++i) scale.choices.push_back({std::to_string(i), {}});
+    scale.anchors = read_anchors(reader, 1, *points, reading);
   }
   if (const auto line = reader.maybe_interval("line", {-1e6, 1e6})) {
     ValueAnswer value{false, line->first, line->second, reader.integer("decimals", 0, 3, 0), {}};
@@ -146,18 +148,18 @@ void read_rating(const Value& table, Task& task, const Reading& reading) {
                      "the line has " + text::number(steps) + " steps of its smallest decimal",
                      "from 10 to 1000, because a finger cannot choose between more places");
     value.anchors = read_anchors(reader, value.low, value.high, reading);
-    task.value = std::move(value);
+    scale.value = std::move(value);
   }
   for (const auto* key : {"labels", "decimals"}) {
-    if (task.rating && key == std::string("decimals") && reader.has(key))
+    if (!scale.choices.empty() && key == std::string("decimals") && reader.has(key))
       reader.problem(key, "points have no decimals", "remove \"decimals\"");
     reader.take(key);
   }
   reader.finish();
+  return scale;
 }
 
-void read_number(const Value& table, Task& task, const Reading& reading) {
-  TableReader reader(table, "task.number", reading.findings);
+ValueAnswer read_typed(TableReader& reader) {
   ValueAnswer value;
   value.typed = true;
   value.decimals = reader.integer("decimals", 0, 3, 0);
@@ -166,6 +168,48 @@ void read_number(const Value& table, Task& task, const Reading& reading) {
   value.high = reader.number("high", {least, 1e6}, 1000);
   if (value.high <= value.low)
     reader.problem("high", "\"high\" is not above \"low\"", "give the largest number that may be typed");
+  return value;
+}
+
+std::vector<Choice> read_choice_list(TableReader& reader, const std::string& path, const Reading& reading) {
+  std::vector<Choice> choices;
+  std::set<std::string> seen;
+  for (const auto* table : reader.tables("choices")) {
+    TableReader inner(*table, path, reading.findings);
+    Choice choice;
+    choice.id = read_name(inner, "id", "choose a short name, which is stored with the data");
+    choice.label = read_localised(inner, "label", reading);
+    if (!choice.id.empty() && !seen.insert(choice.id).second)
+      inner.problem("id", "there is already a choice with the id \"" + choice.id + "\"",
+                    "each choice needs a different id");
+    inner.finish();
+    choices.push_back(std::move(choice));
+  }
+  return choices;
+}
+
+std::string read_scene_name(TableReader& reader, const std::string& key, const std::string& what,
+                            const Reading& reading) {
+  auto name = reader.string(key, what);
+  const auto& known = reading.declared_scenes;
+  if (reader.has(key) && std::find(known.begin(), known.end(), name) == known.end())
+    reading.findings.add(reader.place(key), "unknown scene \"" + name + "\"", suggestion(name, known));
+  return name;
+}
+
+namespace {
+
+void read_rating(const Value& table, Task& task, const Reading& reading) {
+  auto scale = read_scale(table, "task.rating", reading);
+  task.rating = !scale.choices.empty();
+  if (task.rating) task.choices = std::move(scale.choices);
+  task.anchors = std::move(scale.anchors);
+  task.value = std::move(scale.value);
+}
+
+void read_number(const Value& table, Task& task, const Reading& reading) {
+  TableReader reader(table, "task.number", reading.findings);
+  auto value = read_typed(reader);
   if (reader.has("standard")) {
     task.standard = reader.string("standard", "name the scene that begins each trial");
     check_scene(task.standard, reader.place("standard"), reading);
@@ -226,18 +270,9 @@ void read_confidence(TableReader& reader, Task& task, const Reading& reading) {
 
 void read_choices(TableReader& reader, Task& task, const TaskForm& kind, const Reading& reading) {
   reader.require("choices", "list the answers: [ { id = \"left\", label = { en = \"Left\" } }, ... ]");
+  task.choices = read_choice_list(reader, "task.choices", reading);
   std::set<std::string> seen;
-  for (const auto* table : reader.tables("choices")) {
-    TableReader inner(*table, "task.choices", reading.findings);
-    Choice choice;
-    choice.id = read_name(inner, "id", "choose a short name, which is stored with the data");
-    choice.label = read_localised(inner, "label", reading);
-    if (!choice.id.empty() && !seen.insert(choice.id).second)
-      inner.problem("id", "there is already a choice with the id \"" + choice.id + "\"",
-                    "each choice needs a different id");
-    inner.finish();
-    task.choices.push_back(std::move(choice));
-  }
+  for (const auto& choice : task.choices) seen.insert(choice.id);
   const auto [fewest, most] = std::pair(kind.fewest, kind.most);
   const auto* list = reader.take("choices");
   if (const auto given = list && list->kind == Value::Kind::array ? list->items.size() : fewest;

@@ -28,7 +28,13 @@ void read_task(text::TableReader& file, Reading& reading);
 void read_timing(text::TableReader& file, Reading& reading);
 void read_procedures(text::TableReader& file, Reading& reading);
 void read_plan(text::TableReader& file, Reading& reading);
+void read_interludes(text::TableReader& file, Reading& reading);
+/// Reads the keys of a block of strokes (kind "training" or "friction-table").
+void read_strokes(text::TableReader& block_reader, const std::string& kind, Block& block,
+                  const Reading& reading);
+void read_break(text::TableReader& block_reader, Block& block, const Reading& reading);
 void read_analysis(text::TableReader& file, Reading& reading);
+void read_exclusion(text::TableReader& file, Reading& reading);
 void read_triggers(text::TableReader& file, Reading& reading);
 void read_sensing(text::TableReader& file, Reading& reading);
 void read_resume(text::TableReader& file, Reading& reading);
@@ -40,6 +46,17 @@ void check_whole(text::TableReader& file, Reading& reading);
 /// Reads a text in each declared language. Reports a problem for a missing or an undeclared language.
 Localised read_localised(text::TableReader& reader, const std::string& key, const Reading& reading);
 Localised localised_from(const text::Value& value, const std::string& key, const Reading& reading);
+
+/// Reads the points or the line of a scale, with their labels.
+Scale read_scale(const text::Value& table, const std::string& path, const Reading& reading);
+/// Reads low, high and decimals of a number that is typed.
+ValueAnswer read_typed(text::TableReader& reader);
+/// Reads the list `choices`.
+std::vector<Choice> read_choice_list(text::TableReader& reader, const std::string& path,
+                                     const Reading& reading);
+/// Reads a name and reports it if the file has no such scene.
+std::string read_scene_name(text::TableReader& reader, const std::string& key, const std::string& what,
+                            const Reading& reading);
 
 /// Reads a number, or { uniform = [low, high] }.
 std::optional<Distribution> read_distribution(text::TableReader& reader, const std::string& key);

@@ -12,8 +12,11 @@
 #include "station/protocol/combinations.hpp"
 #include "station/protocol/key_places.hpp"
 #include "station/protocol/resolve.hpp"
+#include "station/protocol/sources.hpp"
 #include "station/protocol/triggers.hpp"
+#include "station/scene/measures.hpp"
 #include "station/scene/planner.hpp"
+#include "station/scene/scaled.hpp"
 #include "station/scene/transducer.hpp"
 #include "station/terms/limits.hpp"
 #include "station/text/number.hpp"
@@ -338,6 +341,28 @@ void check_sensing(const Protocol& protocol, const rig::Rig& rig, Survey& survey
                              "leave out [sensing], or use a rig with \"bridges\" in [capture]"});
 }
 
+/// Plans the strongest trials of friction tables.
+void check_friction_tables(const Protocol& protocol, const rig::Rig& rig, Survey& survey) {
+  for (const auto& part : protocol.plan) {
+    const auto& block = block_of(part);
+    if (block.kind != BlockKind::friction_table) continue;
+    const auto& strokes = block.strokes;
+    try {
+      scene::Planner planner(rig);
+      const auto plan = planner.plan(resolve(protocol, strokes.scene, {}, 0));
+      const double reference_m =
+          scene::mean_displacement_m(planner, plan, {1e-3 * strokes.from_mm, 1e-3 * strokes.to_mm});
+      scene::refuse_beyond_limits(
+          rig, scene::scaled(planner, plan, 1e-6 * strokes.levels_um.back() / reference_m));
+    } catch (const terms::UsageError& error) {
+      survey.problems.push_back({block.place,
+                                 "friction table \"" + block.name + "\" at " +
+                                     text::number(strokes.levels_um.back()) + " um: " + error.what(),
+                                 "smaller displacements, or another scene"});
+    }
+  }
+}
+
 void check_limits(const Protocol& protocol, const rig::Rig& rig, Survey& survey) {
   const double longest_s =
       protocol.task.duration_s ? *protocol.task.duration_s : protocol.timing.explore_s.value_or(0);
@@ -357,6 +382,7 @@ Survey survey(const Protocol& protocol, const rig::Rig& rig, const std::stop_tok
   check_devices(protocol, rig, survey);
   check_triggers(protocol, rig, survey);
   check_sensing(protocol, rig, survey);
+  check_friction_tables(protocol, rig, survey);
   check_limits(protocol, rig, survey);
   plan_scenes(protocol, rig, stop, progress, survey);
   for (auto& warning : advice(protocol)) survey.warnings.push_back(std::move(warning));

@@ -30,13 +30,18 @@ double number(const Cell& cell) {
 
 py::object python_object(const Cell& cell) {
   if (missing(cell)) return py::none();
-  return std::visit([](const auto& value) -> py::object {
-    if constexpr (std::is_same_v<std::decay_t<decltype(value)>, std::monostate>) return py::none();
-    else return py::cast(value);
-  }, cell);
+  return std::visit(
+      [](const auto& value) -> py::object {
+        if constexpr (std::is_same_v<std::decay_t<decltype(value)>, std::monostate>)
+          return py::none();
+        else
+          return py::cast(value);
+      },
+      cell);
 }
 
-/// A column as a list if it contains a text, else as an array: of integers if none is missing, else of doubles.
+/// A column as a list if it contains a text, else as an array: of integers if none is missing, else of
+/// doubles.
 py::object column(const Cells& cells) {
   if (std::any_of(cells.begin(), cells.end(), text)) {
     py::list objects;
@@ -55,7 +60,8 @@ py::object column(const Cells& cells) {
 
 py::dict columns(const MemoryTable& table) {
   py::dict all;
-  for (std::size_t c = 0; c < table.columns.size(); ++c) all[py::str(table.columns[c])] = column(table.cells[c]);
+  for (std::size_t c = 0; c < table.columns.size(); ++c)
+    all[py::str(table.columns[c])] = column(table.cells[c]);
   return all;
 }
 
@@ -74,6 +80,8 @@ py::list tables(const std::string& database, const std::string& session, const s
     named["events"] = columns(one.events);
     named["sessions"] = columns(one.sessions);
     named["self_tests"] = columns(one.self_tests);
+    named["answers"] = columns(one.answers);
+    named["friction_tables"] = columns(one.friction_tables);
     list.append(named);
   }
   return list;
@@ -94,7 +102,8 @@ py::list signals(const std::string& database, const std::string& session, const 
     named["trial_index"] = array(std::move(one.trial_index));
     named["segment_id"] = array(std::move(one.segment_id));
     named["time_s"] = array(std::move(one.time_s));
-    for (std::size_t c = 0; c < one.channels.size(); ++c) named[py::str(one.channels[c])] = array(std::move(one.values[c]));
+    for (std::size_t c = 0; c < one.channels.size(); ++c)
+      named[py::str(one.channels[c])] = array(std::move(one.values[c]));
     list.append(named);
   }
   return list;
@@ -107,7 +116,8 @@ py::list signals(const std::string& database, const std::string& session, const 
 PYBIND11_MODULE(_store, module) {
   namespace py = pybind11;
   module.doc() = "Reads databases of the station. Use turnpoint.read() and turnpoint.read_signals().";
-  static const py::exception<turnpoint::store::StoreError> store_error(module, "StoreError", PyExc_RuntimeError);
+  static const py::exception<turnpoint::store::StoreError> store_error(module, "StoreError",
+                                                                       PyExc_RuntimeError);
   py::register_exception_translator([](std::exception_ptr thrown) {
     try {
       std::rethrow_exception(thrown);
@@ -117,7 +127,8 @@ PYBIND11_MODULE(_store, module) {
     }
   });
   const auto define = [&](const char* name, auto function) {
-    module.def(name, function, py::arg("database"), py::arg("session"), py::arg("participant"), py::arg("protocol"));
+    module.def(name, function, py::arg("database"), py::arg("session"), py::arg("participant"),
+               py::arg("protocol"));
   };
   define("tables", &turnpoint::python::tables);
   define("signals", &turnpoint::python::signals);

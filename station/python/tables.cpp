@@ -25,7 +25,8 @@ MemoryTable empty_table(const std::vector<std::string>& columns) {
   return {columns, std::vector<std::vector<Cell>>(columns.size())};
 }
 
-void add_points(SignalTable& table, const store::StoredSignal& stored, const std::vector<std::size_t>& places) {
+void add_points(SignalTable& table, const store::StoredSignal& stored,
+                const std::vector<std::size_t>& places) {
   const auto& signal = stored.row;
   const auto decoded = store::decode(signal);
   const auto points = static_cast<std::size_t>(signal.points);
@@ -33,8 +34,10 @@ void add_points(SignalTable& table, const store::StoredSignal& stored, const std
   table.trial_index.resize(before + points, stored.trial_index);
   table.segment_id.resize(before + points, stored.segment_index);
   for (std::size_t k = 0; k < points; ++k)
-    table.time_s.push_back(std::round(1e6 * (signal.start_s + static_cast<double>(k) / signal.rate_Hz)) / 1e6);
-  for (auto& channel : table.values) channel.resize(before + points, std::numeric_limits<double>::quiet_NaN());
+    table.time_s.push_back(std::round(1e6 * (signal.start_s + static_cast<double>(k) / signal.rate_Hz)) /
+                           1e6);
+  for (auto& channel : table.values)
+    channel.resize(before + points, std::numeric_limits<double>::quiet_NaN());
   for (std::size_t c = 0; c < decoded.size(); ++c)
     std::copy(decoded[c].begin(), decoded[c].end(),
               table.values[places[c]].begin() + static_cast<std::ptrdiff_t>(before));
@@ -48,15 +51,18 @@ std::vector<ProtocolTables> read_tables(const std::string& path, const store::Ex
   for (const auto& selection : selected.protocols) {
     const auto columns = store::csv_columns(selection);
     auto& tables = all.emplace_back(ProtocolTables{
-        selection.protocol_id, empty_table(store::names_of(columns.trials)), empty_table(store::names_of(columns.intervals)),
-        empty_table(store::names_of(columns.events)), empty_table(store::names_of(columns.sessions)),
-        empty_table(store::names_of(columns.self_tests))});
+        selection.protocol_id, empty_table(store::names_of(columns.trials)),
+        empty_table(store::names_of(columns.intervals)), empty_table(store::names_of(columns.events)),
+        empty_table(store::names_of(columns.sessions)), empty_table(store::names_of(columns.self_tests)),
+        empty_table(store::names_of(columns.answers)),
+        empty_table(store::names_of(columns.friction_tables))});
     const auto into = [](MemoryTable& table) {
       return [&table](const std::vector<Cell>& cells) { add_row(table, cells); };
     };
-    store::for_each_row(selected.database, selection, columns,
-                 {into(tables.trials), into(tables.intervals), into(tables.events), into(tables.sessions),
-                         into(tables.self_tests)});
+    store::for_each_row(
+        selected.database, selection, columns,
+        {into(tables.trials), into(tables.intervals), into(tables.events), into(tables.sessions),
+         into(tables.self_tests), into(tables.answers), into(tables.friction_tables)});
   }
   return all;
 }
@@ -73,7 +79,8 @@ std::vector<SignalTable> read_signals(const std::string& path, const store::Expo
         for (const auto& column : store::signal_columns(channels)) table.channels.push_back(column.name);
         table.values.resize(channels.size());
         store::SignalReader reader(selected.database, session.session_id, stream);
-        while (const auto stored = reader.next()) add_points(table, *stored, store::places_of(stored->row, channels));
+        while (const auto stored = reader.next())
+          add_points(table, *stored, store::places_of(stored->row, channels));
       }
   return all;
 }

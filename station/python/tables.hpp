@@ -16,11 +16,11 @@ struct MemoryTable {
 /// The tables that export_data() writes for one protocol.
 struct ProtocolTables {
   std::string protocol_id;
-  MemoryTable trials, intervals, events, sessions, self_tests;
+  MemoryTable trials, intervals, events, sessions, self_tests, answers, friction_tables;
 };
 
-/// Reads what store::export_data() would write with the format csv. Texts that are empty count as missing, as in the files; they
-/// have no apostrophe in front of = + - or @. Throws StoreError like store::export_data().
+/// Reads what store::export_data() would write with the format csv. Texts that are empty count as missing, as
+/// in the files; they have no apostrophe in front of = + - or @. Throws StoreError like store::export_data().
 std::vector<ProtocolTables> read_tables(const std::string& database, const store::ExportOptions& options);
 
 /// All points of one stream of a session, such as the finger's forces. The vectors have one value per point.
@@ -32,7 +32,8 @@ struct SignalTable {
   std::vector<std::vector<double>> values;  ///< values[channel][point]; NaN where a point is missing
 };
 
-/// Reads the signals that store::export_data() would write with the format signals. Throws StoreError if there are none.
+/// Reads the signals that store::export_data() would write with the format signals. Throws StoreError if
+/// there are none.
 std::vector<SignalTable> read_signals(const std::string& database, const store::ExportOptions& options);
 
 }  // namespace turnpoint::python

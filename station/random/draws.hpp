@@ -23,6 +23,7 @@ enum class Stream : std::uint32_t {
   bootstrap = 12,
   adjustment_start = 13,
   masking_noise = 14,
+  questionnaire = 15,
 };
 
 /// Identifies a random draw. The same key always gives the same numbers, whatever else was drawn. Repeating a

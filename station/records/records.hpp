@@ -76,6 +76,25 @@ struct CheckRow {
   std::string what;  ///< what was found, as a sentence for the operator
 };
 
+/// The answer to one item of a questionnaire, to a consent form (item "consent"), or the result of a
+/// screening (item "screening").
+struct AnswerRow {
+  std::string questionnaire, item;
+  int occasion = 0;    ///< number of blocks before it; tells the occasions of the same questionnaire apart
+  std::string answer;  ///< id of the choice, or the number
+  double response_time_s = 0;  ///< from the appearance of the question
+  bool operator==(const AnswerRow&) const = default;
+};
+
+/// Measured friction at one displacement, relative to the surface at rest (sensing/friction_table.hpp).
+struct FrictionLevelRow {
+  double displacement_um = 0;  ///< rms over the measured part of the surface, as planned without a finger
+  std::int64_t trials = 0;     ///< trials that count
+  double measured = 1;         ///< geometric mean of the trials
+  double relative_friction = 1, sd = 0;  ///< after the monotone regression; standard error
+  double low = 0, high = 1;              ///< 95 % interval of relative_friction
+};
+
 struct BlockStart {
   int block_index = 0;  ///< from 0, in the order in which blocks are run
   int attempt = 0;      ///< counts the restarts of the same block, from 0
@@ -139,6 +158,9 @@ struct FingerRow {
   std::optional<std::int64_t> strokes;
   std::optional<double> normal_N, normal_sd_N, normal_in_window, speed_mm_s, speed_in_window;
   std::optional<double> mu_low, mu_high, boundary_felt_mm, boundary_se_mm, lag_mm, tare_mN;
+  /// Coefficient of friction over all strokes of the last interval; in a friction table, over its part of the
+  /// surface.
+  std::optional<double> mu;
 };
 
 /// The result of one trial. It is committed as a whole before the next trial begins.
@@ -193,8 +215,23 @@ struct EventRow {
   std::string kind;
   std::string value;
   std::optional<int> trial_index;
-  int segment_index = 1;              ///< from 1; set by the session log
-  std::vector<CheckRow> checks = {};  ///< the checks of a self-test, for an event of the kind self_test
+  int segment_index = 1;                ///< from 1; set by the session log
+  std::vector<CheckRow> checks = {};    ///< the checks of a self-test, for an event of the kind self_test
+  std::vector<AnswerRow> answers = {};  ///< the answer, for an event of the kind questionnaire
+  /// The levels of a friction table, for an event of the kind friction_table.
+  std::vector<FrictionLevelRow> friction_levels = {};
 };
+
+/// Kinds of events around the trials: an answer; its withdrawal by Back, which names the questionnaire and
+/// the occasion; and the end of a questionnaire, consent, explanation or screening.
+inline constexpr const char* kAnswerEvent = "questionnaire";
+inline constexpr const char* kBackEvent = "questionnaire_back";
+inline constexpr const char* kDoneEvent = "around_done";
+/// The value of the last two kinds of events.
+std::string place_name(const std::string& name, int occasion);
+
+/// The answers of a session that stand, with their events: those that the participant withdrew by Back are
+/// left out. The pointers point into `events`, which must be in the order of the log.
+std::vector<const EventRow*> standing_answers(const std::vector<EventRow>& events);
 
 }  // namespace turnpoint::records

@@ -57,6 +57,26 @@ std::optional<double> false_alarms(const NamedFit& named) {
   return std::nullopt;
 }
 
+/// Marks the threshold (or PSE) on the curve: a rule with its value and, at the curve, its interval.
+void mark_threshold(const NamedFit& named, const SessionData& data, int series, const std::string& name,
+                    plot::Chart& panel) {
+  const auto& fit = named.fit;
+  const double at = fit.parameters->threshold;
+  if (at < panel.x.low || at > panel.x.high) return;
+  const auto unit = data.level_unit.empty() ? "" : " " + data.level_unit;
+  panel.layers.push_back(plot::Rule{plot::Rule::Direction::vertical, at,
+                                    (data.design == Design::two_sided ? "PSE " : "threshold ") +
+                                        (name.empty() ? "" : name + " ") + text::number(at, 3) + unit});
+  if (!named.intervals.threshold) return;
+  const auto& interval = named.intervals.threshold->interval;
+  const double height = analysis::probability(fit.options.function, fit.options.scale, *fit.parameters, at);
+  panel.layers.push_back(
+      plot::Line{{std::max(interval.low, panel.x.low), std::min(interval.high, panel.x.high)},
+                 {height, height},
+                 series,
+                 ""});
+}
+
 std::string or_default(const std::string& name, const char* fallback) {
   return name.empty() ? fallback : name;
 }
@@ -97,6 +117,7 @@ std::optional<plot::Figure> psychometric_figure(const Summary& summary) {
     const auto name = summary.fits.size() > 1 ? named.name : std::string();
     if (named.fit.parameters) panel.layers.push_back(curve(named, series, panel.x, name));
     panel.layers.push_back(observed(named, series, name));
+    if (named.fit.parameters) mark_threshold(named, summary.data, series, name, panel);
   }
   plot::Figure figure;
   figure.title = "Psychometric function";

@@ -35,7 +35,11 @@ std::optional<plot::Figure> trade_figure(const Summary& summary);
 /// With more than 40 trials, a marker is the mean of several, with a bar from the smallest to the largest.
 std::optional<plot::Figure> finger_figure(const Summary& summary);
 /// Plots what the finger met against the planned boundary, in two panels: felt minus planned boundary, and
-/// the friction on both sides. Open markers are single trials.
+/// the friction on both sides. Open markers are single trials. A third panel has the friction along the
+/// strip.
 std::optional<plot::Figure> friction_figure(const Summary& summary);
+/// Plots friction along the strip beside the planned boundary, with bars of one standard error. Empty without
+/// curves.
+std::optional<plot::Chart> strip_chart(const std::vector<analysis::FrictionCurve>& curves);
 
 }  // namespace turnpoint::report

@@ -115,24 +115,8 @@ std::vector<double> extent(const std::vector<AtBoundary>& values) {
   return all;
 }
 
-}  // namespace
-
-std::optional<plot::Figure> finger_figure(const Summary& summary) {
-  if (!summary.finger) return std::nullopt;
-  plot::Figure figure;
-  figure.title = "Force and speed of the finger";
-  figure.columns = 2;
-  figure.chart_width_px = 400;
-  figure.chart_height_px = 260;
-  for (auto chart : {over_session(*summary.finger, "Normal force (N)", &analysis::FingerTrial::normal_N),
-                     over_session(*summary.finger, "Speed (mm/s)", &analysis::FingerTrial::speed_mm_s)})
-    if (!chart.layers.empty()) figure.charts.push_back(std::move(chart));
-  if (figure.charts.empty()) return std::nullopt;
-  return figure;
-}
-
-std::optional<plot::Figure> friction_figure(const Summary& summary) {
-  if (!summary.finger || summary.finger->boundaries.shift_mm.empty()) return std::nullopt;
+/// What the finger met against the planned boundary.
+std::vector<plot::Chart> boundary_charts(const Summary& summary) {
   const auto& [shift_mm, mu_low, mu_high] = summary.finger->boundaries;
   std::vector<double> planned;
   for (const auto& at : shift_mm) planned.push_back(at.planned_mm);
@@ -150,12 +134,63 @@ std::optional<plot::Figure> friction_figure(const Summary& summary) {
   sides.y.low = 0;
   sides.layers.push_back(markers(mu_low, along, kSmoothSeries, "smooth side"));
   sides.layers.push_back(markers(mu_high, along, kRoughSeries, "rough side"));
+  return {std::move(felt), std::move(sides)};
+}
+
+}  // namespace
+
+std::optional<plot::Figure> finger_figure(const Summary& summary) {
+  if (!summary.finger) return std::nullopt;
+  plot::Figure figure;
+  figure.title = "Force and speed of the finger";
+  figure.columns = 2;
+  figure.chart_width_px = 400;
+  figure.chart_height_px = 260;
+  for (auto chart : {over_session(*summary.finger, "Normal force (N)", &analysis::FingerTrial::normal_N),
+                     over_session(*summary.finger, "Speed (mm/s)", &analysis::FingerTrial::speed_mm_s)})
+    if (!chart.layers.empty()) figure.charts.push_back(std::move(chart));
+  if (figure.charts.empty()) return std::nullopt;
+  return figure;
+}
+
+std::optional<plot::Chart> strip_chart(const std::vector<analysis::FrictionCurve>& curves) {
+  plot::Chart chart;
+  chart.title = "Friction along the strip";
+  std::vector<double> along, friction{0};
+  for (const auto& curve : curves) {
+    if (curve.from_boundary_mm.empty()) continue;
+    plot::Points points;
+    points.series = static_cast<int>(chart.layers.size());
+    points.name = curve.direction;
+    points.x = curve.from_boundary_mm;
+    points.y = curve.friction;
+    for (std::size_t i = 0; i < points.x.size(); ++i) {
+      points.low.push_back(curve.friction[i] - curve.se[i]);
+      points.high.push_back(curve.friction[i] + curve.se[i]);
+    }
+    along.insert(along.end(), points.x.begin(), points.x.end());
+    friction.insert(friction.end(), points.high.begin(), points.high.end());
+    chart.layers.push_back(std::move(points));
+  }
+  if (along.empty()) return std::nullopt;
+  along.push_back(0);
+  chart.x = plot::fitted("Distance from the planned boundary (mm)", along, 0.04);
+  chart.y = plot::fitted("Coefficient of friction", friction, 0.1);
+  chart.y.low = 0;
+  chart.layers.insert(chart.layers.begin(), plot::Rule{plot::Rule::Direction::vertical, 0, "planned"});
+  return chart;
+}
+
+std::optional<plot::Figure> friction_figure(const Summary& summary) {
+  const auto strip = strip_chart(summary.data.strip);
+  if (!summary.finger || (summary.finger->boundaries.shift_mm.empty() && !strip)) return std::nullopt;
   plot::Figure figure;
   figure.title = "Friction along the strip";
   figure.columns = 2;
   figure.chart_width_px = 400;
   figure.chart_height_px = 300;
-  figure.charts = {std::move(felt), std::move(sides)};
+  if (!summary.finger->boundaries.shift_mm.empty()) figure.charts = boundary_charts(summary);
+  if (strip) figure.charts.push_back(*strip);
   return figure;
 }
 

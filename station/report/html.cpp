@@ -18,26 +18,6 @@ namespace {
 using analysis::Estimate;
 using plot::escaped;
 
-const char* const kStyle = R"(
-:root{color-scheme:light}body{font:15px/1.5 Inter,"DejaVu Sans",Helvetica,Arial,sans-serif;color:#222;
-max-width:860px;margin:2rem auto;padding:0 1rem}h1{font-size:1.5rem;line-height:1.25;margin:0 0 .25rem}
-h2{font-size:1.1rem;margin:2rem 0 .5rem;border-bottom:1px solid #ccc;padding-bottom:.2rem}
-table{border-collapse:collapse;margin:.5rem 0;font-variant-numeric:tabular-nums}
-th,td{text-align:left;padding:.2rem 1rem .2rem 0;vertical-align:top;border-bottom:1px solid #eee}
-th{font-weight:600}td.n{text-align:right;white-space:nowrap}.note{background:#fff6e5;border-left:3px solid #e69f00;
-padding:.4rem .7rem;margin:.4rem 0}.mode{display:inline-block;border:2px solid #d55e00;color:#a84600;
-padding:0 .5rem;font-weight:600}.soft{color:#666}figure{margin:.5rem 0}svg{max-width:100%;height:auto}
-@media print{body{margin:0;max-width:none;font-size:10pt}h2{break-after:avoid}figure,table,.note{break-inside:avoid}}
-@page{size:A4;margin:16mm}
-)";
-
-std::string facts(const std::vector<Fact>& list) {
-  std::string html = "<table>";
-  for (const auto& [name, value] : list)
-    html += "<tr><th>" + escaped(name) + "</th><td>" + escaped(value) + "</td></tr>";
-  return html + "</table>\n";
-}
-
 std::string row(const std::string& name, double value,
                 const std::optional<analysis::ParameterInterval>& interval, bool limited = false) {
   const double error =
@@ -370,14 +350,11 @@ std::string course_section(const Summary& summary) {
 
 std::string to_html(const Summary& summary) {
   const auto& data = summary.data;
-  std::string html =
-      "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\n"
-      "<meta name=\"viewport\" content=\"width=device-width\">\n<title>" +
-      escaped(data.title + ", " + data.participant) + "</title>\n<style>" + kStyle +
-      "</style></head><body>\n<h1>" + escaped(data.title) + "</h1>\n<p>Participant <b>" +
-      escaped(data.participant) + "</b>, session " + escaped(data.session_id) + ", " + escaped(data.status);
+  std::string html = html_head(data.title + ", " + data.participant) + "<h1>" + escaped(data.title) +
+                     "</h1>\n<p>Participant <b>" + escaped(data.participant) + "</b>, session " +
+                     escaped(data.session_id) + ", " + escaped(data.status);
   if (data.run_mode != "live") html += " <span class=\"mode\">" + escaped(data.run_mode) + "</span>";
-  html += "</p>\n" + facts(data.facts);
+  html += "</p>\n" + facts_table(data.facts);
   if (judges(data.design)) {
     html += judgement_section(summary);
   } else if (data.design != Design::adjustment) {
@@ -395,7 +372,7 @@ std::string to_html(const Summary& summary) {
         "<h2>Vibration of the surface</h2>\n<p class=\"soft\">Open markers: void, because the vibration was "
         "too far from the plan.</p>\n" +
         picture(vibration_figure(summary));
-  if (!data.health.empty()) html += "<h2>The station</h2>\n" + facts(data.health);
+  if (!data.health.empty()) html += "<h2>The station</h2>\n" + facts_table(data.health);
   return html + "</body></html>\n";
 }
 

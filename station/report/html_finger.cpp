@@ -1,6 +1,9 @@
+#include <cmath>
+
 #include "station/plot/svg.hpp"
 #include "station/report/figures.hpp"
 #include "station/report/html_parts.hpp"
+#include "station/text/number.hpp"
 
 namespace turnpoint::report {
 
@@ -37,6 +40,20 @@ std::string finger_table(const analysis::Finger& finger) {
   return html + "</tr></table>\n";
 }
 
+std::string repeats_table(const std::vector<analysis::RepeatedTrials>& repeats) {
+  if (repeats.empty()) return "";
+  std::string html =
+      "<table><tr><th>Level</th><th>Presented</th><th>Presented again because of the movement</th></tr>";
+  for (const auto& at : repeats)
+    html += "<tr><th>" + (at.level ? text::number(*at.level, 4) : std::string("none")) +
+            "</th><td class=\"n\">" + std::to_string(at.presented) + "</td><td class=\"n\">" +
+            std::to_string(at.repeated) + " (" +
+            text::number(std::round(100.0 * at.repeated / at.presented), 3) + " %)</td></tr>";
+  return html +
+         "</table>\n<p class=\"soft\">If some levels are repeated more often than others, the trials that "
+         "count are a selection.</p>\n";
+}
+
 }  // namespace
 
 std::string finger_section(const Summary& summary) {
@@ -50,7 +67,10 @@ std::string finger_section(const Summary& summary) {
             "planned boundary. Open markers: single trials, side by side if they have the same boundary. The "
             "felt boundary is where friction changed under the finger; the planned one is the place that the "
             "scene\u2019s <code>edge</code> names. They should agree for an edge of friction, <code>{ "
-            "friction = \u2026 }</code>; other edges are defined at other places.</p>\n";
+            "friction = \u2026 }</code>; other edges are defined at other places. Along the strip: means of "
+            "the strokes in bins of 2 mm, with bars of one standard error, where 3 or more strokes were "
+            "made.</p>\n";
+  html += repeats_table(summary.data.repeats);
   return html +
          "<p class=\"soft\">Answered trials without practice. Force and speed are means over a trial\u2019s "
          "strokes; with more than 40 trials, a marker is the mean of several, with a bar from the smallest "

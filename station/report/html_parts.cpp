@@ -9,6 +9,36 @@ using analysis::Estimate;
 using analysis::Interval;
 using plot::escaped;
 
+namespace {
+
+const char* const kStyle = R"(
+:root{color-scheme:light}body{font:15px/1.5 Inter,"DejaVu Sans",Helvetica,Arial,sans-serif;color:#222;
+max-width:860px;margin:2rem auto;padding:0 1rem}h1{font-size:1.5rem;line-height:1.25;margin:0 0 .25rem}
+h2{font-size:1.1rem;margin:2rem 0 .5rem;border-bottom:1px solid #ccc;padding-bottom:.2rem}
+table{border-collapse:collapse;margin:.5rem 0;font-variant-numeric:tabular-nums}
+th,td{text-align:left;padding:.2rem 1rem .2rem 0;vertical-align:top;border-bottom:1px solid #eee}
+th{font-weight:600}td.n{text-align:right;white-space:nowrap}.note{background:#fff6e5;border-left:3px solid #e69f00;
+padding:.4rem .7rem;margin:.4rem 0}.mode{display:inline-block;border:2px solid #d55e00;color:#a84600;
+padding:0 .5rem;font-weight:600}.soft{color:#666}figure{margin:.5rem 0}svg{max-width:100%;height:auto}
+@media print{body{margin:0;max-width:none;font-size:10pt}h2{break-after:avoid}figure,table,.note{break-inside:avoid}}
+@page{size:A4;margin:16mm}
+)";
+
+}  // namespace
+
+std::string html_head(const std::string& title) {
+  return "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\n"
+         "<meta name=\"viewport\" content=\"width=device-width\">\n<title>" +
+         escaped(title) + "</title>\n<style>" + kStyle + "</style></head><body>\n";
+}
+
+std::string facts_table(const std::vector<Fact>& list) {
+  std::string html = "<table>";
+  for (const auto& [name, value] : list)
+    html += "<tr><th>" + escaped(name) + "</th><td>" + escaped(value) + "</td></tr>";
+  return html + "</table>\n";
+}
+
 std::string minus(std::string text) {
   if (!text.empty() && text[0] == '-') text = "\u2212" + text.substr(1);
   return escaped(text);

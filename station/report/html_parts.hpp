@@ -12,6 +12,10 @@ namespace turnpoint::report {
 
 // Pieces of the page that its sections share.
 
+/// The page up to the first heading: title and style.
+std::string html_head(const std::string& title);
+/// A table of names and texts.
+std::string facts_table(const std::vector<Fact>& list);
 /// Escapes a text, and writes its leading hyphen as a minus sign.
 std::string minus(std::string text);
 std::string number(double value, int digits = 3);

@@ -1,38 +1,12 @@
 #include <cmath>
-#include <nlohmann/json.hpp>
 
 #include "station/analysis/psychometric_posterior.hpp"
 #include "station/report/html.hpp"
+#include "station/report/json_parts.hpp"
 
 namespace turnpoint::report {
 
 namespace {
-
-using Json = nlohmann::ordered_json;
-
-Json value(double number) { return std::isfinite(number) ? Json(number) : Json(nullptr); }
-Json value(const std::optional<double>& number) { return number ? value(*number) : Json(nullptr); }
-Json value(const analysis::Interval& i) { return {{"low", value(i.low)}, {"high", value(i.high)}}; }
-
-Json value(const std::optional<analysis::Estimate>& estimate) {
-  if (!estimate) return nullptr;
-  return {{"value", value(estimate->value)}, {"interval", value(estimate->interval)}};
-}
-
-Json value(const std::optional<analysis::ParameterInterval>& interval) {
-  if (!interval) return nullptr;
-  return {{"low", value(interval->interval.low)},
-          {"high", value(interval->interval.high)},
-          {"touches_low", interval->touches_low},
-          {"touches_high", interval->touches_high}};
-}
-
-Json value(const std::vector<analysis::Statement>& statements) {
-  Json list = Json::array();
-  for (const auto& statement : statements)
-    list.push_back({{"code", statement.code}, {"text", statement.text}});
-  return list;
-}
 
 /// Returns the prior as JSON: for each parameter, the range in which the prior is uniform and, if the prior
 /// falls off beyond this range, where it reaches 0. Returns null for a bootstrap, which has no prior.
@@ -152,6 +126,23 @@ Json finger_json(const std::optional<analysis::Finger>& finger) {
   json["mu_low"] = boundaries_json(finger->boundaries.mu_low);
   json["mu_high"] = boundaries_json(finger->boundaries.mu_high);
   json["statements"] = value(finger->statements);
+  return json;
+}
+
+Json strip_json(const std::vector<analysis::FrictionCurve>& curves) {
+  Json json = Json::array();
+  for (const auto& curve : curves)
+    json.push_back({{"direction", curve.direction},
+                    {"from_boundary_mm", curve.from_boundary_mm},
+                    {"friction", curve.friction},
+                    {"se", curve.se}});
+  return json;
+}
+
+Json repeats_json(const std::vector<analysis::RepeatedTrials>& repeats) {
+  Json json = Json::array();
+  for (const auto& at : repeats)
+    json.push_back({{"level", value(at.level)}, {"presented", at.presented}, {"repeated", at.repeated}});
   return json;
 }
 
@@ -301,6 +292,8 @@ std::string to_json(const Summary& summary) {
                      {"trials", summary.catch_trials->trials},
                      {"interval", value(summary.catch_trials->interval)}};
   json["finger"] = finger_json(summary.finger);
+  json["friction_along_strip"] = strip_json(summary.data.strip);
+  json["repeated_trials"] = repeats_json(summary.data.repeats);
   json["trend_response_time_s"] = trend_json(summary.fatigue.response_time_s);
   json["trend_proportion_correct"] = trend_json(summary.fatigue.proportion_correct);
   json["statements"] = value(summary.fatigue.statements);

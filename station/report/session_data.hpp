@@ -83,7 +83,9 @@ struct SessionData {
   std::vector<analysis::TrialRecord> trials;
   /// answered trials in which force cells recorded, without practice; empty if the rig has none
   std::vector<analysis::FingerTrial> finger;
-  std::vector<MeasuredTrial> measured;  ///< empty if no pick-up measured the surface
+  std::vector<analysis::FrictionCurve> strip;     ///< empty if no force cells recorded
+  std::vector<analysis::RepeatedTrials> repeats;  ///< by level; empty if the protocol repeats no trials
+  std::vector<MeasuredTrial> measured;            ///< empty if no pick-up measured the surface
   /// Set if the answers determined the levels: the intervals then come from the posterior under this prior.
   /// Empty if the levels were fixed before the session: the intervals then come from bootstraps.
   std::optional<analysis::Prior> prior;

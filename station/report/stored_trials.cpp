@@ -90,6 +90,22 @@ void add_finger(const records::TrialRow& row, const analysis::TrialRecord& trial
   data.finger.push_back(std::move(added));
 }
 
+/// True for blocks of strokes.
+bool nothing_asked(const protocol::Protocol& protocol, const std::string& block) {
+  return std::any_of(protocol.plan.begin(), protocol.plan.end(), [&](const auto& part) {
+    return protocol::block_of(part).name == block &&
+           protocol::block_of(part).kind != protocol::BlockKind::trials;
+  });
+}
+
+/// True if the trial was presented again because the finger did not move as the protocol asks for.
+bool moved_otherwise(const records::TrialRow& row) {
+  const auto& sensing = row.finger.sensing;
+  return row.outcome == terms::Outcome::fault &&
+         (sensing == "strokes" || sensing == "light" || sensing == "hard" || sensing == "slow" ||
+          sensing == "fast");
+}
+
 /// Returns the last attempt at each block. The trials of earlier attempts are not analysed.
 std::vector<const records::BlockRecord*> last_attempts(const std::vector<records::BlockRecord>& blocks) {
   std::map<int, const records::BlockRecord*> last;
@@ -272,11 +288,21 @@ std::vector<analysis::Deciding> deciding_in(protocol::TaskKind kind) {
 void add_trials(const std::vector<records::BlockRecord>& blocks, const protocol::Protocol& protocol,
                 report::SessionData& data) {
   const auto counted = last_attempts(blocks);
-  for (const auto* block : counted)
+  std::map<std::optional<double>, analysis::RepeatedTrials> repeats;
+  for (const auto* block : counted) {
+    if (nothing_asked(protocol, block->start.name)) continue;
     for (const auto& row : block->trials) {
+      if (!block->start.practice && protocol.sensing && protocol.sensing->repeats > 0) {
+        auto& at = repeats[row.level];
+        at.level = row.level;
+        ++at.presented;
+        at.repeated += moved_otherwise(row) ? 1 : 0;
+      }
       data.trials.push_back(record_of(row, block->start, protocol));
       add_finger(row, data.trials.back(), data);
     }
+  }
+  for (const auto& [level, at] : repeats) data.repeats.push_back(at);
   const auto level = protocol.procedures.empty() ? std::string() : protocol.procedures.front().level;
   const auto rule = protocol::answer_rule(protocol, level);
   data.positive = rule.positive;

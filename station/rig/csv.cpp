@@ -63,7 +63,8 @@ std::vector<Line> lines_of(const std::string& bytes) {
 }  // namespace
 
 std::vector<std::vector<double>> read_table(const std::string& path, const std::vector<std::string>& columns,
-                                            const text::Place& needed_by, text::Findings& findings) {
+                                            const text::Place& needed_by, text::Findings& findings,
+                                            std::size_t least) {
   std::string bytes;
   try {
     bytes = text::read_text_file(path);
@@ -94,8 +95,12 @@ std::vector<std::vector<double>> read_table(const std::string& path, const std::
                    std::to_string(columns.size()) + " numbers are needed in each row: " + joined(columns) +
                        (comma ? "; this file has decimal commas, so its numbers may not have points" : ""));
   }
-  if (rows.size() < 2)
-    findings.add({path, 0, 0}, "the file has fewer than two rows of numbers", "at least two rows are needed");
+  if (rows.size() < least)
+    findings.add(
+        {path, 0, 0},
+        least == 2 ? "the file has fewer than two rows of numbers"
+                   : "the file has " + std::to_string(rows.size()) + " rows of numbers",
+        least == 2 ? "at least two rows are needed" : "at least " + std::to_string(least) + " are needed");
   return rows;
 }
 

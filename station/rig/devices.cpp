@@ -59,6 +59,30 @@ std::optional<std::string> read_device(TableReader& file, const std::string& key
   return uri;
 }
 
+std::string read_thermometer(TableReader& reader, const std::string& key) {
+  const std::string allowed =
+      "\"hwmon:NAME/tempN\" or \"hwmon:NAME@DEVICE/tempN\", such as \"hwmon:lm75/temp1\"";
+  const auto uri = reader.string(key, allowed);
+  const auto slash = uri.find('/');
+  const bool good = uri.starts_with("hwmon:") && slash != std::string::npos && slash > 6 &&
+                    uri.substr(slash + 1).starts_with("temp") && uri.size() > slash + 5 &&
+                    uri.find_first_not_of("0123456789", slash + 5) == std::string::npos;
+  if (!uri.empty() && !good)
+    reader.problem(key, "\"" + uri + "\" does not name a temperature sensor", "allowed: " + allowed);
+  return uri;
+}
+
+std::optional<Thermometers> read_thermometers(TableReader& file) {
+  const auto* table = file.maybe_table("temperature");
+  if (!table) return std::nullopt;
+  TableReader reader(*table, "temperature", file.findings());
+  Thermometers made;
+  made.plate_uri = read_thermometer(reader, "plate");
+  made.frame_uri = read_thermometer(reader, "frame");
+  reader.finish();
+  return made;
+}
+
 }  // namespace
 
 void read_devices(TableReader& file, Rig& rig) {
@@ -79,6 +103,7 @@ void read_devices(TableReader& file, Rig& rig) {
       {"bit0"}, {"bit1", "bit2", "bit3", "bit4", "bit5", "bit6", "bit7", "strobe", "pulse_ms"});
   rig.touch_uri =
       read_device(file, "touch", {"sim:", "qt:", "evdev:*"}, "\"sim:\", \"qt:\" or \"evdev:DEVICE\"", {});
+  rig.thermometers = read_thermometers(file);
 }
 
 }  // namespace turnpoint::rig

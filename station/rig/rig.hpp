@@ -1,4 +1,5 @@
 #pragma once
+#include <array>
 #include <limits>
 #include <optional>
 #include <string>
@@ -124,6 +125,19 @@ struct PickUpResponse {
   std::vector<Point> points;  ///< in order of frequency
 };
 
+/// The calibration of three force cells with dead weights: converts the ratios of bridge to reference to
+/// forces.
+struct ForceCells {
+  /// Rows: cells a, b, lateral. Columns: normal force (N), lateral force (N), moment (N mm).
+  using Matrix = std::array<std::array<double, 3>, 3>;
+  Matrix matrix{};
+  std::vector<Matrix> changes;     ///< of the matrix, by one standard deviation of each source of error
+  double carrier_Hz = 0;           ///< it holds for this carrier only
+  double reference_amplitude = 0;  ///< amplitude of the reference during the calibration; 1 is full scale
+  std::array<double, 3> rotation_rad{};  ///< phase of each bridge against the reference
+  std::array<double, 3> rated_ratio{};   ///< ratio of bridge to reference at the rated load of each cell
+};
+
 /// What the station captures of its own output: `sim:` (a simulated plate; only in simulated sessions) or
 /// `alsa:NAME` (the capture of the card that plays).
 struct Capture {
@@ -139,6 +153,13 @@ struct Capture {
   /// captured channels of the force cells: two below the surface (the first nearer to the wide edge) and the
   /// lateral one; empty without force cells
   std::vector<int> bridges = {};
+  std::optional<ForceCells> forces = {};  ///< empty without a calibration of the force cells
+};
+
+/// Where the temperatures of the surface and of the frame that clamps it are read: hwmon:NAME/tempN or
+/// hwmon:NAME@DEVICE/tempN (`system/thermometer.hpp`).
+struct Thermometers {
+  std::string plate_uri, frame_uri;
 };
 
 /// Headphones that mask the audible part of a stimulus, for protocols that require it.
@@ -189,6 +210,7 @@ struct Rig {
   std::optional<std::string> trigger_lines_uri;  ///< lines that give out trigger codes in parallel
   std::optional<Sync> sync;
   std::optional<Capture> capture;
+  std::optional<Thermometers> thermometers;
   std::optional<Marker> marker;
   std::optional<MaskingNoise> noise;
   Friction friction;

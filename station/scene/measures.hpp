@@ -24,6 +24,9 @@ void measure(const physics::Surface& surface, const physics::FrictionMap& fricti
 double scale_to_friction(const physics::Surface& surface, const physics::FrictionMap& friction,
                          const rig::Rig& rig, const std::vector<physics::Tone>& tones, const Scene& scene);
 
+/// Throws Unreachable if the plan exceeds the rig's largest displacement or full scale.
+void refuse_beyond_limits(const rig::Rig& rig, const DrivePlan& plan);
+
 /// Returns the relative change of amplitude that changes friction by `tolerance`, at the amplitude where
 /// friction changes most steeply.
 double amplitude_tolerance(const physics::FrictionMap& friction, double tolerance);

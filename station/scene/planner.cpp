@@ -85,7 +85,6 @@ struct Planner::State : ToneDesigner {
   Solution solve(const Scene& scene, const std::vector<WantedTone>& wanted);
   const Solution& solution_for(const Scene& scene, const std::vector<WantedTone>& wanted);
   void drive(DrivePlan& plan, const std::vector<Tone>& tones, const Solution& solution) const;
-  void refuse_beyond_limits(const DrivePlan& plan) const;
   double drive_under_finger_m(const Scene& scene, double frequency_Hz);
 
  private:
@@ -203,16 +202,6 @@ void Planner::State::drive(DrivePlan& plan, const std::vector<Tone>& tones, cons
   for (const auto& [channel, sum] : channels) plan.peak_full_scale = std::max(plan.peak_full_scale, sum);
 }
 
-void Planner::State::refuse_beyond_limits(const DrivePlan& plan) const {
-  if (plan.peak_displacement_m > rig.limits.displacement_m)
-    throw Unreachable(fmt::format("the surface would move {} um at its highest; the rig's limit is {} um",
-                                  number(plan.peak_displacement_m * 1e6, 4),
-                                  number(rig.limits.displacement_m * 1e6, 4)));
-  if (plan.peak_full_scale > 1)
-    throw Unreachable(fmt::format("the drive would need {} of full scale, but at most 1 is possible",
-                                  number(plan.peak_full_scale, 4)));
-}
-
 /// Returns the amplitude of the drive edge that gives the required displacement under the rig's finger.
 double Planner::State::drive_under_finger_m(const Scene& scene, double frequency_Hz) {
   const double finger_m = scene.under_finger->finger_m;
@@ -237,6 +226,7 @@ double Planner::State::drive_under_finger_m(const Scene& scene, double frequency
 Planner::Planner(const rig::Rig& rig) : state_(std::make_unique<State>(rig)) {}
 Planner::~Planner() = default;
 Planner::Planner(Planner&&) noexcept = default;
+Planner& Planner::operator=(Planner&&) noexcept = default;
 Planner::Planner(const Planner& other) : state_(std::make_unique<State>(*other.state_)) {}
 const physics::Surface& Planner::surface() const { return state_->surface; }
 const physics::FrictionMap& Planner::friction() const { return state_->friction; }
@@ -323,8 +313,18 @@ DrivePlan Planner::make(const Scene& scene) {
   for (std::size_t i = 0; i < fields.size(); ++i)
     for (auto& v : fields[i].v) v *= tones[i].amplitude_m;
   measure(state_->surface, state_->friction, state_->rig, tones, fields, plan);
-  state_->refuse_beyond_limits(plan);
+  refuse_beyond_limits(state_->rig, plan);
   return plan;
+}
+
+void refuse_beyond_limits(const rig::Rig& rig, const DrivePlan& plan) {
+  if (plan.peak_displacement_m > rig.limits.displacement_m)
+    throw Unreachable(fmt::format("the surface would move {} um at its highest; the rig's limit is {} um",
+                                  number(plan.peak_displacement_m * 1e6, 4),
+                                  number(rig.limits.displacement_m * 1e6, 4)));
+  if (plan.peak_full_scale > 1)
+    throw Unreachable(fmt::format("the drive would need {} of full scale, but at most 1 is possible",
+                                  number(plan.peak_full_scale, 4)));
 }
 
 Planner::Profile Planner::profile(const DrivePlan& plan, int points) {

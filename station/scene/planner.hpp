@@ -100,6 +100,7 @@ class Planner {
   explicit Planner(const rig::Rig& rig);
   ~Planner();
   Planner(Planner&&) noexcept;
+  Planner& operator=(Planner&&) noexcept;
   /// Copies the caches as well. Another thread can use the copy.
   Planner(const Planner& other);
 

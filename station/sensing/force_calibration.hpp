@@ -57,6 +57,7 @@ class ForceCalibration {
   /// Uncertainty that comes from the errors of the weights, without the noise of the readings.
   ForceSd sd(const Readings& readings) const;
   const Matrix& matrix() const { return matrix_; }
+  const std::vector<Matrix>& changes() const { return changes_; }
 
  private:
   Matrix matrix_;

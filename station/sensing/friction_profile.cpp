@@ -52,9 +52,12 @@ MeanFriction FrictionProfile::mean(int direction) const {
   return result;
 }
 
-double stroke_friction(std::span<const FingerPoint> track, const Stroke& stroke) {
+double mean_friction(std::span<const FingerPoint> track, std::span<const Stroke> strokes,
+                     const StripPart& part) {
   Sums sums;
-  for (const auto& point : track.subspan(stroke.first, stroke.end - stroke.first)) sums.add(point);
+  for (const auto& stroke : strokes)
+    for (const auto& point : track.subspan(stroke.first, stroke.end - stroke.first))
+      if (point.position_mm >= part.from_mm && point.position_mm <= part.to_mm) sums.add(point);
   return sums.friction();
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 #include <cstddef>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -39,8 +40,15 @@ struct FrictionProfile {
 FrictionProfile friction_profile(std::span<const FingerPoint> track, std::span<const Stroke> strokes,
                                  const Bins& bins);
 
-/// Friction of a whole stroke: the sum of |lateral force| over the sum of normal force. Only points with
-/// contact and a normal force of least_normal_N or more count; NaN if there are none.
-double stroke_friction(std::span<const FingerPoint> track, const Stroke& stroke);
+/// A part of the strip, in mm from the wide edge.
+struct StripPart {
+  double from_mm = 0, to_mm = std::numeric_limits<double>::infinity();
+};
+
+/// Friction of all these strokes together, within a part of the strip: the sum of |lateral force| over the
+/// sum of normal force. Only points with contact and a normal force of least_normal_N or more count; NaN if
+/// there are none.
+double mean_friction(std::span<const FingerPoint> track, std::span<const Stroke> strokes,
+                     const StripPart& part = {});
 
 }  // namespace turnpoint::sensing

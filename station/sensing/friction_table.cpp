@@ -96,18 +96,6 @@ analysis::Interval around(double value, double half_width) {
 
 }  // namespace
 
-std::vector<double> friction_table_order(std::span<const double> levels_m, int strokes, std::uint64_t seed) {
-  std::vector<double> driven;
-  for (int i = 0; i < strokes; ++i) driven.insert(driven.end(), levels_m.begin(), levels_m.end());
-  random::Draws({seed, random::Stream::level_order}).shuffle(driven);
-  std::vector<double> order{0};
-  for (const double displacement_m : driven) {
-    order.push_back(displacement_m);
-    order.push_back(0);
-  }
-  return order;
-}
-
 std::vector<physics::FrictionPoint> FrictionTable::points() const {
   std::vector<physics::FrictionPoint> result{{0, 1, 0}};
   for (const auto& level : levels)

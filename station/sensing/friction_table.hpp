@@ -12,12 +12,8 @@ namespace turnpoint::sensing {
 /// One stroke over the vibrating surface, or over the surface at rest (displacement 0).
 struct TableStroke {
   double displacement_m = 0;  ///< peak displacement under the finger
-  double friction = 0;        ///< from stroke_friction(); NaN if the stroke did not count
+  double friction = 0;        ///< NaN if the stroke did not count
 };
-
-/// The displacements to present, in order: each level `strokes` times, in random order, with a stroke over
-/// the surface at rest (0) before, between and after them.
-std::vector<double> friction_table_order(std::span<const double> levels_m, int strokes, std::uint64_t seed);
 
 /// Friction at one displacement, relative to friction on the surface at rest.
 struct FrictionLevel {
@@ -42,11 +38,11 @@ struct FrictionTable {
 };
 
 /// Estimates the friction table from strokes in the order in which they were made. Friction of skin drifts by
-/// tens of per cent within minutes, so each driven stroke is compared with its two neighbours at rest: its
-/// value is the logarithm of friction, minus the mean logarithm of the neighbours. The means of the levels go
+/// tens of per cent within minutes, so each driven stroke is compared with the undriven ones before and after it: its
+/// value is the logarithm of friction, minus the mean logarithm of those two. The means of the levels go
 /// through a monotone regression (pool adjacent violators) and are joined by monotone cubics. (A curve with
 /// few parameters would be wrong where friction no longer falls.) Standard errors and intervals come from a
-/// bootstrap over the strokes of each level, enlarged because the strokes are few. Throws terms::UsageError
+/// bootstrap over the strokes of each level, widened to allow for the small number of strokes. Throws terms::UsageError
 /// if a level has fewer than three usable strokes or if there are no levels.
 FrictionTable friction_table(std::span<const TableStroke> strokes, std::uint64_t seed, int replicates = 1000);
 

@@ -11,6 +11,7 @@ namespace {
 
 constexpr double filter_s = 0.02;   // time over which a point's filter reaches, in either direction
 constexpr double tracker_s = 0.04;  // time over which the fit of position and speed reaches
+constexpr double now_s = 0.1;       // time over which now() averages
 constexpr double idle_s = 1;        // time of capture that is kept while no trial is expected
 constexpr double longest_s = 1200;  // longest capture that is kept; of a longer trial, the beginning is lost
 
@@ -145,6 +146,29 @@ std::optional<bool> TrialFinger::contact(std::size_t interval) {
   return false;
 }
 
+std::optional<FingerNow> TrialFinger::now() {
+  if (intervals_.empty() || points_.empty()) return std::nullopt;
+  const auto newest = points_.back().index + 1, first = newest - points_in(now_s);
+  if (first < index_at(quiet_until_)) return std::nullopt;
+  take_tare();
+  if (!zero_ || loaded_ || state_of(first, newest) != ForcesState::ok) return std::nullopt;
+  // The tracker needs points from after the last one that it returns.
+  FingerNow now;
+  double speed_sum = 0;
+  int points = 0, moving = 0;
+  for (const auto& point : track(first, newest)) {
+    now.normal_N += point.normal_N;
+    now.contact = point.contact;
+    ++points;
+    if (std::isnan(point.speed_mm_s)) continue;
+    speed_sum += point.speed_mm_s, ++moving;
+  }
+  if (points == 0) return std::nullopt;
+  now.normal_N /= points;
+  now.speed_mm_s = moving > 0 ? speed_sum / moving : std::numeric_limits<double>::quiet_NaN();
+  return now;
+}
+
 TrialForces TrialFinger::result() {
   TrialForces forces;
   forces.frames_per_point = frames_per_point_;
@@ -172,6 +196,9 @@ TrialForces TrialFinger::result() {
   std::vector<Stroke> of_last;
   for (const auto& stroke : strokes)
     if (in_trial[stroke.first].index >= last) of_last.push_back(stroke);
+  const auto before = forces.track.size() - in_trial.size();
+  for (const auto& stroke : of_last)
+    forces.strokes.push_back({stroke.first + before, stroke.end + before, stroke.direction});
   Bins bins;
   bins.count = static_cast<std::size_t>(setup_.length_mm / bins.width_mm);
   forces.profile = friction_profile(in_trial, of_last, bins);

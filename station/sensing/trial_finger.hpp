@@ -40,8 +40,16 @@ struct TrialForces {
   TrialSummary summary;
   FrictionProfile profile;  ///< friction along the strip during the last interval
   Movement movement = Movement::ok;
+  std::vector<Stroke> strokes;  ///< the strokes of the last interval, as ranges of `track`
   std::vector<FingerPoint> track;
   std::int64_t frames_per_point = 0;  ///< point k is at playback frame k * frames_per_point
+};
+
+/// The finger at this moment: what may be shown to a participant.
+struct FingerNow {
+  double normal_N = 0;    ///< mean over a tenth of a second
+  double speed_mm_s = 0;  ///< likewise; NaN if it is not known
+  bool contact = false;
 };
 
 /// Measures the finger in one trial after another from captured frames, which must have the numbers at which
@@ -70,6 +78,8 @@ class TrialFinger {
   std::int64_t known_at() const;
   /// True if a finger touched the surface in this interval; empty if that is not known.
   std::optional<bool> contact(std::size_t interval);
+  /// The finger in the newest captured frames. Empty if no trial is expected, or its forces are not known.
+  std::optional<FingerNow> now();
   /// What was measured in the expected trial. Frames that were not captured by now count as lost.
   TrialForces result();
 

@@ -22,24 +22,6 @@ sensing::Pilot pilot_of(const rig::Rig& rig) {
   return pilot;
 }
 
-std::vector<sensing::PickUp> pick_ups_of(const rig::Capture& capture) {
-  std::vector<sensing::PickUp> pick_ups;
-  for (const int channel : capture.pick_ups) {
-    sensing::PickUp pick_up{channel, {}};
-    for (const auto& response : capture.responses) {
-      if (response.channel != channel) continue;
-      sensing::Transfer transfer{response.drive_channel, {}, {}};
-      for (const auto& point : response.points) {
-        transfer.frequency_Hz.push_back(point.frequency_Hz);
-        transfer.response.push_back(std::polar(point.amplitude, point.phase_rad));
-      }
-      pick_up.transfers.push_back(std::move(transfer));
-    }
-    pick_ups.push_back(std::move(pick_up));
-  }
-  return pick_ups;
-}
-
 }  // namespace
 
 std::optional<CardCapture> card_capture_of(const rig::Rig& rig) {
@@ -53,7 +35,7 @@ std::optional<CardCapture> card_capture_of(const rig::Rig& rig) {
   plan.device.allow_plugin = rig.output.allow_plugin;
   plan.setup.rate_Hz = rig.output.rate_Hz;
   plan.setup.channels = rig.capture->channels;
-  plan.setup.pick_ups = pick_ups_of(*rig.capture);
+  plan.setup.pick_ups = calibrated_pick_ups(*rig.capture);
   plan.pilot = pilot_of(rig);
   plan.reference = rig.capture->reference;
   plan.triggers = trigger_setup_of(rig);
@@ -119,7 +101,7 @@ void CaptureFeed::run(const std::stop_token& stop) {
   }
 }
 
-// Returns true if the pilot should be in what has been captured.
+// Takes over a block. Returns true once enough has been captured to contain the whole pilot.
 bool CaptureFeed::take(const drive::CapturedBlock& captured) {
   const std::lock_guard lock(mutex_);
   const sensing::CaptureBlock block{captured.used(), plan_.device.channels, captured.first_frame + shift_,

@@ -44,6 +44,7 @@ std::optional<trial::Event> event_of(const Input& input) {
     case InputKind::disarm:
       return trial::Event{input.time_ns, EventKind::fault, 0};
     case InputKind::next:
+    case InputKind::back:
     case InputKind::value:
     case InputKind::slider:
     case InputKind::button:

@@ -22,6 +22,7 @@ enum class InputKind {
   answer,      ///< value = index of the chosen answer
   value,       ///< number = the number that was typed, or marked on a line, as the answer
   next,        ///< Continue or Done on a page
+  back,        ///< Back on a question or an explanation
   slider,      ///< number = the slider's value
   touch_down,  ///< any touch on the panel, on an answer or beside it; only logged
   button,      ///< value = index of the response button, in the order of the rig's URI

@@ -23,6 +23,10 @@ enum class PageKind {
   rest,      ///< a break of `remaining_s`; Continue appears once it is over
   /// the surface is silent; after the answer, the participant says how sure it was
   confidence,
+  /// a question of a questionnaire or a consent: a text, perhaps long, and answers of equal size
+  question,
+  /// a text, perhaps with a picture and with examples to feel (`answers`); Continue, and Back if `back`
+  explanation,
   line,    ///< a rating on a line: nothing is marked until the first touch; Done confirms the mark
   number,  ///< a number is typed; Done confirms it
   adjust,  ///< a slider moves the boundary in steps; Done ends the adjustment
@@ -49,6 +53,19 @@ struct ValueEntry {
   std::string first;  ///< on a number pad: the number of the standard, as a sentence; may be ""
 };
 
+/// The bars that guide the finger: normal force, and speed. There is no place here for lateral force,
+/// friction or position, because these would answer the question.
+struct Guidance {
+  struct Bar {
+    std::optional<double> value;  ///< from 0 to 1; empty while no finger is on the surface
+    double low = 0, high = 1;     ///< the range that the protocol asks for, from 0 to 1
+    bool operator==(const Bar&) const = default;
+  };
+  std::optional<Bar> force, speed;  ///< empty if the protocol accepts any
+  bool frozen = false;              ///< the bars stand still, because a stimulus is being presented
+  bool operator==(const Guidance&) const = default;
+};
+
 /// A line of the operator's summary at the end of a session.
 struct SummaryLine {
   std::string label, value;
@@ -60,6 +77,9 @@ struct Page {
   std::string text;   ///< the question, instruction or message, in the session's language
   std::vector<AnswerButton> answers;
   bool answers_open = false;
+  bool back = false;            ///< the participant can return to the previous question or page
+  bool playing = false;         ///< an example is being presented
+  std::string picture;          ///< on an explanation: path of the picture; may be ""
   bool answer_now = false;      ///< the response signal has been given
   std::optional<bool> correct;  ///< whether the answer was right; for feedback only
   /// "", "speed", "accuracy", ...: determines the block's style, which never differs by colour alone
@@ -78,7 +98,8 @@ struct Page {
   double remaining_s = 0;  ///< remaining time of a break
   /// for an adjustment: position, limits and step of the slider
   double slider = 0, slider_min = 0, slider_max = 1, slider_step = 0;
-  ValueEntry value;  ///< what a line or a number pad needs
+  ValueEntry value;                  ///< what a line or a number pad needs
+  std::optional<Guidance> guidance;  ///< bars that guide the finger, if the page has them
   std::string language;
   /// "disarmed" or "faulted" while the operator has to act (on a fault page); otherwise "armed", "enabled",
   /// or ""
@@ -97,6 +118,8 @@ class Display {
  public:
   virtual ~Display() = default;
   virtual void show(const Page& page) = 0;
+  /// Moves the bars of the page that is shown. Called on the session thread, some twenty times a second.
+  virtual void guide(const Guidance& /*guidance*/) {}
 };
 
 }  // namespace turnpoint::session

@@ -3,6 +3,7 @@
 #include <map>
 
 #include "station/protocol/answers.hpp"
+#include "station/protocol/interludes.hpp"
 #include "station/scene/planner.hpp"
 #include "station/text/number.hpp"
 #include "station/texts/texts.hpp"
@@ -90,6 +91,12 @@ Page Pages::instructions(const protocol::Block& block, const trial::Director& di
   page.title = texts::text(block.practice ? "practice" : "get_ready", setup_.language);
   const auto found = setup_.protocol.instructions.find(page.instruction);
   if (found != setup_.protocol.instructions.end()) page.text = text(found->second.text);
+  if (block.kind != protocol::BlockKind::trials) {
+    const bool training = block.kind == protocol::BlockKind::training;
+    page.title = texts::text(training ? "training" : "measuring", setup_.language);
+    page.text = texts::text(training ? "training_text" : "measuring_text", setup_.language);
+    return page;
+  }
   const auto question = text(setup_.protocol.task.question);
   page.text += (page.text.empty() ? "" : "\n\n") + question;
   return page;
@@ -102,6 +109,12 @@ Page Pages::of_phase(Phase phase, int interval, const trial::TrialSpec& spec, co
   auto page = blank(kind_of(phase), &block, &director);
   const auto& task = setup_.protocol.task;
   const bool explored = task.kind == protocol::TaskKind::single_interval && protocol::explored(task);
+  if (spec.strokes) {
+    const bool hush = phase == Phase::interval;
+    page.text = hush ? "" : texts::text("stroke_now", setup_.language);
+    page.correct = result.correct;
+    return page;
+  }
   page.mark_mm = mark_of(spec);
   page.interval = interval + 1;
   page.intervals = static_cast<int>(spec.intervals.size());
@@ -112,7 +125,11 @@ Page Pages::of_phase(Phase phase, int interval, const trial::TrialSpec& spec, co
     page.answers.push_back({choice.id, task.rating ? choice.id : text(choice.label)});
   for (const auto& anchor : task.anchors)
     page.answers.at(static_cast<std::size_t>(anchor.at) - 1).caption = text(anchor.text);
-  if (task.value && page.answers_open) add_value(page, task);
+  if (task.value && page.answers_open) add_value(page, *task.value);
+  if (task.value && page.answers_open && task.modulus) {
+    page.value.first = texts::text("first_is", setup_.language);
+    page.value.first.replace(page.value.first.find("%1"), 2, turnpoint::text::number(*task.modulus));
+  }
   if (phase == Phase::confidence) {
     page.text = text(task.confidence->question);
     page.answers_open = true;
@@ -135,16 +152,13 @@ Page Pages::of_phase(Phase phase, int interval, const trial::TrialSpec& spec, co
 }
 
 std::string Pages::movement(const std::string& word) const {
-  static const std::map<std::string, const char*> keys{{"strokes", "movement_strokes"},
-                                                       {"light", "movement_light"},
-                                                       {"hard", "movement_hard"},
-                                                       {"slow", "movement_slow"},
-                                                       {"fast", "movement_fast"}};
+  static const std::map<std::string, const char*> keys{
+      {"ok", "movement_ok"},     {"strokes", "movement_strokes"}, {"light", "movement_light"},
+      {"hard", "movement_hard"}, {"slow", "movement_slow"},       {"fast", "movement_fast"}};
   return texts::text(keys.at(word), setup_.language);
 }
 
-void Pages::add_value(Page& page, const protocol::Task& task) const {
-  const auto& value = *task.value;
+void Pages::add_value(Page& page, const protocol::ValueAnswer& value) const {
   page.kind = value.typed ? PageKind::number : PageKind::line;
   page.answers.clear();
   page.value = {value.low, value.high, value.decimals, {}, {}, ""};
@@ -152,9 +166,34 @@ void Pages::add_value(Page& page, const protocol::Task& task) const {
     page.value.places.push_back((anchor.at - value.low) / (value.high - value.low));
     page.value.texts.push_back(text(anchor.text));
   }
-  if (!task.modulus) return;
-  page.value.first = texts::text("first_is", setup_.language);
-  page.value.first.replace(page.value.first.find("%1"), 2, turnpoint::text::number(*task.modulus));
+}
+
+Page Pages::question(const protocol::Item& item, const trial::Director& director) const {
+  auto page = blank(PageKind::question, nullptr, &director);
+  page.text = text(item.question);
+  page.answers_open = true;
+  for (const auto& choice : item.choices)
+    page.answers.push_back({choice.id, item.rating ? choice.id : text(choice.label)});
+  for (const auto& anchor : item.anchors)
+    page.answers.at(static_cast<std::size_t>(anchor.at) - 1).caption = text(anchor.text);
+  if (item.value) add_value(page, *item.value);
+  return page;
+}
+
+Page Pages::explanation(const protocol::ExplanationPage& explanation, const trial::Director& director) const {
+  auto page = blank(PageKind::explanation, nullptr, &director);
+  page.text = text(explanation.text);
+  if (!explanation.picture.empty())
+    page.picture = protocol::picture_path(setup_.protocol, explanation.picture);
+  for (const auto& example : explanation.examples)
+    page.answers.push_back({example.scene, text(example.label)});
+  return page;
+}
+
+Page Pages::farewell(const protocol::Localised& words, const trial::Director& director) const {
+  auto page = blank(PageKind::explanation, nullptr, &director);
+  page.text = text(words);
+  return page;
 }
 
 void Pages::add_slider(Page& page, const trial::SliderSpan& span, double setting) const {
@@ -165,8 +204,8 @@ void Pages::add_slider(Page& page, const trial::SliderSpan& span, double setting
   page.slider_step = span.step;
 }
 
-Page Pages::between_trials(const protocol::Block& block, const trial::Director& director) const {
-  return blank(PageKind::interval, &block, &director);
+Page Pages::between_trials(const protocol::Block* block, const trial::Director& director) const {
+  return blank(PageKind::interval, block, &director);
 }
 
 Page Pages::rest(const protocol::Block& block, double min_s, const trial::Director& director) const {

@@ -27,7 +27,12 @@ class Pages {
   /// Adds the slider of an adjustment to the page of a phase.
   void add_slider(Page& page, const trial::SliderSpan& span, double setting) const;
   /// The page between two trials, with the progress only.
-  Page between_trials(const protocol::Block& block, const trial::Director& director) const;
+  Page between_trials(const protocol::Block* block, const trial::Director& director) const;
+  /// A question of a questionnaire, or the form of a consent.
+  Page question(const protocol::Item& item, const trial::Director& director) const;
+  Page explanation(const protocol::ExplanationPage& explanation, const trial::Director& director) const;
+  /// What a participant reads before the session ends because of a refusal or a screening.
+  Page farewell(const protocol::Localised& text, const trial::Director& director) const;
   Page rest(const protocol::Block& block, double min_s, const trial::Director& director) const;
   Page practice_again(const protocol::Block& block, const trial::Director& director) const;
   /// Makes the page for a fault that stops the session until somebody has repaired it. `detail` is what the
@@ -39,7 +44,7 @@ class Pages {
  private:
   Page blank(PageKind kind, const protocol::Block* block, const trial::Director* director) const;
   std::string text(const protocol::Localised& localised) const;
-  void add_value(Page& page, const protocol::Task& task) const;
+  void add_value(Page& page, const protocol::ValueAnswer& value) const;
 
   const Setup& setup_;
 };

@@ -8,6 +8,8 @@
 #include "station/protocol/resolve.hpp"
 #include "station/protocol/triggers.hpp"
 #include "station/random/draws.hpp"
+#include "station/scene/measures.hpp"
+#include "station/scene/scaled.hpp"
 #include "station/session/burst.hpp"
 #include "station/session/stage.hpp"
 #include "station/text/number.hpp"
@@ -18,8 +20,9 @@ namespace turnpoint::session {
 namespace {
 
 /// Returns a text that is equal for two trials exactly if their stimuli are equal.
-std::string key_of(const trial::TrialSpec& trial) {
-  std::string key = fmt::format("{}/{}/{}", trial.block_index, trial.attempt, trial.trial_in_block);
+std::string key_of(const trial::TrialSpec& trial, double drift) {
+  std::string key =
+      fmt::format("{}/{}/{}/{}", trial.block_index, trial.attempt, trial.trial_in_block, text::exact(drift));
   for (const auto& [name, value] : trial.factors) {
     key += "|" + name + "=";
     if (const auto* number = std::get_if<double>(&value))
@@ -27,6 +30,7 @@ std::string key_of(const trial::TrialSpec& trial) {
     else
       key += std::get<std::string>(value);
   }
+  if (trial.strokes) key += "|strokes " + text::exact(trial.level.value_or(0));
   for (std::size_t i = 0; i < trial.intervals.size(); ++i) {
     key += "|" + text::exact(trial.rove_dB[i]);
     for (const auto& scene : trial.intervals[i]) key += ":" + scene;
@@ -43,9 +47,26 @@ PlanAhead::PlanAhead(const rig::Rig& rig, const protocol::Protocol& protocol, st
 
 PlanAhead::~PlanAhead() = default;
 
-void PlanAhead::begin(const trial::TrialSpec& trial) {
-  auto key = key_of(trial);
+void PlanAhead::use_friction(const sensing::FrictionTable& table) {
+  std::unique_lock lock(mutex_);
+  wanted_.reset();
+  changed_.wait(lock, [this] { return !planning_; });
+  rig_.friction.measured = true;
+  rig_.friction.table.clear();
+  for (const auto& point : table.points())
+    rig_.friction.table.emplace_back(point.displacement_m, point.relative_friction);
+  planner_ = scene::Planner(rig_);
+  wanted_key_.clear(), done_key_.clear();
+}
+
+void PlanAhead::set_drift(double share) {
   const std::lock_guard lock(mutex_);
+  drift_ = share;
+}
+
+void PlanAhead::begin(const trial::TrialSpec& trial) {
+  const std::lock_guard lock(mutex_);
+  auto key = key_of(trial, drift_);
   if (key == wanted_key_) return;
   wanted_key_ = std::move(key);
   wanted_ = trial;
@@ -53,15 +74,14 @@ void PlanAhead::begin(const trial::TrialSpec& trial) {
 }
 
 bool PlanAhead::ready(const trial::TrialSpec& trial) {
-  const auto key = key_of(trial);
   const std::lock_guard lock(mutex_);
-  return done_key_ == key;
+  return done_key_ == key_of(trial, drift_);
 }
 
 const PlanAhead::Planned& PlanAhead::take(const trial::TrialSpec& trial) {
   begin(trial);
-  const auto key = key_of(trial);
   std::unique_lock lock(mutex_);
+  const auto key = key_of(trial, drift_);
   changed_.wait(lock, [&] { return done_key_ == key; });
   if (failed_) std::rethrow_exception(failed_);
   return done_;
@@ -71,31 +91,58 @@ void PlanAhead::run(const std::stop_token& stop) {
   std::unique_lock lock(mutex_);
   while (changed_.wait(lock, stop, [this] { return wanted_.has_value(); })) {
     const trial::TrialSpec trial = *std::exchange(wanted_, std::nullopt);
+    const double drift = drift_;
+    planning_ = true;
     lock.unlock();
     Planned planned;
     std::exception_ptr failed;
     try {
-      planned = plan(trial);
+      planned = plan(trial, drift);
     } catch (...) {
       failed = std::current_exception();
     }
     lock.lock();
     done_ = std::move(planned);
     failed_ = failed;
-    done_key_ = key_of(trial);
+    done_key_ = key_of(trial, drift);
+    planning_ = false;
     changed_.notify_all();
   }
 }
 
-PlanAhead::Planned PlanAhead::plan(const trial::TrialSpec& trial) {
+PlanAhead::Planned PlanAhead::plan(const trial::TrialSpec& trial, double drift) {
   Planned planned;
+  if (trial.strokes) {
+    planned.plans = {{plan_strokes(trial)}};
+    for (auto& tone : planned.plans.front().front().tones) tone.frequency_Hz *= 1 + drift;
+    planned.bursts = bursts_of(trial, planned.plans);
+    return planned;
+  }
   for (std::size_t i = 0; i < trial.intervals.size(); ++i) {
     auto& scenes = planned.plans.emplace_back();
     for (const auto& name : trial.intervals[i])
       scenes.push_back(planner_.plan(protocol::resolve(protocol_, name, trial.factors, trial.rove_dB[i])));
+    for (auto& made : scenes)
+      for (auto& tone : made.tones) tone.frequency_Hz *= 1 + drift;
   }
   planned.bursts = bursts_of(trial, planned.plans);
   return planned;
+}
+
+/// The scene of a friction table, made as strong as the trial's level says.
+scene::DrivePlan PlanAhead::plan_strokes(const trial::TrialSpec& trial) {
+  const auto& strokes = *trial.strokes;
+  if (*trial.level == 0) {
+    scene::DrivePlan rest;
+    rest.scene.name = strokes.scene;
+    return rest;
+  }
+  const auto plan = planner_.plan(protocol::resolve(protocol_, strokes.scene, {}, 0));
+  const double reference_m =
+      scene::mean_displacement_m(planner_, plan, {1e-3 * strokes.from_mm, 1e-3 * strokes.to_mm});
+  auto made = scene::scaled(planner_, plan, 1e-6 * *trial.level / reference_m);
+  scene::refuse_beyond_limits(rig_, made);
+  return made;
 }
 
 std::vector<drive::PreparedBurst> PlanAhead::bursts_of(const trial::TrialSpec& trial,

@@ -12,6 +12,7 @@
 #include "station/protocol/protocol.hpp"
 #include "station/rig/rig.hpp"
 #include "station/scene/planner.hpp"
+#include "station/sensing/friction_table.hpp"
 #include "station/trial/director.hpp"
 
 namespace turnpoint::session {
@@ -29,10 +30,13 @@ class PlanAhead {
     std::vector<drive::PreparedBurst> bursts;
   };
 
-  /// The rig and the protocol must outlive this object. `seed` is the seed of the session. Throws the errors
+  /// The protocol must outlive this object. `seed` is the seed of the session. Throws the errors
   /// of scene::Planner.
   PlanAhead(const rig::Rig& rig, const protocol::Protocol& protocol, std::uint64_t seed);
   ~PlanAhead();
+
+  /// Plans trials from now on with this friction table instead of the rig's.
+  void use_friction(const sensing::FrictionTable& table);
 
   /// Starts planning a trial. If an earlier trial is still waiting to be planned, it is dropped. Starting the
   /// same trial again has no effect.
@@ -42,19 +46,26 @@ class PlanAhead {
   /// Returns the plans of a trial, and waits for them if necessary. If planning failed, throws its exception.
   const Planned& take(const trial::TrialSpec& trial);
 
+  /// The resonances of the surface have moved by this share: all frequencies are multiplied by 1 + share, so
+  /// that boundaries stay where they were planned. Plans that were made before are made again.
+  void set_drift(double share);
+
  private:
   void run(const std::stop_token& stop);
-  Planned plan(const trial::TrialSpec& trial);
+  Planned plan(const trial::TrialSpec& trial, double drift);
+  scene::DrivePlan plan_strokes(const trial::TrialSpec& trial);
   std::vector<drive::PreparedBurst> bursts_of(const trial::TrialSpec& trial,
                                               const std::vector<std::vector<scene::DrivePlan>>& plans) const;
 
-  const rig::Rig& rig_;
+  rig::Rig rig_;
   const protocol::Protocol& protocol_;
   const std::uint64_t seed_;
-  scene::Planner planner_;  // used by the worker thread only
+  scene::Planner planner_;  // used by the worker thread only, while it plans
   std::mutex mutex_;
   std::condition_variable_any changed_;
+  bool planning_ = false;
   std::optional<trial::TrialSpec> wanted_;  ///< the newest requested trial, if its planning has not begun
+  double drift_ = 0;
   std::string wanted_key_, done_key_;
   Planned done_;
   std::exception_ptr failed_;

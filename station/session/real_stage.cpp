@@ -154,7 +154,14 @@ class RealStage : public Stage {
   std::string missing() const override { return devices_.buttons ? devices_.buttons->missing() : ""; }
   void question(const observer::Question&, std::int64_t) override {}
   void adjustment(const observer::Adjustment&, std::int64_t) override {}
+  void simulate(Input) override {}
   drive::Amplifier* guarded_amplifier() override { return devices_.amplifier.get(); }
+  void set_drift(double share) override {
+    if (feed_) feed_->watch().set_drift(share);
+  }
+  std::optional<sensing::FingerNow> finger_now() override {
+    return feed_ ? feed_->watch().finger_now() : std::nullopt;
+  }
   std::optional<ClockFit> clock_fit() override { return fit_of(*stream_); }
   std::string realtime_rights() const override {
     const auto playback = describe(stream_->rights());

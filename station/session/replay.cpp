@@ -51,6 +51,7 @@ void replay(trial::Director& director, const records::TrialRow& trial, const pro
   trial::TrialEnd end;
   end.outcome = trial.outcome;
   end.correct = trial.correct;
+  end.friction = trial.finger.mu;
   if (trial.response)
     for (std::size_t i = 0; i < protocol.task.choices.size(); ++i)
       if (protocol.task.choices[i].id == *trial.response) end.response = static_cast<int>(i);
@@ -70,7 +71,8 @@ void replay(trial::Director& director, const records::TrialRow& trial, const pro
 void check_observer(const Setup& setup, const store::StoredSession& stored, const trial::TrialSpec& spec,
                     const records::TrialRow& trial) {
   constexpr double tolerance_s = 1e-3;
-  if (trial.outcome != terms::Outcome::answered || !trial.response_time_s || spec.slider) return;
+  if (trial.outcome != terms::Outcome::answered || !trial.response_time_s || spec.slider || spec.strokes)
+    return;
   const observer::Observer observer(observer::parse(setup.observer));
   const auto reply = observer.answer(trial::question_of(spec, setup.protocol, stored.session.start.seed));
   const auto& choices = setup.protocol.task.choices;

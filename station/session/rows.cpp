@@ -22,6 +22,8 @@ const char* kind_of(InputKind kind) {
       return "value";
     case InputKind::next:
       return "next";
+    case InputKind::back:
+      return "back";
     case InputKind::slider:
       return "slider";
     case InputKind::touch_down:
@@ -170,8 +172,13 @@ std::optional<double> friction_level(const scene::Scene& scene) {
   return at_level ? std::optional(scene.edge.level) : std::nullopt;
 }
 
-void add_forces(records::TrialRow& row, const sensing::TrialForces& forces, std::optional<double> level,
-                int rate_Hz, const FrameTime& at) {
+sensing::StripPart part_of(const trial::TrialSpec& spec) {
+  if (!spec.strokes || spec.strokes->levels_um.empty()) return {};
+  return {spec.strokes->from_mm, spec.strokes->to_mm};
+}
+
+void add_forces(records::TrialRow& row, const sensing::TrialForces& forces, const Asked& asked, int rate_Hz,
+                const FrameTime& at) {
   const auto known = [](double value) { return std::isfinite(value) ? std::optional(value) : std::nullopt; };
   auto& finger = row.finger;
   const bool known_forces = forces.state == sensing::ForcesState::ok;
@@ -185,7 +192,8 @@ void add_forces(records::TrialRow& row, const sensing::TrialForces& forces, std:
     finger.normal_in_window = known(summary.normal_in_window);
     finger.speed_mm_s = known(summary.speed_mm_s);
     finger.speed_in_window = known(summary.speed_in_window);
-    if (const auto step = sensing::felt_step(forces.profile, level)) {
+    finger.mu = known(sensing::mean_friction(forces.track, forces.strokes, asked.part));
+    if (const auto step = sensing::felt_step(forces.profile, asked.friction_level)) {
       finger.mu_low = std::min(step->friction_below, step->friction_above);
       finger.mu_high = std::max(step->friction_below, step->friction_above);
       finger.boundary_felt_mm = step->boundary_mm;

@@ -38,10 +38,18 @@ sensing::MovementWindow window_of(const protocol::Sensing& sensing);
 /// The friction, relative to the surface at rest, at which the scene's boundary is planned; empty if the
 /// boundary is not an edge of friction.
 std::optional<double> friction_level(const scene::Scene& scene);
-/// Adds what the force cells measured in a trial: the summary, the boundary felt at the friction `level`
-/// (without one, half-way up the step), and the signal of the finger.
-void add_forces(records::TrialRow& row, const sensing::TrialForces& forces, std::optional<double> level,
-                int rate_Hz, const FrameTime& at);
+/// What the trial asks about the finger.
+struct Asked {
+  std::optional<double> friction_level;  ///< see friction_level(); empty: half-way up the step
+  sensing::StripPart part;               ///< the part of the surface in which friction is averaged
+};
+/// The part of the surface in which the trial's friction is averaged: that of its friction table, otherwise
+/// all.
+sensing::StripPart part_of(const trial::TrialSpec& spec);
+/// Adds what the force cells measured in a trial: the summary, the felt boundary, friction, and the signal of
+/// the finger.
+void add_forces(records::TrialRow& row, const sensing::TrialForces& forces, const Asked& asked, int rate_Hz,
+                const FrameTime& at);
 
 /// Says what a pick-up found wrong with a trial, with figures: "the surface does not move (-62.1 dB)".
 std::string describe_proof(const records::TrialRow& row);

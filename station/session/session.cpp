@@ -160,6 +160,7 @@ limits::FingerAccount account_of(const Setup& setup, std::int64_t origin_ns) {
 struct Begun {
   store::SessionLog log;
   trial::Director director;
+  Earlier earlier;
 };
 
 Begun begin(const Setup& setup, Stage& stage) {
@@ -167,27 +168,27 @@ Begun begin(const Setup& setup, Stage& stage) {
   auto log = store::SessionLog::begin(setup.database, start_of(setup, seed, stage.realtime_rights()),
                                       segment("start", stage.now_ns()));
   trial::Director director(setup.protocol, log.session().sequence_index, seed);
-  return {std::move(log), std::move(director)};
+  return {std::move(log), std::move(director), {}};
 }
 
 /// Replays the stored trials first and writes afterwards, so that a session that cannot be resumed stays
 /// unchanged.
 Begun resume(const Setup& setup, Stage& stage) {
-  const auto stored = store::read_session(setup.database, setup.resume_session);
+  auto stored = store::read_session(setup.database, setup.resume_session);
   auto director = replayed(setup, stored);
   auto log =
       store::SessionLog::resume(setup.database, setup.resume_session, segment("resume", stage.now_ns()));
   if (log.session().trials != stored.session.trials)
     throw std::runtime_error("resume: another process has added trials to session " + setup.resume_session +
                              " meanwhile; resume the session again");
-  return {std::move(log), std::move(director)};
+  return {std::move(log), std::move(director), {std::move(stored.events), std::move(stored.blocks)}};
 }
 
 Summary run_on(const Setup& setup, Display* display, std::unique_ptr<Stage> stage, Monitor* monitor) {
   auto account = account_of(setup, stage->now_ns());
   auto begun = setup.resume_session.empty() ? begin(setup, *stage) : resume(setup, *stage);
-  SessionRun run(setup, std::move(begun.director), std::move(begun.log), std::move(stage), std::move(account),
-                 display, monitor);
+  SessionRun run(setup, std::move(begun.director), std::move(begun.log), begun.earlier, std::move(stage),
+                 std::move(account), display, monitor);
   return run.run();
 }
 

@@ -51,6 +51,8 @@ struct Setup {
   bool self_test = false;
   /// the operator's reason to continue although a check of the self-test failed; "" asks for it
   std::string despite = {};
+  /// where the kernel lists its temperature sensors
+  std::string thermometers = "/sys/class/hwmon";
 };
 
 /// The result of a run, for people and for --json.

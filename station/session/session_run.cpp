@@ -7,17 +7,24 @@
 namespace turnpoint::session {
 
 SessionRun::SessionRun(const Setup& setup, trial::Director director, store::SessionLog log,
-                       std::unique_ptr<Stage> stage, limits::FingerAccount account, Display* display,
-                       Monitor* monitor)
+                       const Earlier& earlier, std::unique_ptr<Stage> stage, limits::FingerAccount account,
+                       Display* display, Monitor* monitor)
     : setup_(setup),
       log_(std::move(log)),
       stage_(std::move(stage)),
       account_(std::move(account)),
+      display_(display),
       monitor_(monitor),
       plans_(setup.rig, setup.protocol, log_.session().start.seed),
       director_(std::move(director)),
       pages_(setup),
-      gate_(setup, pages_, director_, *stage_, log_, display) {
+      gate_(setup, pages_, director_, *stage_, log_, display),
+      interludes_(setup, pages_, director_, gate_, *stage_, log_,
+                  [this](const protocol::Example& example, Page page) {
+                    return play_example(example, std::move(page));
+                  }),
+      guide_(setup.protocol.sensing) {
+  interludes_.restore(earlier);
   summary_.session_id = log_.session().session_id;
   summary_.participant = setup.participant;
   summary_.protocol_id = setup.protocol.id;
@@ -25,18 +32,21 @@ SessionRun::SessionRun(const Setup& setup, trial::Director director, store::Sess
   summary_.run_mode = store::name(setup.run_mode);
   summary_.realtime_rights = stage_->realtime_rights();
   summary_.seed = log_.session().start.seed;
+  use_measured_friction();
 }
 
 Summary SessionRun::run() {
   started_ns_ = stage_->now_ns();
+  begin_drift();
   // In a pilot session without a real amplifier, nobody has to arm it.
   if (setup_.run_mode != terms::RunMode::live && setup_.rig.amplifier_uri == "sim:")
     // if arming is refused, until_armed() below shows a page
     static_cast<void>(stage_->arm());
   if (gate_.until_armed({FaultKind::disarmed, ""}) == Flow::go_on && pass_self_test() == Flow::go_on)
-    while (director_.block() != nullptr)
-      if (run_block() == Flow::stop) break;
-  if (gate_.stop_asked())
+    static_cast<void>(run_parts());  // what follows finds out why it ended
+  if (!interludes_.ended_because().empty())
+    finish(records::SessionStatus::stopped, interludes_.ended_because());
+  else if (gate_.stop_asked())
     finish(records::SessionStatus::interrupted, gate_.stop_reason());
   else if (!director_.ended_because().empty())
     finish(records::SessionStatus::stopped, director_.ended_because());
@@ -47,15 +57,27 @@ Summary SessionRun::run() {
   return summary_;
 }
 
+/// Runs all blocks, and what comes before, between and after them.
+Flow SessionRun::run_parts() {
+  while (director_.block() != nullptr) {
+    // a session that was resumed after the last trial of a block has only to leave the block
+    const bool resumed_at_end = !director_.next();
+    if (!resumed_at_end && interludes_.before(director_.block_index()) == Flow::stop) return Flow::stop;
+    if (run_block() == Flow::stop) return Flow::stop;
+  }
+  return director_.ended_because().empty() ? interludes_.before(director_.blocks()) : Flow::stop;
+}
+
 Flow SessionRun::run_block() {
   const auto block = *director_.block();
   gate_.keep(
       [&] { log_.begin_block(trial::block_start(block, director_.block_index(), director_.attempt())); });
   const auto first = director_.next();
-  if (first) plans_.begin(*first);
+  if (!first) return leave_block();
+  plans_.begin(*first);
   auto page = director_.attempt() > 0 && block.practice ? pages_.practice_again(block, director_)
                                                         : pages_.instructions(block, director_);
-  if (first) pages_.add_mark(page, *first);
+  pages_.add_mark(page, *first);
   if (gate_.show_and_wait(std::move(page), 0) == Flow::stop) return Flow::stop;
   int trials = 0;
   while (const auto spec = director_.next()) {
@@ -63,7 +85,13 @@ Flow SessionRun::run_block() {
     ++trials;
     if (rest_if_due(trials) == Flow::stop) return Flow::stop;
   }
+  return leave_block();
+}
+
+Flow SessionRun::leave_block() {
   for (auto& e : director_.estimates()) summary_.estimates.push_back(std::move(e));
+  if (director_.block()->kind == protocol::BlockKind::friction_table && finish_friction_table() == Flow::stop)
+    return Flow::stop;
   ++summary_.blocks;
   director_.finish_block();
   return Flow::go_on;

@@ -1,8 +1,15 @@
 #pragma once
+#include <array>
 #include <memory>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "station/limits/finger_account.hpp"
+#include "station/sensing/friction_table.hpp"
+#include "station/sensing/phase_drift.hpp"
+#include "station/session/guidance.hpp"
+#include "station/session/interludes.hpp"
 #include "station/session/operator_gate.hpp"
 #include "station/session/pages.hpp"
 #include "station/session/plan_ahead.hpp"
@@ -19,8 +26,9 @@ namespace turnpoint::session {
 /// next trial.
 class SessionRun {
  public:
-  /// `director` must be in the state that corresponds to the log.
-  SessionRun(const Setup& setup, trial::Director director, store::SessionLog log,
+  /// `director` must be in the state that corresponds to the log, and to `earlier`, which is empty for a new
+  /// session.
+  SessionRun(const Setup& setup, trial::Director director, store::SessionLog log, const Earlier& earlier,
              std::unique_ptr<Stage> stage, limits::FingerAccount account, Display* display, Monitor* monitor);
 
   /// Runs until the last block has ended or somebody stops the session.
@@ -49,8 +57,11 @@ class SessionRun {
   };
 
   // These functions run blocks and show pages (session_run.cpp).
+  Flow run_parts();
   Flow run_block();
-  Flow pass_self_test();  // session_run_self_test.cpp
+  Flow leave_block();
+  Flow play_example(const protocol::Example& example, Page page);  // session_run_example.cpp
+  Flow pass_self_test();                                           // session_run_self_test.cpp
   Flow rest_if_due(int trials_in_block);
   int trial_index() const { return log_.session().trials; }
   void finish(records::SessionStatus status, const std::string& reason);
@@ -73,11 +84,28 @@ class SessionRun {
   void leave_surface();
   void count(const trial::TrialSpec& spec, const records::TrialRow& row);
 
-  // These functions give out trigger codes (session_run_triggers.cpp).
+  // These functions follow temperature and resonances (session_run_drift.cpp).
+  void begin_drift();
+  void log_temperature();
+  void follow_drift(const sensing::IntervalResult& measured);
+  void correct_drift();
+
+  // These functions send trigger codes (session_run_triggers.cpp).
   void trigger(protocol::TriggerEvent event, const Running& trial);
   void trigger_intervals(const Running& trial);
   void log_triggers();
   void finish_triggers();
+
+  // These functions guide the finger (session_run_guidance.cpp).
+  void move_bars();
+  void hold_bars(trial::Phase phase, const Running& trial);
+
+  // These functions are for blocks of strokes (session_run_strokes.cpp).
+  bool is_training() const;
+  void judge_strokes(const Input& input, Running& trial);
+  Flow finish_friction_table();
+  void use_measured_friction();
+  sensing::FrictionTable measured_friction(int block_index) const;
 
   // These functions are for adjustments (session_run_adjustment.cpp).
   void show_phase(trial::Phase phase, const Running& trial);
@@ -88,16 +116,31 @@ class SessionRun {
   store::SessionLog log_;
   std::unique_ptr<Stage> stage_;
   limits::FingerAccount account_;
+  Display* display_;
   Monitor* monitor_;
   PlanAhead plans_;
   trial::Director director_;
   Pages pages_;
   OperatorGate gate_;
+  Interludes interludes_;
   Summary summary_;
+  int examples_ = 0;  ///< examples presented so far
   int scored_ = 0, right_ = 0;
   int voids_in_a_row_ = 0, refused_in_a_row_ = 0, repeats_in_a_row_ = 0;
   std::int64_t started_ns_ = 0;
   std::vector<OnSurface> surface_;
+  std::vector<std::string> thermometers_;  ///< files of plate and frame; empty if the rig has none
+  std::array<std::optional<double>, 2> first_C_;
+  std::array<bool, 2> warm_{};
+  std::optional<sensing::DriftTracker> drift_;       ///< empty without pick-ups
+  std::optional<sensing::PhaseDrift> newest_drift_;  ///< found in the running trial
+  double applied_drift_ = 0;                         ///< share by which frequencies are corrected
+  Guide guide_;
+  std::int64_t guide_due_ns_ = 0;
 };
+
+/// How far the boundary of a tone moves (m, towards the narrow edge) if all resonances of the surface move by
+/// this share.
+double boundary_shift_m(const physics::Surface& surface, double frequency_Hz, double share);
 
 }  // namespace turnpoint::session

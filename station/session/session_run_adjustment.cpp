@@ -16,6 +16,10 @@ void SessionRun::show_phase(trial::Phase phase, const Running& trial) {
   if (trial.slider && adjusting) pages_.add_slider(page, *trial.spec.slider, trial.slider->setting());
   if (phase == trial::Phase::late && trial.machine.result().outcome == terms::Outcome::fault)
     page.text = pages_.movement(trial.row.finger.sensing);
+  if (trial.spec.strokes && phase == trial::Phase::feedback)
+    page.text = pages_.movement(trial.row.finger.sensing);
+  hold_bars(phase, trial);
+  page.guidance = guide_.bars();
   gate_.show(page);
 }
 
@@ -31,6 +35,10 @@ std::optional<trial::Event> SessionRun::event_in_trial(const Input& input, Runni
   }
   // Neither a button nor a touch beside the number pad can give a number; a button cannot give a confidence.
   if (input.kind == InputKind::answer && (confiding ? by_button : answer.has_value())) return touch;
+  if (trial.spec.strokes) {
+    const auto event = event_of(input);
+    return event && event->kind == trial::EventKind::answer ? touch : event;
+  }
   if (!trial.slider) return event_of(input);
   // Ignore slider movements in silence: the participant could not feel their effect.
   if (input.kind == InputKind::slider && trial.machine.phase() == trial::Phase::stimulus)

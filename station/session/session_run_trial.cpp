@@ -34,6 +34,7 @@ records::EventRow event(std::int64_t time_ns, const char* kind, double value, in
 
 Flow SessionRun::run_trial(const trial::TrialSpec& spec) {
   if (prepare_trial(spec) == Flow::stop) return Flow::stop;
+  log_temperature();
   Running trial{spec,
                 trial::Machine(trial::timing_of(setup_.protocol, *director_.block(), spec)),
                 trial::row_of(spec, setup_.protocol, trial_index()),
@@ -53,6 +54,7 @@ Flow SessionRun::run_trial(const trial::TrialSpec& spec) {
   finish_row(trial);
   gate_.keep([&] { log_.append(trial.row); });
   count(spec, trial.row);
+  correct_drift();
   if (monitor_ != nullptr) monitor_->trial_ended(spec, trial.row);
   return after_trial(trial);
 }
@@ -92,7 +94,7 @@ Flow SessionRun::keep_limits(const trial::TrialSpec& spec) {
   const double stretch_s = static_cast<double>(begin - now) * 1e-9;
   summary_.stretched_s += stretch_s;
   log_.event(event(now, "interval_stretched", stretch_s, trial_index()));
-  const auto page = pages_.between_trials(*director_.block(), director_);
+  const auto page = pages_.between_trials(director_.block(), director_);
   gate_.show(page);
   while (stage_->now_ns() < begin)
     if (auto input = stage_->wait_until(begin))
@@ -145,9 +147,12 @@ void SessionRun::drive_trial(Running& trial, std::optional<trial::EventKind> cut
     const auto wake = machine.wake_ns();
     const auto follow_ns = trial.slider ? trial.slider->glide_due_ns().value_or(kForever) : kForever;
     const auto until = std::min(wake.value_or(kForever), follow_ns);
-    auto input = stage_->wait_until(until);
+    const auto bars_ns = guide_.guides() ? guide_due_ns_ : kForever;
+    auto input = stage_->wait_until(std::min(until, bars_ns));
     if (input)
       handle_in_trial(std::move(*input), trial);
+    else if (bars_ns < until)
+      move_bars();
     else if (follow_ns <= until && follow_ns != kForever)
       glide(trial);
     else
@@ -159,19 +164,23 @@ void SessionRun::handle_in_trial(Input raw, Running& trial) {
   const bool by_button = raw.kind == InputKind::button;
   const auto input = gate_.received(std::move(raw));
   gate_.note(input);
+  if (input.measured) follow_drift(*input.measured);
   if (input.measured) add_measured(trial.row, *input.measured, input.value, trial.measured++ == 0);
   if (input.forces && !trial.onsets.empty()) {
     const auto& onset = trial.onsets.front();
-    add_forces(trial.row, *input.forces, trial.friction_level, setup_.rig.output.rate_Hz,
+    add_forces(trial.row, *input.forces, {trial.friction_level, part_of(trial.spec)},
+               setup_.rig.output.rate_Hz,
                {onset.frame, 1e-9 * static_cast<double>(onset.time_ns - started_ns_)});
     const bool asked = setup_.protocol.sensing && input.forces->state == sensing::ForcesState::ok;
-    trial.outside = asked && input.forces->movement != sensing::Movement::ok;
+    trial.outside = asked && !is_training() && input.forces->movement != sensing::Movement::ok;
     if (trial.outside && repeats_in_a_row_ < setup_.protocol.sensing->repeats)
       perform(trial.machine.handle({input.time_ns, trial::EventKind::outside, 0}), trial);
+    else if (trial.spec.strokes)
+      judge_strokes(input, trial);
   }
   const bool answers = input.kind == InputKind::answer || input.kind == InputKind::value ||
                        (trial.slider && input.kind == InputKind::next);
-  if (answers && !trial.machine.result().response) {
+  if (answers && !trial.spec.strokes && !trial.machine.result().response) {
     trial.row.response_time_quality = name(input.quality);
     trial.by_button = by_button;
   }
@@ -235,6 +244,7 @@ void SessionRun::interval_begins(Running& trial) {
 }
 
 void SessionRun::ask_observer(const Running& trial, std::int64_t onset_ns) {
+  if (trial.spec.strokes) return;
   const auto last = trial::interval_times(setup_.protocol, trial.spec).back();
   const auto ns = [](double s) { return static_cast<std::int64_t>(s * 1e9); };
   auto zero_ns = onset_ns;
@@ -254,8 +264,9 @@ void SessionRun::decide(Running& trial) {
   auto& row = trial.row;
   if (trial.slider) trial.value = trial.slider->felt();
   trial::fill_result(row, trial.machine.result(), trial.spec, setup_.protocol, started_ns_, trial.value);
-  trial::TrialEnd end{row.outcome, trial.machine.result().response, row.correct, {}};
+  trial::TrialEnd end{row.outcome, trial.machine.result().response, row.correct, {}, {}};
   if (trial.slider && end.response) end.setting = trial.value;
+  end.friction = row.finger.mu;
   director_.record(end);
   row.state_hash = director_.state_hash();
   if (const auto threshold = director_.threshold()) {
@@ -307,6 +318,8 @@ void SessionRun::count(const trial::TrialSpec& spec, const records::TrialRow& ro
       ++summary_.voided;
       break;
   }
+  if (spec.type != terms::TrialType::warmup && row.correct)
+    interludes_.score(spec.block_index, spec.attempt, director_.block()->name, *row.correct);
   if (spec.type == terms::TrialType::experimental && row.correct) ++scored_, right_ += *row.correct ? 1 : 0;
 }
 

@@ -97,7 +97,7 @@ sensing::FingerSetup finger_of(const plant::Setup& room) {
 }  // namespace
 
 SimulatedRoom::SimulatedRoom(const rig::Rig& rig, const std::function<void(plant::Setup&)>& change)
-    : plant_([&] {
+    : rig_(rig.capture.value_or(rig::Capture{})), plant_([&] {
         auto room = room_of(rig);
         if (change) change(room);
         return room;
@@ -152,7 +152,12 @@ CaptureSetup SimulatedRoom::capture() const {
   made.in_contact = false;
   if (setup.capture.bridge_a) {
     made.finger = finger_of(setup);
+    if (rig_.forces) use(*rig_.forces, *made.finger);
     made.finger->window = window_;
+  }
+  if (!rig_.responses.empty()) {
+    made.pick_ups = calibrated_pick_ups(rig_);
+    return made;
   }
   for (std::size_t p = 0; p < setup.pickups.size(); ++p) {
     auto& pick_up = made.pick_ups.emplace_back();

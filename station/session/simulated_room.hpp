@@ -30,13 +30,15 @@ class SimulatedRoom {
 
   /// The movement that the protocol asks for.
   void ask_for(const sensing::MovementWindow& window) { window_ = window; }
-  /// How the station judges what it captures here. The responses of the pick-ups are those of the plate.
+  /// How the station judges what it captures here: with the rig's calibration of pick-ups and cells, or with
+  /// an exact one if the rig has none.
   CaptureSetup capture() const;
   plant::Plant& plant() { return plant_; }
   /// While the wire from the marker's output is broken, its captured channel is silent.
   void break_marker_wire(bool broken) { marker_broken_ = broken; }
 
  private:
+  rig::Capture rig_;
   plant::Plant plant_;
   sensing::MovementWindow window_;
   bool marker_broken_ = false;

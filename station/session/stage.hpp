@@ -101,10 +101,18 @@ class Stage {
   /// Asks a simulated observer to set this slider and press Done. Times count from `zero_ns`.
   virtual void adjustment(const observer::Adjustment& adjustment, std::int64_t zero_ns) = 0;
 
+  /// Makes a simulated participant give this input at its time. A real stage does nothing.
+  virtual void simulate(Input input) = 0;
+
   /// For the self-test: the amplifier and its guard, null in a simulated session; and how a simulated room
   /// captures, empty without one.
   virtual drive::Amplifier* guarded_amplifier() { return nullptr; }
   virtual std::optional<CaptureSetup> capture() const { return std::nullopt; }
+
+  /// The resonances of the surface have moved by this share since the calibration of its pick-ups.
+  virtual void set_drift(double) {}
+  /// The finger at this moment, if force cells measure it.
+  virtual std::optional<sensing::FingerNow> finger_now() { return std::nullopt; }
 
   virtual std::optional<ClockFit> clock_fit() = 0;
   virtual std::string realtime_rights() const = 0;

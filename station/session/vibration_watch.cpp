@@ -1,18 +1,52 @@
 #include "station/session/vibration_watch.hpp"
 
 #include <algorithm>
+#include <complex>
 #include <limits>
 #include <utility>
 
+#include "station/sensing/phase_drift.hpp"
+
 namespace turnpoint::session {
 
-VibrationWatch::VibrationWatch(CaptureSetup setup) : setup_(std::move(setup)) {
+std::vector<sensing::PickUp> calibrated_pick_ups(const rig::Capture& capture) {
+  std::vector<sensing::PickUp> pick_ups;
+  for (const int channel : capture.pick_ups) {
+    sensing::PickUp pick_up{channel, {}};
+    for (const auto& response : capture.responses) {
+      if (response.channel != channel) continue;
+      sensing::Transfer transfer{response.drive_channel, {}, {}};
+      for (const auto& point : response.points) {
+        transfer.frequency_Hz.push_back(point.frequency_Hz);
+        transfer.response.push_back(std::polar(point.amplitude, point.phase_rad));
+      }
+      pick_up.transfers.push_back(std::move(transfer));
+    }
+    pick_ups.push_back(std::move(pick_up));
+  }
+  return pick_ups;
+}
+
+void use(const rig::ForceCells& cells, sensing::FingerSetup& finger) {
+  finger.calibration = sensing::ForceCalibration(cells.matrix, cells.changes);
+  finger.bridges.carrier_Hz = cells.carrier_Hz;
+  finger.bridges.reference_amplitude = cells.reference_amplitude;
+  finger.bridges.rotation_rad = cells.rotation_rad;
+  finger.bridges.full_scale = cells.rated_ratio;
+}
+
+VibrationWatch::VibrationWatch(CaptureSetup setup) : setup_(std::move(setup)), calibrated_(setup_.pick_ups) {
   if (setup_.finger) finger_.emplace(*setup_.finger);
 }
 
 void VibrationWatch::set_delay(double frames) {
   const std::lock_guard lock(mutex_);
   setup_.delay_frames = frames;
+}
+
+void VibrationWatch::set_drift(double share) {
+  const std::lock_guard lock(mutex_);
+  setup_.pick_ups = sensing::scaled(calibrated_, share);
 }
 
 void VibrationWatch::expect(std::span<const drive::PreparedBurst> intervals, std::int64_t quiet_until) {
@@ -69,6 +103,11 @@ std::shared_ptr<const sensing::IntervalResult> VibrationWatch::result(std::size_
   if (interval >= proofs_.size() || !proofs_[interval]) return nullptr;
   const auto contact = finger_ ? finger_->contact(interval) : setup_.in_contact;
   return std::make_shared<sensing::IntervalResult>(proofs_[interval]->result(contact));
+}
+
+std::optional<sensing::FingerNow> VibrationWatch::finger_now() {
+  const std::lock_guard lock(mutex_);
+  return finger_ ? finger_->now() : std::nullopt;
 }
 
 std::shared_ptr<const sensing::TrialForces> VibrationWatch::forces(std::size_t interval) {

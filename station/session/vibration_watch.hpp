@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "station/drive/prepared_burst.hpp"
+#include "station/rig/rig.hpp"
 #include "station/sensing/interval_proof.hpp"
 #include "station/sensing/trial_finger.hpp"
 
@@ -27,6 +28,12 @@ struct CaptureSetup {
   std::optional<sensing::FingerSetup> finger;  ///< the force cells, if there are any
 };
 
+/// The pick-ups of a rig, with the responses of its calibration.
+std::vector<sensing::PickUp> calibrated_pick_ups(const rig::Capture& capture);
+
+/// Lets `finger` use the rig's calibration of the force cells.
+void use(const rig::ForceCells& cells, sensing::FingerSetup& finger);
+
 /// Proves the intervals of a trial from what the pick-ups capture, and measures the finger with the force
 /// cells. One thread may push samples while the session thread calls the other functions.
 class VibrationWatch {
@@ -35,6 +42,8 @@ class VibrationWatch {
 
   /// The delay that the newest pilot has measured; it applies from the next trial on.
   void set_delay(double frames);
+  /// The resonances have moved by this share since the calibration; it applies from the next trial on.
+  void set_drift(double share);
 
   /// The intervals of a trial, with absolute start frames, in order. Replaces those of the previous trial.
   /// Until playback frame `quiet_until` the participant has not been asked to touch the surface.
@@ -53,12 +62,15 @@ class VibrationWatch {
   /// The result of an interval. Frames that were not captured by now count as lost. Null if the interval is
   /// not expected.
   std::shared_ptr<const sensing::IntervalResult> result(std::size_t interval);
+  /// The finger at this moment. Empty if it is not known, and without force cells.
+  std::optional<sensing::FingerNow> finger_now();
   /// What the force cells say about the trial, once its last interval is known. Null for the other intervals,
   /// and without force cells.
   std::shared_ptr<const sensing::TrialForces> forces(std::size_t interval);
 
  private:
   CaptureSetup setup_;
+  const std::vector<sensing::PickUp> calibrated_;
   mutable std::mutex mutex_;
   std::vector<std::unique_ptr<sensing::IntervalProof>> proofs_;  ///< null: will not be proven
   std::optional<sensing::TrialFinger> finger_;

@@ -73,6 +73,7 @@ class VirtualStage : public Stage {
   std::vector<Input> drain() override {
     script_.clear();
     unheard_.clear();
+    measured_ = false;
     touchable_ = false;
     std::vector<Input> stops;
     for (auto& input : inputs_.drain()) {
@@ -94,6 +95,7 @@ class VirtualStage : public Stage {
       earliest_ns = std::max(earliest_ns, stream_->time_of(triggers_.free_from()).value());
     const auto onsets = schedule(*stream_, intervals, earliest_ns, presented_);
     unheard_ = presented_;
+    measured_ = false;  // a fault may have ended the last trial between the two reports of an interval
     if (watch_) {
       const auto bursts = scheduled(intervals, presented_);
       room_->expect(intervals);
@@ -176,8 +178,20 @@ class VirtualStage : public Stage {
     script_.push_back(input);
   }
 
+  void simulate(Input input) override {
+    input.quality = TimeQuality::simulated;
+    input.time_ns = std::max(now_ns_, input.time_ns);
+    script_ = {std::move(input)};
+  }
+
   std::optional<CaptureSetup> capture() const override {
     return room_ ? std::optional(room_->capture()) : std::nullopt;
+  }
+  void set_drift(double share) override {
+    if (watch_) watch_->set_drift(share);
+  }
+  std::optional<sensing::FingerNow> finger_now() override {
+    return watch_ ? watch_->finger_now() : std::nullopt;
   }
   std::optional<ClockFit> clock_fit() override { return fit_of(*stream_); }
   std::string realtime_rights() const override { return describe(stream_->rights()); }

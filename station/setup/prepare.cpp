@@ -8,6 +8,7 @@
 
 #include "station/calibration/apply.hpp"
 #include "station/limits/exposure.hpp"
+#include "station/protocol/sources.hpp"
 #include "station/protocol/survey.hpp"
 #include "station/scene/sound.hpp"
 #include "station/terms/usage_error.hpp"
@@ -73,7 +74,11 @@ void check_live(const session::Setup& setup, const protocol::Survey& survey, std
   const auto add = [&](const std::string& what, const std::string& allowed) {
     problems.push_back({{rig.path, 0, 0}, kLiveOption + what, allowed});
   };
-  if (!rig.friction.measured)
+  const auto measures = [](const auto& part) {
+    const auto& block = protocol::block_of(part);
+    return block.kind == protocol::BlockKind::friction_table && block.strokes.used;
+  };
+  if (!rig.friction.measured && !std::ranges::any_of(setup.protocol.plan, measures))
     add("the rig uses the illustrative friction curve, which was not measured",
         "set table_csv in [friction] to a measured table, or run with --mode pilot");
   if (rig.reproduction)

@@ -27,7 +27,7 @@ std::int64_t ns(double s) { return static_cast<std::int64_t>(s * 1e9); }
 /// The time from the last interval's onset to response zero, from which response times count.
 std::int64_t zero_after_onset_ns(const protocol::Protocol& protocol, const TrialSpec& spec) {
   const auto last = trial::interval_times(protocol, spec).back();
-  switch (protocol.timing.response_zero) {
+  switch (trial::zero_of(protocol, spec)) {
     case terms::ResponseZero::interval_off:
       return ns(last.length_s);
     case terms::ResponseZero::change:
@@ -114,6 +114,11 @@ struct Doing {
 
 Doing done_by(const Rehearser& rehearser, const TrialSpec& spec, const protocol::Protocol& protocol,
               std::uint64_t seed) {
+  if (spec.strokes) {
+    Doing doing;
+    doing.reply.choice = 0;  // the movement is as the protocol asks for
+    return doing;
+  }
   if (!spec.slider) return {rehearser.answer(spec, trial::question_of(spec, protocol, seed)), {}};
   const auto set = rehearser.adjust(spec, trial::adjustment_of(spec, seed));
   trial::Slider slider(*spec.slider, spec.level.value_or(spec.slider->low));

@@ -51,7 +51,7 @@ void run_session(const Protocol& protocol, std::uint64_t seed, const Answers& an
     while (const auto trial = director.next()) {
       count(*block, *trial);
       trial::TrialEnd end;
-      end.response = answers(*trial);
+      end.response = trial->strokes ? 0 : answers(*trial);
       if (trial->correct) end.correct = end.response == trial->correct;
       // Mark practice as passed, because a participant who fails it never sees the other blocks.
       if (block->practice) end.correct = true;

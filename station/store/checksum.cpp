@@ -70,6 +70,11 @@ class Encoder {
     add(hash, event_, event_table(), "event_index", "event_index", from.event, to.event);
     if (encoding_ >= 4)
       add(hash, check_, check_table(), "event_index", "event_index, check_index", from.event, to.event);
+    if (encoding_ >= 5)
+      add(hash, answer_, answer_table(), "event_index", "event_index, answer_index", from.event, to.event);
+    if (encoding_ >= 5)
+      add(hash, friction_, friction_level_table(), "event_index", "event_index, level_index", from.event,
+          to.event);
   }
 
   Extent extent() {
@@ -120,7 +125,8 @@ class Encoder {
   Database& database_;
   std::string schema_, id_;
   std::int64_t encoding_;
-  std::optional<Statement> segment_, block_, trial_, tone_, signal_, event_, check_, extent_;
+  std::optional<Statement> segment_, block_, trial_, tone_, signal_, event_, check_, answer_, friction_,
+      extent_;
 };
 
 namespace {
@@ -318,6 +324,23 @@ std::vector<VerifiedSession> verify_database(Database& database, const std::stri
   std::vector<VerifiedSession> verified;
   for (const auto& id : ids) verified.push_back(verify_one(database, id, schema, enrolled_ids));
   return verified;
+}
+
+std::string annotations_checksum(Database& database, const std::string& session_id) {
+  text::Sha256 hash;
+  Statement notes(database,
+                  "SELECT annotation_id, realtime_ns, text FROM annotation WHERE session_id = ?"
+                  " ORDER BY annotation_id");
+  notes.bind(session_id);
+  while (notes.step()) add_row(hash, notes);
+  return hash.hex();
+}
+
+std::optional<Link> link_at(Database& database, const std::string& session_id, std::int64_t index) {
+  Statement row(database,
+                fmt::format("SELECT {} FROM link WHERE session_id = ? AND link_index = ?", kLinkColumns));
+  row.bind(session_id, index);
+  return row.step() ? std::optional(link_from(row)) : std::nullopt;
 }
 
 std::string session_checksum(Database& database, const std::string& schema, const std::string& session_id) {

@@ -1,6 +1,7 @@
 #pragma once
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -13,7 +14,7 @@ namespace turnpoint::store {
 /// Version of the rule that turns rows into the bytes to be hashed. The bytes of a version never change. A
 /// later release that adds columns or tables adds a version; older links are still checked with the version
 /// with which they were made.
-constexpr int kEncoding = 4;
+constexpr int kEncoding = 5;
 
 /// The keys of a session's last row in each table. If a table has no rows, its value is below the first key.
 struct Extent {
@@ -83,6 +84,12 @@ bool holds_link(Database& database, const std::string& session_id, const std::st
 
 /// Returns the checksum of a session's last link; "" if the session has no chain.
 std::string last_checksum(Database& database, const std::string& session_id);
+
+/// Returns the SHA-256 over the annotations of a session, which its chain does not cover.
+std::string annotations_checksum(Database& database, const std::string& session_id);
+
+/// Returns a link of the session's chain; empty if the chain has no link with this index.
+std::optional<Link> link_at(Database& database, const std::string& session_id, std::int64_t index);
 
 /// Returns the SHA-256 over all rows of a session, with annotations and without the status. Two databases
 /// give the same value if and only if their copies of the session are equal apart from the status.

@@ -69,8 +69,13 @@ std::vector<ProtocolSelection> select(Database& database, const std::string& dir
 }  // namespace
 
 CsvColumns csv_columns(const ProtocolSelection& selection) {
-  return {trial_columns(selection.factors), interval_columns(), event_columns(), session_columns(),
-          self_test_columns()};
+  return {trial_columns(selection.factors),
+          interval_columns(),
+          event_columns(),
+          session_columns(),
+          self_test_columns(),
+          answer_columns(),
+          friction_columns()};
 }
 
 void for_each_row(Database& database, const ProtocolSelection& selection, const CsvColumns& columns,
@@ -99,6 +104,18 @@ void for_each_row(Database& database, const ProtocolSelection& selection, const 
         row.check = &check;
         rows.self_tests(cells_of(columns.self_tests, row));
       }
+      for (const auto& level : event.friction_levels) {
+        row.level = &level;
+        rows.friction_tables(cells_of(columns.friction_tables, row));
+      }
+    }
+    for (const auto* event : records::standing_answers(stored.events)) {
+      const auto& segment = stored.segments.at(static_cast<std::size_t>(event->segment_index) - 1);
+      ExportRow row{&stored.session, nullptr, nullptr, nullptr, event, segment.monotonic_ns};
+      for (const auto& answer : event->answers) {
+        row.answer = &answer;
+        rows.answers(cells_of(columns.answers, row));
+      }
     }
   }
 }
@@ -111,16 +128,20 @@ void export_csv(Database& database, const ProtocolSelection& selection, const Ta
   };
   auto trials = table("trials.csv", columns.trials), intervals = table("intervals.csv", columns.intervals),
        events = table("events.csv", columns.events), sessions = table("sessions.csv", columns.sessions),
-       checks = table("self_tests.csv", columns.self_tests);
+       checks = table("self_tests.csv", columns.self_tests), answers = table("answers.csv", columns.answers),
+       friction = table("friction_tables.csv", columns.friction_tables);
   const auto into = [](TableFile& file) {
     return [&file](const std::vector<Cell>& cells) { file.row(cells); };
   };
   for_each_row(database, selection, columns,
-               {into(trials), into(intervals), into(events), into(sessions), into(checks)});
+               {into(trials), into(intervals), into(events), into(sessions), into(checks), into(answers),
+                into(friction)});
   for (auto* file : {&trials, &intervals, &events, &sessions}) file->finish(files);
   write_file(selection.folder + "/codebook.json", codebook_json(selection.protocol_id, selection.factors));
   files.push_back({selection.folder + "/codebook.json", 0});
   checks.finish(files);
+  answers.finish(files);
+  friction.finish(files);
 }
 
 SelectedSessions select_for_export(const std::string& path, const std::string& directory,

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cctype>
 #include <filesystem>
 #include <map>
@@ -105,8 +106,12 @@ class BidsWriter {
           bids_sidecar(newest.start, explanations(bids_trial_columns(selection_.factors))));
     plain(fmt::format("task-{}_events.json", task_), bids_sidecar(newest.start, bids_event_columns()));
     participants();
-    for (const auto& session : selection_.sessions)
-      runs(database, read_session(database, session), newest.start);
+    for (const auto& session : selection_.sessions) {
+      const auto stored = read_session(database, session);
+      runs(database, stored, newest.start);
+      collect_answers(stored);
+    }
+    phenotypes();
   }
 
  private:
@@ -159,9 +164,50 @@ class BidsWriter {
     }
   }
 
+  /// The answers to one questionnaire: its items in the order in which they first occur, and for each session
+  /// and occasion the answers by item.
+  struct Answered {
+    std::vector<std::string> items;
+    std::map<std::pair<std::string, int>, std::map<std::string, std::string>> rows;
+  };
+
+  void collect_answers(const StoredSession& stored) {
+    for (const auto* event : standing_answers(stored.events))
+      for (const auto& answer : event->answers) {
+        auto& [items, rows] = answers_[answer.questionnaire];
+        if (std::find(items.begin(), items.end(), answer.item) == items.end()) items.push_back(answer.item);
+        rows[{stored.session.session_id, answer.occasion}][answer.item] = answer.answer;
+      }
+  }
+
+  /// Writes a table for each questionnaire, with a column for each item.
+  void phenotypes() {
+    std::map<std::string, std::string> persons;
+    for (const auto& session : selection_.sessions) persons[session.session_id] = session.person;
+    for (const auto& [name, answered] : answers_) {
+      std::vector<Column> columns{{"participant_id", "Label of the participant", "", ""},
+                                  {"session_id", "Label of the session", "", ""},
+                                  {"occasion", "Number of blocks before the questionnaire", "", ""}};
+      for (const auto& item : answered.items)
+        columns.push_back({item, "Answer to this item of the questionnaire", "", ""});
+      TableFile table(selection_.folder + "/phenotype/" + file_name_of(name) + ".tsv", kBids,
+                      names_of(columns));
+      for (const auto& [key, given] : answered.rows) {
+        std::vector<Cell> cells{cell("sub-" + labels_.participants.at(persons.at(key.first))),
+                                cell("ses-" + labels_.sessions.at(key.first)), cell(key.second)};
+        for (const auto& item : answered.items)
+          cells.push_back(given.count(item) > 0 ? cell(given.at(item)) : Cell{});
+        table.row(cells);
+      }
+      table.finish(files_);
+      plain("phenotype/" + file_name_of(name) + ".json", columns_json(columns));
+    }
+  }
+
   const ProtocolSelection& selection_;
   std::vector<ExportedFile>& files_;
   Labels labels_;
+  std::map<std::string, Answered> answers_;
   std::string task_;
 };
 

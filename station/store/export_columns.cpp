@@ -34,6 +34,12 @@ ExportColumn event(const std::string& csv) { return exported(event_table(), csv,
 
 ExportColumn check(const std::string& csv) { return exported(check_table(), csv, &ExportRow::check); }
 
+ExportColumn answer(const std::string& csv) { return exported(answer_table(), csv, &ExportRow::answer); }
+
+ExportColumn level(const std::string& csv) {
+  return exported(friction_level_table(), csv, &ExportRow::level);
+}
+
 template <class Make>
 void add(ExportColumns& columns, Make make, std::initializer_list<const char*> names) {
   for (const auto* name : names) columns.push_back(make(name));
@@ -202,11 +208,30 @@ ExportColumns trial_columns(const std::vector<std::string>& factors) {
        "extra_touches", "threshold_est", "threshold_sd"});
   add(columns, session, {"seed", "station_id", "calibration_id", "software_version"});
   add(columns, trial,
-      {"response_zero_onset", "trial_duration",  "proof",      "proof_cause",     "drive_ratio_db",
-       "drive_residual_db",   "onset_error_us",  "confidence", "confidence_time", "sensing",
-       "contact_s",           "strokes",         "normal_n",   "normal_sd_n",     "normal_in_window",
-       "speed_mm_s",          "speed_in_window", "mu_low",     "mu_high",         "boundary_felt_mm",
-       "boundary_se_mm",      "lag_mm",          "tare_mn"});
+      {"response_zero_onset",
+       "trial_duration",
+       "proof",
+       "proof_cause",
+       "drive_ratio_db",
+       "drive_residual_db",
+       "onset_error_us",
+       "confidence",
+       "confidence_time",
+       "sensing",
+       "contact_s",
+       "strokes",
+       "normal_n",
+       "normal_sd_n",
+       "normal_in_window",
+       "speed_mm_s",
+       "speed_in_window",
+       "mu_low",
+       "mu_high",
+       "boundary_felt_mm",
+       "boundary_se_mm",
+       "lag_mm",
+       "tare_mn",
+       "mu"});
   columns.push_back(columns_version());
   add_factors(columns, at, factors);
   return columns;
@@ -260,6 +285,22 @@ ExportColumns self_test_columns() {
   return columns;
 }
 
+ExportColumns answer_columns() {
+  ExportColumns columns{participant_id(),    session_id(),        session("session_index"),
+                        session("run_mode"), event("segment_id"), event_onset()};
+  add(columns, answer, {"questionnaire", "item", "occasion", "answer", "response_time"});
+  columns.push_back(columns_version());
+  return columns;
+}
+
+ExportColumns friction_columns() {
+  ExportColumns columns{participant_id(), session_id(), session("run_mode"), event("segment_id"),
+                        event_onset()};
+  add(columns, level, {"displacement_um", "trials", "measured", "relative_friction", "sd", "low", "high"});
+  columns.push_back(columns_version());
+  return columns;
+}
+
 const EventRow* newest_self_test(const StoredSession& stored) {
   const EventRow* newest = nullptr;
   for (const auto& event : stored.events)
@@ -276,6 +317,8 @@ std::string codebook_json(const std::string& protocol_id, const std::vector<std:
   json["events.csv"] = explained(event_columns());
   json["sessions.csv"] = explained(session_columns());
   json["self_tests.csv"] = explained(self_test_columns());
+  json["answers.csv"] = explained(answer_columns());
+  json["friction_tables.csv"] = explained(friction_columns());
   return json.dump(2) + "\n";
 }
 

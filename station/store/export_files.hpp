@@ -22,8 +22,8 @@ struct ProtocolSelection {
   std::vector<SessionRecord> sessions;
 };
 
-/// The sessions that an export or a reader takes from a database, read from one snapshot even if a running session adds
-/// rows meanwhile.
+/// The sessions that an export or a reader takes from a database, read from one snapshot even if a running
+/// session adds rows meanwhile.
 struct SelectedSessions {
   Database database;
   std::vector<ProtocolSelection> protocols;
@@ -35,13 +35,14 @@ SelectedSessions select_for_export(const std::string& database, const std::strin
 
 /// The columns of the tables of a protocol.
 struct CsvColumns {
-  ExportColumns trials, intervals, events, sessions, self_tests;
+  ExportColumns trials, intervals, events, sessions, self_tests, answers, friction_tables;
 };
 CsvColumns csv_columns(const ProtocolSelection& selection);
 
 /// Receives the rows of these tables one by one.
 struct CsvRows {
-  std::function<void(const std::vector<Cell>&)> trials, intervals, events, sessions, self_tests;
+  std::function<void(const std::vector<Cell>&)> trials, intervals, events, sessions, self_tests, answers,
+      friction_tables;
 };
 void for_each_row(Database& database, const ProtocolSelection& selection, const CsvColumns& columns,
                   const CsvRows& rows);

@@ -55,19 +55,6 @@ std::vector<Column> followed_by(std::vector<Column> columns, const std::vector<C
   return columns;
 }
 
-/// Reads the playback rate from the rig of the session. Empty if this release can no longer read that text.
-std::optional<double> playback_rate_Hz(const SessionStart& start) {
-  try {
-    const auto rig = text::parse_toml(start.rig_text, start.rig_path);
-    const auto* output = rig.find("output");
-    const auto* rate = output == nullptr ? nullptr : output->value.find("rate_Hz");
-    if (rate != nullptr && rate->value.number > 0) return rate->value.number;
-  } catch (const text::BadInput&) {
-    // Leave out the frames. The other columns are exported anyway.
-  }
-  return std::nullopt;
-}
-
 /// Writes the points of one signal. A missing value becomes an empty cell.
 void add_points(TableFile& table, const StoredSignal& stored, std::optional<double> playback_Hz,
                 const std::vector<SignalChannel>& channels) {
@@ -111,6 +98,18 @@ void refuse_leftovers(const std::string& folder, const std::set<std::string>& ex
 Json explained(const std::vector<Column>& columns) { return Json::parse(columns_json(columns)); }
 
 }  // namespace
+
+std::optional<double> playback_rate_Hz(const SessionStart& start) {
+  try {
+    const auto rig = text::parse_toml(start.rig_text, start.rig_path);
+    const auto* output = rig.find("output");
+    const auto* rate = output == nullptr ? nullptr : output->value.find("rate_Hz");
+    if (rate != nullptr && rate->value.number > 0) return rate->value.number;
+  } catch (const text::BadInput&) {
+    // Leave out the frames. The other columns are exported anyway.
+  }
+  return std::nullopt;
+}
 
 void keep_with_signals(Database& database, std::vector<ProtocolSelection>& selections) {
   for (auto& selection : selections)

@@ -41,10 +41,12 @@ struct ExportRow {
   const TrialRow* trial = nullptr;
   const ToneRow* tone = nullptr;
   const EventRow* event = nullptr;
-  std::int64_t origin_ns = 0;             ///< CLOCK_MONOTONIC at the start of the event's segment
-  std::optional<StimulusSpan> span = {};  ///< time span of the trial's stimuli
-  const CheckRow* check = nullptr;        ///< a check of the self-test in `event`
-  const EventRow* self_test = nullptr;    ///< the newest self-test of the session; null if there was none
+  std::int64_t origin_ns = 0;               ///< CLOCK_MONOTONIC at the start of the event's segment
+  std::optional<StimulusSpan> span = {};    ///< time span of the trial's stimuli
+  const CheckRow* check = nullptr;          ///< a check of the self-test in `event`
+  const FrictionLevelRow* level = nullptr;  ///< a level of the friction table in `event`
+  const AnswerRow* answer = nullptr;        ///< the answer in `event`
+  const EventRow* self_test = nullptr;      ///< the newest self-test of the session; null if there was none
 };
 
 /// A column of an exported table: its description, and the function that computes the column's value in a
@@ -62,6 +64,8 @@ ExportColumns interval_columns();
 ExportColumns event_columns();
 ExportColumns session_columns();
 ExportColumns self_test_columns();
+ExportColumns answer_columns();
+ExportColumns friction_columns();
 
 /// The newest self-test of a session; null if there was none.
 const EventRow* newest_self_test(const StoredSession& stored);

@@ -79,6 +79,43 @@ const Table<CheckRow>& check_table() {
   return table;
 }
 
+const Table<AnswerRow>& answer_table() {
+  using A = AnswerRow;
+  static const Table<A> table{
+      "answer",
+      {"session_id", "event_index", "answer_index"},
+      {field<&A::questionnaire>({"questionnaire", "questionnaire",
+                                 "Name of the questionnaire, consent or screening in the protocol"}),
+       field<&A::item>({"item", "item", "Item of the questionnaire; consent | screening"}),
+       field<&A::occasion>(
+           {"occasion", "occasion",
+            "Number of blocks before it; tells the occasions of the same questionnaire apart"}),
+       field<&A::answer>({"answer", "answer", "Id of the choice, or the number"}),
+       field<&A::response_time_s>(
+           {"response_time_s", "response_time", "Time from the appearance of the question", "s"})}};
+  return table;
+}
+
+const Table<FrictionLevelRow>& friction_level_table() {
+  using F = FrictionLevelRow;
+  static const Table<F> table{
+      "friction_level",
+      {"session_id", "event_index", "level_index"},
+      {field<&F::displacement_um>({"displacement_um", "displacement_um",
+                                   "Displacement without a finger, rms over the measured part of the surface",
+                                   "um"}),
+       field<&F::trials>({"trials", "trials", "Number of trials at this displacement that count"}),
+       field<&F::measured>({"measured", "measured",
+                            "Friction relative to the surface at rest, geometric mean of the trials"}),
+       field<&F::relative_friction>(
+           {"relative_friction", "relative_friction",
+            "The same after a monotone regression over the displacements; plans use this value"}),
+       field<&F::sd>({"sd", "sd", "Standard error of relative_friction"}),
+       field<&F::low>({"low", "low", "Lower end of the 95 % interval of relative_friction"}),
+       field<&F::high>({"high", "high", "Upper end of the 95 % interval of relative_friction"})}};
+  return table;
+}
+
 const Table<SessionRecord>& session_table() {
   using R = SessionRecord;
   using S = SessionStart;
@@ -126,6 +163,7 @@ const Table<SessionRecord>& session_table() {
        condition<&Conditions::skin_moisture>({"skin_moisture", "skin_moisture",
                                               "Moisture of the fingertip, as a moisture meter read it before "
                                               "the session, in the meter's unit"}),
+       since(5, field<&R::leased_place>({"leased_place"})),
        field<&R::status>({"status", "status", "State of the session", "",
                           "running | completed | interrupted | stopped | abandoned"}),
        field<&R::status_reason>({"status_reason", "status_reason", "Why the session has this state"})}};

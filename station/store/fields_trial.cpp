@@ -161,7 +161,11 @@ const Table<TrialRow>& trial_table() {
                            "steps of the two directions",
                            "mm"}),
        finger<&F::tare_mN>(
-           {"tare_mN", "tare_mn", "Change of the force sensors' zero since the previous trial", "mN"})}};
+           {"tare_mN", "tare_mn", "Change of the force sensors' zero since the previous trial", "mN"}),
+       since(5, field<&T::finger, &F::mu>(
+                    {"mu", "mu",
+                     "Measured coefficient of friction over all strokes during the interval presented last; "
+                     "in a block that measures a friction table, over its part of the surface"}))}};
   return table;
 }
 

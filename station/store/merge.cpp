@@ -45,6 +45,8 @@ const std::vector<Part>& parts() {
       {"signal", "session_id,trial_index,stream", "", kBySession},
       {"event", "session_id,event_index", "", kBySession},
       {"self_test", "session_id,event_index,check_index", "", kBySession},
+      {"answer", "session_id,event_index,answer_index", "", kBySession},
+      {"friction_level", "session_id,event_index,level_index", "", kBySession},
       {"link", "session_id,link_index", "", kBySession},
       {"unsealed", "session_id", "", kBySession},
       {"annotation", "annotation_id", "", kBySession},

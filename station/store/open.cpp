@@ -42,7 +42,8 @@ void recover_sessions(Database& database) {
   Statement(
       database,
       "UPDATE session SET status = 'abandoned', status_reason = ? WHERE status = 'interrupted' AND NOT EXISTS"
-      " (SELECT 1 FROM trial WHERE trial.session_id = session.session_id)")
+      " (SELECT 1 FROM trial WHERE trial.session_id = session.session_id) AND NOT EXISTS"
+      " (SELECT 1 FROM answer WHERE answer.session_id = session.session_id)")
       .bind(kAbandonedReason)
       .run();
   transaction.commit();

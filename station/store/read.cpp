@@ -165,20 +165,32 @@ std::vector<std::string> participants(const std::string& path) {
 
 namespace {
 
-/// The events of a session, in the order in which they were logged, with the checks of self-tests.
+/// The events of a session, in the order in which they were logged, with the checks of self-tests
+/// the answers to questionnaires, and the levels of friction tables.
 std::vector<EventRow> read_events(Database& database, const std::string& id) {
   Statement rows(database, "SELECT " + column_list(event_table()) +
                                " FROM event WHERE session_id = ? ORDER BY event_index");
   Statement checks(database, "SELECT " + column_list(check_table()) +
                                  " FROM self_test WHERE session_id = ? ORDER BY event_index, check_index");
+  Statement answers(database, "SELECT " + column_list(answer_table()) +
+                                  " FROM answer WHERE session_id = ? ORDER BY event_index, answer_index");
   rows.bind(id);
   checks.bind(id);
+  answers.bind(id);
+  Statement levels(database,
+                   "SELECT " + column_list(friction_level_table()) +
+                       " FROM friction_level WHERE session_id = ? ORDER BY event_index, level_index");
+  levels.bind(id);
   std::vector<EventRow> events;
-  bool check_waits = checks.step();
+  bool check_waits = checks.step(), answer_waits = answers.step(), level_waits = levels.step();
   while (rows.step()) {
     auto event = record_of(rows, event_table());
     for (; check_waits && checks.integer(1) == rows.integer(1); check_waits = checks.step())
       event.checks.push_back(record_of(checks, check_table()));
+    for (; answer_waits && answers.integer(1) == rows.integer(1); answer_waits = answers.step())
+      event.answers.push_back(record_of(answers, answer_table()));
+    for (; level_waits && levels.integer(1) == rows.integer(1); level_waits = levels.step())
+      event.friction_levels.push_back(record_of(levels, friction_level_table()));
     events.push_back(std::move(event));
   }
   return events;

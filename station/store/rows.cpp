@@ -9,7 +9,9 @@ RowWriter::RowWriter(Database& database)
       tone_(database, insert_sql(tone_table())),
       signal_(database, insert_sql(signal_table())),
       event_(database, insert_sql(event_table())),
-      check_(database, insert_sql(check_table())) {}
+      check_(database, insert_sql(check_table())),
+      answer_(database, insert_sql(answer_table())),
+      friction_(database, insert_sql(friction_level_table())) {}
 
 void RowWriter::trial(const TrialPlace& at, TrialRow row, std::int64_t recorded_realtime_ns) {
   row.segment_index = at.segment_index;
@@ -26,6 +28,12 @@ void RowWriter::event(const TrialPlace& at, std::int64_t event_index, EventRow r
   std::int64_t check_index = 0;
   for (const auto& check : row.checks)
     bind_row(check_, check_table(), check, at.session_id, event_index, check_index++).run();
+  std::int64_t answer_index = 0;
+  for (const auto& answer : row.answers)
+    bind_row(answer_, answer_table(), answer, at.session_id, event_index, answer_index++).run();
+  std::int64_t level_index = 0;
+  for (const auto& level : row.friction_levels)
+    bind_row(friction_, friction_level_table(), level, at.session_id, event_index, level_index++).run();
 }
 
 std::map<std::pair<int, int>, std::vector<TrialRow>> read_trials(Database& database,

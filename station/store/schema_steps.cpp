@@ -373,10 +373,69 @@ CREATE TRIGGER session_keeps_its_provenance BEFORE UPDATE OF session_id, partici
   BEGIN SELECT RAISE(ABORT, 'the provenance of a session is never changed'); END;
 )sql";
 
+// Version 8. The answers to questionnaires, consent forms and screenings: each belongs to an event of the
+// kind questionnaire. The places in the counterbalancing that a collector has leased to this station, and whether the
+// place of a session is one of them.
+// Friction over all strokes of a trial. Friction tables that were measured in a session: the levels of a table
+// belong to an event of the kind friction_table.
+const char* const kStep8 = R"sql(
+CREATE TABLE answer (
+  session_id TEXT NOT NULL,
+  event_index INTEGER NOT NULL,
+  answer_index INTEGER NOT NULL,
+  questionnaire TEXT NOT NULL CHECK (questionnaire <> ''),
+  item TEXT NOT NULL CHECK (item <> ''),
+  occasion INTEGER NOT NULL CHECK (occasion >= 0),
+  answer TEXT NOT NULL CHECK (answer <> ''),
+  response_time_s REAL NOT NULL CHECK (response_time_s >= 0),
+  PRIMARY KEY (session_id, event_index, answer_index),
+  FOREIGN KEY (session_id, event_index) REFERENCES event (session_id, event_index)
+) STRICT, WITHOUT ROWID;
+
+CREATE TRIGGER answer_is_never_changed BEFORE UPDATE ON answer
+  BEGIN SELECT RAISE(ABORT, 'answer is append-only'); END;
+CREATE TRIGGER answer_is_never_deleted BEFORE DELETE ON answer
+  WHEN NOT EXISTS (SELECT 1 FROM tombstone WHERE session_id = OLD.session_id)
+  BEGIN SELECT RAISE(ABORT, 'answer is append-only'); END;
+
+CREATE TABLE lease (
+  protocol_id TEXT NOT NULL,
+  sequence_index INTEGER NOT NULL CHECK (sequence_index >= 0),
+  PRIMARY KEY (protocol_id, sequence_index)
+) STRICT, WITHOUT ROWID;
+ALTER TABLE session ADD COLUMN leased_place INTEGER NOT NULL DEFAULT 0 CHECK (leased_place IN (0, 1));
+CREATE TRIGGER session_keeps_its_place BEFORE UPDATE OF leased_place ON session
+  BEGIN SELECT RAISE(ABORT, 'the provenance of a session is never changed'); END;
+
+ALTER TABLE trial ADD COLUMN mu REAL;
+
+CREATE TABLE friction_level (
+  session_id TEXT NOT NULL,
+  event_index INTEGER NOT NULL,
+  level_index INTEGER NOT NULL,
+  displacement_um REAL NOT NULL CHECK (displacement_um > 0),
+  trials INTEGER NOT NULL CHECK (trials > 0),
+  measured REAL NOT NULL CHECK (measured > 0),
+  relative_friction REAL NOT NULL CHECK (relative_friction > 0),
+  sd REAL NOT NULL CHECK (sd >= 0),
+  low REAL NOT NULL,
+  high REAL NOT NULL,
+  PRIMARY KEY (session_id, event_index, level_index),
+  FOREIGN KEY (session_id, event_index) REFERENCES event (session_id, event_index)
+) STRICT, WITHOUT ROWID;
+
+CREATE TRIGGER friction_level_is_never_changed BEFORE UPDATE ON friction_level
+  BEGIN SELECT RAISE(ABORT, 'friction_level is append-only'); END;
+CREATE TRIGGER friction_level_is_never_deleted BEFORE DELETE ON friction_level
+  WHEN NOT EXISTS (SELECT 1 FROM tombstone WHERE session_id = OLD.session_id)
+  BEGIN SELECT RAISE(ABORT, 'friction_level is append-only'); END;
+)sql";
+
 }  // namespace
 
 const std::vector<std::string>& schema_steps() {
-  static const std::vector<std::string> steps = {kStep1, kStep2, kStep3, kStep4, kStep5, kStep6, kStep7};
+  static const std::vector<std::string> steps = {kStep1, kStep2, kStep3, kStep4,
+                                                 kStep5, kStep6, kStep7, kStep8};
   return steps;
 }
 

@@ -11,6 +11,7 @@
 #include "station/store/fields.hpp"
 #include "station/store/open.hpp"
 #include "station/store/people.hpp"
+#include "station/store/places.hpp"
 #include "station/store/read.hpp"
 #include "station/store/rows.hpp"
 #include "station/store/withdraw.hpp"
@@ -43,7 +44,7 @@ void refuse(Database& database, ErrorKind kind, const std::string& what) {
 }
 
 /// Returns the participant's sequence index in the protocol's counterbalancing. A known participant keeps the
-/// index. A new one gets the lowest free index, so that withdrawals leave no gaps in the design.
+/// index. A new one gets the lowest free place, so that withdrawals leave no gaps in the design.
 int enrol(Database& database, const SessionStart& start) {
   const Bearer bearer{start.station_id, start.participant};
   if (is_withdrawn(database, bearer))
@@ -69,17 +70,12 @@ int enrol(Database& database, const SessionStart& start) {
     earlier.bind(start.protocol_id, one.station_id, one.code);
     if (earlier.step()) return static_cast<int>(earlier.integer(0));
   }
-  Statement taken(
-      database,
-      "SELECT DISTINCT sequence_index FROM enrolment WHERE protocol_id = ? ORDER BY sequence_index");
-  taken.bind(start.protocol_id);
-  int free_index = 0;
-  while (taken.step() && taken.integer(0) == free_index) ++free_index;
+  const auto place = next_place(database, start.protocol_id);
   Statement(database, "INSERT OR IGNORE INTO participant VALUES (?)").bind(start.participant).run();
   Statement(database, "INSERT INTO enrolment VALUES (?,?,?,?)")
-      .bind(start.station_id, start.protocol_id, start.participant, free_index)
+      .bind(start.station_id, start.protocol_id, start.participant, place)
       .run();
-  return free_index;
+  return static_cast<int>(place);
 }
 
 /// Stores a text under the hash of its fields, unless another session has stored it already. Returns the
@@ -121,6 +117,7 @@ void insert_session(Database& database, const std::string& id, const SessionStar
   SessionRecord session;
   session.start = start;
   session.sequence_index = enrol(database, start);
+  session.leased_place = is_leased(database, start, session.sequence_index);
   session.session_index = next_session_index(database, start);
   if (start.calibration_id) keep(database, calibration_table(), session, *start.calibration_id);
   const auto protocol_key = keep_protocol(database, session);
@@ -259,6 +256,12 @@ void SessionLog::begin_block(const BlockStart& block) {
 }
 
 void SessionLog::event(EventRow event) { impl_->events.push_back(std::move(event)); }
+
+void SessionLog::keep_events() {
+  Transaction transaction(impl_->writer.database);
+  impl_->write_events();
+  impl_->commit(transaction);
+}
 
 void SessionLog::presented(int trial_index, std::int64_t time_ns) {
   const EventRow row{time_ns, "presented", "", trial_index, impl_->place.segment_index};

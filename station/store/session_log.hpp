@@ -10,9 +10,10 @@ namespace turnpoint::store {
 
 /// What a database knows about a session. Needed to resume the session and to report on it.
 struct SessionRecord {
-  std::string session_id;  ///< UUID
-  int session_index = 0;   ///< number of the session, from 1, for this participant and protocol
-  int sequence_index = 0;  ///< the participant's number in the protocol's counterbalancing, from 0
+  std::string session_id;     ///< UUID
+  int session_index = 0;      ///< number of the session, from 1, for this participant and protocol
+  int sequence_index = 0;     ///< the participant's number in the protocol's counterbalancing, from 0
+  bool leased_place = false;  ///< true if a collector leased that number, so that no other station gives it
   SessionStatus status = SessionStatus::running;
   std::string status_reason;
   SessionStart start;
@@ -63,6 +64,8 @@ class SessionLog {
 
   /// Keeps an event in memory. It is written together with the next trial or change of state.
   void event(EventRow event);
+  /// Commits the events kept in memory, such as the answer to a question.
+  void keep_events();
 
   /// Commits a trial, its tones and the events kept in memory, in one transaction. If this throws, nothing
   /// was written and nothing is lost. Make the same call again, for example once there is space on a full

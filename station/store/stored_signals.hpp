@@ -34,6 +34,9 @@ class SignalReader {
   Statement rows_;
 };
 
+/// Frames per second of the playback in a session, from its rig file; empty if the file cannot be read.
+std::optional<double> playback_rate_Hz(const SessionStart& start);
+
 /// The place in `channels` of each channel of the signal.
 std::vector<std::size_t> places_of(const SignalRow& signal, const std::vector<SignalChannel>& channels);
 

@@ -123,21 +123,31 @@ void remove_bearer(Database& database, const Bearer& bearer) {
       .run();
 }
 
-void remove_sessions(Database& database, const Withdrawal& withdrawal) {
+std::vector<Tombstone> new_tombstones(const Withdrawal& withdrawal) {
   const auto salt = system::new_uuid();
+  const bool code_goes = !withdrawal.bearers.empty();
+  std::vector<Tombstone> tombstones;
+  for (const auto& session : withdrawal.sessions)
+    tombstones.push_back({session.session_id, salt, code_goes ? digest(salt, session.start.participant) : "",
+                          system::realtime_ns(), session.start.station_id});
+  return tombstones;
+}
+
+/// Writes the tombstones, and deletes their sessions and the codes.
+void remove_sessions(Database& database, const std::vector<Tombstone>& tombstones,
+                     const std::vector<Bearer>& bearers) {
   Transaction transaction(database);
-  for (const auto& session : withdrawal.sessions) {
-    const auto& id = session.session_id;
-    const bool code_goes = !withdrawal.bearers.empty();
+  for (const auto& stone : tombstones) {
     Statement(database, "INSERT INTO tombstone VALUES (?,?,?,?,?)")
-        .bind(id, salt, code_goes ? digest(salt, session.start.participant) : "", system::realtime_ns(),
-              session.start.station_id)
+        .bind(stone.session_id, stone.salt, stone.participant_sha256, stone.withdrawn_realtime_ns,
+              stone.station_id)
         .run();
-    for (const auto* table : {"annotation", "merged", "link", "unsealed", "self_test", "event", "signal",
-                              "tone", "trial", "block", "segment", "session"})
-      remove(database, table, id);
+    for (const auto* table :
+         {"annotation", "merged", "link", "unsealed", "self_test", "answer", "friction_level", "event",
+          "signal", "tone", "trial", "block", "segment", "session"})
+      remove(database, table, stone.session_id);
   }
-  for (const auto& bearer : withdrawal.bearers) remove_bearer(database, bearer);
+  for (const auto& bearer : bearers) remove_bearer(database, bearer);
   transaction.commit();
 }
 
@@ -174,29 +184,95 @@ Withdrawal plan_withdrawal(const std::string& name, const WithdrawOptions& optio
   return withdrawal;
 }
 
+namespace {
+
+/// Deletes what was chosen from the database, from its free pages and from its copies.
+void carry_out(const std::string& path, Database& database, Withdrawal& withdrawal,
+               const std::vector<Tombstone>& tombstones, const std::string& backup_directory) {
+  count_rows(database, withdrawal);
+  auto ids = ids_of(database, withdrawal);
+  // throws if a folder cannot be read, before anything is deleted
+  copies_of(path, database, backup_directory, ids);
+  database.execute("PRAGMA secure_delete = ON");
+  remove_sessions(database, tombstones, withdrawal.bearers);
+  scrub(database);
+  try {
+    if (!backup_directory.empty()) backup(path, {backup_directory, 0});
+    const auto copies = copies_of(path, database, backup_directory, ids);
+    note_copies(withdrawal, copies);
+    remove_copies(copies, backup_directory);
+  } catch (const StoreError& error) {
+    throw StoreError(error.kind(), fmt::format("withdraw: the sessions were removed from the database, but "
+                                               "copies of it may still contain them: {}; then withdraw again",
+                                               error.what()));
+  }
+}
+
+/// Removes the tombstones that the database already has.
+std::vector<Tombstone> missing_in(Database& database, std::vector<Tombstone> tombstones) {
+  Statement known(database, "SELECT 1 FROM tombstone WHERE session_id = ?");
+  std::erase_if(tombstones, [&](const auto& stone) { return known.bind(stone.session_id).step(); });
+  return tombstones;
+}
+
+/// Returns the codes in this database that the tombstones withdraw.
+std::vector<Bearer> bearers_of(Database& database, const std::vector<Tombstone>& tombstones) {
+  std::vector<Bearer> bearers;
+  Statement rows(
+      database,
+      "SELECT station_id, participant FROM enrolment UNION SELECT station_id, participant FROM session");
+  while (rows.step()) {
+    const Bearer bearer{rows.text(0), rows.text(1)};
+    if (std::any_of(tombstones.begin(), tombstones.end(), [&](const auto& stone) {
+          return (stone.station_id.empty() || stone.station_id == bearer.station_id) &&
+                 stone.participant_sha256 == digest(stone.salt, bearer.code);
+        }))
+      bearers.push_back(bearer);
+  }
+  return bearers;
+}
+
+}  // namespace
+
 Withdrawal withdraw(const std::string& name, const WithdrawOptions& options) {
   const auto path = canonical(name);
   auto writer = open_writer(path, IfMissing::fail);
   auto& database = writer.database;
   check_pages(database);
   auto withdrawal = choose(database, options);
-  count_rows(database, withdrawal);
-  const auto ids = ids_of(database, withdrawal);
-  // throws if a folder cannot be read, before anything is deleted
-  copies_of(path, database, options.backup_directory, ids);
-  database.execute("PRAGMA secure_delete = ON");
-  remove_sessions(database, withdrawal);
-  scrub(database);
-  try {
-    if (!options.backup_directory.empty()) backup(path, {options.backup_directory, 0});
-    const auto copies = copies_of(path, database, options.backup_directory, ids);
-    note_copies(withdrawal, copies);
-    remove_copies(copies, options.backup_directory);
-  } catch (const StoreError& error) {
-    throw StoreError(error.kind(), fmt::format("withdraw: the sessions were removed from the database, but "
-                                               "copies of it may still contain them: {}; then withdraw again",
-                                               error.what()));
+  carry_out(path, database, withdrawal, new_tombstones(withdrawal), options.backup_directory);
+  return withdrawal;
+}
+
+std::vector<Tombstone> list_tombstones(Database& database) {
+  std::vector<Tombstone> tombstones;
+  Statement rows(
+      database,
+      "SELECT session_id, salt, participant_sha256, withdrawn_realtime_ns, station_id FROM tombstone"
+      " ORDER BY session_id");
+  while (rows.step())
+    tombstones.push_back({rows.text(0), rows.text(1), rows.text(2), rows.integer(3), rows.text(4)});
+  return tombstones;
+}
+
+Withdrawal follow_tombstones(const std::string& name, const std::vector<Tombstone>& tombstones,
+                             const std::string& backup_directory) {
+  const auto path = canonical(name);
+  Withdrawal withdrawal;
+  {
+    auto reader = open_reader(path);
+    if (missing_in(reader, tombstones).empty()) return withdrawal;
   }
+  auto writer = open_writer(path, IfMissing::fail);
+  auto& database = writer.database;
+  check_pages(database);
+  const auto missing = missing_in(database, tombstones);
+  for (auto& session : list_sessions(database, {}))
+    if (std::any_of(missing.begin(), missing.end(),
+                    [&](const auto& stone) { return stone.session_id == session.session_id; }))
+      withdrawal.sessions.push_back(std::move(session));
+  withdrawal.bearers = bearers_of(database, missing);
+  carry_out(path, database, withdrawal, missing, backup_directory);
   return withdrawal;
 }
 

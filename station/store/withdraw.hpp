@@ -46,6 +46,21 @@ Withdrawal plan_withdrawal(const std::string& database, const WithdrawOptions& o
 /// anything is deleted, it throws the errors of plan_withdrawal().
 Withdrawal withdraw(const std::string& database, const WithdrawOptions& options);
 
+/// The mark that a withdrawn session leaves (table tombstone): the session must never come back. The code is
+/// kept only as a salted hash; "" if it stays in use.
+struct Tombstone {
+  std::string session_id, salt, participant_sha256;
+  std::int64_t withdrawn_realtime_ns = 0;
+  std::string station_id;  ///< station of the code; "" means any
+};
+
+std::vector<Tombstone> list_tombstones(Database& database);
+
+/// Withdraws here what was withdrawn elsewhere: deletes the sessions and codes to which the tombstones
+/// belong, as withdraw() does, and keeps the tombstones. Changes nothing if the database has them all.
+Withdrawal follow_tombstones(const std::string& database, const std::vector<Tombstone>& tombstones,
+                             const std::string& backup_directory = "");
+
 /// True if this code was withdrawn from this database.
 bool is_withdrawn(Database& database, const Bearer& bearer);
 

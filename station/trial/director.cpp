@@ -28,6 +28,12 @@ void Director::State::enter_block() {
     const auto key = procedure::key_of(seed, static_cast<int>(block), procedures.size(), attempt);
     procedures.push_back(procedure::make_procedure(*specs.back(), context_for(*specs.back()), key));
   }
+  strokes.erase(block);
+  if (b->kind == protocol::BlockKind::friction_table)
+    practice_levels = friction_table_order(b->strokes.levels_um, b->strokes.repeats,
+                                           {seed, Stream::level_order, static_cast<int>(block), attempt, 0});
+  if (b->kind == protocol::BlockKind::training)
+    practice_levels.assign(static_cast<std::size_t>(b->trials.value()), 0);
   if (!b->levels.empty()) {
     const auto n = static_cast<std::size_t>(b->trials.value_or(static_cast<int>(b->levels.size())));
     for (std::size_t i = 0; i < n; ++i) practice_levels.push_back(b->levels[i % b->levels.size()]);
@@ -109,12 +115,15 @@ void Director::record(const TrialEnd& end) {
     throw std::logic_error("director: record() was called although no trial had been given out");
   if (end.outcome == terms::Outcome::fault || end.outcome == terms::Outcome::aborted) return;
   const auto type = s.current->type;
+  const auto level = s.current->level;
   s.current.reset();
   if (type == terms::TrialType::warmup) {
     --s.warmups, ++s.warmups_given;
     return;
   }
   s.learn(end);
+  if (s.now()->kind == protocol::BlockKind::friction_table)
+    s.strokes[s.block].push_back({*level, end.friction});
   ++s.trial, ++s.done;
   if (type != terms::TrialType::catch_trial) ++s.shown;
   if (end.correct.value_or(false)) ++s.right;
@@ -150,9 +159,19 @@ void Director::restart_session() {
 }
 
 void Director::warm_up(int trials) {
+  if (const auto* block = state_->now(); block != nullptr && block->kind != protocol::BlockKind::trials)
+    return;
   state_->warmups = trials;
   state_->current.reset();
 }
+
+const std::vector<Director::Stroke>& Director::strokes(int block_index) const {
+  static const std::vector<Stroke> none;
+  const auto found = state_->strokes.find(static_cast<std::size_t>(block_index));
+  return found == state_->strokes.end() ? none : found->second;
+}
+
+const std::vector<Block>& Director::all_blocks() const { return state_->blocks; }
 
 const std::string& Director::ended_because() const { return state_->ended; }
 int Director::trials_done() const { return state_->done; }

@@ -25,7 +25,11 @@ struct TrialSpec {
   /// index of the right choice; empty if no choice is right
   std::optional<int> correct;
   std::optional<SliderSpan> slider;  ///< the slider; only for an adjustment
+  /// Set in a block of strokes, in which nothing is asked. The level of such a trial is the displacement in
+  /// um, 0 for the surface at rest.
+  std::optional<protocol::Strokes> strokes;
   double iti_s = 0, foreperiod_s = 0;
+  std::optional<double> length_s = {};  ///< length of the interval, if not that of the task: for an example
   double deadline_s = 0, anticipation_s = 0;
   std::optional<double>
       signal_s;  ///< when the response signal comes, after response_zero; empty if there is none
@@ -38,7 +42,8 @@ struct TrialEnd {
   terms::Outcome outcome = terms::Outcome::answered;
   std::optional<int> response;
   std::optional<bool> correct;
-  std::optional<double> setting = {};  ///< the setting; only for an adjustment that was answered
+  std::optional<double> setting = {};   ///< the setting; only for an adjustment that was answered
+  std::optional<double> friction = {};  ///< measured coefficient of friction, in a block of strokes
 };
 
 struct ProcedureEstimate {
@@ -91,6 +96,17 @@ class Director {
   /// Threshold (or PSE) and its SD, as estimated by the procedure of the last trial; empty if that procedure
   /// has no estimate.
   std::optional<std::pair<double, std::optional<double>>> threshold() const;
+  /// A trial of a friction table: displacement, and measured coefficient of friction (empty if the trial did
+  /// not count).
+  struct Stroke {
+    double displacement_um = 0;
+    std::optional<double> friction;
+  };
+  /// The trials of the newest attempt at a block, if it is a friction table, in the order presented.
+  const std::vector<Stroke>& strokes(int block_index) const;
+  /// The blocks of the session in this participant's order.
+  const std::vector<protocol::Block>& all_blocks() const;
+
   /// Returns a hash of all discrete state. If the hash differs after a replay, the replay did not reproduce
   /// the session.
   std::uint64_t state_hash() const;

@@ -1,5 +1,6 @@
 // Shared by director.cpp and director_trials.cpp; not for other files.
 #pragma once
+#include <map>
 #include <memory>
 #include <string>
 #include <vector>
@@ -28,6 +29,7 @@ struct Director::State {
   std::vector<const procedure::Spec*> specs;
   std::vector<std::unique_ptr<procedure::Procedure>> procedures;
   std::vector<double> practice_levels;
+  std::map<std::size_t, std::vector<Stroke>> strokes;  ///< trials of friction tables, by block
   std::optional<TrialSpec> current;
   int current_procedure = no_procedure;
 
@@ -62,6 +64,7 @@ struct Director::State {
   TrialSpec warmup_trial() const;
   TrialSpec catch_trial() const;
   std::optional<TrialSpec> practice_trial() const;
+  std::optional<TrialSpec> strokes_trial() const;
   TrialSpec procedure_trial(int index) const;
   std::optional<TrialSpec> make();
 };

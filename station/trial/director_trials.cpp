@@ -10,6 +10,9 @@ using random::Stream;
 
 namespace {
 
+/// The movement of a block of strokes is measured at most this long after its end.
+constexpr double kMeasured_s = 5;
+
 /// Returns the easiest levels, for warm-up: the highest level or, if there are levels on both sides of zero,
 /// the lowest and the highest. Each warm-up trial draws one of them at random.
 std::vector<double> easy_levels(const std::vector<double>& values) {
@@ -167,6 +170,23 @@ std::optional<TrialSpec> Director::State::practice_trial() const {
   return spec;
 }
 
+/// A trial of a block of strokes. In a training, "right" is a movement as [sensing] asks for.
+std::optional<TrialSpec> Director::State::strokes_trial() const {
+  if (static_cast<std::size_t>(trial) >= practice_levels.size()) return std::nullopt;
+  const bool training = now()->kind == protocol::BlockKind::training;
+  auto spec = blank(terms::TrialType::practice);
+  spec.level = practice_levels[static_cast<std::size_t>(trial)];
+  spec.intervals = {{now()->strokes.scene}};
+  spec.rove_dB = {0};
+  spec.strokes = now()->strokes;
+  spec.deadline_s = kMeasured_s;
+  spec.timeouts_are_data = false;
+  if (training) spec.correct = 0;
+  const auto& iti = protocol.timing.iti_s;
+  spec.iti_s = draws(Stream::intertrial, trial).uniform(iti.low, iti.high);
+  return spec;
+}
+
 TrialSpec Director::State::procedure_trial(int index) const {
   const auto& from = *specs[static_cast<std::size_t>(index)];
   const auto proposal = procedures[static_cast<std::size_t>(index)]->next();
@@ -184,6 +204,7 @@ TrialSpec Director::State::procedure_trial(int index) const {
 std::optional<TrialSpec> Director::State::make() {
   if (now() == nullptr) return std::nullopt;
   current_procedure = no_procedure;
+  if (now()->kind != protocol::BlockKind::trials) return strokes_trial();
   if (warmups > 0) return warmup_trial();
   if (!practice_levels.empty()) return practice_trial();
   if (now()->trials && shown >= *now()->trials) return std::nullopt;

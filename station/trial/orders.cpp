@@ -111,6 +111,19 @@ IntervalOrder order_for(const protocol::Task& task, std::uint64_t seed, int bloc
   return orders[run[static_cast<std::size_t>(trial % kRun)]];
 }
 
+std::vector<double> friction_table_order(std::span<const double> levels, int repeats,
+                                         const random::Key& key) {
+  std::vector<double> driven;
+  for (int i = 0; i < repeats; ++i) driven.insert(driven.end(), levels.begin(), levels.end());
+  random::Draws(key).shuffle(driven);
+  std::vector<double> order{0};
+  for (const double level : driven) {
+    order.push_back(level);
+    order.push_back(0);
+  }
+  return order;
+}
+
 std::optional<int> correct_choice(const protocol::Task& task, const protocol::Factors& factors) {
   for (const auto& [id, comparison] : task.correct_answer)
     if (protocol::holds(comparison, factors)) return choice_index(task, id);

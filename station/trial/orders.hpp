@@ -1,10 +1,12 @@
 #pragma once
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "station/protocol/protocol.hpp"
+#include "station/random/draws.hpp"
 
 namespace turnpoint::trial {
 
@@ -23,6 +25,10 @@ std::vector<IntervalOrder> orders_of(const protocol::Task& task);
 /// order equally often. The run's number is part of the key of the draws that shuffle it, so the order of
 /// trial k can be computed without the other runs.
 IntervalOrder order_for(const protocol::Task& task, std::uint64_t seed, int block, int attempt, int trial);
+
+/// The levels of a friction table in the order to present them: each level `repeats` times, in random order,
+/// with the surface at rest (0) before, between and after them.
+std::vector<double> friction_table_order(std::span<const double> levels, int repeats, const random::Key& key);
 
 /// Returns the right choice of a single-interval task for these factors; empty if none of the task's
 /// comparisons is true.

@@ -1,6 +1,7 @@
 #include "station/trial/rows.hpp"
 
 #include "station/text/number.hpp"
+#include "station/trial/timing.hpp"
 
 namespace turnpoint::trial {
 
@@ -14,6 +15,13 @@ std::string choice_id(const protocol::Protocol& protocol, int index) {
   const auto& choices = protocol.task.choices;
   return index >= 0 && index < static_cast<int>(choices.size()) ? choices[static_cast<std::size_t>(index)].id
                                                                 : "";
+}
+
+/// The "response" of a trial in which nothing is asked: how the finger moved. In simulations without a
+/// surface there is only right or wrong.
+std::string movement_word(const records::TrialRow& row, int response) {
+  if (!row.finger.sensing.empty()) return row.finger.sensing;
+  return response == 0 ? "ok" : "strokes";
 }
 
 }  // namespace
@@ -39,8 +47,8 @@ records::TrialRow row_of(const TrialSpec& spec, const protocol::Protocol& protoc
   row.level = spec.level;
   for (const auto& [name, value] : spec.factors)
     std::visit([&row, &name = name](const auto& v) { row.factors[name] = v; }, value);
-  if (spec.correct) row.correct_response = choice_id(protocol, *spec.correct);
-  row.response_zero = name(protocol.timing.response_zero);
+  if (spec.correct) row.correct_response = spec.strokes ? "ok" : choice_id(protocol, *spec.correct);
+  row.response_zero = name(zero_of(protocol, spec));
   row.response_time_quality = "n/a";
   row.deadline_s = spec.deadline_s;
   return row;
@@ -51,6 +59,7 @@ void fill_result(records::TrialRow& row, const Result& result, const TrialSpec& 
                  const std::optional<double>& value) {
   row.outcome = result.outcome;
   if (result.response) row.response = value ? text::exact(*value) : choice_id(protocol, *result.response);
+  if (result.response && spec.strokes) row.response = movement_word(row, *result.response);
   row.correct = result.correct;
   row.confidence = result.confidence;
   row.confidence_time_s = seconds(result.confidence_time_ns);

@@ -16,6 +16,7 @@ std::int64_t ns(double s) { return std::llround(s * 1e9); }
 std::vector<IntervalTimes> interval_times(const protocol::Protocol& protocol, const TrialSpec& spec) {
   const auto& task = protocol.task;
   std::vector<IntervalTimes> times;
+  if (spec.strokes) return {{spec.strokes->duration_s, {}}};
   for (const auto& scenes : spec.intervals) {
     IntervalTimes interval;
     // An explored interval lasts until the answer, but at most explore_s or, if that is not set, until the
@@ -23,7 +24,7 @@ std::vector<IntervalTimes> interval_times(const protocol::Protocol& protocol, co
     const double whole = protocol::explored(task)
                              ? protocol.timing.explore_s.value_or(spec.foreperiod_s + spec.deadline_s)
                              : task.duration_s.value_or(0);
-    interval.length_s = whole;
+    interval.length_s = spec.length_s.value_or(whole);
     const double step =
         scenes.size() > 1 ? (task.foreperiod_s ? spec.foreperiod_s : whole / scenes.size()) : 0;
     for (std::size_t i = 1; i < scenes.size(); ++i)
@@ -31,6 +32,10 @@ std::vector<IntervalTimes> interval_times(const protocol::Protocol& protocol, co
     times.push_back(std::move(interval));
   }
   return times;
+}
+
+terms::ResponseZero zero_of(const protocol::Protocol& protocol, const TrialSpec& spec) {
+  return spec.strokes ? terms::ResponseZero::interval_off : protocol.timing.response_zero;
 }
 
 Timing timing_of(const protocol::Protocol& protocol, const protocol::Block& block, const TrialSpec& spec) {
@@ -43,8 +48,8 @@ Timing timing_of(const protocol::Protocol& protocol, const protocol::Block& bloc
     plan.intervals.push_back(std::move(timed));
   }
   plan.gap_ns = ns(protocol.task.gap_s.value_or(0));
-  plan.answer_ends_stimulus = protocol::explored(protocol.task);
-  plan.response_zero = protocol.timing.response_zero;
+  plan.answer_ends_stimulus = !spec.strokes && protocol::explored(protocol.task);
+  plan.response_zero = zero_of(protocol, spec);
   plan.deadline_ns = ns(spec.deadline_s);
   plan.anticipation_ns = ns(spec.anticipation_s);
   if (spec.signal_s) plan.signal_ns = ns(*spec.signal_s);
@@ -55,6 +60,11 @@ Timing timing_of(const protocol::Protocol& protocol, const protocol::Block& bloc
                      ? 1
                      : static_cast<int>(protocol.task.choices.size());
   plan.correct = spec.correct;
+  if (spec.strokes) {
+    plan.answers = 2;  // the movement was right or wrong
+    if (block.kind == protocol::BlockKind::training) plan.feedback_ns = ns(kLate_s);
+    return plan;
+  }
   if (protocol.task.confidence) plan.confidence = static_cast<int>(protocol.task.confidence->labels.size());
   return plan;
 }

@@ -8,6 +8,10 @@ namespace turnpoint::trial {
 /// How long the page shows the get-ready cue, the feedback, and the message after a late answer.
 inline constexpr double kCue_s = 0.8, kFeedback_s = 0.8, kLate_s = 1.0;
 
+/// The moment from which response times of a trial are counted. In a block of strokes, the movement is judged
+/// after its end.
+terms::ResponseZero zero_of(const protocol::Protocol& protocol, const TrialSpec& spec);
+
 Timing timing_of(const protocol::Protocol& protocol, const protocol::Block& block, const TrialSpec& spec);
 
 /// Length of an interval (s), and the times from its onset at which its second and later scenes begin.

@@ -11,7 +11,11 @@ Window {
     required property StartController start
     required property LiveModel live
     required property ReportModel report
+    // The operator's pages; null if a session was started from the command line.
     property OperatorController operating: null
+    property StudiesController studies: null
+    property SessionsController sessions: null
+    property RigController rig: null
     required property OperatorLock operatorLock
     /// True while the operator's page is locked, until somebody has typed the code.
     property bool locked: false
@@ -211,9 +215,12 @@ Window {
     Loader {
         anchors.fill: parent
         active: root.operating !== null && root.start.stage === StartController.Operator && !root.locked
-        sourceComponent: OperatorPage {
-            objectName: "operatorPage"
+        sourceComponent: StationPages {
+            objectName: "stationPages"
             operating: root.operating
+            studies: root.studies
+            sessions: root.sessions
+            rig: root.rig
             pixelsPerMm: root.pixelsPerMm
         }
     }

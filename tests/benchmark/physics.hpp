@@ -13,14 +13,18 @@ enum class Task {
   /// Reference: the one-mode equation solved in extended precision by a method that shares no code with the
   /// library.
   equation,
+  /// Reference: three-dimensional finite elements of a whole plate (tests/physics/oracles/elastic_taper.csv).
+  /// The
+  /// error is that of the boundary p50 (m).
+  theory,
   /// Reference: the closed Airy profile of the 1998 paper.
   airy,
   /// Converts a boundary to a frequency and back with a BoundaryMap; the error is that of the result (m).
   look_up
 };
 
-/// One row of results. `error` is the largest difference of |v| with the last maximum at one (for look_up:
-/// metres); negative means not measured.
+/// One row of results. `error` is the largest difference of |v| with the last maximum at one (for theory and
+/// look_up: metres); negative means not measured.
 struct PhysicsRow {
   Task task = Task::field;
   std::string scene;    ///< such as "seed brass 19.6 kHz, lossless"
@@ -32,12 +36,12 @@ struct PhysicsRow {
 };
 
 /// Measures every model on six scenes (the 1998 brass membrane at two frequencies with and without loss, an
-/// exponential taper, a clamped plate), and general solvers that a user could use instead. Takes about
-/// `budget_s`.
+/// exponential taper, a clamped plate), the plate theories at three frequencies, and general solvers that a
+/// user could use instead. Takes about `budget_s`.
 std::vector<PhysicsRow> measure_physics(double budget_s);
 
-/// Figures of the error against the time, one panel per scene: one figure for the tasks `field` and one for
-/// `equation`.
+/// Figures of the error against the time, one panel per scene: one figure for each of the tasks `field`,
+/// `theory` and `equation`.
 std::vector<Picture> physics_pictures(const std::vector<PhysicsRow>& rows);
 
 Report bench_physics(double budget_s);

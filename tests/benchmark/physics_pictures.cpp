@@ -19,6 +19,9 @@ const std::vector<Series> kRungs{{"airy", {"airy"}},
                                  {"uniform", {"uniform"}},
                                  {"mode", {"mode"}},
                                  {"modes, three resolutions", {"modes"}}};
+const std::vector<Series> kTheories{{"kirchhoff: mode, modes", {"kirchhoff"}},
+                                    {"mindlin: mode, modes", {"mindlin"}},
+                                    {"elastic: mode", {"elastic"}}};
 const std::vector<Series> kSolvers{{"Turnpoint, mode", {"mode"}},
                                    {"Numerov", {"Numerov"}},
                                    {"Odeint dopri5", {"Boost.Odeint dopri5"}},
@@ -32,13 +35,19 @@ bool belongs(const std::string& solver, const Series& series) {
   });
 }
 
-/// Errors below `floor` are drawn at `floor`, because a logarithmic axis needs an end.
+/// The axes of a figure. Errors below `floor` are drawn at `floor`, because a logarithmic axis needs an end.
+struct Axes {
+  std::string time, error;
+  double floor, top = 1;
+};
+
 plot::Chart panel_of(const std::string& scene, const std::vector<PhysicsRow>& rows,
-                     const std::vector<Series>& series, double floor) {
+                     const std::vector<Series>& series, const Axes& axes) {
+  const double floor = axes.floor;
   plot::Chart panel;
   panel.title = scene;
-  panel.x = {"time for 1000 points (\u00b5s)", 10, 1e5, plot::AxisScale::log10};
-  panel.y = {"largest error of |v|", floor, 1, plot::AxisScale::log10};
+  panel.x = {axes.time, 10, 1e5, plot::AxisScale::log10};
+  panel.y = {axes.error, floor, axes.top, plot::AxisScale::log10};
   for (std::size_t s = 0; s < series.size(); ++s) {
     plot::Line line;
     line.series = static_cast<int>(s);
@@ -57,7 +66,7 @@ plot::Chart panel_of(const std::string& scene, const std::vector<PhysicsRow>& ro
 }
 
 plot::Figure figure_of(const std::string& title, const std::vector<PhysicsRow>& rows, Task task,
-                       const std::vector<Series>& series, double floor) {
+                       const std::vector<Series>& series, const Axes& axes) {
   std::vector<PhysicsRow> wanted;
   std::copy_if(rows.begin(), rows.end(), std::back_inserter(wanted),
                [task](const PhysicsRow& row) { return row.task == task; });
@@ -69,7 +78,7 @@ plot::Figure figure_of(const std::string& title, const std::vector<PhysicsRow>& 
   for (const auto& row : wanted) {
     const bool known = std::any_of(figure.charts.begin(), figure.charts.end(),
                                    [&](const auto& panel) { return panel.title == row.scene; });
-    if (!known) figure.charts.push_back(panel_of(row.scene, wanted, series, floor));
+    if (!known) figure.charts.push_back(panel_of(row.scene, wanted, series, axes));
   }
   return figure;
 }
@@ -81,10 +90,14 @@ std::vector<Picture> physics_pictures(const std::vector<PhysicsRow>& rows) {
   const auto add = [&](const char* name, plot::Figure figure) {
     if (!figure.charts.empty()) pictures.push_back({name, std::move(figure)});
   };
-  add("physics-field",
-      figure_of("Models against the two-dimensional field", rows, Task::field, kRungs, 1e-8));
+  const std::string profile = "time for 1000 points (\u00b5s)", error = "largest error of |v|";
+  add("physics-field", figure_of("Models against the two-dimensional field", rows, Task::field, kRungs,
+                                 {profile, error, 1e-8}));
+  add("physics-theory",
+      figure_of("Plate theories against three-dimensional finite elements", rows, Task::theory, kTheories,
+                {"time for one boundary (\u00b5s)", "error of p50 (m)", 1e-6, 0.1}));
   add("physics-equation", figure_of("Solvers of the one-mode equation against extended precision", rows,
-                                    Task::equation, kSolvers, 1e-16));
+                                    Task::equation, kSolvers, {profile, error, 1e-16}));
   return pictures;
 }
 

@@ -36,6 +36,18 @@ TEST_CASE("a better model or a finer resolution has a smaller error against the 
   for (const auto& row : rows()) CHECK(row.seconds > 0);
 }
 
+TEST_CASE("a better plate theory puts the boundary closer to that of three-dimensional finite elements",
+          "[benchmark]") {
+  for (const char* scene : {"3 mm plate, 22.4 kHz", "3 mm plate, 30 kHz", "3 mm plate, 45 kHz"}) {
+    CAPTURE(scene);
+    const double elastic = error_of(Task::theory, scene, "elastic, mode");
+    CHECK(elastic > 0);
+    CHECK(elastic < 0.1e-3);
+    CHECK(error_of(Task::theory, scene, "mindlin, mode") > elastic);
+    CHECK(error_of(Task::theory, scene, "kirchhoff, mode") > 0.015);
+  }
+}
+
 TEST_CASE("the model mode agrees with an unrelated method in extended precision", "[benchmark]") {
   for (const char* scene :
        {"seed brass 19.6 kHz, lossless", "seed brass 45 kHz, Q = 60", "exponential taper 30 kHz, Q = 60"}) {
@@ -65,7 +77,8 @@ TEST_CASE("a program that is not installed prints no lines", "[benchmark]") {
 
 TEST_CASE("the figures have a panel for each scene", "[benchmark]") {
   const auto pictures = physics_pictures(rows());
-  REQUIRE(!pictures.empty());
+  REQUIRE(pictures.size() >= 2);
   CHECK(pictures[0].figure.charts.size() == 6);
+  CHECK(pictures[1].figure.charts.size() == 3);  // plate theories at three frequencies
   CHECK(!turnpoint::plot::render(pictures[0].figure).empty());
 }

@@ -56,7 +56,8 @@ TEST_CASE("a calibration contains the response of each pick-up to each transduce
   CHECK(rig::unproven_transducers(rig) == std::vector<std::string>{rig.transducers[0].name});
   auto calibration = measured();
   const int drive = rig.transducers[0].channel;
-  calibration.pick_ups = {{1, drive, {{20'000, 0.1, 0.5}, {30'000, 0.2, -0.25}}}};
+  calibration.pick_ups.resize(1);
+  calibration.pick_ups[0].response = {1, drive, {{20'000, 0.1, 0.5}, {30'000, 0.2, -0.25}}};
   calibration.rig_name = "r", calibration.rig_sha256 = "abc", calibration.made_on = "2026-02-27";
   const auto again = parse(to_toml(calibration), "a.toml");
   REQUIRE(again.pick_ups.size() == 1);
@@ -77,7 +78,8 @@ TEST_CASE("a calibration contains the response of each pick-up to each transduce
   CHECK_THROWS_WITH(applied(calibration, rig),
                     "the calibration has two responses of the pick-up on channel 1 to output channel " +
                         std::to_string(drive));
-  calibration.pick_ups = {{2, drive, {{20'000, 0.1, 0}, {30'000, 0.2, 0}}}};
+  calibration.pick_ups.resize(1);
+  calibration.pick_ups[0].response = {2, drive, {{20'000, 0.1, 0}, {30'000, 0.2, 0}}};
   CHECK_THROWS_WITH(applied(calibration, rig),
                     "the calibration has a pick-up on captured channel 2, but the rig does not");
   CHECK_THROWS_AS(applied(calibration, plate()), terms::UsageError);

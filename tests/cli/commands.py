@@ -21,14 +21,15 @@ with open(os.path.join(HERE, "json_shapes.json"), encoding="utf-8") as file:
     SHAPES = json.load(file)
 
 # Each command with what its example needs: "session" is a database with sessions of P01 and P02, "screen" is
-# the program with a screen, "code" is a code typed on standard input. `status` lists the exit statuses that the
+# the program with a screen, "code" is a code typed on standard input, "server" is a collector (tests/collector tests
+# that command). `status` lists the exit statuses that the
 # example may have: the doctor finds fault with most machines.
 COMMANDS = {
     "amplifier-off": {}, "annotate": {"needs": "session"}, "backup": {"needs": "session"},
     "calibrate": {}, "check": {}, "doctor": {"status": (0, 1)}, "export": {"needs": "session"}, "field": {},
-    "figures": {}, "join": {"needs": "session"}, "map": {}, "merge": {"needs": "session"}, "new": {},
+    "collector-schema": {}, "figures": {}, "join": {"needs": "session"}, "map": {}, "merge": {"needs": "session"}, "new": {},
     "operator-code": {"needs": "code"}, "plan": {}, "power": {}, "preview": {}, "protocols": {},
-    "report": {"needs": "session"}, "resume": {"needs": "session"}, "run": {}, "self-test": {"status": (0, 1)},
+    "push": {"needs": "server"}, "receive": {"needs": "server"}, "report": {"needs": "session"}, "resume": {"needs": "session"}, "run": {}, "self-test": {"status": (0, 1)},
     "sessions": {"needs": "session"},
     "station": {"needs": "screen"}, "synth": {}, "trace": {}, "verify": {"needs": "session"},
     "withdraw": {"needs": "session"},
@@ -47,7 +48,7 @@ WITH_RIG = {"amplifier-off": [], "calibrate": ["--sweep"], "check": ["demo"], "d
             "self-test": ["--data", "."],
             "synth": ["--tone", "30000", "--seconds", "1", "--out", "null:"]}
 WITH_DATABASE = {"annotate": ["a note"], "backup": ["--dir", "copies"], "export": ["--out", "export"], "join": ["P01", "P02"],
-                 "report": [], "resume": [], "sessions": [], "verify": [], "withdraw": ["--participant", "P01", "--yes"]}
+                 "push": ["--to", "host=/nowhere"], "receive": ["received.json"], "report": [], "resume": [], "sessions": [], "verify": [], "withdraw": ["--participant", "P01", "--yes"]}
 CREATES_DATABASE = {"merge": ["good.sqlite"], "run": ["demo", "--participant", "P01", "--observer", "sim"]}
 WRITES_DATABASE = {**CREATES_DATABASE, **{name: WITH_DATABASE[name] for name in ("annotate", "join", "withdraw")}}
 OUT_OF_RANGE = [
@@ -66,6 +67,7 @@ OUT_OF_RANGE = [
     (["power", "demo", "--part", "9/8"], "write 1/8 to 8/8"),
     (["power", "demo", "--part", "2"], "write 1/8 to 8/8"),
     (["power", "demo", "--part", "1/8", "--observers", "7"], "use fewer parts"),
+    (["report", "--db", "good.sqlite", "--study", "--mode", "lve"], "did you mean live?"),
     (["resume", "--db", "good.sqlite", "--policy", "restrt"], "did you mean restart?"),
     (["run", "demo", "--db", "good.sqlite", "--participant", "P01", "--observer", "sim", "--mode", "lve"],
      "did you mean live?"),
@@ -189,7 +191,7 @@ class Examples(Folder):
 
     def test_the_example_in_each_help_works_as_it_stands(self):
         for name in self.names:
-            if COMMANDS.get(name, {}).get("needs") == "screen":
+            if COMMANDS.get(name, {}).get("needs") in ("screen", "server"):
                 continue
             with self.subTest(name):
                 self.fresh(name)
@@ -201,6 +203,8 @@ class Examples(Folder):
 
     def test_json_documents_have_the_recorded_shape(self):
         for name in SHAPES:
+            if COMMANDS[name].get("needs") == "server":
+                continue
             with self.subTest(name):
                 self.fresh(name)
                 self.write("edges.csv", b"frequency_Hz,boundary_mm,sd_mm\n26000,124,1\n30000,147,1\n36000,175,1\n")
@@ -222,7 +226,8 @@ class Examples(Folder):
         _, out, _ = run(["protocols", "--json"], self.folder)
         for protocol in json.loads(out):
             for name in (protocol["id"], protocol["id"] + ".toml"):
-                status, _, err = run(["check", name, "--sessions", "0"], self.folder)
+                rig = "simulated-forces" if protocol["id"] == "friction-measured" else "simulated"
+                status, _, err = run(["check", name, "--rig", rig, "--sessions", "0"], self.folder)
                 self.assertEqual(status, 0, err)
         self.write("demo", b"")  # a file of that name is preferred
         self.refused(["check", "demo"], "demo: the file needs the key")
@@ -425,20 +430,33 @@ STUDY = ["power", "boundary-constant", "--observers", "12", "--intervals", "4"]
 
 
 class LongWork(Folder):
-    def example(self):
+    def example(self, tool):
         with open(os.path.join(SOURCE, "protocols", "README.md"), encoding="utf-8") as page:
             return next(block for block in re.findall(r"^```sh\n(.*?)^```", page.read(), re.DOTALL | re.MULTILINE)
-                        if "xargs" in block)
+                        if tool in block)
 
-    def test_the_example_of_a_divided_study_gives_what_one_process_gives(self):
-        shutil.copy(os.path.join(SOURCE, "protocols", "boundary-constant.toml"), os.path.join(self.folder, "my-study.toml"))
-        example = self.example()
+    def divided(self, tool):
+        """What the page's example with this tool prints, for a smaller study in 5 parts."""
+        example = self.example(tool)
         for text, quick in (("--observers 1000", "--observers 20 --intervals 9"), ("seq 64", "seq 5"), ("/64", "/5")):
             self.assertIn(text, example)
             example = example.replace(text, quick)
         status, joined, err = run("set -eu\n" + example.strip() + " --json", self.folder)
         self.assertEqual(status, 0, err)
         self.assertEqual(len([name for name in os.listdir(self.folder) if name.startswith("part")]), 5)
+        return joined
+
+    @unittest.skipUnless(shutil.which("parallel"), "GNU parallel is not installed (deploy/install test)")
+    def test_the_example_with_gnu_parallel_gives_what_one_process_gives(self):
+        shutil.copy(os.path.join(SOURCE, "protocols", "boundary-constant.toml"), os.path.join(self.folder, "my-study.toml"))
+        joined = self.divided("parallel --joblog")
+        self.assertEqual(joined, run(["power", "my-study.toml", "--observers", "20", "--intervals", "9", "--json"], self.folder)[1])
+        with open(os.path.join(self.folder, "log"), encoding="utf-8") as log:
+            self.assertEqual([line.split("\t")[6] for line in log][1:], ["0"] * 5)   # the exit status of each part
+
+    def test_the_example_of_a_divided_study_gives_what_one_process_gives(self):
+        shutil.copy(os.path.join(SOURCE, "protocols", "boundary-constant.toml"), os.path.join(self.folder, "my-study.toml"))
+        joined = self.divided("xargs")
         whole = ["power", "my-study.toml", "--observers", "20", "--intervals", "9"]
         self.assertEqual(joined, run([*whole, "--json"], self.folder)[1])
         first = min(os.sched_getaffinity(0))
@@ -585,7 +603,7 @@ class Manual(Folder):
                              ("export --db lab.sqlite --out l", ["locker"]), ("export --format b", ["bids"]),
                              ("run friction-c", ["friction-confidence"]), ("check s", ["smoothness-line", "smoothness-points",
                                                                                        "speed-accuracy", "study.toml"]),
-                             ("check demo --rig sim", ["simulated"]), ("power --join lab.sqlite s", ["study.toml"]),
+                             ("check demo --rig sim", ["simulated", "simulated-forces"]), ("power --join lab.sqlite s", ["study.toml"]),
                              ("backup --db lab.sqlite --db", []), ("plan demo --scene x --j", ["--json"]),
                              ("join P01 P02 x", []), ("run --participant lab", []), ("nonsense l", [])):
             found = sorted(word for word in self.completed(line) if not word.startswith("--database"))

@@ -23,8 +23,8 @@ struct Truth {
   double of(Quantity quantity) const;
 };
 
-/// Determines the true values of sessions: `fixed` ones, or, without `fixed`, values that each session draws
-/// from the prior of the report.
+/// The true threshold and slope of simulated sessions: `fixed`, or, without it, drawn anew for each session
+/// from the prior that the report assumes.
 struct Source {
   std::string name;
   std::optional<Truth> fixed;

@@ -15,13 +15,19 @@ import tempfile
 
 SOURCE = os.path.dirname(os.path.dirname(os.path.dirname(os.path.realpath(__file__))))
 SYSTEM = os.path.join(SOURCE, "deploy", "system")
-UNITS = ("turnpoint-backup.service", "turnpoint-backup.timer")
+UNITS = ("turnpoint-backup.service", "turnpoint-backup.timer", "turnpoint-push.service", "turnpoint-push.timer",
+         "turnpoint-receive.service")
 PROGRAM = "/usr/bin/turnpoint"
 
 
 def settings(unit, key):
     with open(os.path.join(SYSTEM, unit), encoding="utf-8") as file:
         return [line.split("=", 1)[1].strip() for line in file if line.startswith(key + "=")]
+
+
+def open_unit(unit):
+    with open(os.path.join(SYSTEM, unit), encoding="utf-8") as file:
+        return file.read()
 
 
 def check(what, holds):
@@ -45,6 +51,9 @@ def verify():
     check("the timer must be the only unit that `systemctl enable` starts",
           settings("turnpoint-backup.timer", "WantedBy") == ["timers.target"]
           and not settings("turnpoint-backup.service", "WantedBy"))
+    check("only the collector's unit may use a network, and it is not started unless its timer is enabled",
+          all(("PrivateNetwork=yes" in open_unit(unit)) != (unit == "turnpoint-push.service")
+              for unit in UNITS if unit.endswith(".service")) and not settings("turnpoint-push.service", "WantedBy"))
 
 
 class Unit:

@@ -105,6 +105,19 @@ TEST_CASE("the progress of a session counts scored trials, and timeouts have no 
   CHECK(value_of(desk::course_of({}), "Right") == "none scored yet");
 }
 
+TEST_CASE("the progress of a session shows each procedure's latest estimate with its interval",
+          "[operator]") {
+  auto first = answered(true, 1), second = answered(true, 1), other = answered(true, 1),
+       none = answered(true, 1);
+  first.threshold_est = 7, first.threshold_sd = 3;
+  second.threshold_est = -1.5, second.threshold_sd = 0.5;
+  other.procedure = "ramp", other.threshold_est = 2;
+  const auto facts = desk::course_of({first, second, other, none});
+  CHECK(value_of(facts, "Estimate, levels") == "-1.5 (95 %: -2.48 to -0.52)");  // 1.96 * 0.5 = 0.98
+  CHECK(value_of(facts, "Estimate, ramp") == "2");
+  CHECK(value_of(desk::course_of({none}), "Estimate, levels").empty());
+}
+
 TEST_CASE("the progress of a session shows what the pick-up measured in the last trial", "[operator]") {
   std::vector<desk::LiveTrial> trials(2);
   const auto shown = [&] {

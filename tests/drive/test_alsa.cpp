@@ -186,5 +186,5 @@ TEST_CASE("a capture is refused like a playback if alsa-lib would resample or co
   CHECK(capture_refused(config) == "alsa:compressed: does not capture 32-bit samples (S32_LE)");
   config = config_for("straight");
   config.uri = "wav:a.wav";
-  CHECK(capture_refused(config) == "capture 'wav:a.wav'; allowed is alsa:NAME");
+  CHECK(capture_refused(config) == "capture 'wav:a.wav' is not supported; allowed: alsa:NAME");
 }

@@ -85,6 +85,7 @@ class Room : public turnpoint::session::Stage, public turnpoint::session::Displa
   void adjustment(const turnpoint::observer::Adjustment& adjustment, std::int64_t zero_ns) override {
     inner_->adjustment(adjustment, zero_ns);
   }
+  void simulate(Input input) override { inner_->simulate(std::move(input)); }
   turnpoint::session::Triggers& triggers() override { return inner_->triggers(); }
   std::optional<turnpoint::session::ClockFit> clock_fit() override { return inner_->clock_fit(); }
   std::string realtime_rights() const override { return "none"; }

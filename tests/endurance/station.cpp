@@ -153,8 +153,12 @@ bool Station::live(session::Setup setup) {
       records::SegmentStart{std::to_string(lives), interrupted ? "resume" : "start", 0, 0, now_ns};
   if (interrupted) setup.resume_session = interrupted->session.session_id;
   std::optional<trial::Director> director;
-  if (interrupted)
-    director.emplace(session::replayed(setup, store::read_session(database_, setup.resume_session)));
+  session::Earlier earlier;
+  if (interrupted) {
+    auto stored = store::read_session(database_, setup.resume_session);
+    director.emplace(session::replayed(setup, stored));
+    earlier = {std::move(stored.events), std::move(stored.blocks)};
+  }
   auto log = interrupted ? store::SessionLog::resume(database_, setup.resume_session, segment)
                          : store::SessionLog::begin(database_, start_of(setup), segment);
   if (!director) director.emplace(setup.protocol, log.session().sequence_index, *setup.seed);
@@ -166,8 +170,8 @@ bool Station::live(session::Setup setup) {
       stream.output.rate_Hz);
   Room& room = *owned;
   Acknowledgements monitor(world_, room, id, dead_);
-  session::SessionRun run(setup, std::move(*director), std::move(log), std::move(owned), std::move(account),
-                          &room, &monitor);
+  session::SessionRun run(setup, std::move(*director), std::move(log), earlier, std::move(owned),
+                          std::move(account), &room, &monitor);
   const auto summary = run.run();
   if (summary.reason.find("session's time") != std::string::npos) world_.now_ns += kRest_ns;
   return !dead_ && (summary.status == records::SessionStatus::completed ||

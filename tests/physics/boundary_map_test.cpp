@@ -203,8 +203,8 @@ TEST_CASE(
 }
 
 TEST_CASE("maps of long or finely tabulated tapers agree with those of the plain tapers", "[physics]") {
-  // Only the moving part of the surface is solved. The far end, a hundred decay lengths away, and tabulated
-  // points beyond the moving part must take no steps.
+  // The equation is solved only where the surface moves. The solver must not spend steps on the far end, a
+  // hundred decay lengths away, or on tabulated points beyond the moving part.
   Surface exponential = seed_brass();
   exponential.quality_factor = 60;
   exponential.taper = ExponentialTaper{0.03, 0.1};

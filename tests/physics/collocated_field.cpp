@@ -4,59 +4,19 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <stdexcept>
 
-#include "physics/dispersion.hpp"
 #include "physics/piston_lift.hpp"
 #include "physics/taper.hpp"
+#include "tests/physics/collocated_equations.hpp"
 
 namespace turnpoint::physics_test {
 namespace {
 
-using physics::PistonLift;
 using physics::Surface;
 using physics::Taper;
 using std::numbers::pi;
 using Real = Eigen::MatrixXd;
-
-// Chebyshev points from -1 to 1 and the matrix that differentiates values at them (Trefethen, Spectral
-// Methods in MATLAB, program cheb).
-Eigen::VectorXd chebyshev_points(int n) {
-  Eigen::VectorXd t(n + 1);
-  for (int i = 0; i <= n; ++i) t[i] = -std::cos(pi * i / n);
-  return t;
-}
-
-Real differentiation(const Eigen::VectorXd& t) {
-  const Eigen::Index n = t.size() - 1;
-  Real d = Real::Zero(n + 1, n + 1);
-  const auto weight = [n](Eigen::Index i) { return (i == 0 || i == n ? 2.0 : 1.0) * (i % 2 == 0 ? 1 : -1); };
-  for (Eigen::Index i = 0; i <= n; ++i) {
-    for (Eigen::Index j = 0; j <= n; ++j)
-      if (i != j) d(i, j) = weight(i) / weight(j) / (t[i] - t[j]);
-    d(i, i) = -d.row(i).sum();
-  }
-  return d;
-}
-
-// Derivatives of an even function of eta that vanishes at 1, from its values at the points in [0, 1).
-struct Across {
-  Eigen::VectorXd eta;  // from the centre outward
-  Real first, second;
-
-  explicit Across(int points) {
-    const Eigen::VectorXd t = chebyshev_points(2 * points);
-    const Real d = differentiation(t), d2 = d * d;
-    eta = t.segment(points, points);
-    eta[0] = 0;
-    const auto fold = [points](const Real& full) {
-      Real half = full.block(points, points, points, points);
-      for (int j = 1; j < points; ++j) half.col(j) += full.col(points - j).segment(points, points);
-      return half;
-    };
-    first = fold(d);
-    second = fold(d2);
-  }
-};
 
 std::vector<std::pair<double, double>> divide(const Surface& surface, const Taper& taper, double k,
                                               const CollocationGrid& grid) {
@@ -91,108 +51,132 @@ using Matrix = Eigen::Matrix<Scalar, Eigen::Dynamic, Eigen::Dynamic>;
 template <class Scalar>
 using Vector = Eigen::Matrix<Scalar, Eigen::Dynamic, 1>;
 
-// An element's inner values from those at its ends: inner = left v_l + right v_r + source.
+// An element's inner values from those at its ends: inner = left u_l + right u_r + source.
 template <class Scalar>
 struct Slab {
   Matrix<Scalar> left, right;
   Vector<Scalar> source;
-  Matrix<Scalar> step;  // v_r = step v_l + offset
+  Matrix<Scalar> step;  // u_r = step u_l + offset
   Vector<Scalar> offset;
 };
+
+// The unknowns at the right end of the last element, from those at its left end. The far end is held; if the
+// derivatives of the held unknowns are given too, the other unknowns there follow from them.
+template <class Scalar>
+Matrix<Scalar> at_far_end(const CollocatedEquations& e, const Matrix<Scalar>& by_left,
+                          const Matrix<Scalar>& by_right) {
+  const Eigen::Index size = e.second.size(), held = e.drive.size(), rest = size - held;
+  Matrix<Scalar> step = Matrix<Scalar>::Zero(size, size);
+  if (rest > 0)
+    step.bottomRows(rest) = -by_right.topRightCorner(held, rest).partialPivLu().solve(by_left.topRows(held));
+  return step;
+}
 
 }  // namespace
 
 template <class Scalar>
-void CollocatedField::solve(const Surface& surface, Scalar k2, double k, const CollocationGrid& grid) {
+void CollocatedField::solve(const Surface& surface, const CollocatedEquations& e, Scalar inertia, double k,
+                            const CollocationGrid& grid) {
   const Taper taper(surface);
-  const double w0 = taper.half_width_m(0);
-  const int m = grid.across + static_cast<int>(std::ceil(0.5 * k * w0)), n = grid.along, inner = n - 1;
-  const Across across(m);
+  const int n = grid.along, inner = n - 1;
+  const Eigen::Index m = e.second.size();
   const Eigen::VectorXd t = chebyshev_points(n);
   const Real d = differentiation(t), d2 = d * d;
   const auto strips = divide(surface, taper, k, grid);
-  const bool piston = surface.drive == physics::DriveShape::piston;
-  const PistonLift lift(taper, std::min(grid.lift * w0, strips.back().first + strips.back().second));
+  const Matrix<Scalar> one = Matrix<Scalar>::Identity(m, m);
 
   std::vector<Slab<Scalar>> slabs(strips.size());
-  Matrix<Scalar> slope;  // dv/dx = slope v + slope_source at the left end of what lies farther out
+  Matrix<Scalar> slope;  // du/dx = slope u + slope_source at the left end of what lies farther out
   Vector<Scalar> slope_source;
+  Real first, here;
+  Eigen::VectorXd source(m), lift(m);
   for (std::size_t s = strips.size(); s-- > 0;) {
-    const auto [x0, h] = strips[s];
+    const double x0 = strips[s].first, h = k * strips[s].second;
     Slab<Scalar>& slab = slabs[s];
     Matrix<Scalar> a = Matrix<Scalar>::Zero(inner * m, inner * m);
     Matrix<Scalar> ends = Matrix<Scalar>::Zero(inner * m, 2 * m + 1);  // left, right, source
     for (int i = 1; i < n; ++i) {
-      const double x = x0 + 0.5 * h * (1 + t[i]), w = taper.half_width_m(x), r = taper.slope(x) / w;
-      const double stretch = 2 * r * r - taper.second_derivative(x) / w;
-      const Eigen::VectorXd& eta = across.eta;
-      const Real mixed = -4 * r / h * (eta.asDiagonal() * across.first);
-      Real here = stretch * (eta.asDiagonal() * across.first);
-      here += (r * r * eta.cwiseAbs2().array() + 1 / (w * w)).matrix().asDiagonal() * across.second;
+      const double x = x0 + 0.5 * strips[s].second * (1 + t[i]);
+      const Eigen::Index row = (i - 1) * m;
+      e.at(x, first, here);
       for (int other = 0; other <= n; ++other) {
-        Real block = d(i, other) * mixed;
-        block.diagonal().array() += 4 / (h * h) * d2(i, other);
+        Real block = 2 / h * d(i, other) * first;
+        block.diagonal() += 4 / (h * h) * d2(i, other) * e.second;
         if (other == 0) {
-          ends.block((i - 1) * m, 0, m, m) = -block;
+          ends.block(row, 0, m, m) = -block;
         } else if (other == n) {
-          ends.block((i - 1) * m, m, m, m) = -block;
+          ends.block(row, m, m, m) = -block;
         } else {
-          a.block((i - 1) * m, (other - 1) * m, m, m) = block;
+          a.block(row, (other - 1) * m, m, m) = block;
         }
       }
-      a.block((i - 1) * m, (i - 1) * m, m, m) += here;
-      for (int j = 0; j < m; ++j) {
-        a((i - 1) * m + j, (i - 1) * m + j) += k2;
-        const double y = eta[j] * w;
-        if (piston) ends((i - 1) * m + j, 2 * m) = -(lift.laplacian(x, y) + k2 * lift.value(x, y));
-      }
+      a.block(row, row, m, m) += here + inertia * e.mass;
+      if (!e.load) continue;
+      e.load(x, source, lift);
+      ends.block(row, 2 * m, m, 1) = -(source + inertia * lift);
     }
     const Matrix<Scalar> all = a.partialPivLu().solve(ends);
     slab.left = all.leftCols(m);
     slab.right = all.middleCols(m, m);
     slab.source = all.col(2 * m);
-    // dv/dx at an end, from the inner values and those at both ends
+    // du/dx at an end, from the inner values and those at both ends
     const auto derivative = [&](int end, const auto& part) {
       Matrix<Scalar> sum = Matrix<Scalar>::Zero(m, part.cols());
       for (int i = 1; i < n; ++i) sum += 2 / h * d(end, i) * part.middleRows((i - 1) * m, m);
       return sum;
     };
-    const Matrix<Scalar> one = Matrix<Scalar>::Identity(m, m);
-    slab.step = Matrix<Scalar>::Zero(m, m);
+    const Matrix<Scalar> by_left = derivative(n, slab.left) + 2 / h * d(n, 0) * one;
+    const Matrix<Scalar> by_right = derivative(n, slab.right) + 2 / h * d(n, n) * one;
     slab.offset = Vector<Scalar>::Zero(m);
     if (s + 1 < strips.size()) {
-      const Matrix<Scalar> lhs = derivative(n, slab.right) + 2 / h * d(n, n) * one - slope;
-      const Eigen::PartialPivLU<Matrix<Scalar>> lu(lhs);
-      slab.step = -lu.solve(derivative(n, slab.left) + 2 / h * d(n, 0) * one);
+      const Eigen::PartialPivLU<Matrix<Scalar>> lu(by_right - slope);
+      slab.step = -lu.solve(by_left);
       slab.offset = lu.solve(slope_source - derivative(n, slab.source));
+    } else {
+      slab.step = at_far_end(e, by_left, by_right);
     }
-    const Matrix<Scalar> by_right = derivative(0, slab.right) + 2 / h * d(0, n) * one;
-    slope = derivative(0, slab.left) + 2 / h * d(0, 0) * one + by_right * slab.step;
-    slope_source = derivative(0, slab.source) + by_right * slab.offset;
+    const Matrix<Scalar> from_right = derivative(0, slab.right) + 2 / h * d(0, n) * one;
+    slope = derivative(0, slab.left) + 2 / h * d(0, 0) * one + from_right * slab.step;
+    slope_source = derivative(0, slab.source) + from_right * slab.offset;
   }
 
-  Vector<Scalar> v = Vector<Scalar>::Zero(m);
-  if (!piston) v = (pi / 2 * across.eta.array()).cos().matrix().template cast<Scalar>();
-  for (std::size_t s = 0; s < strips.size(); ++s) {
-    Element e{strips[s].first, strips[s].second, {}};
-    const Vector<Scalar> next = slabs[s].step * v + slabs[s].offset;
-    const Vector<Scalar> between = slabs[s].left * v + slabs[s].right * next + slabs[s].source;
-    e.centre.push_back(v[0]);
-    for (int i = 1; i < n; ++i) e.centre.push_back(between[(i - 1) * m]);
-    e.centre.push_back(next[0]);
-    v = next;
-    elements_.push_back(e);
+  Vector<Scalar> u = Vector<Scalar>::Zero(m);
+  const Eigen::Index held = e.drive.size(), rest = m - held;
+  u.head(held) = e.drive.template cast<Scalar>();
+  if (rest > 0) {
+    const Vector<Scalar> wanted = e.drive_slope - slope.topLeftCorner(held, held) * u.head(held);
+    u.tail(rest) = slope.topRightCorner(held, rest).partialPivLu().solve(wanted);
   }
-  if (piston) lift_.emplace(lift);
+  const auto centre = [&e](const auto& values) { return e.centre.template cast<Scalar>().dot(values); };
+  for (std::size_t s = 0; s < strips.size(); ++s) {
+    Element element{strips[s].first, strips[s].second, {}};
+    const Vector<Scalar> next = slabs[s].step * u + slabs[s].offset;
+    const Vector<Scalar> between = slabs[s].left * u + slabs[s].right * next + slabs[s].source;
+    element.centre.push_back(centre(u));
+    for (int i = 1; i < n; ++i) element.centre.push_back(centre(between.segment((i - 1) * m, m)));
+    element.centre.push_back(centre(next));
+    u = next;
+    elements_.push_back(element);
+  }
 }
 
 CollocatedField::CollocatedField(const Surface& surface, double f, const CollocationGrid& grid) {
-  const double k = physics::wavenumber_per_m(surface, f);
-  const std::complex<double> lossy = k * std::complex<double>(1, -0.5 / surface.quality_factor);
+  const double k = free_wavenumber_per_m(surface, f);
+  const Taper taper(surface);
+  const bool clamped = physics::bending_modelled(surface) && surface.edges == physics::Edges::clamped;
+  if (surface.drive == physics::DriveShape::piston) {
+    if (clamped)
+      throw std::invalid_argument("the jump of a clamped plate's piston is not known in closed form");
+    const auto strips = divide(surface, taper, k, grid);
+    lift_.emplace(taper,
+                  std::min(grid.lift * taper.half_width_m(0), strips.back().first + strips.back().second));
+  }
+  const auto equations =
+      equations_of(surface, f, clamped ? grid.across_plate : grid.across, lift_ ? &*lift_ : nullptr);
   if (std::isfinite(surface.quality_factor)) {
-    solve<std::complex<double>>(surface, lossy * lossy, k, grid);
+    solve<std::complex<double>>(surface, equations, equations.inertia, k, grid);
   } else {
-    solve<double>(surface, k * k, k, grid);
+    solve<double>(surface, equations, equations.inertia.real(), k, grid);
   }
 }
 

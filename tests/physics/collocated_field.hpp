@@ -1,6 +1,6 @@
 #pragma once
-// The two-dimensional field of a membrane by a method that shares nothing with `modes` but the closed form of
-// a piston's jump: Chebyshev collocation of the strong form.
+// The two-dimensional field of a membrane, a thin plate or Mindlin's plate, by a method that shares nothing
+// with `modes` but the closed form of a piston's jump: Chebyshev collocation of the strong form.
 #include <complex>
 #include <optional>
 #include <vector>
@@ -10,9 +10,12 @@
 
 namespace turnpoint::physics_test {
 
+struct CollocatedEquations;
+
 struct CollocationGrid {
   int along = 12;          // degree in each element along x
   int across = 9;          // points between the centre and the side, beyond half the phase across
+  int across_plate = 9;    // the same for a clamped plate
   double radians = 4;      // phase along x that an element spans at most
   double narrowing = 0.6;  // half-width at an element's right end, divided by that at its left end, at least
   double lift = 0.8;       // reach of a piston's jump, in half-widths of the drive edge
@@ -31,7 +34,8 @@ class CollocatedField {
     std::vector<std::complex<double>> centre;  // at the Chebyshev points, from left to right
   };
   template <class Scalar>
-  void solve(const physics::Surface& surface, Scalar k2, double k, const CollocationGrid& grid);
+  void solve(const physics::Surface& surface, const CollocatedEquations& equations, Scalar inertia, double k,
+             const CollocationGrid& grid);
   std::vector<Element> elements_;
   std::optional<physics::PistonLift> lift_;
 };

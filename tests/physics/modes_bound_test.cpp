@@ -2,10 +2,14 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <memory>
 #include <numbers>
+#include <optional>
 #include <ostream>
+#include <stdexcept>
 #include <vector>
 
+#include "physics/boundary_map.hpp"
 #include "physics/centre_line.hpp"
 #include "physics/dispersion.hpp"
 #include "physics/modes_bound.hpp"
@@ -13,6 +17,7 @@
 #include "physics/planner.hpp"
 #include "tests/physics/collocated_field.hpp"
 #include "tests/physics/random_scenes.hpp"
+#include "tests/physics/random_surfaces.hpp"
 #include "tests/support/catch.hpp"
 
 using namespace turnpoint::physics;
@@ -20,62 +25,11 @@ using turnpoint::physics_test::CollocatedField;
 using turnpoint::physics_test::CollocationGrid;
 using turnpoint::physics_test::Draw;
 using turnpoint::physics_test::first_scene;
+using turnpoint::physics_test::frequency_Hz;
 using turnpoint::physics_test::median;
 using turnpoint::physics_test::scenes;
 
 namespace {
-
-constexpr double frequency_Hz = 20000;
-
-// A table of 4 to 6 points with long, nearly even parts and steep steps. Higher modes are trapped between the
-// steps.
-TabulatedTaper stepped_table(Draw& draw, double w0, double length) {
-  TabulatedTaper table{{{0, w0}}};
-  const int points = 4 + static_cast<int>(draw.next() % 3);
-  double x = 0, w = w0;
-  for (int i = 1; i < points; ++i) {
-    x += length / (points - 1) * draw.between(0.6, 1.4);
-    const double left = w - 0.05 * w0;
-    const double share = draw.next() % 2 == 0 ? draw.between(0.4, 0.8) : draw.between(0.005, 0.05);
-    w -= i == points - 1 ? left : left * share;
-    table.points.push_back({x, w});
-  }
-  return table;
-}
-
-// Membranes and simply supported plates, whose equation is the same, with every taper and both drives.
-Surface random_membrane(Draw& draw) {
-  Surface s = seed_brass();
-  const double cut = cut_off_half_width_m(s, frequency_Hz);
-  const double ratio = draw.between(1.15, 10), w0 = ratio * cut, slope = draw.spread(0.02, 0.5);
-  s.quality_factor = draw.next() % 3 == 0 ? std::numeric_limits<double>::infinity() : draw.spread(5, 2000);
-  s.drive = draw.next() % 3 == 0 ? DriveShape::piston : DriveShape::cosine;
-  switch (draw.next() % 4) {
-    case 0:
-      s.taper = LinearTaper{w0, slope};
-      s.length_m = w0 / slope * draw.between(0.9, 1);
-      break;
-    case 1:
-      s.taper = ExponentialTaper{w0, cut / slope};
-      s.length_m = cut / slope * (std::log(ratio) + 1.8);
-      break;
-    case 2: {
-      const double length = w0 / slope;
-      s.taper = TabulatedTaper{{{0, w0},
-                                {0.3 * length, w0 * draw.between(0.65, 0.8)},
-                                {0.6 * length, w0 * draw.between(0.35, 0.5)},
-                                {0.95 * length, 0.05 * w0}}};
-      s.length_m = 0.95 * length;
-      break;
-    }
-    default: {
-      const TabulatedTaper table = stepped_table(draw, w0, w0 / slope);
-      s.taper = table;
-      s.length_m = table.points.back().x_m;
-    }
-  }
-  return s;
-}
 
 struct Errors {
   double amplitude, boundary_m, level_dB;
@@ -107,7 +61,9 @@ double peak_of(const CollocatedField& field, double x, double step) {
   return std::max(start, std::abs(field.value(x)));
 }
 
-Errors errors(const Surface& s, const CentreLine& line, const CollocatedField& truth, Normalise normalise) {
+// `ln_drive` is the logarithm of the line's |v| at the drive edge.
+Errors errors(const Surface& s, const CentreLine& line, double ln_drive, const CollocatedField& truth,
+              Normalise normalise) {
   const double peak_m = line.last_peak_m().value(), k = wavenumber_per_m(s, frequency_Hz);
   const double ln_peak = line.value(peak_m).ln_magnitude();
   const double true_peak = peak_of(truth, peak_m, 0.02 / k), true_drive = std::abs(truth.value(0));
@@ -116,7 +72,7 @@ Errors errors(const Surface& s, const CentreLine& line, const CollocatedField& t
   double most = 0;
   for (int i = 0; i <= 400; ++i) {
     const double x = s.length_m * i / 400;
-    const double a = std::exp(line.value(x).ln_magnitude() - (drive ? 0 : ln_peak));
+    const double a = std::exp(line.value(x).ln_magnitude() - (drive ? ln_drive : ln_peak));
     const double b = std::abs(truth.value(x)) / (drive ? true_drive : true_peak);
     e.amplitude = std::max(e.amplitude, std::abs(a - b));
     most = std::max(most, b);
@@ -124,7 +80,27 @@ Errors errors(const Surface& s, const CentreLine& line, const CollocatedField& t
   e.amplitude /= most;
   if (const auto edge = line.level_m(0.5); edge && *edge < s.length_m * (1 - 1e-9))
     e.boundary_m = std::abs(edge_of(truth, *edge, 0.5 * true_peak, 1e-4 / k) - *edge);
-  e.level_dB = 20 / std::log(10.0) * std::abs(ln_peak - std::log(true_peak / true_drive));
+  e.level_dB = 20 / std::log(10.0) * std::abs(ln_peak - ln_drive - std::log(true_peak / true_drive));
+  return e;
+}
+
+// How much two references differ, in the same quantities.
+Errors difference(const CollocatedField& one, const CollocatedField& other, const Surface& s,
+                  const CentreLine& line) {
+  const double peak_m = line.last_peak_m().value(), k = wavenumber_per_m(s, frequency_Hz);
+  const double peak = peak_of(one, peak_m, 0.02 / k), other_peak = peak_of(other, peak_m, 0.02 / k);
+  Errors e{};
+  double most = 0;
+  for (int i = 0; i <= 400; ++i) {
+    const double x = s.length_m * i / 400, v = std::abs(other.value(x));
+    e.amplitude = std::max(e.amplitude, std::abs(std::abs(one.value(x)) - v));
+    most = std::max(most, v);
+  }
+  e.amplitude /= most;
+  if (const auto edge = line.level_m(0.5))
+    e.boundary_m = std::abs(edge_of(one, *edge, 0.5 * peak, 1e-4 / k) -
+                            edge_of(other, *edge, 0.5 * other_peak, 1e-4 / k));
+  e.level_dB = 20 / std::log(10.0) * std::abs(std::log(peak / other_peak));
   return e;
 }
 
@@ -207,50 +183,129 @@ RungEstimate coarse_estimate(const Surface& s, Normalise normalise) {
 
 }  // namespace
 
-TEST_CASE("the error of the model modes lies inside its bounds on random membranes", "[physics]") {
-  const int usual = 40, count = scenes(usual), first = first_scene();
-  std::vector<double> error;
-  Tally finer, coarser, before;  // bounds from a finer and a coarser solution, and before solving
-  for (int i = first; i < first + count; ++i) {
-    Draw draw(Draw(20260104 + static_cast<std::uint64_t>(i)).next());
-    const Surface s = random_membrane(draw);
-    const Normalise normalise = draw.next() % 2 == 0 ? Normalise::peak : Normalise::drive;
-    const auto x0 = turning_point_m(s, frequency_Hz);
-    if (!x0 || *x0 < 0.02 * s.length_m) continue;
-    const auto line = make_centre_line(s, frequency_Hz, Model::modes);
-    if (!line->last_peak_m()) continue;
-    PlanRequest request = request_for(normalise);
-    const RungEstimate bound = estimate(s, request, Model::modes);
-    request.tolerance.amplitude = 1e9;
-    const auto choice = choose_model(s, request);
-    const auto prior = std::ranges::find(choice.considered, Model::modes, &RungEstimate::model);
-    Errors e = errors(s, *line, CollocatedField(s, frequency_Hz), normalise);
-    if (!inside(e, bound, 0.5)) {  // the reference itself may not be accurate enough
-      const CollocationGrid finest{14, 12, 3, 0.75, 0.8, 30};
-      e = errors(s, *line, CollocatedField(s, frequency_Hz, finest), normalise);
+namespace {
+
+// The errors of `modes`, of `mode` and of the map on random surfaces.
+struct Campaign {
+  std::vector<double> error;     // of `modes`
+  Tally finer, coarser, before;  // bounds of `modes` from a finer and a coarser solution, and before solving
+  Tally mode;
+  std::vector<double> map;  // bound / error
+  int map_outside = 0;
+
+  void add(int number, const Surface& s, Normalise normalise, const CollocationGrid& finest);
+  void add_map(int number, const Surface& s, const CollocatedField& truth, const CentreLine& line);
+};
+
+void Campaign::add_map(int number, const Surface& s, const CollocatedField& truth, const CentreLine& line) {
+  const MapOptions options{
+      Edge::percent(0.5), {}, {}, {}, MapOptions::Band{0.99 * frequency_Hz, 1.01 * frequency_Hz}};
+  std::optional<BoundaryMap> made;
+  try {
+    made.emplace(s, options);
+  } catch (const std::domain_error&) {  // strong loss leaves no last maximum in the band
+    return;
+  }
+  const MapAnswer answer = made->at_frequency(frequency_Hz);
+  const auto edge = line.level_m(0.5);
+  if (!answer.boundary_m || !edge || *edge > s.length_m * (1 - 1e-9)) return;
+  const double k = wavenumber_per_m(s, frequency_Hz);
+  const double half = 0.5 * peak_of(truth, line.last_peak_m().value(), 0.02 / k);
+  const double miss = std::abs(edge_of(truth, *edge, half, 1e-4 / k) - *answer.boundary_m);
+  map.push_back(answer.error_bound_m / miss);
+  constexpr double reference_m = 5e-8;  // how exactly the reference has the edge
+  if (miss <= answer.error_bound_m + reference_m) return;
+  ++map_outside;
+  std::printf("scene %d: map %.2e of %.2e\n", number, miss, answer.error_bound_m);
+}
+
+void Campaign::add(int number, const Surface& s, Normalise normalise, const CollocationGrid& finest) {
+  const auto x0 = turning_point_m(s, frequency_Hz);
+  if (!x0 || *x0 < 0.02 * s.length_m) return;
+  const auto line = make_centre_line(s, frequency_Hz, Model::modes);
+  if (!line->last_peak_m()) return;
+  PlanRequest request = request_for(normalise);
+  const RungEstimate bound = estimate(s, request, Model::modes);
+  request.tolerance.amplitude = 1e9;
+  const auto choice = choose_model(s, request);
+  const auto prior = std::ranges::find(choice.considered, Model::modes, &RungEstimate::model);
+  auto truth = std::make_unique<CollocatedField>(s, frequency_Hz);
+  Errors e = errors(s, *line, 0, *truth, normalise);
+  if (!inside(e, bound, 0.5)) {  // the reference itself may not be accurate enough
+    const CollocatedField usual = *truth;
+    truth = std::make_unique<CollocatedField>(s, frequency_Hz, finest);
+    e = errors(s, *line, 0, *truth, normalise);
+    // At the corners of a steep clamped plate's drive edge, and near the resonances of any plate, collocation
+    // converges slowly. The error that is left is about as large as this change.
+    if (bending_modelled(s) && s.edges == Edges::clamped) {
+      const Errors own = difference(usual, *truth, s, *line);
+      e.amplitude = std::max(1e-12, e.amplitude - own.amplitude);
+      e.boundary_m = std::max(1e-15, e.boundary_m - own.boundary_m);
+      e.level_dB = std::max(1e-12, e.level_dB - own.level_dB);
     }
-    const RungEstimate coarse = coarse_estimate(s, normalise);
-    if (!inside(e, bound) || !inside(e, *prior) || !inside(e, coarse))
-      std::printf(
-          "scene %d is outside: amplitude %.2e of %.2e, %.2e, %.2e; boundary %.2e of %.2e, %.2e, %.2e; "
-          "level %.2e of %.2e, %.2e, %.2e\n",
-          i, e.amplitude, bound.amplitude_bound, coarse.amplitude_bound, prior->amplitude_bound, e.boundary_m,
-          bound.boundary_bound_m, coarse.boundary_bound_m, prior->boundary_bound_m, e.level_dB,
-          bound.level_bound_dB, coarse.level_bound_dB, prior->level_bound_dB);
-    error.push_back(e.amplitude);
-    finer.add(e, bound);
-    coarser.add(e, coarse);
-    before.add(e, *prior);
+  }
+  const RungEstimate coarse = coarse_estimate(s, normalise);
+  if (!inside(e, bound) || !inside(e, *prior) || !inside(e, coarse))
+    std::printf(
+        "scene %d is outside: amplitude %.2e of %.2e, %.2e, %.2e; boundary %.2e of %.2e, %.2e, %.2e; "
+        "level %.2e of %.2e, %.2e, %.2e\n",
+        number, e.amplitude, bound.amplitude_bound, coarse.amplitude_bound, prior->amplitude_bound,
+        e.boundary_m, bound.boundary_bound_m, coarse.boundary_bound_m, prior->boundary_bound_m, e.level_dB,
+        bound.level_bound_dB, coarse.level_bound_dB, prior->level_bound_dB);
+  error.push_back(e.amplitude);
+  finer.add(e, bound);
+  coarser.add(e, coarse);
+  before.add(e, *prior);
+  add_map(number, s, *truth, *line);
+  const auto one = make_centre_line(s, frequency_Hz, Model::mode);
+  if (!one->last_peak_m()) return;
+  const RungEstimate stated = estimate(s, request, Model::mode);
+  const Errors of_mode = errors(s, *one, one->value(0).ln_magnitude(), *truth, normalise);
+  mode.add(of_mode, stated);
+  if (!inside(of_mode, stated))
+    std::printf(
+        "scene %d: mode is outside: amplitude %.2e of %.2e; boundary %.2e of %.2e; level %.2e of %.2e\n",
+        number, of_mode.amplitude, stated.amplitude_bound, of_mode.boundary_m, stated.boundary_bound_m,
+        of_mode.level_dB, stated.level_bound_dB);
+}
+
+// Compares scenes from `make` and checks the counts and medians. TURNPOINT_SCENES changes the number.
+template <class Make>
+void compare_scenes(int usual, std::uint64_t seed, const CollocationGrid& finest, Make make) {
+  const int count = scenes(usual), first = first_scene();
+  Campaign all;
+  for (int i = first; i < first + count; ++i) {
+    Draw draw(Draw(seed + static_cast<std::uint64_t>(i)).next());
+    const Surface s = make(draw);
+    all.add(i, s, draw.next() % 2 == 0 ? Normalise::peak : Normalise::drive, finest);
   }
   if (count > usual)
-    WARN(error.size() << " scenes from number " << first << ", median error " << median(error)
-                      << "\nfiner: " << finer << "\ncoarser: " << coarser << "\nbefore solving: " << before);
-  CHECK(error.size() > 0.8 * count);
-  CHECK(finer.outside <= count / 10000);
-  CHECK(coarser.outside <= count / 10000);
-  CHECK(before.outside <= count / 10000);
-  if (count < usual) return;  // a sanitizer's few scenes say nothing of the median
-  CHECK(median(finer.amplitude) < 10);
-  CHECK(median(finer.level) < 10);
-  CHECK(median(finer.boundary) < 10);
+    WARN(all.error.size() << " scenes from number " << first << ", median error " << median(all.error)
+                          << "\nfiner: " << all.finer << "\ncoarser: " << all.coarser << "\nbefore solving: "
+                          << all.before << "\nmode: " << all.mode << "\nmap: " << all.map_outside
+                          << " outside; bound / error, median " << median(all.map));
+  CHECK(all.error.size() > 0.8 * count);
+  CHECK(all.finer.outside <= count / 10000);
+  CHECK(all.coarser.outside <= count / 10000);
+  CHECK(all.before.outside <= count / 10000);
+  CHECK(all.mode.outside <= count / 10000);
+  CHECK(all.map_outside <= count / 10000);
+  if (count < std::max(usual, 16)) return;  // a few scenes say nothing of the median
+  CHECK(median(all.finer.amplitude) < 10);
+  CHECK(median(all.finer.level) < 10);
+  CHECK(median(all.finer.boundary) < 10);
+}
+
+}  // namespace
+
+TEST_CASE("the errors of models and map lie inside their bounds on random membranes", "[physics]") {
+  compare_scenes(40, 20260104, {14, 12, 9, 3, 0.75, 0.8, 30}, turnpoint::physics_test::random_membrane);
+}
+
+TEST_CASE("the errors of models and map lie inside their bounds on random thin plates", "[physics]") {
+  compare_scenes(16, 20260105, {14, 12, 13, 3, 0.75, 0.8, 30}, turnpoint::physics_test::random_thin_plate);
+}
+
+TEST_CASE("the errors of models and map lie inside their bounds on random thick plates", "[physics]") {
+  compare_scenes(4, 20260106, {14, 12, 20, 3, 0.75, 0.8, 30}, turnpoint::physics_test::random_thick_plate);
 }

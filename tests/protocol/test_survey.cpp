@@ -31,11 +31,18 @@ std::string problems(const std::string& protocol_text, const rig::Rig& rig) {
 
 bool contains(const std::string& all, const std::string& part) { return all.find(part) != std::string::npos; }
 
+/// The rig with the pick-ups and force cells of simulated-forces.toml.
+rig::Rig with_cells(rig::Rig rig) {
+  rig.capture = rig::load(root + "/deploy/rigs/simulated-forces.toml").capture;
+  return rig;
+}
+
 void check_shipped(const rig::Rig& rig) {
   for (const auto& entry : fs::directory_iterator(root + "/protocols")) {
     if (entry.path().extension() != ".toml") continue;
     INFO(entry.path().string());
-    const auto survey = protocol::survey(protocol::load(entry.path().string()), rig);
+    const auto protocol = protocol::load(entry.path().string());
+    const auto survey = protocol::survey(protocol, protocol.sensing ? with_cells(rig) : rig);
     CHECK(all_of(survey.problems) == "");
     CHECK(all_of(survey.warnings) == "");
     CHECK_FALSE(survey.sights.empty());

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cstdlib>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -5,6 +6,7 @@
 #include "station/plot/chart.hpp"
 #include "station/report/figures.hpp"
 #include "station/report/html.hpp"
+#include "station/text/number.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/diffusion.hpp"
 
@@ -191,7 +193,20 @@ TEST_CASE("If the answers determined the levels, the report states the posterior
   CHECK(fit["prior"]["slope"]["uniform_in"] == "logarithm");
   CHECK(fit["threshold_interval"]["low"] == found.threshold->interval.low);
   CHECK(fit["deviance"].is_null());
-  keep("posterior.svg", shown(psychometric_figure(summary)));
+  const auto figure = psychometric_figure(summary);
+  keep("posterior.svg", shown(figure));
+  const auto& layers = figure->charts[0].layers;
+  const double threshold = summary.fits[0].fit.parameters->threshold;
+  CHECK(std::any_of(layers.begin(), layers.end(), [&](const auto& layer) {
+    const auto* rule = std::get_if<plot::Rule>(&layer);
+    return rule != nullptr && rule->direction == plot::Rule::Direction::vertical && rule->at == threshold &&
+           rule->label == "threshold " + text::number(threshold, 3) + " dB";
+  }));
+  CHECK(std::any_of(layers.begin(), layers.end(), [&](const auto& layer) {
+    const auto* line = std::get_if<plot::Line>(&layer);
+    return line != nullptr && line->x.size() == 2 && line->x[0] == found.threshold->interval.low &&
+           line->x[1] == found.threshold->interval.high && line->y[0] == line->y[1];
+  }));
   data.trials.resize(20);
   const auto cut = summarise(data);
   CHECK_FALSE(cut.fits[0].intervals.slope);

@@ -90,7 +90,7 @@ TEST_CASE("friction is the quotient of sums, per stroke and bin", "[sensing]") {
   CHECK(mean.se[2] == Approx(0).margin(1e-12));
   CHECK(std::isnan(mean.se[0]));
   CHECK(mean.friction[0] == Approx(0.7 / 1.2));
-  CHECK(stroke_friction(track, strokes[0]) == Approx(0.95 / 2.2));
+  CHECK(mean_friction(track, std::span(strokes).first(1)) == Approx(0.95 / 2.2));
 }
 
 TEST_CASE("standard errors of a profile are those of its strokes", "[sensing]") {

@@ -1,4 +1,5 @@
 #include "station/sensing/friction_table.hpp"
+#include "station/trial/orders.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -47,7 +48,8 @@ Study study(int tables) {
   double half_square = 0;
   for (int i = 0; i < tables; ++i) {
     const auto seed = static_cast<std::uint64_t>(i);
-    const auto table = friction_table(measured(friction_table_order(levels_m, 6, seed), random), seed, 300);
+    const auto table =
+        friction_table(measured(trial::friction_table_order(levels_m, 6, {seed}), random), seed, 300);
     REQUIRE(table.levels.size() == 8);
     for (std::size_t k = 0; k < 8; ++k) {
       const auto& level = table.levels[k];
@@ -102,7 +104,7 @@ TEST_CASE("a friction table is precise, and its intervals have the stated covera
 
 TEST_CASE("strokes at rest between the driven ones remove a drift", "[sensing]") {
   std::mt19937_64 random(8);
-  auto order = friction_table_order(levels_m, 20, 1);
+  auto order = trial::friction_table_order(levels_m, 20, {1});
   // the worst order: levels ascending, while friction falls to a third
   std::vector<double> driven;
   for (const double level : order)
@@ -158,7 +160,7 @@ TEST_CASE(
     "refused",
     "[sensing]") {
   std::mt19937_64 random(8);
-  const auto good = measured(friction_table_order(levels_m, 6, 4), random);
+  const auto good = measured(trial::friction_table_order(levels_m, 6, {4}), random);
   CHECK(friction_table(good, 1, 10).unused == 0);
   auto strokes = good;
   // A stroke at rest; both of its neighbours become unusable.
@@ -176,10 +178,10 @@ TEST_CASE(
 }
 
 TEST_CASE("every level comes equally often, each between strokes at rest", "[sensing]") {
-  const auto order = friction_table_order(levels_m, 6, 5);
+  const auto order = trial::friction_table_order(levels_m, 6, {5});
   REQUIRE(order.size() == 97);
   for (std::size_t i = 0; i < order.size(); ++i) CHECK((order[i] == 0) == (i % 2 == 0));
   for (const double level : levels_m) CHECK(std::count(order.begin(), order.end(), level) == 6);
-  CHECK(order == friction_table_order(levels_m, 6, 5));
-  CHECK(order != friction_table_order(levels_m, 6, 6));
+  CHECK(order == trial::friction_table_order(levels_m, 6, {5}));
+  CHECK(order != trial::friction_table_order(levels_m, 6, {6}));
 }

@@ -60,6 +60,7 @@ struct Ran {
   std::vector<std::string> faults;
   /// texts of the pages after a trial, but not whether an answer was right
   std::vector<std::string> messages;
+  std::vector<records::EventRow> events;
 };
 
 /// What may go wrong in a room before a trial.
@@ -69,6 +70,7 @@ struct How {
   std::string capture = kPickUps;
   bool repaired = true;  ///< faults last for one trial
   std::string observer = "sim";
+  std::function<void(plant::Setup&)> room = {};  ///< changes the laboratory
 };
 
 /// Runs a protocol file in a room with faults.
@@ -82,7 +84,7 @@ inline Ran run(const std::string& protocol, const Sabotage& sabotage, const How&
   request.observer = how.observer;
   request.seed = 7;
   const auto setup = setup::prepare(request);
-  auto room = std::make_unique<session::SimulatedRoom>(setup.rig);
+  auto room = std::make_unique<session::SimulatedRoom>(setup.rig, how.room);
   Saboteur saboteur;
   auto& plant = room->plant();
   saboteur.before = [&](int trial) { sabotage(trial, plant); };
@@ -93,7 +95,9 @@ inline Ran run(const std::string& protocol, const Sabotage& sabotage, const How&
   session::Inputs inputs;
   Ran ran;
   ran.summary = session::run(setup, &pages, inputs, std::move(room), &saboteur);
-  for (const auto& block : store::read_session(request.database, ran.summary.session_id).blocks)
+  const auto stored = store::read_session(request.database, ran.summary.session_id);
+  ran.events = stored.events;
+  for (const auto& block : stored.blocks)
     ran.trials.insert(ran.trials.end(), block.trials.begin(), block.trials.end());
   ran.faults = pages.faults;
   ran.messages = pages.messages;

@@ -233,7 +233,7 @@ TEST_CASE("the levels of practice do not count, and they do not remove levels fr
     INFO(one.cue);
     CHECK(report(other, one.cue).accuracy == Approx(one.accuracy).epsilon(0).margin(1e-12));
   }
-  // In this file the practice block runs the main block's procedure, which must still count.
+  // Practice blocks are left out, but not the main block that runs the same procedure as the practice.
   CHECK(accuracy(source("speed-accuracy.toml"), "amplitude at the wide end") > 0.9);
 }
 

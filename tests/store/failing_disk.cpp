@@ -42,7 +42,7 @@ FailingDisk::FailingDisk() {
   shim = *real;
   shim.zName = "failing-disk";
   shim.xOpen = open;
-  if (sqlite3_vfs_register(&shim, 1) != SQLITE_OK) throw std::runtime_error("no file system for SQLite");
+  if (sqlite3_vfs_register(&shim, 1) != SQLITE_OK) throw std::runtime_error("cannot register the test VFS");
 }
 
 FailingDisk::~FailingDisk() {

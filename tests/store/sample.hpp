@@ -135,6 +135,7 @@ inline TrialRow answered(int index, int tones = 2) {
   t.finger.boundary_se_mm = 0.375;
   t.finger.lag_mm = 0.625;
   t.finger.tare_mN = -1.5;
+  t.finger.mu = 0.625;
   t.signal_rows.push_back(finger_signal(index));
   t.state_hash = 0xfedcba9876543210ULL + static_cast<unsigned>(index);
   for (int i = 0; i < 2; ++i)

@@ -36,7 +36,7 @@ const char* const kHeader =
     "response_zero_onset,trial_duration,proof,proof_cause,drive_ratio_db,drive_residual_db,onset_error_us,"
     "confidence,confidence_time,"
     "sensing,contact_s,strokes,normal_n,normal_sd_n,normal_in_window,speed_mm_s,speed_in_window,mu_low,"
-    "mu_high,boundary_felt_mm,boundary_se_mm,lag_mm,tare_mn,columns_version";
+    "mu_high,boundary_felt_mm,boundary_se_mm,lag_mm,tare_mn,mu,columns_version";
 
 }  // namespace
 
@@ -45,7 +45,7 @@ TEST_CASE("trials.csv has all fixed columns in order, and the factors at their p
   const auto db = folder / "a.sqlite";
   const auto id = sample::session(db, 5);
   const auto files = export_data(db, folder / "out", {});
-  REQUIRE(files.size() == 6);
+  REQUIRE(files.size() == 8);
   CHECK(files[0].path == folder / "out/two-boundaries/trials.csv");
   CHECK(files[0].rows == 5);
   CHECK(files[1].rows == 20);
@@ -60,7 +60,7 @@ TEST_CASE("trials.csv has all fixed columns in order, and the factors at their p
           ",0,main,speed,0,0,1,0,experimental,staircase,n/a,n/a,-12.5,dB,0.30000000000000004,speed,150.25,"
           "30123.4567890123,2.5,mode,first,second,0,answered,0.4375,n/a,n/a,go_cue,simulated,0,2,0,0,-10,1.5,"
           "20240229,bench-a,n/a,0.1.0,2,3.5,flagged,level,-0.75,-55,12.5,1,0.75,ok,2.25,9,0.5,0.0625,0.875,"
-          "80.5,0.6875,0.25,0.8125,150.5,0.375,0.625,-1.5,2");
+          "80.5,0.6875,0.25,0.8125,150.5,0.375,0.625,-1.5,0.625,2");
   CHECK(sample::contains(lines[5], ",mode,first,n/a,n/a,timeout,n/a,n/a,n/a,go_cue,n/a,"));
 }
 
@@ -87,6 +87,16 @@ std::string session_of_unlike_values(const std::string& db) {
                      {"disk", Verdict::failed, 199, 200, "MiB", "nearly full"},
                      {"cells", Verdict::not_possible, {}, {}, "", "the rig has none"}};
     log.event(tested);
+    EventRow measured{3'550'000'000, "friction_table", "used", std::nullopt};
+    measured.friction_levels = {{0.5, 6, 0.71, 0.7, 0.03, 0.63, 0.78}, {1.5, 5, 0.2, 0.21, 0.01, 0.18, 0.24}};
+    log.event(measured);
+    EventRow asked{3'600'000'000, kAnswerEvent, "about-you.hand = left", std::nullopt};
+    asked.answers = {{"about-you", "hand", 0, "left", 2.5}};
+    log.event(asked);
+    log.event({3'700'000'000, kBackEvent, place_name("about-you", 0), std::nullopt});
+    asked = {3'800'000'000, kAnswerEvent, "about-you.hand = right", std::nullopt};
+    asked.answers = {{"about-you", "hand", 0, "right", 1.25}};
+    log.event(asked);
     log.begin_block({0, 0, "try", "accuracy", true});
     auto practice = sample::answered(0, 1);
     practice.type = TrialType::practice;
@@ -127,12 +137,12 @@ std::string session_of_unlike_values(const std::string& db) {
 
 }  // namespace
 
-TEST_CASE("each value in the five tables is in its own column", "[store]") {
+TEST_CASE("each value in the seven tables is in its own column", "[store]") {
   TemporaryFolder folder;
   const auto db = folder / "a.sqlite";
   const auto id = session_of_unlike_values(db);
   const auto files = export_data(db, folder / "out", {});
-  for (const std::size_t i : {0, 1, 2, 3, 5}) {
+  for (const std::size_t i : {0, 1, 2, 3, 5, 6, 7}) {
     auto text = sample::bytes_of(files[i].path);
     for (auto at = text.find(id); at != std::string::npos; at = text.find(id))
       text.replace(at, id.size(), "ID");
@@ -146,13 +156,27 @@ TEST_CASE("each value in the five tables is in its own column", "[store]") {
   }
 }
 
+TEST_CASE("BIDS has the answers of each questionnaire as a phenotype", "[store]") {
+  TemporaryFolder folder;
+  const auto db = folder / "a.sqlite";
+  session_of_unlike_values(db);
+  ExportOptions options;
+  options.format = ExportFormat::bids;
+  export_data(db, folder / "out", options);
+  const auto phenotype = folder / "out/two-boundaries/phenotype/";
+  CHECK(sample::bytes_of(phenotype + "about-you.tsv") ==
+        "participant_id\tsession_id\toccasion\thand\nsub-P07\tses-01\t0\tright\n");
+  const auto json = nlohmann::json::parse(sample::bytes_of(phenotype + "about-you.json"));
+  CHECK(json.contains("hand"));
+}
+
 TEST_CASE("the codebook explains every column of every table", "[store]") {
   TemporaryFolder folder;
   const auto db = folder / "a.sqlite";
   sample::session(db, 2);
   const auto files = export_data(db, folder / "out", {});
   const auto codebook = nlohmann::json::parse(sample::bytes_of(files[4].path));
-  for (const std::size_t i : {0, 1, 2, 3, 5}) {
+  for (const std::size_t i : {0, 1, 2, 3, 5, 6, 7}) {
     const auto name = std::filesystem::path(files[i].path).filename().string();
     std::istringstream header(lines_of(sample::bytes_of(files[i].path), "\r\n")[0]);
     for (std::string column; std::getline(header, column, ',');) {
@@ -190,9 +214,9 @@ TEST_CASE("an export can select sessions, participants and protocols, and each p
   other.factor_columns = {"mask"};
   sample::session(db, 4, other);
   const auto all = export_data(db, folder / "all", {});
-  REQUIRE(all.size() == 12);
+  REQUIRE(all.size() == 16);
   CHECK(all[0].path == folder / "all/_.._other_design/trials.csv");
-  CHECK(all[6].rows == 5);
+  CHECK(all[8].rows == 5);
   ExportOptions options;
   options.session_id = id;
   CHECK(export_data(db, folder / "one", options)[0].rows == 3);

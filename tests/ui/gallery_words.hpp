@@ -10,6 +10,24 @@ struct GalleryWords {
 };
 
 inline const std::map<std::string, GalleryWords> gallery_words{
+    {"You will feel vibrations of a surface with one finger and answer questions about them. This takes "
+     "about 15 minutes. Your answers are stored under a code, without your name. You may stop at any time, "
+     "without giving a reason and without any disadvantage. Do you want to take part?",
+     {"ستشعر بإصبع واحدة باهتزازات سطح وتجيب عن أسئلة حولها. يستغرق ذلك نحو 15 دقيقة. تُحفظ إجاباتك تحت رمز "
+      "دون اسمك. يمكنك التوقف في أي وقت دون ذكر سبب ودون أي ضرر. هل تريد المشاركة؟",
+      "您将用一个手指感受一个表面的振动，并回答有关问题。大约需要15分钟。您的回答以代码保存，不含姓名。您可以"
+      "随时停止，无需说明理由，也不会有任何不利。您愿意参加吗？"}},
+    {"Yes, I take part", {"نعم، أشارك", "是的，我参加"}},
+    {"No, I do not", {"لا، لا أشارك", "不，我不参加"}},
+    {"Which hand do you write with?", {"بأي يد تكتب؟", "您用哪只手写字？"}},
+    {"Both", {"كلتاهما", "两只手"}},
+    {"How old are you, in years?", {"كم عمرك بالسنوات؟", "您多少岁？"}},
+    {"Press a button, then slide your finger over the surface. You can feel each example as often as you "
+     "wish.",
+     {"اضغط زرًا ثم مرر إصبعك على السطح. يمكنك أن تشعر بكل مثال قدر ما تشاء.",
+      "请按一个按钮，然后用手指在表面上滑动。每个例子您都可以感受任意多次。"}},
+    {"This is smooth", {"هذا أملس", "这是光滑的"}},
+    {"This is rough", {"هذا خشن", "这是粗糙的"}},
     {"Did the smooth part end left or right of the mark?",
      {"هل انتهى الجزء الأملس يسار العلامة أم يمينها؟", "光滑的部分在标记的左边还是右边结束？"}},
     {"Left", {"يسار", "左"}},

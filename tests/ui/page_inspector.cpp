@@ -1,5 +1,9 @@
 #include "tests/ui/page_inspector.hpp"
 
+#include <QAccessible>
+#include <functional>
+#include <utility>
+
 #include <sys/inotify.h>
 #include <unistd.h>
 
@@ -156,6 +160,65 @@ bool PageInspector::reachesEdge(QQuickItem* item) const {
 
 PageInspector::~PageInspector() {
   if (watch_ >= 0) ::close(watch_);
+}
+
+namespace {
+
+const char* role_word(QAccessible::Role role) {
+  switch (role) {
+    case QAccessible::Button:
+      return "button";
+    case QAccessible::PageTab:
+      return "tab";
+    case QAccessible::ListItem:
+      return "item";
+    case QAccessible::EditableText:
+      return "text";
+    case QAccessible::Slider:
+      return "slider";
+    default:
+      return "";
+  }
+}
+
+/// The role and the name of an item as assistive technology reads them; both "" if it does not find the item.
+std::pair<QString, QString> read_aloud(QQuickItem* item) {
+  auto* interface = QAccessible::queryAccessibleInterface(item);
+  if (interface == nullptr || !interface->isValid()) return {};
+  return {role_word(interface->role()), interface->text(QAccessible::Name)};
+}
+
+bool reacts_to_taps(const QQuickItem* item) {
+  for (const auto* child : item->children())
+    if (child->inherits("QQuickTapHandler")) return true;
+  return false;
+}
+
+void for_each_visible(QQuickItem* item, const std::function<void(QQuickItem*)>& visit) {
+  if (!item->isVisible()) return;
+  visit(item);
+  for (auto* child : item->childItems()) for_each_visible(child, visit);
+}
+
+}  // namespace
+
+QStringList PageInspector::controls(QQuickItem* page) const {
+  QStringList found;
+  for_each_visible(page, [&found](QQuickItem* item) {
+    const auto [role, name] = read_aloud(item);
+    if (!role.isEmpty()) found += role + ": " + name;
+  });
+  return found;
+}
+
+QStringList PageInspector::unnamedControls(QQuickItem* page) const {
+  QStringList found;
+  for_each_visible(page, [&found](QQuickItem* item) {
+    const auto [role, name] = read_aloud(item);
+    if (role.isEmpty() ? reacts_to_taps(item) : name.trimmed().isEmpty())
+      found += QString(item->metaObject()->className()) + " " + item->objectName() + " " + role;
+  });
+  return found;
 }
 
 QString PageInspector::picture() {

@@ -30,6 +30,11 @@ class PageInspector : public QObject {
   /// Number of texts on the page that the other functions inspect.
   Q_INVOKABLE int texts(QQuickItem* page) const;
 
+  /// What a screen reader finds below `page`: each visible control as "role: name", read through QAccessible.
+  Q_INVOKABLE QStringList controls(QQuickItem* page) const;
+  /// Items below `page` that react to taps but that a screen reader does not find, or finds without a name.
+  Q_INVOKABLE QStringList unnamedControls(QQuickItem* page) const;
+
   /// Makes a picture and returns its path. From then on opened() returns how often the picture was opened.
   Q_INVOKABLE QString picture();
   Q_INVOKABLE int opened();

@@ -2,6 +2,7 @@
 //   screenshots --out DIR [--languages en,ja] [--sizes 800x480,1280x800] [--only NAME]
 #include <QCommandLineParser>
 #include <QDir>
+#include <QFile>
 #include <QGuiApplication>
 #include <QQmlApplicationEngine>
 #include <QQmlComponent>
@@ -11,6 +12,9 @@
 #include <QTemporaryDir>
 #include <QTest>
 #include <cstdio>
+#include <functional>
+#include <utility>
+#include <vector>
 
 #include "station/ui/operator/latency_controller.hpp"
 #include "station/ui/operator/live_model.hpp"
@@ -18,9 +22,13 @@
 #include "station/ui/operator/operator_lock.hpp"
 #include "station/ui/operator/preview_controller.hpp"
 #include "station/ui/operator/report_model.hpp"
+#include "station/ui/operator/rig_controller.hpp"
+#include "station/ui/operator/sessions_controller.hpp"
+#include "station/ui/operator/studies_controller.hpp"
 #include "station/ui/participant/session_bridge.hpp"
 #include "station/ui/participant/start_controller.hpp"
 #include "station/ui/platform/screen.hpp"
+#include "station/ui/shared/operator_screen.hpp"
 #include "tests/ui/gallery.hpp"
 #include "tests/ui/operator_gallery.hpp"
 
@@ -117,20 +125,42 @@ class Camera {
   int count_ = 0;
 };
 
-/// Renders a single operator's page in a window of its own. These pages exist only in English.
+/// Runs the event loop until `ready` returns true, for at most a minute.
+template <typename Ready>
+void wait_for(Ready ready) {
+  for (int i = 0; i < 6000 && !ready(); ++i) QTest::qWait(10);
+}
+
+/// How the operator's pages look.
+struct Look {
+  QString language = "en";
+  bool dark = false;
+  int text_percent = 100;
+};
+
+/// Renders a single operator's page in a window of its own.
 class OperatorCamera {
  public:
-  OperatorCamera(const QString& out, const Panel& panel, const QString& prefix)
+  OperatorCamera(const QString& out, const Panel& panel, const QString& prefix, Look look = {})
       : out_(out),
+        look_(std::move(look)),
         panel_(panel),
         prefix_(prefix),
         bridge_([] { return 0; }, [](const auto&) {}),
         live_(bridge_) {}
 
-  void shoot(const QString& page, const QString& name, QVariantMap properties) {
+  /// Waits until `ready` returns true before it takes the picture.
+  void shoot(
+      const QString& page, const QString& name, QVariantMap properties,
+      const std::function<bool()>& ready = [] { return true; }) {
     properties["pixelsPerMm"] = panel_.pixels_per_mm;
     QQmlEngine engine;
     engine.addImportPath("qrc:/qt/qml");
+    using turnpoint::ui::OperatorScreen;
+    auto* screen = engine.singletonInstance<OperatorScreen*>(qmlTypeId("Turnpoint", 1, 0, "OperatorScreen"));
+    screen->set_language(look_.language);
+    screen->set_dark(look_.dark);
+    screen->set_text_percent(look_.text_percent);
     QQmlComponent component(&engine, QUrl("qrc:/qt/qml/Turnpoint/" + page));
     QQuickWindow window;
     auto* item = qobject_cast<QQuickItem*>(component.createWithInitialProperties(properties));
@@ -139,6 +169,7 @@ class OperatorCamera {
     item->setSize(panel_.size);
     window.resize(panel_.size);
     window.show();
+    wait_for(ready);
     QGuiApplication::processEvents();
     const QString file = out_ + "/" + prefix_ + name + ".png";
     if (!window.grabWindow().save(file)) qFatal("cannot write %s", qPrintable(file));
@@ -169,6 +200,7 @@ class OperatorCamera {
 
  private:
   QString out_;
+  Look look_;
   Panel panel_;
   QString prefix_;
   SessionBridge bridge_;
@@ -177,21 +209,52 @@ class OperatorCamera {
   int count_ = 0;
 };
 
-/// Runs the event loop until `ready` returns true, for at most a minute.
-template <typename Ready>
-void wait_for(Ready ready) {
-  for (int i = 0; i < 6000 && !ready(); ++i) QTest::qWait(10);
+/// Renders the operator's pages with their bar in several languages, in the dark theme, and with large text.
+int shoot_places(const QString& out, const QStringList& sizes, const QStringList& languages,
+                 turnpoint::ui::OperatorController& operating) {
+  using namespace turnpoint;
+  const auto& request = operating.request();
+  ui::StudiesController studies(request);
+  studies.open();
+  studies.select(3);
+  wait_for([&] { return !studies.checking(); });
+  ui::SessionsController sessions(request);
+  ui::RigController rig(request);
+  rig.selfTest();
+  wait_for([&] { return rig.busy().isEmpty(); });
+  rig.examine();
+  wait_for([&] { return rig.busy().isEmpty(); });
+  std::vector<std::pair<QString, Look>> looks{{"dark", {"en", true}}, {"large", {"en", false, 200}}};
+  for (const auto& language : languages) looks.push_back({language, {language}});
+  int count = 0;
+  for (const auto& size : sizes)
+    for (const auto& [name, look] : looks) {
+      OperatorCamera camera(out, panel_of(size), size + "-operator-" + name + "-", look);
+      for (const char* place : {"run", "studies", "sessions", "rig"})
+        camera.shoot("StationPages.qml", place,
+                     {{"operating", QVariant::fromValue(&operating)},
+                      {"studies", QVariant::fromValue(&studies)},
+                      {"sessions", QVariant::fromValue(&sessions)},
+                      {"rig", QVariant::fromValue(&rig)},
+                      {"shown", place}},
+                     [&] { return !studies.checking() && !operating.checking(); });
+      count += camera.count();
+    }
+  return count;
 }
 
-int shoot_operator(const QString& out, const QStringList& sizes) {
+int shoot_operator(const QString& out, const QStringList& sizes, const QStringList& languages) {
   using namespace turnpoint;
-  const QTemporaryDir folder;
   const std::string source = TURNPOINT_SOURCE_DIR;
-  const auto database = ui::interrupted_exhibit(folder.path().toStdString());
-  ui::OperatorController operating(
-      {source + "/protocols", source + "/tests/support/thin_plate.toml", database});
+  // Short relative names, so that a picture in a manual shows no folder of the machine on which it was made.
+  const QTemporaryDir folder;
+  QDir::setCurrent(folder.path());
+  QFile::copy(QString::fromStdString(source + "/tests/support/thin_plate.toml"), "plate.toml");
+  ui::interrupted_exhibit(".");
+  ui::OperatorController operating({source + "/protocols", "plate.toml", "lab.sqlite"});
   operating.select(9);
   wait_for([&] { return !operating.checking(); });
+  const int places = shoot_places(out, sizes, languages, operating);
   ui::PreviewController preview(
       {source + "/protocols/demo.toml", source + "/tests/support/thin_plate.toml", "", {}});
   ui::PreviewController zones(
@@ -202,7 +265,7 @@ int shoot_operator(const QString& out, const QStringList& sizes) {
   const auto report = ui::report_exhibit("speed-accuracy"), report2 = ui::report_exhibit("boundary-constant"),
              report3 = ui::forces_exhibit("speed-accuracy");
   ui::LatencyController latency(calibration::LatencyReference::photodiode);
-  int count = 0;
+  int count = places;
   for (const auto& size : sizes) {
     OperatorCamera camera(out, panel_of(size), size + "-operator-");
     camera.shoot("OperatorPage.qml", "start", {{"operating", QVariant::fromValue(&operating)}});
@@ -251,7 +314,7 @@ int main(int argc, char** argv) {
                      {"only", "One page", "name", ""}});
   parser.process(app);
   turnpoint::ui::set_fonts();
-  const QString out = parser.value("out");
+  const QString out = QDir(parser.value("out")).absolutePath();
   if (!QDir().mkpath(out)) qFatal("cannot make %s", qPrintable(out));
   int count = 0;
   for (const auto& size : parser.value("sizes").split(',')) {
@@ -263,7 +326,7 @@ int main(int argc, char** argv) {
     }
   }
   if (parser.value("only").isEmpty() || parser.value("only") == "operator")
-    count += shoot_operator(out, parser.value("sizes").split(','));
+    count += shoot_operator(out, parser.value("sizes").split(','), parser.value("languages").split(','));
   std::printf("%d pictures in %s\n", count, qPrintable(QDir(out).absolutePath()));
   return 0;
 }

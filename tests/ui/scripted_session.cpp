@@ -68,6 +68,9 @@ void ScriptedSession::take(const session::Input& input) {
     case InputKind::next:
       inputs_ += "next";
       break;
+    case InputKind::back:
+      inputs_ += "back";
+      break;
     case InputKind::slider:
       inputs_ += QStringLiteral("slider %1").arg(input.number);
       break;

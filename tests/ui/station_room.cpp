@@ -1,9 +1,12 @@
 #include "tests/ui/station_room.hpp"
 
 #include <QDir>
+#include <QDirIterator>
 #include <QFile>
 #include <QGuiApplication>
+#include <QQmlEngine>
 #include <QScreen>
+#include <QTest>
 #include <chrono>
 #include <csignal>
 #include <fstream>
@@ -73,9 +76,67 @@ void StationRoom::start(const QString& digits, Begins begins) {
       setup::StationRequest{path("protocols"), path("rig.toml"), path("lab.sqlite"), locked});
   station_ = std::make_unique<StationWindow>(
       StationWindow::Place{5.9, QSize(1280, 800), false},
-      StationWindow::Operator{operating_.get(), desk::OperatorCode::of_digits(digits.toStdString()), locked},
+      StationWindow::Operator{operating_.get(), desk::OperatorCode::of_digits(digits.toStdString()), locked,
+                              disks()},
       path("lab.sqlite"));
   Q_EMIT opened();
+}
+
+maintenance::DiskSources StationRoom::disks() const {
+  return {path("block"), path("mountinfo"), path("udisksctl")};
+}
+
+OperatorScreen* StationRoom::look() const {
+  if (!station_) return nullptr;
+  auto* engine = qmlEngine(&station_->window());
+  return engine->singletonInstance<OperatorScreen*>(qmlTypeId("Turnpoint", 1, 0, "OperatorScreen"));
+}
+
+void StationRoom::plugIn() {
+  const QDir folder(folder_->path());
+  for (const auto* made : {"block/sda/sda1", "block/sda/device", "stick"}) folder.mkpath(made);
+  write(path("block/sda/removable"), "1\n");
+  write(path("block/sda/size"), "31250000\n");
+  write(path("block/sda/device/model"), "Test\n");
+  write(path("block/sda/sda1/partition"), "1\n");
+  write(path("block/sda/sda1/dev"), "8:1\n");
+  write(path("udisksctl"),
+        "#!/bin/sh\nhere=$(dirname \"$0\")\nprintf '%s ' \"$1\" >> \"$here/asked\"\n"
+        "case $1 in\n"
+        "mount) echo \"31 25 8:1 / $here/stick rw - vfat /dev/sda1 rw\" > \"$here/mountinfo\";;\n"
+        "unmount) rm \"$here/mountinfo\";;\nesac\n");
+  QFile::setPermissions(folder_->filePath("udisksctl"),
+                        QFile::ReadOwner | QFile::WriteOwner | QFile::ExeOwner);
+}
+
+QString StationRoom::askedUdisks() const {
+  QFile file(folder_->filePath("asked"));
+  return file.open(QIODevice::ReadOnly) ? QString::fromUtf8(file.readAll()).trimmed() : QString();
+}
+
+QStringList StationRoom::filesIn(const QString& folder) const {
+  QStringList files;
+  const QDir below(folder_->filePath(folder));
+  for (QDirIterator all(below.path(), QDir::AllEntries | QDir::NoDotAndDotDot, QDirIterator::Subdirectories);
+       all.hasNext();)
+    files += below.relativeFilePath(all.next());
+  files.sort();
+  return files;
+}
+
+QString StationRoom::startOf(const QString& folder, const QString& ending, int bytes) const {
+  for (const auto& name : filesIn(folder)) {
+    QFile file(folder_->filePath(folder + "/" + name));
+    if (name.endsWith(ending) && file.open(QIODevice::ReadOnly)) return QString::fromLatin1(file.read(bytes));
+  }
+  return {};
+}
+
+void StationRoom::pressKey(int key) { QTest::keyPress(&station_->window(), static_cast<Qt::Key>(key)); }
+void StationRoom::releaseKey(int key) { QTest::keyRelease(&station_->window(), static_cast<Qt::Key>(key)); }
+
+void StationRoom::addMistaken() {
+  write(path("protocols/mistaken.toml"), "format = \"friction-protocol/1\"\nprotocl = 3\ntitel = \"x\"\n");
 }
 
 void StationRoom::close() {
@@ -104,7 +165,7 @@ void StationRoom::calibrate() {
   measurements.sound_csv = path("sound.csv");
   const auto rig = rig::load(path("rig.toml"));
   auto made = maintenance::calibrate(rig, measurements, 30, "");
-  made.panel = maintenance::known_panel(rig);
+  maintenance::keep_devices(rig, made);
   write(calibration::file_for(rig.path, made.made_on), calibration::to_toml(made));
 }
 

@@ -10,6 +10,7 @@
 #include "station/ui/operator/latency_controller.hpp"
 #include "station/ui/operator/operator_controller.hpp"
 #include "station/ui/platform/station_window.hpp"
+#include "station/ui/shared/operator_screen.hpp"
 
 namespace turnpoint::ui {
 
@@ -23,6 +24,8 @@ class StationRoom : public QObject {
   Q_PROPERTY(turnpoint::ui::PageModel* page READ page NOTIFY opened)
   Q_PROPERTY(turnpoint::ui::OperatorController* operating READ operating NOTIFY opened)
   Q_PROPERTY(turnpoint::ui::LatencyController* latency READ latency CONSTANT)
+  /// How the operator's pages look. The choice is kept in the folder.
+  Q_PROPERTY(turnpoint::ui::OperatorScreen* look READ look NOTIFY opened)
 
  public:
   explicit StationRoom(QObject* parent = nullptr);
@@ -33,6 +36,7 @@ class StationRoom : public QObject {
   PageModel* page() const { return station_ ? station_->runner().bridge().page() : nullptr; }
   OperatorController* operating() const { return operating_.get(); }
   LatencyController* latency() { return &latency_; }
+  OperatorScreen* look() const;
 
   /// Starts the program in an empty folder. `code` is the operator's code.
   Q_INVOKABLE void open(const QString& code);
@@ -46,6 +50,19 @@ class StationRoom : public QObject {
   Q_INVOKABLE void reopenEmpty(const QString& code);
   Q_INVOKABLE void close();
   Q_INVOKABLE void addSecondScreen();
+  /// Plugs in a USB stick "Test, 16 GB", which is simulated by folders. It is not mounted yet.
+  Q_INVOKABLE void plugIn();
+  /// What the program has asked udisks to do with the stick: "mount unmount power-off".
+  Q_INVOKABLE QString askedUdisks() const;
+  /// Files and folders in a folder of the station, sorted; those of the stick are in "stick".
+  Q_INVOKABLE QStringList filesIn(const QString& folder) const;
+  /// The first bytes of the first file below a folder whose name ends so.
+  Q_INVOKABLE QString startOf(const QString& folder, const QString& ending, int bytes) const;
+  /// Presses or releases a key of a keyboard.
+  Q_INVOKABLE void pressKey(int key);
+  Q_INVOKABLE void releaseKey(int key);
+  /// Writes a protocol file with two mistakes into the folder of protocols.
+  Q_INVOKABLE void addMistaken();
 
   /// Writes a calibration of the rig (response, friction, sound level), as `turnpoint calibrate` does.
   Q_INVOKABLE void calibrate();
@@ -82,6 +99,7 @@ class StationRoom : public QObject {
   void start(const QString& digits, Begins begins);
   QStringList read(const std::string& database, const QString& file, const QString& name,
                    const QString& where, const QString& is) const;
+  maintenance::DiskSources disks() const;
   std::string path(const QString& name) const { return folder_->filePath(name).toStdString(); }
 
   std::unique_ptr<QTemporaryDir> folder_;

@@ -68,7 +68,10 @@ Item {
                                        { width: 600, height: 1024, mm: 6.7 }, { width: 800, height: 1280, mm: 5.9 }]
 
         // Answers of 20 mm for these pages do not fit on a panel of 5 inches beside everything else.
-        readonly property var needSevenInches: ["rating-9", "line-labels", "number", "number-standard", "choices-9"]
+        readonly property var needSevenInches: ["rating-9", "line-labels", "number", "number-standard", "choices-9",
+                                                    "question-number"]
+        // These texts scroll, and a cue says so.
+        readonly property var scrolling: ["consent-form-long"]
 
         SignalSpy { id: shown; target: script.bridge; signalName: "shown" }
 
@@ -122,7 +125,7 @@ Item {
                 if (row.panel.mm > 7 && needSevenInches.includes(name)) continue
                 show(name, row.language)
                 for (const pair of inspector.overlaps(view)) faults.push(name + ": " + pair)
-                if (row.panel.mm < 7) for (const text of inspector.cutTexts(view)) faults.push(name + ": cut: " + text)
+                if (row.panel.mm < 7 && !scrolling.includes(name)) for (const text of inspector.cutTexts(view)) faults.push(name + ": cut: " + text)
             }
             compare(faults.join("\n"), "")
         }

@@ -24,14 +24,48 @@ TestCase {
     }
 
     function test_texts_have_a_contrast_of_seven_to_one_data() {
-        return [["ink", "paper"], ["ink", "raised"], ["quiet", "paper"], ["quiet", "raised"],
+        const pairs = [["ink", "paper"], ["ink", "raised"], ["quiet", "paper"], ["quiet", "raised"],
                 ["actionText", "action"], ["action", "raised"], ["action", "paper"], ["right", "paper"],
                 ["right", "raised"], ["wrong", "paper"], ["wrong", "raised"], ["actionText", "right"],
                 ["actionText", "wrong"], ["actionText", "ink"], ["warningText", "warning"],
-                ["actionText", "simulated"]].map(pair => ({ tag: pair.join(" on "), text: pair[0], under: pair[1] }))
+                ["actionText", "simulated"]]
+        const rows = []
+        for (const [text, under] of pairs)
+            for (const dark of [false, true])
+                rows.push({ tag: text + " on " + under + (dark ? ", dark" : ""), text: text, under: under, dark: dark })
+        return rows
+    }
+    function cleanup() { OperatorScreen.dark = false }
+    function themed(dark) {
+        OperatorScreen.dark = dark
+        const theme = made.createObject(null, { width: 800, height: 480, pixelsPerMm: 5.2, dense: dark })
+        compare(theme.dark, dark)
+        return theme
+    }
+    function test_borders_have_a_contrast_of_three_to_one_data() {
+        const rows = []
+        for (const under of ["paper", "raised"])
+            for (const dark of [false, true]) rows.push({ tag: under + (dark ? ", dark" : ""), under: under, dark: dark })
+        return rows
+    }
+    function test_borders_have_a_contrast_of_three_to_one(row) {
+        const theme = themed(row.dark)
+        const found = contrast(theme.line, theme[row.under])
+        verify(found >= 3, row.tag + ": " + found.toFixed(2))
+    }
+    function test_the_theme_of_the_operator_does_not_change_the_participants_pages() {
+        OperatorScreen.dark = true
+        OperatorScreen.textPercent = 200
+        const theme = made.createObject(null, { width: 800, height: 480, pixelsPerMm: 5.2 })
+        const dense = made.createObject(null, { width: 800, height: 480, pixelsPerMm: 5.2, dense: true })
+        verify(luminance(theme.paper) > 0.8 && luminance(dense.paper) < 0.05)
+        const large = dense.textBody, large_participant = theme.textBody
+        OperatorScreen.textPercent = 100
+        fuzzyCompare(large, 2 * dense.textBody, 1e-9)
+        compare(large_participant, theme.textBody)
     }
     function test_texts_have_a_contrast_of_seven_to_one(row) {
-        const theme = made.createObject(null, { width: 800, height: 480, pixelsPerMm: 5.2 })
+        const theme = themed(row.dark)
         const found = contrast(theme[row.text], theme[row.under])
         verify(found >= 7, row.tag + ": " + found.toFixed(2))
     }

@@ -7,14 +7,15 @@ import pandas as pd
 
 from . import _store
 
-TABLES = ("trials", "intervals", "events", "sessions", "self_tests")
+TABLES = ("trials", "intervals", "events", "sessions", "self_tests", "answers", "friction_tables")
 PREFIXED = ("=", "+", "-", "@")  # exports put an apostrophe in front of texts that begin so
 # Columns that are texts even if they look like numbers: a participant's code may be 007.
 TEXTS = ("participant_id participant_code session_id run_mode protocol_id protocol_version protocol_sha256 block_name "
          "instruction trial_type procedure level_unit model correct_response response outcome response_zero "
          "response_time_quality station_id calibration_id software_version proof proof_cause sensing scene reason kind value "
          "status status_reason started protocol_path rig_name rig_sha256 rig_path language observer kernel realtime_rights "
-         "consent_version annotations checksum columns_version stream file finger self_test check verdict unit what").split()
+         "consent_version annotations checksum columns_version stream file finger self_test check verdict unit what "
+         "questionnaire item answer").split()
 
 
 @dataclass(frozen=True)
@@ -27,6 +28,8 @@ class Study:
     events: pd.DataFrame  #: one row per event, in order of time
     sessions: pd.DataFrame  #: one row per session
     self_tests: pd.DataFrame  #: one row per check of a self-test before a session
+    answers: pd.DataFrame  #: one row per answer to a questionnaire, consent or screening
+    friction_tables: pd.DataFrame  #: one row per displacement of a friction table measured in a session
 
 
 def read(source, *, session="", participant="", protocol="") -> Study:

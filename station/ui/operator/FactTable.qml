@@ -12,6 +12,7 @@ Column {
 
     PlainText {
         visible: root.heading !== "" && root.facts.length > 0
+        width: root.width
         text: root.heading
         color: root.theme.action
         font { pixelSize: root.theme.textBody; weight: Font.Bold }
@@ -25,6 +26,7 @@ Column {
             height: Math.max(label.implicitHeight, value.implicitHeight)
             PlainText {
                 id: label
+                anchors.left: parent.left
                 width: root.labelWidth - root.theme.unit
                 text: line.modelData.label
                 color: root.theme.quiet
@@ -33,8 +35,7 @@ Column {
             }
             PlainText {
                 id: value
-                x: root.labelWidth
-                width: parent.width - x
+                anchors { left: label.right; leftMargin: root.theme.unit; right: parent.right }
                 text: line.modelData.value
                 color: root.theme.ink
                 font { pixelSize: root.theme.textSmall; weight: Font.DemiBold }

@@ -160,7 +160,7 @@ Rectangle {
             height: visible ? look.controlHeight : 0
             spacing: 0.6 * look.unit
             Repeater {
-                model: ["Profile", "Levels", "Response times"]
+                model: root.live.hasStrip ? ["Profile", "Levels", "Response times", "Friction"] : ["Profile", "Levels", "Response times"]
                 ActionButton {
                     required property int index
                     required property string modelData
@@ -180,10 +180,20 @@ Rectangle {
         }
         FigureView {
             visible: !pictures.single || root.shown === 0
-            anchors { left: place.left; right: place.right; top: place.top }
+            anchors { left: place.left; top: place.top }
+            width: pictures.single || !root.live.hasStrip ? place.width : pictures.half
             height: pictures.single ? place.height : pictures.cell
             textPixels: root.small
             picture: root.live.profile
+        }
+        FigureView {
+            objectName: "strip"
+            visible: root.live.hasStrip && (!pictures.single || root.shown === 3)
+            anchors { right: place.right; top: place.top }
+            width: pictures.single ? place.width : pictures.half
+            height: pictures.single ? place.height : pictures.cell
+            textPixels: root.small
+            picture: root.live.strip
         }
         FigureView {
             visible: !pictures.single || root.shown === 1
@@ -243,6 +253,27 @@ Rectangle {
                     wrapMode: Text.Wrap
                 }
                 FactTable { width: parent.width; theme: look; heading: "Course"; facts: root.live.course }
+                Row {
+                    objectName: "gauges"
+                    visible: root.bridge.page.guided && !root.over
+                    width: parent.width
+                    spacing: look.unit
+                    GuidanceBar {
+                        width: (parent.width - look.unit) / 2
+                        theme: look
+                        label: "Force now"
+                        bar: root.bridge.page.forceBar
+                        frozen: root.bridge.page.barsFrozen
+                    }
+                    GuidanceBar {
+                        width: (parent.width - look.unit) / 2
+                        theme: look
+                        label: "Speed now"
+                        bar: root.bridge.page.speedBar
+                        frozen: root.bridge.page.barsFrozen
+                    }
+                }
+                FactTable { visible: root.live.sensors.length > 0; width: parent.width; theme: look; heading: "Sensors, last trial"; facts: root.live.sensors }
                 FactTable { width: parent.width; theme: look; heading: "Limits used"; facts: root.live.limits }
                 FactTable { width: parent.width; theme: look; heading: "On the surface"; facts: root.live.scene; labelWidth: 0.3 * width }
             }

@@ -21,7 +21,7 @@ Rectangle {
         pixelsPerMm: root.pixelsPerMm
         dense: true
     }
-    Texts { id: texts; language: "en" }
+    Texts { id: texts; language: OperatorScreen.language }
     RunModeFrame {
         id: frame
         anchors.fill: parent
@@ -34,11 +34,21 @@ Rectangle {
         anchors { left: parent.left; right: parent.right; top: parent.top; margins: look.margin; topMargin: frame.band + look.unit }
         height: look.controlHeight
         PlainText {
-            anchors { left: parent.left; right: close.left; verticalCenter: parent.verticalCenter; rightMargin: look.unit }
-            text: root.report.ready ? root.report.title : "The report is being made …"
+            anchors { left: parent.left; right: save.visible ? save.left : close.left; verticalCenter: parent.verticalCenter; rightMargin: look.unit }
+            text: root.report.saved !== "" ? root.report.saved : root.report.ready ? root.report.title : "The report is being made …"
             color: look.ink
             font { pixelSize: 1.15 * look.textBody; weight: Font.Bold }
             elide: Text.ElideRight
+        }
+        ActionButton {
+            id: save
+            objectName: "saveFigure"
+            visible: root.report.maySave && root.report.pictures.length > 0
+            anchors { right: close.left; rightMargin: look.unit; verticalCenter: parent.verticalCenter }
+            theme: look
+            primary: false
+            text: texts.text("operator.save_figure")
+            onActivated: root.report.save(Math.min(root.shown, root.report.pictures.length - 1))
         }
         ActionButton {
             id: close
@@ -46,7 +56,7 @@ Rectangle {
             anchors { right: parent.right; verticalCenter: parent.verticalCenter }
             theme: look
             primary: false
-            text: "Close"
+            text: texts.close
             onActivated: root.closed()
         }
     }

@@ -2,6 +2,8 @@
 #include <QStringList>
 #include <QVariantList>
 #include <QVariantMap>
+#include <exception>
+#include <sstream>
 #include <string>
 #include <utility>
 #include <vector>
@@ -20,6 +22,14 @@ inline QStringList to_list(const std::vector<std::string>& texts) {
   QStringList list;
   for (const auto& text : texts) list += QString::fromStdString(text);
   return list;
+}
+
+/// The lines of an error's message. An error about files has one line for each problem.
+inline std::vector<std::string> lines_of(const std::exception& error) {
+  std::vector<std::string> lines;
+  std::istringstream text(error.what());
+  for (std::string line; std::getline(text, line);) lines.push_back(line);
+  return lines;
 }
 
 }  // namespace turnpoint::ui

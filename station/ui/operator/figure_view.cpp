@@ -1,7 +1,12 @@
 #include "station/ui/operator/figure_view.hpp"
 
+#include <QDir>
 #include <QPainter>
+#include <QPdfWriter>
+#include <stdexcept>
 
+#include "station/plot/svg.hpp"
+#include "station/system/write_file.hpp"
 #include "station/ui/operator/painter_canvas.hpp"
 
 namespace turnpoint::ui {
@@ -12,7 +17,31 @@ constexpr double kMargin = 6;
 // text size that figures are laid out for; they are then scaled to the item's text size
 constexpr double kDrawnText_px = 12;
 
+// size of a saved figure; at 96 px per inch it is 180 mm wide, as two columns of a journal
+constexpr double kSavedWidth_px = 680, kSavedHeight_px = 450;
+constexpr double kFigureInch_mm = 25.4, kPixelsPerInch = 96;
+
+void save_pdf(const desk::Drawing& drawing, const QString& path) {
+  QPdfWriter writer(path);
+  writer.setPageMargins(QMarginsF());
+  writer.setPageSize(QPageSize(QSizeF(kSavedWidth_px, kSavedHeight_px) * kFigureInch_mm / kPixelsPerInch,
+                               QPageSize::Millimeter, {}, QPageSize::ExactMatch));
+  QPainter painter;
+  if (!painter.begin(&writer)) throw std::runtime_error(path.toStdString() + " cannot be written");
+  PainterCanvas canvas(painter, QRectF(0, 0, writer.width(), writer.height()));
+  drawing(canvas, kSavedWidth_px, kSavedHeight_px);
+}
+
 }  // namespace
+
+void save_drawing(const desk::Drawing& drawing, const QString& folder, const QString& name) {
+  if (!QDir().mkpath(folder)) throw std::runtime_error(folder.toStdString() + " cannot be made");
+  const QString path = folder + "/" + name;
+  plot::Svg svg;
+  drawing(svg, kSavedWidth_px, kSavedHeight_px);
+  system::write_file((path + ".svg").toStdString(), svg.finish());
+  save_pdf(drawing, path + ".pdf");
+}
 
 QVariant to_variant(const desk::Drawing& drawing) { return QVariant::fromValue(Picture{drawing}); }
 

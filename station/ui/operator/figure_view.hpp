@@ -16,6 +16,11 @@ struct Picture {
 /// Converts a drawing to the value of a QML property.
 QVariant to_variant(const desk::Drawing& drawing);
 
+/// Writes a drawing to FOLDER/NAME.svg and FOLDER/NAME.pdf, at the size of a figure that fills the width of a
+/// page. Makes the folder if there is none. Throws std::runtime_error or std::system_error if a file cannot
+/// be written.
+void save_drawing(const desk::Drawing& drawing, const QString& folder, const QString& name);
+
 /// Shows one figure, laid out for the size of this item with text of `textPixels`. Each new picture is drawn
 /// only once.
 class FigureView : public QQuickPaintedItem {

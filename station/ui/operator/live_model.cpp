@@ -33,6 +33,7 @@ void LiveModel::hold_or_show() {
   state_.scene = waiting_->scene;
   state_.course = waiting_->course;
   state_.limits = waiting_->limits;
+  state_.sensors = waiting_->sensors;
   Q_EMIT wordsChanged();
   if (held_) return;
   state_ = std::move(*waiting_);
@@ -43,6 +44,7 @@ void LiveModel::hold_or_show() {
 QVariantList LiveModel::scene() const { return to_list(state_.scene); }
 QVariantList LiveModel::course() const { return to_list(state_.course); }
 QVariantList LiveModel::limits() const { return to_list(state_.limits); }
+QVariantList LiveModel::sensors() const { return to_list(state_.sensors); }
 QVariantList LiveModel::surfaces() const {
   QVariantList list;
   for (const auto& surface : state_.surfaces) list += to_variant(surface);

@@ -20,10 +20,13 @@ class LiveModel : public QObject {
   Q_PROPERTY(QVariantList scene READ scene NOTIFY wordsChanged)
   Q_PROPERTY(QVariantList course READ course NOTIFY wordsChanged)
   Q_PROPERTY(QVariantList limits READ limits NOTIFY wordsChanged)
+  Q_PROPERTY(QVariantList sensors READ sensors NOTIFY wordsChanged)
   Q_PROPERTY(QVariantList surfaces READ surfaces NOTIFY picturesChanged)
   Q_PROPERTY(QVariant profile READ profile NOTIFY picturesChanged)
   Q_PROPERTY(QVariant trace READ trace NOTIFY picturesChanged)
   Q_PROPERTY(QVariant times READ times NOTIFY picturesChanged)
+  Q_PROPERTY(QVariant strip READ strip NOTIFY picturesChanged)
+  Q_PROPERTY(bool hasStrip READ has_strip NOTIFY picturesChanged)
   Q_PROPERTY(bool held READ held NOTIFY heldChanged)
 
  public:
@@ -36,10 +39,13 @@ class LiveModel : public QObject {
   QVariantList scene() const;
   QVariantList course() const;
   QVariantList limits() const;
+  QVariantList sensors() const;
   QVariantList surfaces() const;
   QVariant profile() const { return to_variant(state_.profile); }
   QVariant trace() const { return to_variant(state_.trace); }
   QVariant times() const { return to_variant(state_.times); }
+  QVariant strip() const { return to_variant(state_.strip); }
+  bool has_strip() const { return static_cast<bool>(state_.strip); }
   /// True while a stimulus runs or answers are open; the figures do not change during that time.
   bool held() const { return held_; }
 

@@ -8,39 +8,9 @@
 
 #include "station/setup/prepare.hpp"
 #include "station/setup/resume.hpp"
-#include "station/system/fonts.hpp"
 #include "station/ui/operator/facts.hpp"
 
 namespace turnpoint::ui {
-
-namespace {
-
-/// Number of sessions to simulate for the number of trials and the duration on the start page. Five are
-/// simulated quickly, and give the duration to within some minutes.
-constexpr int kSessions = 5;
-
-std::vector<std::string> lines_of(const std::exception& error) {
-  std::vector<std::string> lines;
-  std::istringstream text(error.what());
-  for (std::string line; std::getline(text, line);) lines.push_back(line);
-  return lines;
-}
-
-}  // namespace
-
-OperatorController::OperatorController(setup::StationRequest request, QObject* parent)
-    : OperatorController(
-          std::move(request),
-          [](const std::string& protocol, const std::string& rig, const std::stop_token& stop) {
-            simulation::CheckOptions options{kSessions};
-            options.load_rig = [](const std::string& path) {
-              std::ostringstream messages;  // the page says elsewhere which calibration is used
-              return setup::calibrated_rig(path, "", messages);
-            };
-            options.drawable = system::drawable;
-            return simulation::check(protocol, rig, options, stop);
-          },
-          parent) {}
 
 OperatorController::OperatorController(setup::StationRequest request, Checker checker, QObject* parent)
     : QObject(parent), request_(std::move(request)), checker_(std::move(checker)), worker_(*this) {
@@ -227,17 +197,21 @@ void OperatorController::begin() {
 }
 
 void OperatorController::resume() {
-  if (preparing_ || !interrupted_) return;
+  if (interrupted_) resumeSession(QString::fromStdString(interrupted_->session_id));
+}
+
+void OperatorController::resumeSession(const QString& session_id) {
+  if (preparing_) return;
   preparing_ = true;
   refused_.clear();
   Q_EMIT changed();
   work(
-      [this, arm = armed_](const std::stop_token&) -> Then {
+      [this, arm = armed_, id = session_id.toStdString()](const std::stop_token&) -> Then {
         std::ostringstream messages;
         setup::ResumeRequest request;
         request.self_test = true;
         request.database = request_.database;
-        request.session_id = interrupted_->session_id;
+        request.session_id = id;
         const auto setup = setup::prepare_resume(request, messages);
         return [this, setup, arm] {
           if (!setup) return stay();

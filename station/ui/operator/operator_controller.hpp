@@ -13,7 +13,7 @@
 #include "station/session/session.hpp"
 #include "station/setup/prepare.hpp"
 #include "station/setup/station_request.hpp"
-#include "station/simulation/check.hpp"
+#include "station/ui/operator/check_protocol.hpp"
 #include "station/ui/platform/newest_job.hpp"
 
 namespace turnpoint::ui {
@@ -60,14 +60,12 @@ class OperatorController : public QObject {
   Q_PROPERTY(QString database READ database CONSTANT)
 
  public:
-  /// Checks a protocol file on a rig file, on the worker thread; like simulation::check().
-  using Checker = std::function<simulation::Check(const std::string& protocol, const std::string& rig,
-                                                  const std::stop_token& stop)>;
-
-  explicit OperatorController(setup::StationRequest request, QObject* parent = nullptr);
-  OperatorController(setup::StationRequest request, Checker checker, QObject* parent = nullptr);
+  /// `checker` runs on the worker thread.
+  explicit OperatorController(setup::StationRequest request, Checker checker = check_protocol,
+                              QObject* parent = nullptr);
   ~OperatorController() override;
 
+  const setup::StationRequest& request() const { return request_; }
   QVariantList protocols() const;
   int selected() const { return selected_; }
   bool checking() const { return checking_; }
@@ -100,7 +98,9 @@ class OperatorController : public QObject {
   Q_INVOKABLE void setArmed(bool armed);
   /// Prepares the chosen session. Then emits chosen(), or sets problems.
   Q_INVOKABLE void begin();
+  /// Continues the newest interrupted session.
   Q_INVOKABLE void resume();
+  Q_INVOKABLE void resumeSession(const QString& session_id);
 
  Q_SIGNALS:
   void changed();

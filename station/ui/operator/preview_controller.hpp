@@ -35,7 +35,7 @@ class PreviewController : public QObject {
   Q_PROPERTY(QVariant spectrum READ spectrum NOTIFY changed)
 
  public:
-  /// Throws text::BadInput, terms::UsageError for a scene or a factor that the protocol does not have.
+  /// Throws text::BadInput if a file is wrong, and terms::UsageError if the protocol lacks the scene or factor.
   explicit PreviewController(const desk::PreviewRequest& request, QObject* parent = nullptr);
   ~PreviewController() override;
 

@@ -1,5 +1,7 @@
 #include "station/ui/operator/report_model.hpp"
 
+#include <QRegularExpression>
+#include <exception>
 #include <utility>
 
 #include "station/ui/operator/facts.hpp"
@@ -20,7 +22,25 @@ void ReportModel::take(desk::ReportPages pages) {
 
 void ReportModel::clear() {
   pages_ = {};
+  saved_.clear();
   ready_ = false;
+  Q_EMIT changed();
+}
+
+void ReportModel::save(int picture) {
+  const auto pictures = all_pictures();
+  if (folder_.isEmpty() || picture < 0 || picture >= static_cast<int>(pictures.size())) return;
+  const auto& [name, drawing] = pictures[static_cast<std::size_t>(picture)];
+  const auto file_name = [](QString text) {
+    return text.replace(QRegularExpression("[^A-Za-z0-9]+"), "-").toLower();
+  };
+  const QString folder = folder_ + "/" + file_name(title()).left(80);
+  try {
+    save_drawing(drawing, folder, file_name(name));
+    saved_ = folder + "/" + file_name(name) + ".svg, .pdf";
+  } catch (const std::exception& error) {
+    saved_ = QString::fromUtf8(error.what());
+  }
   Q_EMIT changed();
 }
 

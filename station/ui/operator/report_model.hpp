@@ -22,6 +22,9 @@ class ReportModel : public QObject {
   /// Names and drawings of the existing figures, beginning with the speed-accuracy trade-off.
   Q_PROPERTY(QStringList pictureNames READ picture_names NOTIFY changed)
   Q_PROPERTY(QVariantList pictures READ pictures NOTIFY changed)
+  /// where the last figure was saved, or why it could not be; "" before that
+  Q_PROPERTY(QString saved READ saved NOTIFY changed)
+  Q_PROPERTY(bool maySave READ may_save NOTIFY changed)
 
  public:
   using QObject::QObject;
@@ -29,6 +32,13 @@ class ReportModel : public QObject {
   /// Takes the finished report. May be called on any thread.
   void take(desk::ReportPages pages);
   void clear();
+  /// Figures are saved in this folder, one folder for each report.
+  void save_in(const std::string& folder) { folder_ = QString::fromStdString(folder); }
+
+  /// Saves a figure as SVG and as PDF.
+  Q_INVOKABLE void save(int picture);
+  QString saved() const { return saved_; }
+  bool may_save() const { return !folder_.isEmpty(); }
 
   bool ready() const { return ready_; }
   QString title() const { return QString::fromStdString(pages_.title); }
@@ -48,6 +58,7 @@ class ReportModel : public QObject {
   std::vector<std::pair<QString, desk::Drawing>> all_pictures() const;
   desk::ReportPages pages_;
   bool ready_ = false;
+  QString folder_, saved_;
 };
 
 }  // namespace turnpoint::ui

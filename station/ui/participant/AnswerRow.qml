@@ -55,6 +55,8 @@ Item {
             required property int index
             readonly property bool down: root.pressed === index
             objectName: "answer" + index
+            Accessible.role: Accessible.Button
+            Accessible.name: (root.answers[index] ?? "") + ((root.captions[index] ?? "") === "" ? "" : ", " + root.captions[index])
             visible: index < root.count
             width: root.buttonWidth
             height: root.buttonHeight

@@ -28,7 +28,8 @@ Rectangle {
                                     || kind === PageModel.Interval
                                     || kind === PageModel.Confidence
     readonly property bool enters: kind === PageModel.Line || kind === PageModel.Number
-    readonly property bool mayPause: inTrial || enters || kind === PageModel.Adjust || kind === PageModel.Instructions
+    readonly property bool questions: kind === PageModel.Question || kind === PageModel.Explanation
+    readonly property bool mayPause: inTrial || enters || questions || kind === PageModel.Adjust || kind === PageModel.Instructions
                                      || kind === PageModel.Rest
 
     color: theme.paper
@@ -87,6 +88,17 @@ Rectangle {
             instruction: root.page.instruction
             size: 0.9 * theme.textBody
         }
+        BackButton {
+            id: back
+            visible: root.page.back
+            // opposite the pause button, which is not mirrored either
+            anchors { left: undefined; verticalCenter: parent.verticalCenter }
+            x: root.leftHanded ? parent.width - width : 0
+            theme: theme
+            texts: texts
+            armed: !arming.running
+            onActivated: root.bridge.back()
+        }
         ActionButton {
             id: pause
             objectName: "pause"
@@ -131,6 +143,22 @@ Rectangle {
         RestPage {
             anchors.fill: parent
             visible: root.kind === PageModel.Rest
+            theme: theme
+            texts: texts
+            bridge: root.bridge
+            armed: !arming.running
+        }
+        QuestionPage {
+            anchors.fill: parent
+            visible: root.kind === PageModel.Question
+            theme: theme
+            texts: texts
+            bridge: root.bridge
+            armed: !arming.running
+        }
+        ExplanationPage {
+            anchors.fill: parent
+            visible: root.kind === PageModel.Explanation
             theme: theme
             texts: texts
             bridge: root.bridge

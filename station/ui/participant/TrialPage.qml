@@ -17,7 +17,7 @@ Item {
     readonly property bool asks: page.answersOpen && page.answers.length > 0
     readonly property bool counted: page.intervals > 1
 
-    // A second tap of the answer must not become the confidence.
+    // Tapping an answer twice by accident must not also give a confidence: the page ignores taps for a moment.
     readonly property bool confides: page.kind === PageModel.Confidence
     onConfidesChanged: if (confides) second.restart()
     Timer {
@@ -29,7 +29,7 @@ Item {
         id: surface
         visible: !root.counted && !root.page.answerNow && height > 12 * root.theme.unit && (root.cue || root.stimulus || root.page.kind === PageModel.Response)
         anchors { left: parent.left; right: parent.right; top: parent.top }
-        height: Math.max(0, Math.min(0.46 * parent.height, parent.height - answers.height - 10 * root.theme.unit))
+        height: Math.max(0, Math.min(0.46 * parent.height, parent.height - answers.height - bars.height - (bars.visible ? 5.5 : 10) * root.theme.unit))
         lengthMm: root.page.lengthMm
         wideHalfWidthMm: root.page.wideHalfWidthMm
         narrowHalfWidthMm: root.page.narrowHalfWidthMm
@@ -72,6 +72,35 @@ Item {
         }
     }
 
+    // Force and speed of the finger, beside each other. During a stimulus they are empty and nothing moves.
+    Row {
+        id: bars
+        objectName: "bars"
+        visible: root.page.guided && !root.page.answerNow && !root.feedback && !root.confides
+        anchors { left: parent.left; right: parent.right; bottom: answers.top; bottomMargin: visible ? root.theme.unit : 0 }
+        height: visible ? Math.max(force.implicitHeight, speed.implicitHeight) : 0
+        spacing: 3 * root.theme.unit
+        readonly property int count: (force.visible ? 1 : 0) + (speed.visible ? 1 : 0)
+        GuidanceBar {
+            id: force
+            visible: root.page.forceBar.length > 0
+            width: (bars.width - bars.spacing * (bars.count - 1)) / Math.max(1, bars.count)
+            theme: root.theme
+            label: root.texts.text("force")
+            bar: root.page.forceBar
+            frozen: root.page.barsFrozen
+        }
+        GuidanceBar {
+            id: speed
+            visible: root.page.speedBar.length > 0
+            width: force.width
+            theme: root.theme
+            label: root.texts.text("pace")
+            bar: root.page.speedBar
+            frozen: root.page.barsFrozen
+        }
+    }
+
     // The response signal: a band over the whole width, dark and large enough to be noticed while looking elsewhere.
     Rectangle {
         objectName: "signal"
@@ -95,7 +124,7 @@ Item {
     PlainText {
         id: question
         visible: !root.feedback && !root.page.answerNow && root.page.kind !== PageModel.Interval
-        anchors { left: parent.left; right: parent.right; bottom: answers.top; bottomMargin: 1.5 * root.theme.unit; top: surface.bottom }
+        anchors { left: parent.left; right: parent.right; bottom: bars.top; bottomMargin: 1.5 * root.theme.unit; top: surface.bottom }
         text: root.counted && root.stimulus ? root.texts.slideNow
             : root.counted && !root.asks ? root.texts.getReady
             : root.cue ? root.texts.slideHere : root.texts.phrased(root.page.text)

@@ -1,10 +1,35 @@
 #include "station/ui/participant/page_model.hpp"
 
+#include <QUrl>
+
 namespace turnpoint::ui {
 
 void PageModel::set(session::Page page) {
   page_ = std::move(page);
   Q_EMIT changed();
+  Q_EMIT barsMoved();
+}
+
+void PageModel::guide(const session::Guidance& guidance) {
+  if (!page_.guidance) return;  // the page changed meanwhile
+  page_.guidance = guidance;
+  Q_EMIT barsMoved();
+}
+
+namespace {
+
+QList<double> bar_of(const std::optional<session::Guidance::Bar>& bar) {
+  return bar ? QList<double>{bar->value.value_or(-1), bar->low, bar->high} : QList<double>{};
+}
+
+}  // namespace
+
+QList<double> PageModel::force_bar() const {
+  return page_.guidance ? bar_of(page_.guidance->force) : QList<double>{};
+}
+
+QList<double> PageModel::speed_bar() const {
+  return page_.guidance ? bar_of(page_.guidance->speed) : QList<double>{};
 }
 
 PageModel::Kind PageModel::kind() const {
@@ -22,6 +47,10 @@ PageModel::Kind PageModel::kind() const {
       return Kind::Response;
     case PageKind::confidence:
       return Kind::Confidence;
+    case PageKind::question:
+      return Kind::Question;
+    case PageKind::explanation:
+      return Kind::Explanation;
     case PageKind::line:
       return Kind::Line;
     case PageKind::number:
@@ -44,6 +73,11 @@ PageModel::Kind PageModel::kind() const {
       return Kind::Failed;
   }
   return Kind::Interval;
+}
+
+QString PageModel::picture() const {
+  return page_.picture.empty() ? QString()
+                               : QUrl::fromLocalFile(QString::fromStdString(page_.picture)).toString();
 }
 
 PageModel::Verdict PageModel::verdict() const {

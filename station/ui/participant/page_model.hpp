@@ -28,6 +28,9 @@ class PageModel : public QObject {
   Q_PROPERTY(QStringList anchorTexts READ anchor_texts NOTIFY changed)
   Q_PROPERTY(QString first READ first NOTIFY changed)
   Q_PROPERTY(bool answersOpen READ answers_open NOTIFY changed)
+  Q_PROPERTY(bool back READ back NOTIFY changed)
+  Q_PROPERTY(bool playing READ playing NOTIFY changed)
+  Q_PROPERTY(QString picture READ picture NOTIFY changed)
   Q_PROPERTY(bool answerNow READ answer_now NOTIFY changed)
   Q_PROPERTY(Verdict verdict READ verdict NOTIFY changed)
   Q_PROPERTY(QString instruction READ instruction NOTIFY changed)
@@ -58,6 +61,11 @@ class PageModel : public QObject {
   Q_PROPERTY(bool unsaved READ unsaved NOTIFY changed)
   Q_PROPERTY(QStringList summaryLabels READ summary_labels NOTIFY changed)
   Q_PROPERTY(QStringList summaryValues READ summary_values NOTIFY changed)
+  // The bars that guide the finger. Shares are from 0 to 1; below 0 there is no value.
+  Q_PROPERTY(bool guided READ is_guided NOTIFY barsMoved)
+  Q_PROPERTY(bool barsFrozen READ bars_frozen NOTIFY barsMoved)
+  Q_PROPERTY(QList<double> forceBar READ force_bar NOTIFY barsMoved)
+  Q_PROPERTY(QList<double> speedBar READ speed_bar NOTIFY barsMoved)
 
  public:
   /// The values of session::PageKind under names that QML can use.
@@ -68,6 +76,8 @@ class PageModel : public QObject {
     Pause,
     Response,
     Confidence,
+    Question,
+    Explanation,
     Line,
     Number,
     Feedback,
@@ -86,8 +96,14 @@ class PageModel : public QObject {
 
   using QObject::QObject;
   void set(session::Page page);
+  void guide(const session::Guidance& guidance);
   const session::Page& page() const { return page_; }
 
+  bool is_guided() const { return page_.guidance.has_value(); }
+  bool bars_frozen() const { return page_.guidance && page_.guidance->frozen; }
+  /// Value, and lower and upper end of the range that is asked for; empty if there is no such bar.
+  QList<double> force_bar() const;
+  QList<double> speed_bar() const;
   Kind kind() const;
   QString title() const { return QString::fromStdString(page_.title); }
   QString text() const { return QString::fromStdString(page_.text); }
@@ -100,6 +116,9 @@ class PageModel : public QObject {
   QStringList anchor_texts() const;
   QString first() const { return QString::fromStdString(page_.value.first); }
   bool answers_open() const { return page_.answers_open; }
+  bool back() const { return page_.back; }
+  bool playing() const { return page_.playing; }
+  QString picture() const;
   bool answer_now() const { return page_.answer_now; }
   Verdict verdict() const;
   QString instruction() const { return QString::fromStdString(page_.instruction); }
@@ -140,6 +159,7 @@ class PageModel : public QObject {
 
  Q_SIGNALS:
   void changed();
+  void barsMoved();  ///< Emitted when bars have moved.
 
  private:
   session::Page page_;

@@ -28,6 +28,11 @@ void SessionBridge::show(const session::Page& page) {
       Qt::QueuedConnection);
 }
 
+void SessionBridge::guide(const session::Guidance& guidance) {
+  QMetaObject::invokeMethod(
+      this, [this, guidance] { page_.guide(guidance); }, Qt::QueuedConnection);
+}
+
 void SessionBridge::watch(QObject* window) { window->installEventFilter(this); }
 
 std::int64_t SessionBridge::began_ns(int touch_id) const {
@@ -78,6 +83,10 @@ void SessionBridge::push_touch(session::InputKind kind, int value, const Pending
 void SessionBridge::next() {
   if (!std::exchange(left_, true)) push(session::InputKind::next);
 }
+void SessionBridge::back() {
+  if (!std::exchange(left_, true)) push(session::InputKind::back);
+}
+void SessionBridge::choose(int index) { push(session::InputKind::answer, index); }
 void SessionBridge::moveSlider(double value) { push(session::InputKind::slider, 0, value); }
 void SessionBridge::answerValue(double value) { push(session::InputKind::value, 0, value); }
 void SessionBridge::pause() { push(session::InputKind::pause); }

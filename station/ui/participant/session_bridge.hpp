@@ -42,6 +42,8 @@ class SessionBridge : public QObject, public session::Display {
 
   /// Shows a page. May be called on any thread; returns at once. Pages appear in the order of the calls.
   void show(const session::Page& page) override;
+  /// Moves the bars of the page; like show().
+  void guide(const session::Guidance& guidance) override;
 
   /// Stamps each touch and mouse press anywhere on the window with the time. A touch that does not become an
   /// answer within a moment is reported as `touch_down`.
@@ -63,6 +65,10 @@ class SessionBridge : public QObject, public session::Display {
 
   /// Reports Continue or Done. Only the first press on a page counts.
   Q_INVOKABLE void next();
+  /// Reports Back on a question or an explanation. Only the first press on a page counts.
+  Q_INVOKABLE void back();
+  /// Reports that an example of an explanation was chosen.
+  Q_INVOKABLE void choose(int index);
   Q_INVOKABLE void moveSlider(double value);
   Q_INVOKABLE void answerValue(double value);
   Q_INVOKABLE void pause();

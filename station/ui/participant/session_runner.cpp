@@ -1,6 +1,7 @@
 #include "station/ui/participant/session_runner.hpp"
 
 #include <QScreen>
+#include <filesystem>
 #include <utility>
 
 #include "station/desk/report_pages.hpp"
@@ -60,6 +61,7 @@ void SessionRunner::begin(session::Setup setup) {
   summary_.reset();
   failure_ = nullptr;
   over_ = false;
+  report_.save_in((std::filesystem::absolute(setup_.database).parent_path() / "figures").string());
   report_.clear();
   open_touch();
   // Until the session shows its first page, nothing of an earlier session may be on the screen.

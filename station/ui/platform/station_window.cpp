@@ -7,13 +7,16 @@
 #include <QScreen>
 
 #include <algorithm>
+#include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <sstream>
+#include <stdexcept>
 #include <utility>
 
 #include "station/ui/platform/load_page.hpp"
 #include "station/ui/platform/screen.hpp"
+#include "station/ui/shared/operator_screen.hpp"
 
 namespace turnpoint::ui {
 
@@ -48,6 +51,13 @@ bool is_known(const std::string& database, const QString& code) {
   return std::find(known.begin(), known.end(), code.toStdString()) != known.end();
 }
 
+/// The operator's choices of language, theme and text size are kept in a file beside the database.
+void keep_screen_beside(QQmlEngine& engine, const std::string& database) {
+  auto* screen = engine.singletonInstance<OperatorScreen*>(qmlTypeId("Turnpoint", 1, 0, "OperatorScreen"));
+  if (screen == nullptr) throw std::logic_error("the module Turnpoint has no OperatorScreen");
+  screen->keep_in(QString::fromStdString(std::filesystem::absolute(database).parent_path() / "screen.ini"));
+}
+
 }  // namespace
 
 StationWindow::StationWindow(const Place& place, const Operator& allowed, const std::string& database)
@@ -56,18 +66,28 @@ StationWindow::StationWindow(const Place& place, const Operator& allowed, const 
       lock_(allowed.code) {
   connect(&start_, &StartController::ready, this, &StationWindow::begin);
   connect(&start_, &StartController::closed, this, &StationWindow::close);
-  if (operating_ != nullptr) connect(operating_, &OperatorController::chosen, this, &StationWindow::ask);
+  if (operating_ != nullptr) {
+    const auto& request = operating_->request();
+    studies_ = std::make_unique<StudiesController>(request);
+    sessions_ = std::make_unique<SessionsController>(request, allowed.disks);
+    rig_ = std::make_unique<RigController>(request);
+    connect(operating_, &OperatorController::chosen, this, &StationWindow::ask);
+  }
   window_ = &load_page(engine_, "Main.qml",
                        {{"bridge", QVariant::fromValue(&runner_.bridge())},
                         {"start", QVariant::fromValue(&start_)},
                         {"live", QVariant::fromValue(&runner_.live())},
                         {"report", QVariant::fromValue(&runner_.report())},
                         {"operating", QVariant::fromValue(operating_)},
+                        {"studies", QVariant::fromValue(studies_.get())},
+                        {"sessions", QVariant::fromValue(sessions_.get())},
+                        {"rig", QVariant::fromValue(rig_.get())},
                         {"operatorLock", QVariant::fromValue(&lock_)},
                         {"locked", allowed.locked},
                         {"pixelsPerMm", place.pixels_per_mm},
                         {"width", place.size.width()},
                         {"height", place.size.height()}});
+  keep_screen_beside(engine_, database);
   tell_first_page(*window_);
   runner_.watch(window_);
   if (place.bare_panel) window_->showFullScreen();

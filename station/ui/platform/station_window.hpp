@@ -3,12 +3,16 @@
 #include <QQmlApplicationEngine>
 #include <QQuickWindow>
 #include <QSize>
+#include <memory>
 #include <optional>
 #include <string>
 
 #include "station/desk/operator_code.hpp"
 #include "station/ui/operator/operator_controller.hpp"
 #include "station/ui/operator/operator_lock.hpp"
+#include "station/ui/operator/rig_controller.hpp"
+#include "station/ui/operator/sessions_controller.hpp"
+#include "station/ui/operator/studies_controller.hpp"
 #include "station/ui/participant/session_runner.hpp"
 #include "station/ui/participant/start_controller.hpp"
 
@@ -31,6 +35,7 @@ class StationWindow : public QObject {
     OperatorController* page = nullptr;
     desk::OperatorCode code;  ///< the code that opens the operator's view from the participant's pages
     bool locked = false;      ///< true if the operator's page is locked from the beginning
+    maintenance::DiskSources disks = {};  ///< where the page of sessions looks for USB disks
   };
 
   StationWindow(const Place& place, const Operator& allowed, const std::string& database);
@@ -57,6 +62,10 @@ class StationWindow : public QObject {
   void close();
 
   OperatorController* operating_;
+  // The operator's other pages; null if there is no operator's page.
+  std::unique_ptr<StudiesController> studies_;
+  std::unique_ptr<SessionsController> sessions_;
+  std::unique_ptr<RigController> rig_;
   session::Setup setup_;
   bool arm_ = false;
   SessionRunner runner_;

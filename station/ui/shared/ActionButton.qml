@@ -19,10 +19,14 @@ Rectangle {
     property int holdMs: 0
     /// True if the button acts when the finger comes down.
     property bool atOnce: false
+    /// What a screen reader says, for a button without a text.
+    property string label: text
+    readonly property bool down: tap.pressed || keyHeld
+    property bool keyHeld: false
     signal activated()
 
     readonly property color tint: danger ? theme.wrong : theme.action
-    readonly property bool filled: holdMs > 0 ? primary && !tap.pressed : primary !== tap.pressed
+    readonly property bool filled: holdMs > 0 ? primary && !down : primary !== down
     readonly property color foreground: filled ? theme.actionText : quiet ? theme.quiet : tint
 
     implicitHeight: theme.controlHeight
@@ -32,8 +36,34 @@ Rectangle {
     border { color: quiet ? theme.line : tint; width: quiet ? theme.stroke / 2 : theme.stroke }
     opacity: enabled ? 1 : 0.35
 
+    Accessible.role: Accessible.Button
+    Accessible.name: label
+    Accessible.focusable: theme.dense
+    Accessible.onPressAction: if (enabled && armed && holdMs === 0) activated()
+
+    // The operator's pages can be used with a keyboard or with switches. A participant answers by touch or with the
+    // response buttons of the rig, so a key must do nothing there.
+    activeFocusOnTab: theme.dense
+    Keys.onPressed: event => {
+        if (event.key !== Qt.Key_Space && event.key !== Qt.Key_Return && event.key !== Qt.Key_Enter) return
+        event.accepted = true
+        if (!theme.dense || !enabled || !armed || event.isAutoRepeat) return
+        tap.done = false
+        keyHeld = holdMs > 0
+        if (holdMs === 0) activated()
+    }
+    Keys.onReleased: event => { if (!event.isAutoRepeat) keyHeld = false }
+    onActiveFocusChanged: if (!activeFocus) keyHeld = false
+
     Rectangle {
-        visible: root.holdMs > 0 && tap.pressed
+        visible: root.activeFocus && root.theme.dense
+        anchors { fill: parent; margins: -2 * root.theme.stroke }
+        radius: root.radius + 2 * root.theme.stroke
+        color: "transparent"
+        border { color: root.theme.ink; width: root.theme.stroke }
+    }
+    Rectangle {
+        visible: root.holdMs > 0 && root.down
         anchors { left: parent.left; top: parent.top; bottom: parent.bottom }
         width: parent.width * root.held
         radius: root.radius
@@ -43,7 +73,7 @@ Rectangle {
     NumberAnimation {
         target: root
         property: "held"
-        running: root.holdMs > 0 && tap.pressed
+        running: root.holdMs > 0 && root.down
         from: 0
         to: 1
         duration: Math.max(1, root.holdMs)

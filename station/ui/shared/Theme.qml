@@ -1,8 +1,9 @@
 import QtQuick
+import Turnpoint
 
 // Sizes and colours of all pages. Sizes grow with the panel, but a control is never smaller than a finger
 // needs, nor a text smaller than an eye needs (in millimetres, from the panel's own density). Text and its
-// background have a contrast of 7:1 or more.
+// background have a contrast of 7:1 or more, borders and their background 3:1 or more.
 QtObject {
     required property real width
     required property real height
@@ -10,31 +11,35 @@ QtObject {
     /// True for the operator's pages. They show more per page, because the operator knows them and is close
     /// to the screen.
     property bool dense: false
+    /// The operator chooses a light or a dark theme and the size of the text (see OperatorScreen). The participant's
+    /// pages always look the same, because they are part of the study.
+    readonly property bool dark: dense && OperatorScreen.dark
+    readonly property real textScale: dense ? OperatorScreen.textPercent / 100 : 1
 
     readonly property real unit: Math.min(width / 80, height / 48)
     readonly property real margin: (dense ? 1.6 : 3) * unit
     readonly property real targetMin: 20 * pixelsPerMm
     readonly property real targetGap: Math.max(5 * pixelsPerMm, 3 * unit)
-    readonly property real controlHeight: dense ? Math.max(8 * pixelsPerMm, 3.6 * unit) : Math.max(11 * pixelsPerMm, 7 * unit)
+    readonly property real controlHeight: dense ? Math.max(8 * pixelsPerMm, 3.6 * unit) * Math.max(1, 0.75 * textScale) : Math.max(11 * pixelsPerMm, 7 * unit)
     readonly property real radius: (dense ? 0.7 : 1.2) * unit
     readonly property real stroke: Math.max(2, 0.3 * unit)
 
     readonly property real textHuge: 6 * unit
-    readonly property real textTitle: (dense ? 2 : 4) * unit
-    readonly property real textBody: dense ? Math.max(1.3 * unit, 2.5 * pixelsPerMm) : Math.max(2.5 * unit, 3.4 * pixelsPerMm)
-    readonly property real textSmall: dense ? Math.max(1.1 * unit, 2.2 * pixelsPerMm) : Math.max(1.8 * unit, 2.4 * pixelsPerMm)
+    readonly property real textTitle: (dense ? 2 * Math.min(1.4, textScale) : 4) * unit
+    readonly property real textBody: dense ? textScale * Math.max(1.3 * unit, 2.5 * pixelsPerMm) : Math.max(2.5 * unit, 3.4 * pixelsPerMm)
+    readonly property real textSmall: dense ? textScale * Math.max(1.1 * unit, 2.2 * pixelsPerMm) : Math.max(1.8 * unit, 2.4 * pixelsPerMm)
 
-    readonly property color paper: "#f6f4ee"
-    readonly property color raised: "#fffdf8"
-    readonly property color ink: "#16202a"
-    readonly property color quiet: "#3f4a54"
-    readonly property color line: "#c9c5b8"
-    readonly property color action: "#0f3d5c"
-    readonly property color actionPressed: "#061f31"
-    readonly property color actionText: "#ffffff"
-    readonly property color right: "#0b5230"
-    readonly property color wrong: "#8a1c1c"
+    readonly property color paper: dark ? "#11161b" : "#f6f4ee"
+    readonly property color raised: dark ? "#1a2128" : "#fffdf8"
+    readonly property color ink: dark ? "#f0f3f5" : "#16202a"
+    readonly property color quiet: dark ? "#bcc6ce" : "#3f4a54"
+    readonly property color line: dark ? "#7d8790" : "#8a8678"
+    readonly property color action: dark ? "#8ecbf0" : "#0f3d5c"
+    readonly property color actionPressed: dark ? "#c4e6fb" : "#061f31"
+    readonly property color actionText: dark ? "#0b1a26" : "#ffffff"
+    readonly property color right: dark ? "#8fe0b0" : "#0b5230"
+    readonly property color wrong: dark ? "#ffb0a8" : "#8a1c1c"
     readonly property color warning: "#ffc233"
     readonly property color warningText: "#16202a"
-    readonly property color simulated: "#4b2378"
+    readonly property color simulated: dark ? "#d9b8ff" : "#4b2378"
 }

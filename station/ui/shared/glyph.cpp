@@ -38,6 +38,15 @@ QPainterPath shield() {
   return path;
 }
 
+QPainterPath gauge() {
+  QPainterPath path;
+  path.arcMoveTo(2.5, 5, 19, 19, -20);
+  path.arcTo(2.5, 5, 19, 19, -20, 220);
+  path.moveTo(12, 14.5);
+  path.lineTo(16.5, 9);
+  return path;
+}
+
 /// Returns the outline of a symbol. A dot is a very short stroke, of which only the round ends are seen.
 QPainterPath outline(const QString& name) {
   static const QHash<QString, QPainterPath> outlines{
@@ -55,6 +64,17 @@ QPainterPath outline(const QString& name) {
       {"shield", shield()},
       {"tool", lines({{{3, 12}, {19, 12}}, {{13, 6}, {19, 12}, {13, 18}}})},
       {"dots", lines({{{6, 12}, {6, 12.1}}, {{12, 12}, {12, 12.1}}, {{18, 12}, {18, 12.1}}})},
+      {"run", lines({{{7, 4}, {20, 12}, {7, 20}, {7, 4}}})},
+      {"sheet", lines({{{5, 3}, {15, 3}, {19, 7}, {19, 21}, {5, 21}, {5, 3}},
+                       {{9, 10}, {15, 10}},
+                       {{9, 15}, {15, 15}}})},
+      {"list", lines({{{4, 6}, {4, 6.1}},
+                      {{9, 6}, {20, 6}},
+                      {{4, 12}, {4, 12.1}},
+                      {{9, 12}, {20, 12}},
+                      {{4, 18}, {4, 18.1}},
+                      {{9, 18}, {20, 18}}})},
+      {"gauge", gauge()},
       {"minus", lines({{{5, 12}, {19, 12}}})},
       {"plus", lines({{{5, 12}, {19, 12}}, {{12, 5}, {12, 19}}})}};
   return outlines.value(name);

@@ -32,13 +32,13 @@ eventually 30 keypad
 shows_no_pointer
 unlock
 sleep 0.5; screenshot start_page
-tap 150 215                       # choose the protocol "demo"
-tap 303 392                       # tap "enter it now"
+tap 200 287                       # choose the protocol "demo"
+tap 382 395                       # tap "enter it now"
 sleep 0.5
 tap 437 360; tap 736 240; tap 63 240; tap 700 425   # enter the participant's code P01
 screenshot chosen
-hold 385 443                      # arm the amplifier
-tap 694 443                       # begin the session
+hold 450 445                      # arm the amplifier
+tap 706 445                       # begin the session
 eventually 30 english; sleep 0.5; tap 400 150
 goes_on
 by_touch() { eventually 30 answers_open; sleep 1; touch_do tap 200 370; eventually 20 stored "$1"; }

@@ -42,15 +42,15 @@ sleep 0.5; keypad || fail "the station accepts 2468, although its code is 2580"
 first=$(systemctl show -P MainPID turnpoint)
 unlock
 record 110 heard0.raw; recorder=$!
-tap 150 215                       # choose the protocol "demo"
-tap 303 392                       # tap "enter it now"
+tap 200 287                       # choose the protocol "demo"
+tap 382 395                       # tap "enter it now"
 sleep 0.5; screenshot code
 tap 437 360; tap 736 240; tap 63 240; tap 700 425   # enter the participant's code P01
-tap 197 443                       # choose a live session
-hold 385 443                      # arm the amplifier
+tap 278 445                       # choose a live session
+hold 450 445                      # arm the amplifier
 screenshot chosen
 off || fail "the amplifier is on before the session"
-tap 694 443                       # begin the session
+tap 706 445                       # begin the session
 eventually 20 english; sleep 0.5; tap 400 150
 goes_on
 by_touch 1
@@ -119,7 +119,7 @@ systemctl kill -s KILL turnpoint
 eventually 1 off
 unlock
 sleep 0.5
-hold 385 443
+hold 450 445
 tap 738 83
 goes_on
 by_button 10; by_touch 11; by_button 12; by_touch 13

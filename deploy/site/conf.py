@@ -1,0 +1,17 @@
+# How Sphinx turns the pages into the site. `make` calls it on a folder with copies of the pages.
+import os
+
+project = "Turnpoint"
+author = "The Turnpoint authors"
+extensions = ["myst_parser"]
+root_doc = "README"
+source_suffix = {".md": "markdown"}
+myst_heading_anchors = 4
+html_theme = "theme"
+html_theme_path = [os.path.dirname(os.path.abspath(__file__))]
+html_title = "Turnpoint"
+html_copy_source = html_use_index = False
+html_permalinks_icon = "#"
+pygments_style = "default"
+# In examples, words that are no Python or TOML are no error.
+suppress_warnings = ["misc.highlighting_failure"]

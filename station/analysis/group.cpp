@@ -1,0 +1,84 @@
+#include "station/analysis/group.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "station/analysis/quantile.hpp"
+#include "station/analysis/student.hpp"
+
+namespace turnpoint::analysis {
+
+namespace {
+
+/// The values of one measure in one condition, by participant.
+struct Column {
+  std::string measure, unit, condition;
+  std::vector<std::pair<std::string, double>> values;
+
+  std::vector<double> numbers() const {
+    std::vector<double> all;
+    for (const auto& [person, value] : values) all.push_back(value);
+    return all;
+  }
+};
+
+std::vector<Column> samples_of(const std::vector<PersonMeasure>& measures) {
+  std::vector<Column> samples;
+  for (const auto& entry : measures) {
+    auto found = std::find_if(samples.begin(), samples.end(), [&entry](const Column& sample) {
+      return sample.measure == entry.measure && sample.condition == entry.condition;
+    });
+    if (found == samples.end())
+      found = samples.insert(samples.end(), {entry.measure, entry.unit, entry.condition, {}});
+    found->values.emplace_back(entry.person, entry.value);
+  }
+  std::vector<std::string> order;
+  for (const auto& sample : samples) order.push_back(sample.measure);
+  const auto place = [&order](const Column& sample) {
+    return std::find(order.begin(), order.end(), sample.measure) - order.begin();
+  };
+  std::stable_sort(samples.begin(), samples.end(),
+                   [&place](const Column& a, const Column& b) { return place(a) < place(b); });
+  return samples;
+}
+
+Effect effect_of(const Column& first, const Column& second) {
+  const std::map<std::string, double> before(first.values.begin(), first.values.end());
+  std::vector<double> differences;
+  for (const auto& [person, value] : second.values)
+    if (const auto found = before.find(person); found != before.end())
+      differences.push_back(value - found->second);
+  Effect effect{first.measure, first.unit, first.condition, second.condition, 0, {}, {}};
+  effect.persons = static_cast<int>(differences.size());
+  effect.difference = student_mean(differences);
+  if (!effect.difference) return effect;
+  const double sd = std::sqrt(variance(differences));
+  if (sd > 0) effect.standardised = effect.difference->value / sd;
+  return effect;
+}
+
+}  // namespace
+
+std::vector<GroupMean> group_means(const std::vector<PersonMeasure>& measures) {
+  std::vector<GroupMean> means;
+  for (const auto& sample : samples_of(measures)) {
+    const auto values = sample.numbers();
+    GroupMean mean{sample.measure, sample.unit, sample.condition, static_cast<int>(values.size()), {}, {}};
+    mean.mean = student_mean(values);
+    if (mean.mean) mean.sd = std::sqrt(variance(values));
+    means.push_back(std::move(mean));
+  }
+  return means;
+}
+
+std::vector<Effect> effects(const std::vector<PersonMeasure>& measures) {
+  std::vector<Effect> all;
+  const auto samples = samples_of(measures);
+  for (std::size_t i = 0; i < samples.size(); ++i)
+    for (std::size_t j = i + 1; j < samples.size() && samples[j].measure == samples[i].measure; ++j)
+      all.push_back(effect_of(samples[i], samples[j]));
+  return all;
+}
+
+}  // namespace turnpoint::analysis

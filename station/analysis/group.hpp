@@ -1,0 +1,39 @@
+#pragma once
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "station/analysis/estimate.hpp"
+
+namespace turnpoint::analysis {
+
+/// One number of one participant in one condition, such as a threshold or a median response time.
+struct PersonMeasure {
+  std::string person, condition, measure;
+  std::string unit;  ///< "" if it has none
+  double value = 0;
+};
+
+/// The participants' mean of a measure in one condition. Each participant counts once.
+struct GroupMean {
+  std::string measure, unit, condition;
+  int persons = 0;
+  std::optional<Estimate> mean;  ///< 95 % interval by Student's t; empty with fewer than 3 participants
+  std::optional<double> sd;      ///< between participants; empty with fewer than 3 participants
+};
+
+/// The effect of a condition on a measure: the mean of the participants' own differences, second minus first.
+struct Effect {
+  std::string measure, unit, first, second;
+  int persons = 0;                     ///< participants who have the measure in both conditions
+  std::optional<Estimate> difference;  ///< 95 % interval by Student's t for pairs; empty with fewer than 3
+  /// the difference divided by the standard deviation of the differences (Cohen's d_z); empty if that is 0
+  std::optional<double> standardised;
+};
+
+/// Both return their entries in the order in which measures and conditions first occur. A person must not
+/// have the same measure twice in one condition.
+std::vector<GroupMean> group_means(const std::vector<PersonMeasure>& measures);
+std::vector<Effect> effects(const std::vector<PersonMeasure>& measures);
+
+}  // namespace turnpoint::analysis

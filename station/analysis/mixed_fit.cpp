@@ -1,0 +1,234 @@
+#include "station/analysis/mixed_fit.hpp"
+
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
+#include <boost/math/distributions/students_t.hpp>
+#include <boost/math/tools/minima.hpp>
+#include <cmath>
+#include <map>
+#include <stdexcept>
+
+#include "station/analysis/fit_bounds.hpp"
+#include "station/analysis/laplace.hpp"
+#include "station/text/number.hpp"
+
+namespace turnpoint::analysis {
+
+namespace {
+
+constexpr std::size_t kFewestPeople = 3;
+constexpr double kNormal975 = 1.959963984540054;
+/// Below this standard deviation, on an axis whose levels have the standard deviation 1, the random effect is
+/// at its bound of 0.
+constexpr double kNoVariance = 1e-3;
+
+/// The data on an axis that is centred and scaled, so that all parameters are of the order of 1.
+struct Scaled {
+  std::vector<PersonAxis> people;
+  std::vector<std::string> names;
+  std::vector<int> trials;
+  std::vector<LevelCount> pooled;
+  double centre = 0, width = 1;
+};
+
+Scaled scaled(const std::vector<PersonCounts>& data, const MixedOptions& options) {
+  Scaled all;
+  double n = 0, sum = 0, squares = 0;
+  for (const auto& person : data) {
+    PersonAxis axis;
+    axis.guess = person.guess;
+    int trials = 0;
+    for (const auto& point : person.counts) {
+      if (point.level == kNoise || point.trials == 0) continue;
+      axis.x.push_back(axis_position(options.function, options.scale, point.level));
+      axis.trials.push_back(point.trials), axis.positive.push_back(point.positive);
+      trials += point.trials;
+      n += point.trials, sum += point.trials * axis.x.back();
+      squares += point.trials * axis.x.back() * axis.x.back();
+      all.pooled.push_back(point);
+    }
+    if (trials == 0) continue;
+    all.people.push_back(std::move(axis)), all.names.push_back(person.person), all.trials.push_back(trials);
+  }
+  if (n == 0) return all;
+  all.centre = sum / n;
+  const double variance = squares / n - all.centre * all.centre;
+  all.width = variance > 0 ? std::sqrt(variance) : 1;
+  for (auto& person : all.people)
+    for (auto& x : person.x) x = (x - all.centre) / all.width;
+  return all;
+}
+
+/// The fit to the answers of all participants together, from which the search begins.
+PsychometricFit together(const Scaled& data, const MixedOptions& options) {
+  FitOptions pooled;
+  pooled.function = options.function, pooled.scale = options.scale;
+  pooled.lapse_low = options.lapse_low, pooled.lapse_high = options.lapse_high;
+  double guess = 0;
+  for (const auto& person : data.people) guess += person.guess / static_cast<double>(data.people.size());
+  pooled.guess_value = guess;
+  if (options.tied_to_lapse) pooled.guess = Guess::tied_to_lapse;
+  return fit_psychometric(data.pooled, pooled);
+}
+
+MixedMinimum fit_at(double lapse, Scaled& data, const MixedOptions& options, const MixedTheta& start) {
+  if (options.tied_to_lapse)
+    for (auto& person : data.people) person.guess = lapse;
+  Laplace laplace(options.function, lapse, data.people);
+  return minimise(laplace, start);
+}
+
+/// Finds the lapse rate at which the likelihood is highest, and the other parameters with it.
+std::pair<double, MixedMinimum> fit_all(Scaled& data, const MixedOptions& options, const MixedTheta& start) {
+  double lapse = options.lapse_low;
+  auto best = fit_at(lapse, data, options, start);
+  if (options.lapse_high <= options.lapse_low) return {lapse, best};
+  MixedTheta from = best.theta;
+  const auto value = [&](double at) {
+    const auto found = fit_at(at, data, options, from);
+    if (found.negative_log < best.negative_log) best = found, lapse = at;
+    from = found.theta;
+    return found.negative_log;
+  };
+  boost::uintmax_t most = 15;
+  boost::math::tools::brent_find_minima(value, options.lapse_low, options.lapse_high, 12, most);
+  return {lapse, best};
+}
+
+/// Returns the covariance of the fixed effects. A random effect whose variance is 0 is left out of the
+/// information, which is singular there.
+std::optional<Eigen::Matrix2d> covariance_of(const MixedMinimum& found) {
+  std::vector<int> kept{0, 1};
+  const Eigen::Matrix2d factor = random_factor(found.theta);
+  for (const int i : {2, 3, 4})
+    if (std::fabs(found.theta[i]) > kNoVariance || (i == 3 && std::fabs(factor(0, 0)) > kNoVariance))
+      kept.push_back(i);
+  for (int attempt = 0; attempt < 2; ++attempt, kept.resize(2)) {
+    const Eigen::MatrixXd information = found.hessian(kept, kept);
+    const Eigen::LLT<Eigen::MatrixXd> solver(information);
+    if (solver.info() != Eigen::Success) continue;
+    const Eigen::MatrixXd inverse =
+        solver.solve(Eigen::MatrixXd::Identity(information.rows(), information.cols()));
+    return inverse.topLeftCorner<2, 2>();
+  }
+  return std::nullopt;
+}
+
+/// From the coefficients on the scaled axis to those on the axis: b0 = s0 - s1 centre / width, b1 = s1 /
+/// width.
+Eigen::Matrix2d unscaling(const Scaled& data) {
+  Eigen::Matrix2d map;
+  map << 1, -data.centre / data.width, 0, 1 / data.width;
+  return map;
+}
+
+/// The threshold of these coefficients in the unit of the level, with the interval from their covariance.
+std::optional<Estimate> threshold_of(const Eigen::Vector2d& b, const Eigen::Matrix2d& covariance, double t,
+                                     const MixedOptions& options) {
+  if (!(b[1] > 0)) return std::nullopt;
+  const double u = -b[0] / b[1];
+  const Eigen::Vector2d gradient(-1 / b[1], b[0] / (b[1] * b[1]));
+  const double half = t * std::sqrt(gradient.dot(covariance * gradient));
+  const auto level = [&options](double at) { return level_from_axis(options.function, options.scale, at); };
+  return Estimate{level(u), {level(u - half), level(u + half), 0.95}};
+}
+
+Estimate slope_of(double rate, double error, double t, Function function) {
+  const double factor = std::exp(t * error / rate);
+  double low = slope_from_rate(function, rate / factor), high = slope_from_rate(function, rate * factor);
+  if (low > high) std::swap(low, high);
+  return {slope_from_rate(function, rate), {low, high, 0.95}};
+}
+
+void add_people(const Scaled& data, const MixedMinimum& found, const Eigen::Matrix2d& fixed_covariance,
+                MixedFit& fit) {
+  Laplace laplace(fit.options.function, fit.lapse, data.people);
+  laplace.negative_log(found.theta);
+  const Eigen::Matrix2d factor = random_factor(found.theta), map = unscaling(data);
+  for (std::size_t i = 0; i < data.people.size(); ++i) {
+    const auto person = laplace.person(i, found.theta);
+    const Eigen::Matrix2d inner =
+        factor.transpose() * person.information * factor + Eigen::Matrix2d::Identity();
+    const Eigen::Matrix2d conditional = factor * inner.inverse() * factor.transpose();
+    // what remains of an error of the group's parameters once the participant's answers are known
+    const Eigen::Matrix2d remains = Eigen::Matrix2d::Identity() - conditional * person.information;
+    const Eigen::Vector2d b = map * (found.theta.head<2>() + factor * person.mode);
+    const Eigen::Matrix2d covariance =
+        map * (conditional + remains * fixed_covariance * remains.transpose()) * map.transpose();
+    PooledPerson pooled;
+    pooled.person = data.names[i], pooled.trials = data.trials[i];
+    pooled.threshold = threshold_of(b, covariance, kNormal975, fit.options);
+    if (pooled.threshold)
+      pooled.parameters = {pooled.threshold->value, slope_from_rate(fit.options.function, b[1]),
+                           data.people[i].guess, fit.lapse};
+    pooled.shrinkage = remains.trace() / 2;
+    fit.persons.push_back(std::move(pooled));
+  }
+}
+
+void describe_group(const Scaled& data, const MixedMinimum& found, const Eigen::Matrix2d& fixed_covariance,
+                    MixedFit& fit) {
+  const Eigen::Matrix2d map = unscaling(data), factor = map * random_factor(found.theta);
+  const Eigen::Matrix2d random = factor * factor.transpose();
+  const Eigen::Matrix2d errors = map * fixed_covariance * map.transpose();
+  const Eigen::Vector2d b = map * found.theta.head<2>();
+  fit.intercept = b[0], fit.rate = b[1];
+  fit.intercept_se = std::sqrt(errors(0, 0)), fit.rate_se = std::sqrt(errors(1, 1));
+  fit.intercept_sd = std::sqrt(random(0, 0)), fit.rate_sd = std::sqrt(random(1, 1));
+  if (fit.intercept_sd > 0 && fit.rate_sd > 0)
+    fit.correlation = random(0, 1) / (fit.intercept_sd * fit.rate_sd);
+  const double t =
+      boost::math::quantile(boost::math::students_t(static_cast<double>(data.people.size()) - 1), 0.975);
+  fit.threshold = threshold_of(b, errors, t, fit.options);
+  if (!fit.threshold) {
+    fit.statements.push_back({"group-does-not-rise",
+                              "The group's function does not rise with the level, so it has no threshold."});
+    return;
+  }
+  fit.slope = slope_of(b[1], fit.rate_se, t, fit.options.function);
+  const Eigen::Vector2d gradient(-1 / b[1], b[0] / (b[1] * b[1]));
+  const double sd = std::sqrt(gradient.dot(random * gradient));
+  const auto level = [&fit](double u) { return level_from_axis(fit.options.function, fit.options.scale, u); };
+  const double u = -b[0] / b[1];
+  fit.threshold_sd = (level(u + sd) - level(u - sd)) / 2;
+  const Eigen::Matrix2d scaled_random = random_factor(found.theta) * random_factor(found.theta).transpose();
+  if (scaled_random.determinant() < kNoVariance * kNoVariance * scaled_random.trace())
+    fit.statements.push_back(
+        {"singular",
+         "The participants differ in less than two ways: intercepts or slopes do not vary beyond chance, or "
+         "they vary together. Estimates and intervals hold, but say nothing of how both vary."});
+}
+
+}  // namespace
+
+MixedResult fit_mixed(const std::vector<PersonCounts>& data, const MixedOptions& options) {
+  auto people = scaled(data, options);
+  if (people.people.size() < kFewestPeople)
+    return {std::nullopt,
+            {{"few-participants", std::to_string(people.people.size()) +
+                                      " participants with answers are too few for a group; at least 3 are "
+                                      "needed."}}};
+  const auto pooled = together(people, options);
+  if (!pooled.parameters) return {std::nullopt, pooled.statements};
+  const double rate = rate_from_slope(options.function, pooled.parameters->slope) * people.width;
+  const double at = axis_position(options.function, options.scale, pooled.parameters->threshold);
+  MixedTheta start;
+  start << -rate * (at - people.centre) / people.width, rate, 0.5, 0, 0.3 * std::min(rate, 3.0);
+  MixedFit fit;
+  fit.options = options;
+  const auto [lapse, found] = fit_all(people, options, start);
+  if (options.tied_to_lapse)
+    for (auto& person : people.people) person.guess = lapse;
+  fit.lapse = lapse, fit.log_likelihood = -found.negative_log;
+  const auto covariance = covariance_of(found);
+  if (!covariance || !std::isfinite(found.negative_log))
+    return {std::nullopt,
+            {{"not-determined",
+              "The answers do not determine the group's function: the likelihood has no "
+              "clear maximum."}}};
+  describe_group(people, found, *covariance, fit);
+  add_people(people, found, *covariance, fit);
+  return {std::move(fit), {}};
+}
+
+}  // namespace turnpoint::analysis

@@ -1,0 +1,29 @@
+#pragma once
+#include <string>
+
+namespace turnpoint::collector {
+
+/// True for a database that is on a server: postgresql://... or postgres://...
+bool is_server(const std::string& database);
+
+/// A database for a command that reads. One on a server is first copied to a temporary file, which only its
+/// owner may read and which the destructor removes. So every command reads the same rows with the same code,
+/// whether they come from a file or a server.
+class ReadableDatabase {
+ public:
+  /// Throws ServerError, or store::StoreError (corrupt) if rows on the server differ from their checksums.
+  explicit ReadableDatabase(const std::string& database);
+  ReadableDatabase(const ReadableDatabase&) = delete;
+  ReadableDatabase& operator=(const ReadableDatabase&) = delete;
+  ~ReadableDatabase();
+
+  const std::string& path() const { return path_; }
+
+ private:
+  void fetch(const std::string& server);
+  void discard();
+
+  std::string path_, folder_;  ///< folder_ is "" for a file
+};
+
+}  // namespace turnpoint::collector

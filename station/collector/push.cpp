@@ -1,0 +1,313 @@
+#include "station/collector/push.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <set>
+
+#include "station/collector/postgres.hpp"
+#include "station/collector/received.hpp"
+#include "station/collector/row_stream.hpp"
+#include "station/collector/tables.hpp"
+#include "station/store/checksum.hpp"
+#include "station/store/open.hpp"
+#include "station/store/places.hpp"
+#include "station/store/read.hpp"
+#include "station/store/schema.hpp"
+
+namespace turnpoint::collector {
+
+namespace {
+
+using store::Database;
+using store::Statement;
+using What = PushedSession::What;
+
+/// What the server has of a session.
+struct Known {
+  store::Link last;
+  std::int64_t annotations = 0;
+};
+
+/// Checks the version of the server. Returns the stations for which this connection may speak.
+std::set<std::string> greet(Connection& server) {
+  std::optional<Rows> rows;
+  try {
+    rows.emplace(server.query("SELECT schema, encoding, station_id FROM turnpoint.hello()"));
+  } catch (const ServerError& error) {
+    const std::set<std::string> absent = {"3F000", "42883", "42P01", "42501"};
+    if (absent.count(error.state()) == 0) throw;
+    throw ServerError(
+        std::string(error.what()) +
+            "; this is not a collector's database, or this role is not a station's; deploy/collector sets up "
+            "both",
+        error.state());
+  }
+  const auto schema = rows->count() > 0 ? rows->integer(0, 0) : 0;
+  if (schema != store::schema_version())
+    throw ServerError(
+        fmt::format("collector: the server has schema {}, this station {}; nothing was sent; {}", schema,
+                    store::schema_version(),
+                    schema < store::schema_version() ? "update the server first: deploy/collector upgrade"
+                                                     : "update Turnpoint on this station"),
+        "");
+  std::set<std::string> stations;
+  for (int i = 0; i < rows->count(); ++i)
+    if (!rows->is_null(i, 2)) stations.insert(rows->text(i, 2));
+  return stations;
+}
+
+std::vector<store::Tombstone> exchange_tombstones(Connection& server,
+                                                  const std::vector<store::Tombstone>& own) {
+  const auto rows = server.query(
+      "SELECT session_id, salt, participant_sha256, withdrawn_realtime_ns, station_id"
+      " FROM turnpoint.exchange_tombstones($1::json)",
+      {tombstones_json(own)});
+  std::vector<store::Tombstone> theirs;
+  for (int i = 0; i < rows.count(); ++i)
+    theirs.push_back(
+        {rows.text(i, 0), rows.text(i, 1), rows.text(i, 2), rows.integer(i, 3), rows.text(i, 4)});
+  return theirs;
+}
+
+std::map<std::string, Known> known_sessions(Connection& server) {
+  const auto rows = server.query(
+      "SELECT session_id, link_index, sha256, last_segment, last_block, last_trial, last_event, status,"
+      " status_reason, annotations FROM turnpoint.chains()");
+  std::map<std::string, Known> known;
+  for (int i = 0; i < rows.count(); ++i) {
+    auto& it = known[rows.text(i, 0)];
+    it.last.index = rows.integer(i, 1);
+    it.last.sha256 = rows.text(i, 2);
+    it.last.last = {rows.integer(i, 3), rows.integer(i, 4), rows.integer(i, 5), rows.integer(i, 6)};
+    it.last.status = rows.text(i, 7);
+    it.last.status_reason = rows.text(i, 8);
+    it.annotations = rows.integer(i, 9);
+  }
+  return known;
+}
+
+std::int64_t value_of(const store::Link& link, const std::string& column) {
+  if (column == "last_segment") return link.last.segment;
+  if (column == "last_block") return link.last.block;
+  return column == "last_trial" ? link.last.trial : link.last.event;
+}
+
+/// Sends the rows of one table that belong to the session ?1 and that the server lacks.
+std::int64_t send_table(Database& database, const CollectedTable& table, const store::SessionRecord& session,
+                        const store::Link& last, Connection& server) {
+  std::string where = "session_id = ?1";
+  std::int64_t beyond = last.index;
+  if (table.name == "participant") where = "code = (SELECT participant FROM session WHERE session_id = ?1)";
+  if (table.name == "enrolment")
+    where = "(station_id, participant) = (SELECT station_id, participant FROM session WHERE session_id = ?1)";
+  for (const auto* key : {"protocol_key", "rig_key", "calibration_id"})
+    if (table.key.front() == key) {
+      if (last.index >= 0) return 0;  // the session came with its protocol, rig and calibration
+      where = fmt::format("{0} = (SELECT {0} FROM session WHERE session_id = ?1)", key);
+    }
+  if (table.name == "link") where += " AND link_index > ?2";
+  if (table.chain) {
+    where += fmt::format(" AND {} > ?2", table.chain->counter);
+    beyond = value_of(last, table.chain->last);
+  }
+  Statement rows(database, fmt::format("SELECT {} FROM {} WHERE {} ORDER BY {}", column_list(table),
+                                       table.name, where, quoted_list(table.key)));
+  rows.bind_value(1, session.session_id);
+  if (where.find("?2") != std::string::npos) rows.bind_value(2, beyond);
+  return send_rows(rows, table, server,
+                   fmt::format("COPY pg_temp.incoming_{} ({}) FROM STDIN (FORMAT binary)", table.name,
+                               column_list(table)));
+}
+
+/// Sends a session, or the rest of it, in one transaction. Both ends must come to the same checksums before
+/// it is committed.
+void send_session(Database& database, const store::SessionRecord& session, const store::Link& last,
+                  Connection& server, PushedSession& pushed) {
+  const auto& id = session.session_id;
+  ServerTransaction transaction(server);
+  for (const auto& table : collected_tables()) {
+    if (table.name == "tombstone" || table.name == "same_person") continue;
+    const auto sent = send_table(database, table, session, last, server);
+    if (table.name == "trial") pushed.trials = sent;
+  }
+  const auto stored =
+      server.query("SELECT last_sha256, annotations_sha256 FROM turnpoint.store_session($1)", {id});
+  if (stored.text(0, 0) != pushed.sha256 || stored.text(0, 1) != store::annotations_checksum(database, id))
+    throw ServerError(
+        fmt::format("collector: session {}: the server stored something else; nothing was stored", id),
+        "TP001");
+  transaction.commit();
+}
+
+/// Returns why the server's part of a session is not the beginning of the session here; "" if it is.
+std::string conflict_of(Database& database, const std::string& id, const store::Link& theirs) {
+  const auto here = store::link_at(database, id, theirs.index);
+  if (!here)
+    return "the server has a longer part of this session: this database was restored from an older backup, "
+           "or "
+           "is an older copy";
+  if (here->sha256 != theirs.sha256)
+    return "the server has another continuation of this session: it was resumed in two copies of the "
+           "database, "
+           "or changed";
+  return "";
+}
+
+/// Errors after which other sessions cannot be stored either.
+bool is_fatal(const std::string& state) {
+  return state.empty() || state.starts_with("08") || state.starts_with("53") || state.starts_with("57") ||
+         state.starts_with("58") || state.starts_with("XX");
+}
+
+PushedSession push_session(Database& database, const store::SessionRecord& session, const Known* known,
+                           Connection& server) {
+  const auto& id = session.session_id;
+  PushedSession pushed{id, session.start.participant, session.start.station_id, What::refused, 0, "", ""};
+  const auto verified = store::verify_session(database, id);
+  pushed.sha256 = verified.last_sha256;
+  if (!verified.problems.empty())
+    pushed.problem = verified.problems.front();
+  else if (verified.last_sha256.empty())
+    pushed.problem = "an earlier release recorded it without checksums, so the server could not verify it";
+  else if (known != nullptr)
+    pushed.problem = conflict_of(database, id, known->last);
+  if (!pushed.problem.empty()) return pushed;
+  const auto annotations = static_cast<std::int64_t>(session.annotations.size());
+  if (known != nullptr && known->last.sha256 == pushed.sha256 && known->annotations == annotations &&
+      known->last.status == records::name(session.status) &&
+      known->last.status_reason == session.status_reason) {
+    pushed.what = What::unchanged;
+    return pushed;
+  }
+  try {
+    send_session(database, session, known != nullptr ? known->last : store::Link{}, server, pushed);
+    pushed.what = known != nullptr ? What::extended : What::added;
+  } catch (const ServerError& error) {
+    if (is_fatal(error.state())) throw;
+    pushed.problem = error.what();
+    pushed.trials = 0;
+  }
+  return pushed;
+}
+
+/// Leases places until this station has `wanted` that are free. Returns all that are leased to it.
+std::vector<std::int64_t> lease_places(Database& database, const std::string& protocol_id,
+                                       std::int64_t wanted, Connection& server, PushReport& report) {
+  const auto used = store::used_places(database, protocol_id);
+  std::vector<std::int64_t> leased;
+  // The first answer says what this station has, also if an earlier answer was lost on the way. The server
+  // may lease places that are used here by a participant whom it does not know yet; then a few more are
+  // needed.
+  for (std::int64_t more = 0, free = 0;; more = wanted - free) {
+    const auto rows = server.query("SELECT place FROM turnpoint.lease_places($1, $2) place",
+                                   {protocol_id, std::to_string(more)});
+    if (more > 0 && rows.count() <= static_cast<int>(leased.size()))
+      throw ServerError("collector: the server leases no more places of " + protocol_id, "");
+    leased.clear();
+    for (int i = 0; i < rows.count(); ++i) leased.push_back(rows.integer(i, 0));
+    free = std::count_if(leased.begin(), leased.end(), [&](const auto place) {
+      return !std::binary_search(used.begin(), used.end(), place);
+    });
+    report.places[protocol_id] = free;
+    if (free >= wanted) return leased;
+  }
+}
+
+std::vector<store::Tombstone> exchange_tombstones(const PushOptions& options, Connection& server) {
+  auto reader = store::open_reader(options.database);
+  return exchange_tombstones(server, store::list_tombstones(reader));
+}
+
+void use(const Received& received, const PushOptions& options, PushReport& report) {
+  if (!options.received.empty()) return write_received(received, options.received);
+  try {
+    auto withdrawn = carry_out(received, options.database, options.backup_directory);
+    if (!withdrawn.sessions.empty()) report.withdrawn = std::move(withdrawn);
+  } catch (const store::StoreError& error) {
+    if (error.kind() != store::ErrorKind::busy) throw;
+    report.waiting = error.what();
+  }
+}
+
+/// The station gives up its places before the server may lease them to another.
+void return_places(const PushOptions& options, Connection& server) {
+  for (const auto& protocol_id : options.return_places) {
+    std::string list;
+    for (const auto place : store::give_up_places(options.database, protocol_id))
+      list += (list.empty() ? "" : ",") + std::to_string(place);
+    server.query("SELECT turnpoint.return_places($1, $2)", {protocol_id, "[" + list + "]"});
+  }
+}
+
+}  // namespace
+
+const char* name(PushedSession::What what) {
+  switch (what) {
+    case What::added:
+      return "added";
+    case What::extended:
+      return "extended";
+    case What::unchanged:
+      return "unchanged";
+    case What::refused:
+      return "refused";
+  }
+  return "";
+}
+
+bool PushReport::complete() const {
+  return waiting.empty() && std::none_of(sessions.begin(), sessions.end(),
+                                         [](const auto& session) { return session.what == What::refused; });
+}
+
+namespace {
+
+/// Sends the sessions in a snapshot of the database.
+void push_sessions(Database& snapshot, const std::set<std::string>& stations, const Received& received,
+                   Connection& server, PushReport& report) {
+  std::set<std::string> withdrawn, foreign;
+  for (const auto& stone : received.tombstones) withdrawn.insert(stone.session_id);
+  server.query("SELECT turnpoint.prepare()");
+  const auto known = known_sessions(server);
+  for (const auto& session : store::list_sessions(snapshot)) {
+    const auto& station = session.start.station_id;
+    const auto it = known.find(session.session_id);
+    if (withdrawn.count(session.session_id) != 0) continue;  // still to be deleted here
+    if (stations.count(station) == 0)
+      foreign.insert(station);
+    else if (session.status == store::SessionStatus::running)
+      ++report.running;
+    else
+      report.sessions.push_back(
+          push_session(snapshot, session, it == known.end() ? nullptr : &it->second, server));
+  }
+  report.foreign.assign(foreign.begin(), foreign.end());
+}
+
+}  // namespace
+
+PushReport push(const PushOptions& options) {
+  PushReport report;
+  store::open_reader(options.database);  // A wrong file is reported before the server is asked.
+  Connection server(options.to);
+  const auto stations = greet(server);
+  Received received;
+  received.tombstones = exchange_tombstones(options, server);
+  use(received, options, report);
+  Database snapshot("", Database::Access::create);
+  {
+    auto reader = store::open_reader(options.database);
+    store::copy_database(reader, snapshot);
+  }
+  push_sessions(snapshot, stations, received, server, report);
+  // After the sessions, because they tell the server which places are taken.
+  for (const auto& [protocol_id, wanted] : options.places)
+    received.places[protocol_id] = lease_places(snapshot, protocol_id, wanted, server, report);
+  if (!received.places.empty()) use(received, options, report);
+  return_places(options, server);
+  return report;
+}
+
+}  // namespace turnpoint::collector

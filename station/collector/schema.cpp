@@ -1,0 +1,157 @@
+#include "station/collector/schema.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "station/collector/tables.hpp"
+#include "station/store/checksum.hpp"
+#include "station/store/schema.hpp"
+
+namespace turnpoint::collector {
+
+namespace {
+
+std::string literal(const std::string& text) {
+  std::string escaped = "'";
+  for (const char c : text) escaped += c == '\'' ? "''" : std::string(1, c);
+  return escaped + "'";
+}
+
+std::string type_of(const Column& column) {
+  if (column.type == "INTEGER") return "bigint";
+  if (column.type == "REAL") return "double precision";
+  return column.type == "BLOB" ? "bytea" : "text";
+}
+
+/// Returns the words of "a | b | c", or nothing if the list is incomplete or names the absence of a value.
+std::vector<std::string> words_of(const std::string& values) {
+  std::vector<std::string> words;
+  for (std::size_t at = 0; at < values.size();) {
+    const auto end = std::min(values.find(" | ", at), values.size());
+    words.push_back(values.substr(at, end - at));
+    at = end + 3;
+  }
+  const bool open = std::any_of(words.begin(), words.end(),
+                                [](const auto& word) { return word == "..." || word == "n/a"; });
+  return open ? std::vector<std::string>{} : words;
+}
+
+std::string check_of(const Column& column) {
+  std::string list;
+  for (const auto& word : words_of(column.values))
+    list += (list.empty() ? "" : ", ") + (column.type == "TEXT" ? literal(word) : word);
+  return list.empty() ? "" : fmt::format(" CHECK ({} IN ({}))", quoted(column.name), list);
+}
+
+std::string definition(const Column& column) {
+  return fmt::format("{} {}{}{}{}", quoted(column.name), type_of(column), column.nullable ? "" : " NOT NULL",
+                     column.fallback.empty() ? "" : " DEFAULT " + column.fallback, check_of(column));
+}
+
+std::string create_table(const CollectedTable& table) {
+  std::string lines;
+  for (const auto& column : table.columns) lines += "  " + definition(column) + ",\n";
+  lines += fmt::format("  PRIMARY KEY ({})", quoted_list(table.key));
+  for (const auto& names : table.unique) lines += fmt::format(",\n  UNIQUE ({})", quoted_list(names));
+  for (const auto& reference : table.references)
+    lines += fmt::format(",\n  FOREIGN KEY ({}) REFERENCES turnpoint.{} ({}){}",
+                         quoted_list(reference.columns), reference.table, quoted_list(reference.to),
+                         reference.columns.front() == "session_id" ? " ON DELETE CASCADE" : "");
+  return fmt::format("CREATE TABLE IF NOT EXISTS turnpoint.{} (\n{}\n);\n", table.name, lines);
+}
+
+/// Adds the columns that an older version of the collector did not have.
+std::string add_columns(const CollectedTable& table) {
+  std::string sql;
+  for (const auto& column : table.columns)
+    sql += fmt::format("ALTER TABLE turnpoint.{} ADD COLUMN IF NOT EXISTS {};\n", table.name,
+                       definition(column));
+  return sql;
+}
+
+std::string comments(const CollectedTable& table) {
+  std::string sql;
+  for (const auto& column : table.columns) {
+    if (column.description.empty()) continue;
+    const auto unit = column.unit.empty() ? "" : fmt::format(" [{}]", column.unit);
+    sql += fmt::format("COMMENT ON COLUMN turnpoint.{}.{} IS {};\n", table.name, quoted(column.name),
+                       literal(column.description + unit));
+  }
+  return sql;
+}
+
+/// Nobody but turnpoint_owner, as whom the functions run, gets past row security without a policy.
+std::string protection(const std::string& table) {
+  return fmt::format(
+      "ALTER TABLE turnpoint.{0} ENABLE ROW LEVEL SECURITY;\n"
+      "DROP POLICY IF EXISTS readers ON turnpoint.{0};\n"
+      "CREATE POLICY readers ON turnpoint.{0} FOR SELECT TO turnpoint_reader USING (true);\n"
+      "GRANT SELECT ON turnpoint.{0} TO turnpoint_reader;\n",
+      table);
+}
+
+constexpr const char* kRoles = R"sql(
+DO $do$
+DECLARE wanted text;
+BEGIN
+  FOREACH wanted IN ARRAY ARRAY['turnpoint_owner', 'turnpoint_station', 'turnpoint_reader'] LOOP
+    IF NOT EXISTS (SELECT FROM pg_roles WHERE rolname = wanted) THEN
+      EXECUTE format('CREATE ROLE %I NOLOGIN', wanted);
+    END IF;
+  END LOOP;
+  -- A station that could make temporary objects could put its own in the place of those that the functions use.
+  EXECUTE format('REVOKE TEMPORARY, CREATE ON DATABASE %I FROM PUBLIC', current_database());
+  EXECUTE format('GRANT TEMPORARY, CREATE ON DATABASE %I TO turnpoint_owner', current_database());
+END $do$;
+REVOKE ALL ON SCHEMA public FROM PUBLIC;
+CREATE SCHEMA IF NOT EXISTS turnpoint AUTHORIZATION turnpoint_owner;
+SET LOCAL ROLE turnpoint_owner;
+GRANT USAGE ON SCHEMA turnpoint TO turnpoint_station, turnpoint_reader;
+)sql";
+
+constexpr const char* kOwnTables = R"sql(
+CREATE TABLE IF NOT EXISTS turnpoint.version (
+  only_row boolean PRIMARY KEY DEFAULT true CHECK (only_row),
+  schema bigint NOT NULL,
+  encoding bigint NOT NULL
+);
+CREATE TABLE IF NOT EXISTS turnpoint.station (
+  station_id text PRIMARY KEY CHECK (station_id <> ''),
+  role name NOT NULL,
+  last_contact timestamptz
+);
+COMMENT ON TABLE turnpoint.station IS 'Which role may store the sessions of which station';
+CREATE TABLE IF NOT EXISTS turnpoint.lease (
+  protocol_id text NOT NULL,
+  sequence_index bigint NOT NULL CHECK (sequence_index >= 0),
+  station_id text NOT NULL,
+  PRIMARY KEY (protocol_id, sequence_index)
+);
+COMMENT ON TABLE turnpoint.lease IS 'Places in the counterbalancing of a protocol, and the stations that may use them';
+)sql";
+
+}  // namespace
+
+std::string schema_sql() {
+  std::string sql = fmt::format(
+      "-- Collector of Turnpoint, schema {}, written by `turnpoint collector-schema`.\n"
+      "\\set ON_ERROR_STOP on\nSET client_min_messages = warning;\nBEGIN;\n{}",
+      store::schema_version(), kRoles);
+  sql += kOwnTables;
+  for (const auto& table : collected_tables())
+    sql += create_table(table) + add_columns(table) + comments(table) + protection(table.name);
+  for (const auto* own : {"version", "station", "lease"}) sql += protection(own);
+  // An older program must not bring a newer database back.
+  sql += fmt::format(
+      "DO $do$ BEGIN IF (SELECT schema FROM turnpoint.version) > {0} THEN\n"
+      "  RAISE EXCEPTION 'this database has schema %, but this program only knows {0}; update Turnpoint "
+      "here',\n"
+      "    (SELECT schema FROM turnpoint.version);\nEND IF; END $do$;\n"
+      "INSERT INTO turnpoint.version (schema, encoding) VALUES ({0}, {1})\n"
+      "  ON CONFLICT (only_row) DO UPDATE SET schema = {0}, encoding = {1};\n",
+      store::schema_version(), store::kEncoding);
+  return sql + checksum_sql() + functions_sql() + views_sql() + "COMMIT;\n";
+}
+
+}  // namespace turnpoint::collector

@@ -1,0 +1,19 @@
+#pragma once
+#include <string>
+
+namespace turnpoint::collector {
+
+/// Returns the SQL that makes an empty PostgreSQL database a collector's, or brings an older collector's
+/// database to this version. Run it as a superuser, in that database. Running it again changes nothing.
+///
+/// - The tables are those of the station's database (collected_tables()), in the schema turnpoint.
+/// - Stations call functions and have no right to any table. The functions run as turnpoint_owner.
+/// - turnpoint_reader may read all tables and views.
+std::string schema_sql();
+
+// Parts of schema_sql().
+std::string functions_sql();  ///< what stations and administrators call
+std::string views_sql();      ///< what readers look at
+std::string checksum_sql();   ///< the functions that calculate the checksum chain on the server
+
+}  // namespace turnpoint::collector

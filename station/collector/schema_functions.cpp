@@ -1,0 +1,386 @@
+#include <fmt/format.h>
+
+#include "station/collector/schema.hpp"
+#include "station/collector/tables.hpp"
+#include "station/records/records.hpp"
+
+namespace turnpoint::collector {
+
+namespace {
+
+constexpr const char* kCoded = R"sql(
+-- These use immutable functions only; otherwise PostgreSQL would call them for each value instead of inlining them.
+CREATE OR REPLACE FUNCTION turnpoint.coded(v text) RETURNS text LANGUAGE sql IMMUTABLE AS
+  $$ SELECT CASE WHEN v IS NULL THEN 'n0:' ELSE 't' || octet_length(v)::text || ':' || v END $$;
+CREATE OR REPLACE FUNCTION turnpoint.coded(v bigint) RETURNS text LANGUAGE sql IMMUTABLE AS
+  $$ SELECT CASE WHEN v IS NULL THEN 'n0:' ELSE 'i' || length(v::text)::text || ':' || v::text END $$;
+CREATE OR REPLACE FUNCTION turnpoint.bits(v double precision) RETURNS text LANGUAGE sql IMMUTABLE AS
+  $$ SELECT ('x' || encode(float8send(v), 'hex'))::bit(64)::bigint::text $$;
+CREATE OR REPLACE FUNCTION turnpoint.coded(v double precision) RETURNS text LANGUAGE sql IMMUTABLE AS
+  $$ SELECT CASE WHEN v IS NULL THEN 'n0:' ELSE 'r' || length(turnpoint.bits(v))::text || ':' || turnpoint.bits(v) END $$;
+CREATE OR REPLACE FUNCTION turnpoint.coded(v bytea) RETURNS bytea LANGUAGE sql IMMUTABLE AS
+  $$ SELECT CASE WHEN v IS NULL THEN 'n0:'::bytea ELSE ('b' || octet_length(v)::text || ':')::bytea || v END $$;
+)sql";
+
+/// Returns an expression of type bytea: a row as store/checksum.cpp hashes it, without the end of the line.
+std::string coded_columns(const CollectedTable& table, const std::vector<Covered>& columns,
+                          const std::string& alias) {
+  std::string expression = "''::bytea", texts;
+  const auto flush = [&] {
+    if (!texts.empty()) expression += fmt::format("\n    || convert_to({}, 'UTF8')", texts);
+    texts.clear();
+  };
+  for (const auto& covered : columns) {
+    auto value = fmt::format("turnpoint.coded({}.{})", alias, quoted(covered.name));
+    const bool is_bytes = table.column(covered.name).type == "BLOB";
+    if (covered.since > 1)
+      value = fmt::format("CASE WHEN l.encoding >= {} THEN {} ELSE '' END", covered.since, value);
+    if (is_bytes) flush();
+    if (is_bytes)
+      expression += " || " + value;
+    else
+      texts += (texts.empty() ? "" : "\n      || ") + value;
+  }
+  flush();
+  return expression;
+}
+
+std::string qualified_order(const std::string& order, const CollectedTable& table) {
+  std::string list;
+  for (std::size_t at = 0; at < order.size();) {
+    const auto end = std::min(order.find(',', at), order.size());
+    const auto name = order.substr(at, end - at);
+    list += (list.empty() ? "t." : ", t.") + quoted(name);
+    if (table.column(name).type == "TEXT") list += " COLLATE \"C\"";  // the order of the bytes, as in SQLite
+    at = end + 1;
+  }
+  return list;
+}
+
+std::string hash_table(const CollectedTable& table) {
+  const auto& part = *table.chain;
+  return fmt::format(
+      "  IF l.{3} <> p.{3} AND l.encoding >= {6} THEN\n"
+      "    SELECT string_agg({1}\n    || '\\x0a'::bytea, ''::bytea ORDER BY {2}) INTO part\n"
+      "    FROM turnpoint.{0} t WHERE t.session_id = l.session_id AND t.{4} > p.{3} AND t.{4} <= l.{3};\n"
+      "    content := content || convert_to('{0}' || E'\\n', 'UTF8') || coalesce(part, ''::bytea);\n"
+      "  END IF;\n{5}",
+      table.name, coded_columns(table, part.columns, "t"), qualified_order(part.order, table), part.last,
+      quoted(part.counter), "", part.since);
+}
+
+std::string link_function() {
+  const auto provenance = [](const char* table, const char* alias) {
+    const auto& it = collected_table(table);
+    return coded_columns(it, it.provenance, alias);
+  };
+  std::string sql = fmt::format(R"sql(
+-- The checksum of link l after link p, over the rows that are stored: the rule of station/store/checksum.hpp.
+CREATE OR REPLACE FUNCTION turnpoint.link_sha256(p turnpoint.link, l turnpoint.link) RETURNS text
+LANGUAGE plpgsql STABLE AS $fn$
+DECLARE content bytea; part bytea;
+BEGIN
+  content := convert_to('turnpoint/' || l.encoding || ' ' || l.link_index || ' ' || p.sha256 || E'\n' || l.status
+    || E'\n' || octet_length(l.status_reason) || ':' || l.status_reason || E'\n', 'UTF8');
+  IF l.link_index = 0 THEN
+    SELECT content || {} || {} || {} || {} || '\x0a'::bytea INTO content
+    FROM turnpoint.session s LEFT JOIN turnpoint.protocol p1 USING (protocol_key)
+      LEFT JOIN turnpoint.rig r USING (rig_key) LEFT JOIN turnpoint.calibration c USING (calibration_id)
+    WHERE s.session_id = l.session_id;
+  END IF;
+)sql",
+                                provenance("session", "s"), provenance("protocol", "p1"),
+                                provenance("rig", "r"), provenance("calibration", "c"));
+  for (const auto& table : collected_tables())
+    if (table.chain) sql += hash_table(table);
+  return sql + "  RETURN encode(sha256(content), 'hex');\nEND $fn$;\n";
+}
+
+/// Checks that the arriving rows lie beyond the last link that is stored, and inserts them.
+std::string take_rows(const CollectedTable& table) {
+  const auto& part = *table.chain;
+  return fmt::format(
+      "  IF EXISTS (SELECT FROM pg_temp.incoming_{0} WHERE session_id <> id OR {1} <= p.{2}) THEN\n"
+      "    RAISE EXCEPTION 'session %: rows of table {0} are not those after the last checksum', id\n"
+      "      USING ERRCODE = 'TP004';\n  END IF;\n"
+      "  INSERT INTO turnpoint.{0} ({3}) SELECT {3} FROM pg_temp.incoming_{0};\n",
+      table.name, quoted(part.counter), part.last, column_list(table));
+}
+
+/// Inserts rows that other sessions may have brought before, and checks that these are equal.
+std::string take_shared(const CollectedTable& table, const std::string& conflict) {
+  std::string same;
+  for (const auto& name : table.key)
+    same += fmt::format("{0}t.{1} = i.{1}", same.empty() ? "" : " AND ", quoted(name));
+  std::string mine, theirs;
+  for (const auto& column : table.columns) {
+    mine += (mine.empty() ? "t." : ", t.") + quoted(column.name);
+    theirs += (theirs.empty() ? "i." : ", i.") + quoted(column.name);
+  }
+  return fmt::format(
+      "  INSERT INTO turnpoint.{0} ({1}) SELECT {1} FROM pg_temp.incoming_{0} ON CONFLICT ({2}) DO NOTHING;\n"
+      "  IF EXISTS (SELECT FROM pg_temp.incoming_{0} i JOIN turnpoint.{0} t ON {3}\n"
+      "      WHERE ROW({4}) IS DISTINCT FROM ROW({5})) THEN\n"
+      "    RAISE EXCEPTION 'session %: {6}', id USING ERRCODE = 'TP004';\n  END IF;\n",
+      table.name, column_list(table), quoted_list(table.key), same, mine, theirs, conflict);
+}
+
+std::string prepare_function() {
+  std::string sql = R"sql(
+CREATE OR REPLACE FUNCTION turnpoint.prepare() RETURNS void LANGUAGE plpgsql SECURITY DEFINER
+SET search_path = pg_catalog, pg_temp SET client_min_messages = warning AS $fn$
+BEGIN
+)sql";
+  for (const auto& table : collected_tables()) {
+    if (table.name == "tombstone") continue;
+    sql += fmt::format(
+        "  CREATE TEMPORARY TABLE IF NOT EXISTS incoming_{0} (LIKE turnpoint.{0}) ON COMMIT DELETE ROWS;\n"
+        "  EXECUTE format('GRANT INSERT ON pg_temp.incoming_{0} TO %I', session_user);\n",
+        table.name);
+  }
+  return sql + "END $fn$;\n";
+}
+
+std::string store_function() {
+  std::string sql = R"sql(
+-- Stores the rows in the temporary tables as one session, or as the rest of it. Calculates the checksums of the
+-- new links from what is then stored. Returns the last checksum, and one over the session's annotations.
+CREATE OR REPLACE FUNCTION turnpoint.store_session(id text)
+RETURNS TABLE (last_index bigint, last_sha256 text, annotations_sha256 text) LANGUAGE plpgsql SECURITY DEFINER
+SET search_path = pg_catalog, pg_temp SET enable_seqscan = off SET enable_bitmapscan = off SET jit = off
+SET plan_cache_mode = force_generic_plan AS $fn$
+#variable_conflict use_column
+DECLARE p turnpoint.link; l turnpoint.link; s turnpoint.session; known boolean;
+BEGIN
+  PERFORM pg_advisory_xact_lock(hashtextextended(id, 0));
+  SELECT * INTO s FROM pg_temp.incoming_session;
+  IF NOT FOUND OR s.session_id <> id OR (SELECT count(*) FROM pg_temp.incoming_session) <> 1 THEN
+    RAISE EXCEPTION 'session %: exactly one row of table session is needed', id USING ERRCODE = 'TP004';
+  END IF;
+  IF NOT turnpoint.is_own(s.station_id) THEN
+    RAISE EXCEPTION 'session %: % may not store sessions of station %', id, session_user, s.station_id
+      USING ERRCODE = 'TP003';
+  END IF;
+  IF turnpoint.is_withdrawn(id, s.station_id, s.participant) THEN
+    RAISE EXCEPTION 'session %: it was withdrawn', id USING ERRCODE = 'TP002';
+  END IF;
+  IF EXISTS (SELECT FROM pg_temp.incoming_link WHERE session_id <> id)
+    OR EXISTS (SELECT FROM pg_temp.incoming_annotation WHERE session_id <> id)
+    OR EXISTS (SELECT FROM pg_temp.incoming_unsealed WHERE session_id <> id)
+    OR EXISTS (SELECT FROM pg_temp.incoming_enrolment e WHERE (e.station_id, e.participant)
+                 IS DISTINCT FROM (s.station_id, s.participant)) THEN
+    RAISE EXCEPTION 'session %: rows of another session', id USING ERRCODE = 'TP004';
+  END IF;
+  INSERT INTO turnpoint.participant SELECT * FROM pg_temp.incoming_participant ON CONFLICT DO NOTHING;
+)sql";
+  sql += take_shared(collected_table("enrolment"), "its participant has another place on the server");
+  for (const auto* table : {"protocol", "rig", "calibration"})
+    sql += take_shared(collected_table(table), fmt::format("its {} differs on the server", table));
+  sql += fmt::format(R"sql(
+  known := EXISTS (SELECT FROM turnpoint.session t WHERE t.session_id = id);
+  IF known THEN
+    UPDATE turnpoint.session t SET status = s.status, status_reason = s.status_reason WHERE t.session_id = id;
+    IF EXISTS (SELECT FROM turnpoint.session t WHERE t.session_id = id AND t IS DISTINCT FROM s) THEN
+      RAISE EXCEPTION 'session %: its provenance differs on the server', id USING ERRCODE = 'TP004';
+    END IF;
+  ELSE
+    INSERT INTO turnpoint.session ({0}) SELECT {0} FROM pg_temp.incoming_session;
+  END IF;
+  SELECT * INTO p FROM turnpoint.link t WHERE t.session_id = id ORDER BY t.link_index DESC LIMIT 1;
+  IF NOT FOUND THEN
+    p.link_index := -1; p.last_segment := 0; p.last_block := -1; p.last_trial := -1; p.last_event := -1;
+    p.sha256 := '';
+  END IF;
+)sql",
+                     column_list(collected_table("session")));
+  for (const auto& table : collected_tables())
+    if (table.chain) sql += take_rows(table);
+  sql += fmt::format(R"sql(
+  FOR l IN SELECT * FROM pg_temp.incoming_link i ORDER BY i.link_index LOOP
+    IF l.link_index <> p.link_index + 1 THEN
+      RAISE EXCEPTION 'session %: checksum % is missing', id, p.link_index + 1 USING ERRCODE = 'TP004';
+    END IF;
+    IF l.encoding NOT BETWEEN 1 AND (SELECT v.encoding FROM turnpoint.version v) THEN
+      RAISE EXCEPTION 'session %: checksum % has encoding %, which this server does not know', id, l.link_index,
+        l.encoding USING ERRCODE = 'TP004';
+    END IF;
+    IF turnpoint.link_sha256(p, l) IS DISTINCT FROM l.sha256 THEN
+      RAISE EXCEPTION 'session %: the rows that arrived differ from checksum %', id, l.link_index
+        USING ERRCODE = 'TP001';
+    END IF;
+    p := l;
+  END LOOP;
+  INSERT INTO turnpoint.link ({0}) SELECT {0} FROM pg_temp.incoming_link;
+  INSERT INTO turnpoint.unsealed SELECT session_id FROM pg_temp.incoming_unsealed ON CONFLICT DO NOTHING;
+)sql",
+                     column_list(collected_table("link")));
+  for (const auto& table : collected_tables())
+    if (table.chain)
+      sql += fmt::format(
+          "  IF EXISTS (SELECT FROM pg_temp.incoming_{0} WHERE {1} > p.{2}) THEN\n"
+          "    RAISE EXCEPTION 'session %: rows of table {0} have no checksum', id USING ERRCODE = 'TP004';\n"
+          "  END IF;\n",
+          table.name, quoted(table.chain->counter), table.chain->last);
+  sql += take_shared(collected_table("annotation"), "an annotation differs on the server");
+  const std::string running = name(records::SessionStatus::running),
+                    interrupted = name(records::SessionStatus::interrupted),
+                    abandoned = name(records::SessionStatus::abandoned);
+  sql += fmt::format(R"sql(
+  -- A session whose process died changes its status without a link.
+  IF NOT ((s.status, s.status_reason) = (p.status, p.status_reason)
+    OR (p.status = '{0}' AND (s.status, s.status_reason) = ('{1}', '{3}'))
+    OR (p.status IN ('{0}', '{1}') AND (s.status, s.status_reason) = ('{2}', '{4}'))) THEN
+    RAISE EXCEPTION 'session %: its status differs from its last checksum', id USING ERRCODE = 'TP001';
+  END IF;
+  IF NOT EXISTS (SELECT FROM turnpoint.enrolment e JOIN turnpoint.protocol q USING (protocol_id)
+      WHERE q.protocol_key = s.protocol_key AND e.participant = s.participant
+        AND e.sequence_index = s.sequence_index) THEN
+    RAISE EXCEPTION 'session %: its participant is not enrolled with its place in the counterbalancing', id
+      USING ERRCODE = 'TP004';
+  END IF;
+  UPDATE turnpoint.station t SET last_contact = now() WHERE t.station_id = s.station_id;
+  RETURN QUERY SELECT p.link_index, p.sha256, turnpoint.annotations_sha256(id);
+END $fn$;
+)sql",
+                     running, interrupted, abandoned, records::kLostReason, records::kAbandonedReason);
+  return sql;
+}
+
+constexpr const char* kFunctions = R"sql(
+-- Stations are known by the role with which they connect, which SECURITY DEFINER does not change.
+CREATE OR REPLACE FUNCTION turnpoint.is_own(station text) RETURNS boolean LANGUAGE sql STABLE AS
+  $$ SELECT EXISTS (SELECT FROM turnpoint.station s WHERE s.station_id = station AND s.role = session_user) $$;
+
+CREATE OR REPLACE FUNCTION turnpoint.is_withdrawn(id text, station text, code text) RETURNS boolean
+LANGUAGE sql STABLE AS $$ SELECT EXISTS (SELECT FROM turnpoint.tombstone t WHERE t.session_id = id
+  OR (t.station_id IN ('', station) AND t.participant_sha256 =
+        encode(sha256(convert_to(t.salt || '/' || code, 'UTF8')), 'hex'))) $$;
+
+CREATE OR REPLACE FUNCTION turnpoint.annotations_sha256(id text) RETURNS text LANGUAGE sql STABLE AS
+  $$ SELECT encode(sha256(coalesce(string_agg(convert_to(turnpoint.coded(annotation_id)
+       || turnpoint.coded(realtime_ns) || turnpoint.coded(text) || E'\n', 'UTF8'), ''::bytea
+       ORDER BY annotation_id COLLATE "C"), ''::bytea)), 'hex')
+     FROM turnpoint.annotation WHERE session_id = id $$;
+
+-- The versions that the server knows, and the stations for which the caller may speak.
+CREATE OR REPLACE FUNCTION turnpoint.hello() RETURNS TABLE (schema bigint, encoding bigint, station_id text)
+LANGUAGE sql STABLE SECURITY DEFINER SET search_path = pg_catalog, pg_temp AS
+  $$ SELECT v.schema, v.encoding, s.station_id FROM turnpoint.version v
+     LEFT JOIN turnpoint.station s ON s.role = session_user ORDER BY s.station_id COLLATE "C" $$;
+
+-- The last link of each of the caller's sessions.
+CREATE OR REPLACE FUNCTION turnpoint.chains()
+RETURNS TABLE (session_id text, link_index bigint, sha256 text, last_segment bigint, last_block bigint,
+  last_trial bigint, last_event bigint, status text, status_reason text, annotations bigint)
+LANGUAGE sql STABLE SECURITY DEFINER SET search_path = pg_catalog, pg_temp AS
+  $$ SELECT s.session_id, l.link_index, l.sha256, l.last_segment, l.last_block, l.last_trial, l.last_event,
+       s.status, s.status_reason, (SELECT count(*) FROM turnpoint.annotation a WHERE a.session_id = s.session_id)
+     FROM turnpoint.session s CROSS JOIN LATERAL (SELECT * FROM turnpoint.link k
+       WHERE k.session_id = s.session_id ORDER BY k.link_index DESC LIMIT 1) l
+     WHERE turnpoint.is_own(s.station_id) $$;
+
+-- Deletes what has a tombstone, on condition that the caller may.
+CREATE OR REPLACE FUNCTION turnpoint.delete_withdrawn() RETURNS void LANGUAGE plpgsql AS $fn$
+BEGIN
+  DELETE FROM turnpoint.session s USING turnpoint.tombstone t WHERE s.session_id = t.session_id;
+  DELETE FROM turnpoint.enrolment e USING turnpoint.tombstone t WHERE t.station_id IN ('', e.station_id)
+    AND t.participant_sha256 = encode(sha256(convert_to(t.salt || '/' || e.participant, 'UTF8')), 'hex');
+  DELETE FROM turnpoint.same_person e USING turnpoint.tombstone t
+    WHERE (t.station_id IN ('', e.station_a)
+        AND t.participant_sha256 = encode(sha256(convert_to(t.salt || '/' || e.code_a, 'UTF8')), 'hex'))
+      OR (t.station_id IN ('', e.station_b)
+        AND t.participant_sha256 = encode(sha256(convert_to(t.salt || '/' || e.code_b, 'UTF8')), 'hex'));
+  DELETE FROM turnpoint.participant p WHERE NOT EXISTS (SELECT FROM turnpoint.session s WHERE s.participant = p.code)
+    AND NOT EXISTS (SELECT FROM turnpoint.enrolment e WHERE e.participant = p.code);
+END $fn$;
+
+-- Takes the tombstones that a station holds, as a JSON list of rows of table tombstone, and returns all that the
+-- server holds. Those of other stations' sessions are ignored: no station deletes what is another's.
+CREATE OR REPLACE FUNCTION turnpoint.exchange_tombstones(theirs json) RETURNS SETOF turnpoint.tombstone
+LANGUAGE plpgsql SECURITY DEFINER SET search_path = pg_catalog, pg_temp AS $fn$
+DECLARE new_rows bigint;
+BEGIN
+  INSERT INTO turnpoint.tombstone (session_id, salt, participant_sha256, withdrawn_realtime_ns, station_id)
+    SELECT t.session_id, t.salt, t.participant_sha256, t.withdrawn_realtime_ns, t.station_id
+    FROM json_populate_recordset(NULL::turnpoint.tombstone, theirs) t
+      LEFT JOIN turnpoint.session s ON s.session_id = t.session_id
+    WHERE turnpoint.is_own(coalesce(s.station_id, t.station_id)) ON CONFLICT DO NOTHING;
+  GET DIAGNOSTICS new_rows = ROW_COUNT;
+  IF new_rows > 0 THEN PERFORM turnpoint.delete_withdrawn(); END IF;
+  RETURN QUERY SELECT * FROM turnpoint.tombstone t ORDER BY t.session_id;
+END $fn$;
+
+-- The station of a role that speaks for one station only.
+CREATE OR REPLACE FUNCTION turnpoint.own_station() RETURNS text LANGUAGE plpgsql STABLE AS $fn$
+DECLARE mine text[] := ARRAY(SELECT s.station_id FROM turnpoint.station s WHERE s.role = session_user);
+BEGIN
+  IF cardinality(mine) <> 1 THEN
+    RAISE EXCEPTION 'role % speaks for % stations; places are leased to one', session_user, cardinality(mine)
+      USING ERRCODE = 'TP003';
+  END IF;
+  RETURN mine[1];
+END $fn$;
+
+-- Leases this many more places in the counterbalancing of a protocol to the caller: the lowest that no station has.
+-- Returns all places that are leased to the caller.
+CREATE OR REPLACE FUNCTION turnpoint.lease_places(protocol text, more bigint) RETURNS SETOF bigint
+LANGUAGE plpgsql SECURITY DEFINER SET search_path = pg_catalog, pg_temp AS $fn$
+DECLARE mine text := turnpoint.own_station();
+BEGIN
+  IF more NOT BETWEEN 0 AND 10000 THEN
+    RAISE EXCEPTION 'a station cannot lease % places; allowed are 0 to 10000', more USING ERRCODE = 'TP003';
+  END IF;
+  PERFORM pg_advisory_xact_lock(hashtextextended('lease ' || protocol, 0));
+  INSERT INTO turnpoint.lease (protocol_id, sequence_index, station_id)
+    SELECT protocol, i, mine FROM generate_series(0::bigint,
+      (SELECT count(*) FROM turnpoint.lease t WHERE t.protocol_id = protocol)
+      + (SELECT count(*) FROM turnpoint.enrolment t WHERE t.protocol_id = protocol) + more) i
+    WHERE NOT EXISTS (SELECT FROM turnpoint.lease t WHERE t.protocol_id = protocol AND t.sequence_index = i)
+      AND NOT EXISTS (SELECT FROM turnpoint.enrolment t WHERE t.protocol_id = protocol AND t.sequence_index = i)
+    ORDER BY i LIMIT more;
+  RETURN QUERY SELECT t.sequence_index FROM turnpoint.lease t
+    WHERE t.protocol_id = protocol AND t.station_id = mine ORDER BY t.sequence_index;
+END $fn$;
+
+-- Takes back places that the caller has not used, as a JSON list, so that another station can lease them.
+CREATE OR REPLACE FUNCTION turnpoint.return_places(protocol text, places json) RETURNS void
+LANGUAGE plpgsql SECURITY DEFINER SET search_path = pg_catalog, pg_temp AS $fn$
+DECLARE mine text := turnpoint.own_station();
+BEGIN
+  DELETE FROM turnpoint.lease t WHERE t.protocol_id = protocol AND t.station_id = mine
+    AND t.sequence_index IN (SELECT value::bigint FROM json_array_elements_text(places))
+    AND NOT EXISTS (SELECT FROM turnpoint.enrolment e WHERE e.protocol_id = protocol
+                      AND e.sequence_index = t.sequence_index);
+END $fn$;
+
+-- For an administrator: withdraws a participant of a station. The stations follow at their next contact.
+CREATE OR REPLACE FUNCTION turnpoint.withdraw(station text, code text) RETURNS bigint LANGUAGE plpgsql
+SET search_path = pg_catalog, pg_temp AS $fn$
+DECLARE new_rows bigint; new_salt text := gen_random_uuid();
+BEGIN
+  INSERT INTO turnpoint.tombstone (session_id, salt, participant_sha256, withdrawn_realtime_ns, station_id)
+    SELECT s.session_id, new_salt, encode(sha256(convert_to(new_salt || '/' || code, 'UTF8')), 'hex'),
+      (extract(epoch FROM now()) * 1000000000)::bigint, s.station_id
+    FROM turnpoint.session s WHERE s.station_id = station AND s.participant = code;
+  GET DIAGNOSTICS new_rows = ROW_COUNT;
+  IF new_rows = 0 THEN RAISE EXCEPTION 'station % has no session of %', station, code; END IF;
+  PERFORM turnpoint.delete_withdrawn();
+  RETURN new_rows;
+END $fn$;
+)sql";
+
+constexpr const char* kRights = R"sql(
+REVOKE ALL ON ALL FUNCTIONS IN SCHEMA turnpoint FROM PUBLIC;
+GRANT EXECUTE ON FUNCTION turnpoint.hello(), turnpoint.chains(), turnpoint.prepare(), turnpoint.store_session(text),
+  turnpoint.exchange_tombstones(json), turnpoint.lease_places(text, bigint), turnpoint.return_places(text, json)
+  TO turnpoint_station;
+GRANT EXECUTE ON FUNCTION turnpoint.hello() TO turnpoint_reader;
+)sql";
+
+}  // namespace
+
+std::string checksum_sql() { return kCoded + link_function(); }
+
+std::string functions_sql() { return kFunctions + prepare_function() + store_function() + kRights; }
+
+}  // namespace turnpoint::collector

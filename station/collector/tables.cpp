@@ -1,0 +1,168 @@
+#include "station/collector/tables.hpp"
+
+#include <algorithm>
+#include <map>
+#include <stdexcept>
+
+#include "station/store/fields.hpp"
+#include "station/store/schema.hpp"
+
+namespace turnpoint::collector {
+
+namespace {
+
+using store::Database;
+using store::Statement;
+
+/// The rowid of a trial numbers the rows of one file. It means nothing in another database.
+constexpr const char* kRowNumber = "trial_id";
+
+void read_columns(Database& database, CollectedTable& table) {
+  Statement rows(database,
+                 "SELECT name, type, \"notnull\", dflt_value, pk FROM pragma_table_info(?) ORDER BY cid");
+  rows.bind(table.name);
+  std::map<std::int64_t, std::string> key;
+  while (rows.step()) {
+    if (rows.text(0) == kRowNumber) continue;
+    const bool in_key = rows.integer(4) != 0;
+    table.columns.push_back(
+        {rows.text(0), rows.text(1), rows.integer(2) == 0 && !in_key, rows.text(3), "", "", ""});
+    if (in_key) key[rows.integer(4)] = rows.text(0);
+  }
+  for (const auto& [place, name] : key) table.key.push_back(name);
+}
+
+void read_unique(Database& database, CollectedTable& table) {
+  Statement indexes(database, "SELECT name FROM pragma_index_list(?) WHERE origin = 'u' ORDER BY seq DESC");
+  indexes.bind(table.name);
+  while (indexes.step()) {
+    Statement columns(database, "SELECT name FROM pragma_index_info(?) ORDER BY seqno");
+    columns.bind(indexes.text(0));
+    std::vector<std::string> names;
+    while (columns.step()) names.push_back(columns.text(0));
+    if (table.key.empty())
+      table.key = std::move(names);
+    else
+      table.unique.push_back(std::move(names));
+  }
+}
+
+void read_references(Database& database, CollectedTable& table) {
+  Statement rows(database,
+                 "SELECT id, \"table\", \"from\", \"to\" FROM pragma_foreign_key_list(?) ORDER BY id, seq");
+  rows.bind(table.name);
+  std::map<std::int64_t, Reference> references;
+  while (rows.step()) {
+    auto& reference = references[rows.integer(0)];
+    reference.table = rows.text(1);
+    reference.columns.push_back(rows.text(2));
+    reference.to.push_back(rows.text(3));
+  }
+  for (auto& [id, reference] : references) table.references.push_back(std::move(reference));
+}
+
+/// Adds the texts of the columns, and returns those that the chain covers, in the order in which it hashes
+/// them.
+template <class Record>
+std::vector<Covered> describe(CollectedTable& table, const store::Table<Record>& described) {
+  std::vector<Covered> covered;
+  for (const auto* name : described.place) covered.push_back({name, 1});
+  for (const auto& field : described.fields) {
+    covered.push_back({field.name, field.since});
+    for (auto& column : table.columns)
+      if (column.name == field.name) {
+        column.description = field.description;
+        column.unit = field.unit;
+        column.values = field.values;
+      }
+  }
+  return covered;
+}
+
+void describe_chain(CollectedTable& table) {
+  const auto part = [&](const auto& described, const std::string& counter, const std::string& order,
+                        const std::string& last, int since = 1) {
+    table.chain = ChainPart{describe(table, described), counter, order, last, since};
+  };
+  const auto& name = table.name;
+  if (name == "segment") part(store::segment_table(), "segment_index", "segment_index", "last_segment");
+  if (name == "block") part(store::block_table(), "run_order", "run_order", "last_block");
+  if (name == "trial") part(store::trial_table(), "trial_index", "trial_index", "last_trial");
+  if (name == "tone")
+    part(store::tone_table(), "trial_index", "trial_index,interval_index,scene_index,tone_index",
+         "last_trial");
+  if (name == "signal") part(store::signal_table(), "trial_index", "trial_index,stream", "last_trial", 3);
+  if (name == "event") part(store::event_table(), "event_index", "event_index", "last_event");
+  if (name == "self_test")
+    part(store::check_table(), "event_index", "event_index,check_index", "last_event", 4);
+  if (name == "answer")
+    part(store::answer_table(), "event_index", "event_index,answer_index", "last_event", 5);
+  if (name == "friction_level")
+    part(store::friction_level_table(), "event_index", "event_index,level_index", "last_event", 5);
+  if (name == "session") {
+    table.provenance = describe(table, store::session_table());
+    table.provenance.resize(table.provenance.size() - 2);  // status and reason are part of each link
+  }
+  if (name == "protocol") table.provenance = describe(table, store::protocol_table());
+  if (name == "rig") table.provenance = describe(table, store::rig_table());
+  if (name == "calibration") table.provenance = describe(table, store::calibration_table());
+}
+
+std::vector<CollectedTable> read_tables() {
+  Database database(":memory:", Database::Access::create);
+  store::create_schema(database, store::schema_version());
+  std::vector<CollectedTable> tables;
+  for (const auto* name :
+       {"participant",    "enrolment", "protocol", "rig",        "calibration", "session",   "segment",
+        "block",          "trial",     "tone",     "signal",     "event",       "self_test", "answer",
+        "friction_level", "link",      "unsealed", "annotation", "same_person", "tombstone"}) {
+    CollectedTable table;
+    table.name = name;
+    read_columns(database, table);
+    read_unique(database, table);
+    read_references(database, table);
+    describe_chain(table);
+    tables.push_back(std::move(table));
+  }
+  return tables;
+}
+
+}  // namespace
+
+const Column& CollectedTable::column(const std::string& wanted) const {
+  for (const auto& column : columns)
+    if (column.name == wanted) return column;
+  throw std::logic_error("table " + name + " has no column " + wanted);
+}
+
+bool CollectedTable::has(const std::string& wanted) const {
+  return std::any_of(columns.begin(), columns.end(),
+                     [&](const auto& column) { return column.name == wanted; });
+}
+
+const std::vector<CollectedTable>& collected_tables() {
+  static const auto tables = read_tables();
+  return tables;
+}
+
+const CollectedTable& collected_table(const std::string& name) {
+  for (const auto& table : collected_tables())
+    if (table.name == name) return table;
+  throw std::logic_error("table " + name + " is not collected");
+}
+
+std::string quoted(const std::string& name) { return '"' + name + '"'; }
+
+std::string quoted_list(const std::vector<std::string>& names) {
+  std::string list;
+  for (const auto& name : names) list += (list.empty() ? "" : ", ") + quoted(name);
+  return list;
+}
+
+std::string column_list(const CollectedTable& table) {
+  std::vector<std::string> names;
+  for (const auto& column : table.columns) names.push_back(column.name);
+  return quoted_list(names);
+}
+
+}  // namespace turnpoint::collector

@@ -1,0 +1,63 @@
+#pragma once
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace turnpoint::collector {
+
+/// One column of a table that is collected, as the station's database has it.
+struct Column {
+  std::string name;
+  std::string type;  ///< INTEGER, REAL, TEXT or BLOB
+  bool nullable = true;
+  std::string fallback;                   ///< SQL of the value that older rows get; "" if there is none
+  std::string description, unit, values;  ///< as in store/fields.hpp; "" if nothing is said about the column
+};
+
+struct Reference {
+  std::vector<std::string> columns;
+  std::string table;
+  std::vector<std::string> to;
+};
+
+/// A column that the checksum chain covers, from this encoding on.
+struct Covered {
+  std::string name;
+  int since = 1;
+};
+
+/// How the chain covers a table: the rows are hashed in the order of `order`, if their value in the column
+/// `counter` lies beyond the previous link's value of `last` (a column of table link).
+struct ChainPart {
+  std::vector<Covered> columns;
+  std::string counter, order, last;
+  int since = 1;  ///< the first encoding that covers the table
+};
+
+/// A table that a station sends to the server.
+struct CollectedTable {
+  std::string name;
+  std::vector<Column> columns;
+  std::vector<std::string> key;
+  std::vector<std::vector<std::string>> unique;
+  std::vector<Reference> references;
+  std::optional<ChainPart> chain;   ///< empty for tables that are not hashed row by row
+  std::vector<Covered> provenance;  ///< columns that the first link of a session covers
+
+  const Column& column(const std::string& name) const;
+  bool has(const std::string& name) const;
+};
+
+/// Returns the collected tables. Each comes after those to which it refers. They are read from the schema of
+/// an empty station database, and from the descriptions of its columns, so that the server's tables cannot
+/// differ from the station's.
+const std::vector<CollectedTable>& collected_tables();
+
+const CollectedTable& collected_table(const std::string& name);
+
+/// Names in double quotes, as PostgreSQL and SQLite both accept them, separated by commas.
+std::string quoted(const std::string& name);
+std::string quoted_list(const std::vector<std::string>& names);
+std::string column_list(const CollectedTable& table);
+
+}  // namespace turnpoint::collector

@@ -1,0 +1,190 @@
+#include "station/desk/study_data.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <map>
+#include <set>
+
+#include "station/protocol/protocol.hpp"
+#include "station/report/stored_trials.hpp"
+#include "station/store/read.hpp"
+#include "station/terms/usage_error.hpp"
+
+namespace turnpoint::desk {
+
+namespace {
+
+/// A session and the file that has it.
+struct Found {
+  std::string database;
+  store::SessionRecord session;
+};
+
+/// All sessions with trials that the choice allows, each once.
+std::vector<Found> sessions_of(const StudyChoice& choice, int& copies) {
+  std::vector<Found> all;
+  std::set<std::string> seen;
+  for (const auto& database : choice.databases) {
+    store::SessionFilter filter;
+    filter.protocol_id = choice.protocol_id;
+    for (auto& session : store::list_sessions(database, filter)) {
+      if (session.trials == 0) continue;
+      const auto& start = session.start;
+      if (!choice.mode.empty() && store::name(start.run_mode) != choice.mode) continue;
+      if (!choice.protocol_version.empty() && start.protocol_version != choice.protocol_version &&
+          !start.protocol_sha256.starts_with(choice.protocol_version))
+        continue;
+      if (seen.insert(session.session_id).second)
+        all.push_back({database, std::move(session)});
+      else
+        ++copies;
+    }
+  }
+  return all;
+}
+
+/// Refuses sessions that differ in something that the study must choose.
+void require_one(const std::vector<Found>& all, const std::string& what, const std::string& option,
+                 const std::function<std::string(const store::SessionStart&)>& of) {
+  std::map<std::string, int> counts;
+  for (const auto& found : all) ++counts[of(found.session.start)];
+  if (counts.size() < 2) return;
+  std::vector<std::string> list;
+  for (const auto& [name, count] : counts)
+    list.push_back(fmt::format("{} ({} session{})", name, count, count == 1 ? "" : "s"));
+  throw terms::UsageError(
+      fmt::format("the sessions have different {}: {}; choose with {}", what, fmt::join(list, ", "), option));
+}
+
+void require_one_study(const StudyChoice& choice, const std::vector<Found>& all) {
+  if (all.empty())
+    throw store::StoreError(
+        store::ErrorKind::missing,
+        fmt::format("{}: there is no such session with trials to report", fmt::join(choice.databases, ", ")));
+  require_one(all, "protocols", "--protocol", [](const auto& start) { return start.protocol_id; });
+  require_one(all, "versions of the protocol", "--protocol-version",
+              [](const auto& start) { return start.protocol_version; });
+  require_one(all, "protocol texts of the same version", "--protocol-version SHA-256",
+              [](const auto& start) { return start.protocol_sha256.substr(0, 12); });
+  require_one(all, "modes", "--mode",
+              [](const auto& start) { return std::string(store::name(start.run_mode)); });
+}
+
+/// CODE@STATION for each person of each file. A person without a station in the name is at home where the
+/// first session was made.
+std::map<std::pair<std::string, std::string>, std::string> full_names(const std::vector<Found>& all) {
+  std::map<std::pair<std::string, std::string>, std::string> names;
+  for (const auto& found : all) {
+    const auto& person = found.session.person;
+    names.try_emplace({found.database, person}, person.find('@') == std::string::npos
+                                                    ? person + "@" + found.session.start.station_id
+                                                    : person);
+  }
+  return names;
+}
+
+/// Sessions by participant: the same code at two stations is two people, unless their file says that they are
+/// one.
+std::map<std::string, std::vector<Found>> by_person(std::vector<Found> all) {
+  const auto code_of = [](const std::string& person) { return person.substr(0, person.rfind('@')); };
+  const auto names = full_names(all);
+  std::map<std::string, std::set<std::string>> same_code;
+  for (const auto& [where, name] : names) same_code[code_of(name)].insert(name);
+  std::map<std::string, std::vector<Found>> people;
+  for (auto& found : all) {
+    const auto& name = names.at({found.database, found.session.person});
+    people[same_code[code_of(name)].size() > 1 ? name : code_of(name)].push_back(std::move(found));
+  }
+  for (auto& [person, sessions] : people)
+    std::stable_sort(sessions.begin(), sessions.end(), [](const Found& a, const Found& b) {
+      return a.session.session_index < b.session.session_index;
+    });
+  return people;
+}
+
+/// The trials of all sessions of one participant.
+report::SessionData data_of(const std::string& person, const std::vector<Found>& sessions,
+                            const protocol::Protocol& protocol) {
+  report::SessionData all;
+  std::vector<records::BlockRecord> blocks;
+  int trials = 0, first_block = 0;
+  for (const auto& found : sessions) {
+    auto stored = store::read_session(found.database, found.session.session_id);
+    int last_block = first_block;
+    for (auto& block : stored.blocks) {
+      block.start.block_index += first_block;
+      last_block = std::max(last_block, block.start.block_index);
+      for (auto& row : block.trials) row.tones.clear(), row.trial_index += trials;
+      blocks.push_back(std::move(block));
+    }
+    first_block = last_block + 1, trials += found.session.trials;
+    all.run_mode = store::name(found.session.start.run_mode);
+  }
+  all.title = protocol.title;
+  all.participant = person;
+  report::add_trials(blocks, protocol, all);
+  // the procedures' own estimates belong to single sessions, whose seeds and blocks they need
+  all.estimates.clear(), all.finger.clear();
+  return all;
+}
+
+report::Study head_of(const StudyChoice& choice, const std::vector<Found>& all, int copies) {
+  report::Study study;
+  const auto& start = all.front().session.start;
+  std::set<std::string> stations, versions;
+  for (const auto& found : all) {
+    stations.insert(found.session.start.station_id);
+    versions.insert(found.session.start.software_version);
+  }
+  study.facts = {{"Protocol", start.protocol_id + " " + start.protocol_version},
+                 {"Protocol SHA-256", start.protocol_sha256},
+                 {"Databases", fmt::format("{}", fmt::join(choice.names, ", "))},
+                 {"Sessions", std::to_string(all.size())},
+                 {"Stations", fmt::format("{}", fmt::join(stations, ", "))},
+                 {"Recorded by version", fmt::format("{}", fmt::join(versions, ", "))}};
+  if (copies > 0)
+    study.statements.push_back(
+        {"copies", fmt::format("{} session{} in more than one file and count{} once.", copies,
+                               copies == 1 ? " is" : "s are", copies == 1 ? "s" : "")});
+  return study;
+}
+
+}  // namespace
+
+report::Study study_data(const StudyChoice& choice, const StudySink& sink, const StudyProgress& progress) {
+  int copies = 0;
+  auto all = sessions_of(choice, copies);
+  require_one_study(choice, all);
+  auto study = head_of(choice, all, copies);
+  const auto first = store::read_session(all.front().database, all.front().session.session_id);
+  const auto protocol = protocol::parse(first.session.start.protocol_text, first.session.start.protocol_path);
+  const auto rules = protocol.exclusion.value_or(protocol::Exclusion{});
+  study.rules = report::rules_in_words(rules);
+  const auto people = by_person(std::move(all));
+  int done = 0;
+  for (const auto& [person, sessions] : people) {
+    if (!progress(done, static_cast<int>(people.size()))) {
+      study.statements.push_back(
+          {"stopped",
+           fmt::format("Stopped after {} of {} participants; the others are missing.", done, people.size())});
+      break;
+    }
+    ++done;
+    auto data = data_of(person, sessions, protocol);
+    const bool incomplete = std::any_of(sessions.begin(), sessions.end(), [](const Found& found) {
+      return found.session.status != records::SessionStatus::completed;
+    });
+    auto result = report::study_person(data, rules, incomplete);
+    for (const auto& found : sessions) result.sessions.push_back(found.session.session_id);
+    sink(result, data);
+    study.persons.push_back(std::move(result));
+    data.trials.clear();
+    study.settings = std::move(data);
+  }
+  report::finish_study(study);
+  return study;
+}
+
+}  // namespace turnpoint::desk

@@ -1,0 +1,32 @@
+#pragma once
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+#include "station/drive/burst.hpp"
+#include "station/plant/setup.hpp"
+#include "station/rig/rig.hpp"
+
+namespace turnpoint::maintenance {
+
+/// What was captured while bursts were played. Captured frame k was played at frame first_frame + k -
+/// delay_frames of the bursts' numbering.
+struct Captured {
+  std::vector<std::vector<double>> channels;  ///< all captured channels; 1 is full scale
+  std::int64_t first_frame = 0;
+  double delay_frames = 0;
+};
+
+/// The samples that a burst puts on one channel, from its first frame on; 1 is full scale.
+std::vector<double> rendered(const rig::Rig& rig, const drive::Burst& burst, int channel);
+
+/// Plays the bursts in the simulated laboratory.
+Captured capture_simulated(const rig::Rig& rig, const std::vector<drive::Burst>& bursts,
+                           const std::function<void(plant::Setup&)>& laboratory);
+
+/// Plays a pilot and then the bursts on the rig's card, and captures them with the same card (see
+/// play_armed()). The first burst must not start before frame 2 * rate. Throws std::runtime_error if frames
+/// were lost, or if the pilot was not heard.
+Captured capture_armed(const rig::Rig& rig, const std::vector<drive::Burst>& bursts);
+
+}  // namespace turnpoint::maintenance

@@ -1,0 +1,176 @@
+#include "station/maintenance/disks.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <map>
+#include <sstream>
+#include <stdexcept>
+#include <system_error>
+
+#include "station/system/file_descriptor.hpp"
+
+namespace turnpoint::maintenance {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+std::string first_line(const fs::path& path) {
+  std::ifstream file(path);
+  std::string line;
+  std::getline(file, line);
+  const auto end = line.find_last_not_of(' ');
+  return end == std::string::npos ? "" : line.substr(0, end + 1);
+}
+
+/// The kernel writes spaces and some other characters of a path as \ and three octal digits.
+std::string unescaped(const std::string& text) {
+  std::string plain;
+  for (std::size_t i = 0; i < text.size(); ++i)
+    if (text[i] == '\\' && i + 3 < text.size())
+      plain += static_cast<char>(std::stoi(text.substr(i + 1, 3), nullptr, 8)), i += 3;
+    else
+      plain += text[i];
+  return plain;
+}
+
+/// The folders at which each device is mounted, by "major:minor" and by device ("/dev/sda1").
+std::multimap<std::string, std::string> mount_points(const std::string& mountinfo) {
+  std::multimap<std::string, std::string> points;
+  std::ifstream file(mountinfo);
+  for (std::string line; std::getline(file, line);) {
+    std::istringstream words(line);
+    const std::vector<std::string> fields{std::istream_iterator<std::string>(words), {}};
+    const auto dash = std::find(fields.begin(), fields.end(), "-");
+    if (fields.size() < 6 || fields.end() - dash < 3) continue;
+    points.emplace(fields[2], unescaped(fields[4]));
+    if (dash[2].starts_with("/dev/")) points.emplace(dash[2], unescaped(fields[4]));
+  }
+  return points;
+}
+
+bool can_be_taken_out(const fs::path& block) {
+  return first_line(block / "removable") == "1" ||
+         fs::canonical(block).string().find("/usb") != std::string::npos;
+}
+
+double size_GB(const fs::path& block) {
+  const auto sectors = first_line(block / "size");
+  return sectors.empty() ? 0 : 512e-9 * std::stod(sectors);  // the kernel counts sectors of 512 bytes
+}
+
+bool is_of_the_system(const std::string& folder) {
+  static const std::array parts{"/", "/boot", "/boot/firmware", "/boot/efi", "/usr", "/var", "/home"};
+  return std::find(parts.begin(), parts.end(), folder) != parts.end();
+}
+
+struct Ended {
+  int status = 0;
+  std::string said;
+};
+
+/// Runs a program without a shell and returns its exit status and everything that it printed.
+Ended run(std::vector<std::string> words) {
+  std::vector<char*> arguments;
+  for (auto& word : words) arguments.push_back(word.data());
+  arguments.push_back(nullptr);
+  std::array<int, 2> ends{};
+  if (::pipe2(ends.data(), O_CLOEXEC) != 0)
+    throw std::system_error(errno, std::generic_category(), "cannot make a pipe");
+  const system::FileDescriptor reading(ends[0]);
+  system::FileDescriptor writing(ends[1]);
+  posix_spawn_file_actions_t actions{};
+  ::posix_spawn_file_actions_init(&actions);
+  ::posix_spawn_file_actions_adddup2(&actions, ends[1], STDOUT_FILENO);
+  ::posix_spawn_file_actions_adddup2(&actions, ends[1], STDERR_FILENO);
+  pid_t process = -1;
+  const int error = ::posix_spawnp(&process, arguments[0], &actions, nullptr, arguments.data(), environ);
+  ::posix_spawn_file_actions_destroy(&actions);
+  if (error != 0)
+    throw std::system_error(error, std::generic_category(),
+                            "cannot start " + words[0] + " (Debian package udisks2)");
+  writing = system::FileDescriptor();
+  Ended ended;
+  std::array<char, 512> buffer{};
+  for (ssize_t count = 0; (count = ::read(reading.get(), buffer.data(), buffer.size())) != 0;) {
+    if (count > 0) ended.said.append(buffer.data(), static_cast<std::size_t>(count));
+    if (count < 0 && errno != EINTR) break;
+  }
+  int status = 0;
+  while (::waitpid(process, &status, 0) < 0)
+    if (errno != EINTR) throw std::system_error(errno, std::generic_category(), "waiting for " + words[0]);
+  ended.status = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  return ended;
+}
+
+Ended ask_udisks(const DiskSources& sources, const std::string& verb, const std::string& device) {
+  return run({sources.tool, verb, "--no-user-interaction", "--block-device", device});
+}
+
+void add(const fs::path& block, const std::string& name,
+         const std::multimap<std::string, std::string>& points, std::vector<Disk>& disks) {
+  Disk disk{"/dev/" + block.filename().string(), name, ""};
+  for (const auto& key : {first_line(block / "dev"), disk.device}) {
+    const auto [begin, end] = points.equal_range(key);
+    for (auto point = begin; point != end; ++point) {
+      if (is_of_the_system(point->second)) return;
+      if (disk.folder.empty()) disk.folder = point->second;
+    }
+  }
+  disks.push_back(std::move(disk));
+}
+
+}  // namespace
+
+std::vector<Disk> removable_disks(const DiskSources& sources) {
+  std::vector<Disk> disks;
+  if (!fs::is_directory(sources.blocks)) return disks;
+  const auto points = mount_points(sources.mounts);
+  for (const auto& entry : fs::directory_iterator(sources.blocks)) {
+    const auto& block = entry.path();
+    const double gigabytes = size_GB(block);
+    if (gigabytes == 0 || !can_be_taken_out(block)) continue;  // a card reader without a card has size 0
+    const auto model = first_line(block / "device/model");
+    const auto name = fmt::format(
+        "{}, {} GB", model.empty() ? block.filename().string() : model,
+        gigabytes < 10 ? fmt::format("{:.1f}", gigabytes) : fmt::format("{}", std::lround(gigabytes)));
+    bool divided = false;
+    for (const auto& part : fs::directory_iterator(block)) {
+      if (!fs::exists(part.path() / "partition")) continue;
+      divided = true;
+      add(part.path(), name, points, disks);
+    }
+    if (!divided) add(block, name, points, disks);
+  }
+  std::sort(disks.begin(), disks.end(), [](const Disk& a, const Disk& b) { return a.device < b.device; });
+  return disks;
+}
+
+std::string mount(const Disk& disk, const DiskSources& sources) {
+  const auto ended = ask_udisks(sources, "mount", disk.device);
+  for (const auto& now : removable_disks(sources))
+    if (now.device == disk.device && !now.folder.empty()) return now.folder;
+  throw std::runtime_error(fmt::format("{} ({}) could not be mounted: {}", disk.name, disk.device,
+                                       ended.said.empty() ? "udisks gave no reason" : ended.said));
+}
+
+void eject(const Disk& disk, const DiskSources& sources) {
+  ::sync();
+  if (const auto ended = ask_udisks(sources, "unmount", disk.device); ended.status != 0)
+    throw std::runtime_error(
+        fmt::format("{} ({}) is still in use, so do not unplug it: {}", disk.name, disk.device, ended.said));
+  ask_udisks(sources, "power-off", disk.device);
+}
+
+}  // namespace turnpoint::maintenance

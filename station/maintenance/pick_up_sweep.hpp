@@ -1,0 +1,36 @@
+#pragma once
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "station/calibration/calibration.hpp"
+#include "station/plant/setup.hpp"
+#include "station/rig/rig.hpp"
+
+namespace turnpoint::maintenance {
+
+/// How the pick-ups of a rig are calibrated.
+struct PickUpOptions {
+  double full_scale = 0.1;  ///< amplitude of the sweep
+  double low_Hz = 22000, high_Hz = 46000, length_s = 3;
+  calibration::PickUpSensor sensor = calibration::PickUpSensor::patch;
+  /// Measured displacements or accelerations, as CHANNEL=FILE with the pick-up's captured channel; "" if none
+  /// were measured. The columns are frequency_Hz,displacement_um or frequency_Hz,acceleration_m_s2.
+  std::string vibrometer, accelerometer;
+  double table_full_scale = 1;  ///< amplitude of the drive while the table was measured
+  double instrument_sd = 0.05;  ///< relative standard deviation of the instrument
+  /// Changes the simulated laboratory; for tests.
+  std::function<void(plant::Setup&)> laboratory;
+};
+
+/// Plays a sweep on each transducer, captures the pick-ups, and fits their responses. With a rig whose
+/// [capture] is `sim:`, plate and pick-ups are simulated. With `alsa:`, the amplifier is armed, so only an
+/// operator may request it. Throws terms::UsageError for a rig without pick-ups, and if the measurements do
+/// not allow a fit; text::BadInput for the table; std::runtime_error if frames were lost.
+std::vector<calibration::PickUp> calibrate_pick_ups(const rig::Rig& rig, const PickUpOptions& options);
+
+/// Returns the newest valid calibration beside the rig file with these pick-ups; without one, a calibration
+/// that contains nothing else.
+calibration::Calibration with_pick_ups(const rig::Rig& rig, std::vector<calibration::PickUp> pick_ups);
+
+}  // namespace turnpoint::maintenance

@@ -1,0 +1,119 @@
+#include <algorithm>
+#include <cctype>
+#include <map>
+
+#include "station/protocol/advice_list.hpp"
+
+namespace turnpoint::protocol {
+
+namespace {
+
+/// Words in questions that ask for what identifies a person, in the station's languages. Words of the
+/// languages with spaces must stand alone; in the others they may stand anywhere.
+const std::map<std::string, std::vector<std::string>>& identifying_words() {
+  static const std::map<std::string, std::vector<std::string>> words{
+      {"en", {"your name", "first name",      "last name",        "full name",      "family name", "surname",
+              "initials",  "birthday",        "date of birth",    "birth date",     "birthdate",   "e-mail",
+              "email",     "phone",           "telephone",        "address",        "postcode",    "zip code",
+              "passport",  "social security", "insurance number", "student number", "student id"}},
+      {"de", {"name",           "ihr name",
+              "vorname",        "vornamen",
+              "nachname",       "nachnamen",
+              "initialen",      "geburtsdatum",
+              "geburtstag",     "geboren",
+              "e-mail",         "email",
+              "e-mail-adresse", "telefon",
+              "telefonnummer",  "handynummer",
+              "adresse",        "anschrift",
+              "postleitzahl",   "matrikelnummer",
+              "ausweisnummer",  "versicherungsnummer"}},
+      {"es",
+       {"su nombre", "tu nombre", "nombre", "apellido", "apellidos", "iniciales", "fecha de nacimiento",
+        "cumpleaños", "correo", "correo electrónico", "teléfono", "dirección", "código postal", "dni",
+        "pasaporte"}},
+      {"ja",
+       {"氏名", "名前", "イニシャル", "生年月日", "誕生日", "メール", "電話", "住所", "郵便番号",
+        "学籍番号"}},
+      {"zh",
+       {"姓名", "名字", "出生日期", "生日", "邮箱", "电子邮件", "电话", "手机号", "地址", "邮编", "身份证",
+        "学号"}},
+      {"ar",
+       {"اسمك", "اسم العائلة", "الاسم", "تاريخ الميلاد", "تاريخ ميلادك", "عيد ميلادك", "البريد الإلكتروني",
+        "بريدك", "هاتف", "عنوانك", "العنوان", "رقم الهوية", "جواز السفر"}}};
+  return words;
+}
+
+/// Ids of items under which such answers are usually stored.
+const std::vector<std::string>& identifying_ids() {
+  static const std::vector<std::string> ids{
+      "name", "first_name", "last_name", "surname", "initials",  "birthday", "birth_date", "date_of_birth",
+      "dob",  "email",      "e-mail",    "phone",   "telephone", "address",  "postcode",   "student_id"};
+  return ids;
+}
+
+std::string lower(std::string text) {
+  for (auto& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return text;
+}
+
+bool has_word(const std::string& text, const std::string& word, bool alone) {
+  const auto letter = [&](std::size_t at) {
+    return std::isalnum(static_cast<unsigned char>(text[at])) || static_cast<unsigned char>(text[at]) >= 0x80;
+  };
+  for (auto at = text.find(word); at != std::string::npos; at = text.find(word, at + 1)) {
+    const auto end = at + word.size();
+    if (!alone || ((at == 0 || !letter(at - 1)) && (end == text.size() || !letter(end)))) return true;
+  }
+  return false;
+}
+
+/// The identifying word in the question; "" if there is none.
+std::string identifying_word(const Localised& question) {
+  for (const auto& [language, text] : question) {
+    const auto found = identifying_words().find(language.substr(0, 2));
+    if (found == identifying_words().end()) continue;
+    const bool alone = found->first == "en" || found->first == "de" || found->first == "es";
+    for (const auto& word : found->second)
+      if (has_word(lower(text), word, alone)) return word;
+  }
+  return "";
+}
+
+void check_privacy(AdviceList& advice, const std::string& key, const Item& item) {
+  const auto& ids = identifying_ids();
+  auto word = identifying_word(item.question);
+  if (word.empty() && std::find(ids.begin(), ids.end(), lower(item.id)) != ids.end()) word = item.id;
+  if (!word.empty())
+    advice.add(
+        key + ".id",
+        "the item \"" + item.id + "\" seems to ask for what identifies a person (\"" + word + "\")",
+        "ask only for what the analysis needs, such as the age in years; keep a list of names and codes "
+        "elsewhere");
+}
+
+void check_item_words(AdviceList& advice, const std::string& key, const Item& item) {
+  for (const auto& language : advice.protocol.languages)
+    for (std::size_t i = 0; i < item.choices.size(); ++i)
+      for (std::size_t j = 0; j < i; ++j) {
+        const auto &a = item.choices[i].label, &b = item.choices[j].label;
+        if (a.count(language) && b.count(language) && a.at(language) == b.at(language))
+          advice.add(key + ".choices." + std::to_string(i) + ".label." + language,
+                     "two answers have the label \"" + a.at(language) + "\"",
+                     "give each answer a different label");
+      }
+}
+
+}  // namespace
+
+void advise_on_interludes(AdviceList& advice) {
+  for (const auto& interlude : advice.protocol.interludes) {
+    if (interlude.kind != InterludeKind::questionnaire) continue;
+    for (std::size_t i = 0; i < interlude.items.size(); ++i) {
+      const auto key = "questionnaire." + interlude.name + ".item." + std::to_string(i);
+      check_privacy(advice, key, interlude.items[i]);
+      check_item_words(advice, key, interlude.items[i]);
+    }
+  }
+}
+
+}  // namespace turnpoint::protocol

@@ -1,0 +1,82 @@
+#include <algorithm>
+
+#include "station/protocol/expression.hpp"
+#include "station/protocol/reading.hpp"
+#include "station/protocol/sources.hpp"
+
+namespace turnpoint::protocol {
+
+using text::Range;
+using text::TableReader;
+
+namespace {
+
+constexpr int fewest_levels = 3, fewest_repeats = 3;
+
+void read_training(TableReader& reader, Block& block, const Reading& reading) {
+  block.kind = BlockKind::training;
+  block.trials = reader.integer("strokes", 1, 200, 10);
+  const auto* table = reader.maybe_table("pass");
+  if (!table) return;
+  TableReader inner(*table, reader.path("pass"), reading.findings);
+  const int strokes = inner.integer("strokes", 1, *block.trials);
+  block.pass = Pass{static_cast<double>(strokes) / *block.trials, inner.integer("retries", 0, 20)};
+  inner.finish();
+}
+
+/// The scene is the same in every trial of the block, so it must not contain factors.
+void check_scene(TableReader& reader, const Block& block, const Reading& reading) {
+  const auto& scenes = reading.protocol.scenes;
+  const auto found = scenes.find(block.strokes.scene);
+  if (found == scenes.end()) {
+    std::vector<std::string> known;
+    for (const auto& [name, scene] : scenes) known.push_back(name);
+    // A scene that could not be read has its own message.
+    const auto& declared = reading.declared_scenes;
+    if (!block.strokes.scene.empty() &&
+        std::find(declared.begin(), declared.end(), block.strokes.scene) == declared.end())
+      reader.problem("scene", "there is no [scene." + block.strokes.scene + "]",
+                     suggestion(block.strokes.scene, known));
+    return;
+  }
+  const auto expressions = expressions_of(found->second);
+  if (std::any_of(expressions.begin(), expressions.end(),
+                  [](const Linear* expression) { return !expression->is_constant(); }))
+    reader.problem("scene", "the scene \"" + block.strokes.scene + "\" depends on factors",
+                   "a friction table needs a scene without factors");
+}
+
+void read_friction_table(TableReader& reader, Block& block, const Reading& reading) {
+  block.kind = BlockKind::friction_table;
+  auto& strokes = block.strokes;
+  strokes.scene = reader.string("scene", "name the scene whose strength is changed");
+  check_scene(reader, block, reading);
+  const Range place{0, 10000, Range::Ends::closed, "mm"};
+  strokes.from_mm = reader.number("from_mm", place);
+  strokes.to_mm = reader.number("to_mm", place);
+  if (strokes.to_mm < strokes.from_mm + 20)
+    reader.problem("to_mm", "the part of the surface is shorter than 20 mm", "to_mm >= from_mm + 20");
+  strokes.levels_um = reader.numbers("displacement_um", {0, 100, Range::Ends::open_low, "um"}, fewest_levels);
+  if (std::adjacent_find(strokes.levels_um.begin(), strokes.levels_um.end(), std::greater_equal<>()) !=
+      strokes.levels_um.end())
+    reader.problem("displacement_um", "the displacements are not in ascending order",
+                   "list each displacement once, the smallest first");
+  strokes.repeats = reader.integer("repeats", fewest_repeats, 50, 6);
+  strokes.used = reader.boolean("use", "false");
+  block.trials = 2 * static_cast<int>(strokes.levels_um.size()) * strokes.repeats + 1;
+}
+
+}  // namespace
+
+void read_strokes(TableReader& reader, const std::string& kind, Block& block, const Reading& reading) {
+  block.place = reader.place();
+  block.practice = true;
+  block.strokes.duration_s = reader.number("duration_s", {0.5, 20, Range::Ends::closed, "s"});
+  if (kind == "training")
+    read_training(reader, block, reading);
+  else
+    read_friction_table(reader, block, reading);
+  read_break(reader, block, reading);
+}
+
+}  // namespace turnpoint::protocol

@@ -1,0 +1,40 @@
+#pragma once
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <vector>
+
+#include "station/analysis/estimate.hpp"
+#include "station/analysis/psychometric_fit.hpp"
+
+namespace turnpoint::report {
+
+// How numbers and intervals become JSON. There is no NaN and no infinity in JSON: they become null.
+
+using Json = nlohmann::ordered_json;
+
+inline Json value(double number) { return std::isfinite(number) ? Json(number) : Json(nullptr); }
+inline Json value(const std::optional<double>& number) { return number ? value(*number) : Json(nullptr); }
+inline Json value(const analysis::Interval& i) { return {{"low", value(i.low)}, {"high", value(i.high)}}; }
+
+inline Json value(const std::optional<analysis::Estimate>& estimate) {
+  if (!estimate) return nullptr;
+  return {{"value", value(estimate->value)}, {"interval", value(estimate->interval)}};
+}
+
+inline Json value(const std::optional<analysis::ParameterInterval>& interval) {
+  if (!interval) return nullptr;
+  return {{"low", value(interval->interval.low)},
+          {"high", value(interval->interval.high)},
+          {"touches_low", interval->touches_low},
+          {"touches_high", interval->touches_high}};
+}
+
+inline Json value(const std::vector<analysis::Statement>& statements) {
+  Json list = Json::array();
+  for (const auto& statement : statements)
+    list.push_back({{"code", statement.code}, {"text", statement.text}});
+  return list;
+}
+
+}  // namespace turnpoint::report

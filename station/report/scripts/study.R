@@ -1,0 +1,58 @@
+# Fits the tables of a study with lme4, and compares them with the report.
+#   turnpoint report --study --db lab.sqlite --tables tables
+#   Rscript study.R tables
+# The model is that of the report: a psychometric function whose intercept and slope differ between participants.
+suppressMessages(library(lme4))
+
+folder <- commandArgs(trailingOnly = TRUE)[1]
+if (is.na(folder)) stop("name the folder of the tables: Rscript study.R tables")
+table_of <- function(name) {
+  read.csv(file.path(folder, name), na.strings = "", colClasses = c(participant = "character"))
+}
+answers <- subset(table_of("answers.csv"), excluded == "no")
+groups <- read.csv(file.path(folder, "groups.csv"))
+label <- function(condition) ifelse(is.na(condition) | condition == "", "all trials", condition)
+answers$condition <- label(answers$condition)
+groups$condition <- label(groups$condition)
+
+# The link of a function between guess and 1 - lapse.
+link <- function(name, guess, lapse) {
+  range <- 1 - guess - lapse
+  core <- switch(name, normal = pnorm, logistic = plogis, weibull = function(z) 1 - exp(-exp(z)))
+  density <- switch(name, normal = dnorm, logistic = dlogis, weibull = function(z) exp(z - exp(z)))
+  inverse <- switch(name, normal = qnorm, logistic = qlogis, weibull = function(p) log(-log1p(-p)))
+  structure(list(linkfun = function(mu) inverse(pmin(pmax((mu - guess) / range, 1e-9), 1 - 1e-9)),
+                 linkinv = function(eta) pmin(pmax(guess + range * core(eta), 1e-12), 1 - 1e-12),
+                 mu.eta = function(eta) range * density(eta), valideta = function(eta) TRUE,
+                 name = paste(name, "between asymptotes")), class = "link-glm")
+}
+
+for (i in seq_len(nrow(groups))) {
+  group <- groups[i, ]
+  part <- answers[answers$condition == group$condition, ]
+  # lme4 wants levels of the order of 1
+  centre <- mean(part$axis); width <- sd(part$axis)
+  part$x <- (part$axis - centre) / width
+  start <- list(fixef = c(group$intercept + group$rate * centre, group$rate * width))
+  model <- suppressMessages(suppressWarnings(glmer(
+    cbind(positive, trials - positive) ~ x + (1 + x | participant), part, start = start,
+    family = binomial(link(group$`function`, group$guess, group$lapse)),
+    control = glmerControl(optimizer = "bobyqa", optCtrl = list(maxfun = 1e5)))))
+  rate <- fixef(model)[[2]] / width
+  threshold <- -fixef(model)[[1]] / fixef(model)[[2]] * width + centre
+  likelihood <- as.numeric(logLik(model)) - sum(lchoose(part$trials, part$positive))
+  ours <- -group$intercept / group$rate
+  cat(sprintf("threshold,%s,%.6g,%.6g\n", group$condition, threshold, ours))
+  cat(sprintf("rate,%s,%.6g,%.6g\n", group$condition, rate, group$rate))
+  cat(sprintf("log_likelihood,%s,%.8g,%.8g\n", group$condition, likelihood, group$log_likelihood))
+}
+
+# Response times of right answers: log time by condition, with participants as random effects.
+trials <- subset(table_of("trials.csv"), excluded == "no" & outcome == "answered" & correct == 1)
+trials$condition <- label(trials$condition)
+if (length(unique(trials$condition)) > 1) {
+  model <- suppressMessages(lmer(log(response_time_s) ~ condition + (1 | participant), trials))
+  for (name in names(fixef(model))[-1])
+    cat(sprintf("log_response_time,%s,%.6g,%.6g\n", sub("^condition", "", name), fixef(model)[[name]],
+                sqrt(vcov(model)[name, name])))
+}

@@ -1,0 +1,42 @@
+"""Reads the tables of a study with pandas and computes the effects of the conditions.
+
+turnpoint report --study --db lab.sqlite --tables tables
+python3 study.py tables
+
+Prints one line for each measure and pair of conditions: the mean of the participants' own differences, its
+standard error and the number of participants. The report has the same differences with intervals.
+"""
+import itertools
+import pathlib
+import sys
+
+import pandas as pd
+
+
+def effects(measures: pd.DataFrame) -> pd.DataFrame:
+    rows = []
+    for measure, part in measures.groupby("measure", sort=False):
+        wide = part.pivot(index="participant", columns="condition", values="value")
+        for first, second in itertools.combinations(wide.columns, 2):
+            difference = (wide[second] - wide[first]).dropna()
+            rows.append((measure, first, second, difference.mean(), difference.sem(), len(difference)))
+    return pd.DataFrame(rows, columns=["measure", "first", "second", "difference", "se", "participants"])
+
+
+def main() -> None:
+    if len(sys.argv) != 2:
+        sys.exit("name the folder of the tables: python3 study.py tables")
+    folder = pathlib.Path(sys.argv[1])
+    measures = pd.read_csv(folder / "measures.csv", dtype={"participant": str}, keep_default_na=False)
+    measures["value"] = pd.to_numeric(measures["value"])
+    included = measures[measures["excluded"] == "no"]
+    trials = pd.read_csv(folder / "trials.csv", dtype={"participant": str, "condition": str})
+    answered = trials[(trials["excluded"] == "no") & (trials["outcome"] == "answered")]
+    accuracy = answered.groupby("participant")["correct"].mean()
+    print("accuracy,,," + f"{accuracy.mean():.6g},{accuracy.sem():.6g},{len(accuracy)}")
+    for row in effects(included).itertuples(index=False):
+        print(f"{row.measure},{row.first},{row.second},{row.difference:.6g},{row.se:.6g},{row.participants}")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,224 @@
+#include "station/report/study.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "station/analysis/quantile.hpp"
+#include "station/text/number.hpp"
+
+namespace turnpoint::report {
+
+namespace {
+
+using analysis::Outcome;
+using analysis::PersonMeasure;
+using analysis::TrialType;
+
+void count_trials(const SessionData& data, StudyPerson& person) {
+  int right = 0, scored = 0, timeouts = 0, anticipations = 0;
+  std::vector<double> times;
+  for (const auto& trial : data.trials) {
+    if (trial.type != TrialType::experimental || trial.outcome == Outcome::fault ||
+        trial.outcome == Outcome::aborted)
+      continue;
+    ++person.presented;
+    timeouts += trial.outcome == Outcome::timeout;
+    anticipations += trial.outcome == Outcome::anticipation;
+    if (trial.outcome != Outcome::answered) continue;
+    ++person.answered;
+    if (trial.response_time_s) times.push_back(*trial.response_time_s);
+    if (!trial.correct) continue;
+    ++scored;
+    right += *trial.correct;
+  }
+  if (person.presented > 0) {
+    person.timeouts = static_cast<double>(timeouts) / person.presented;
+    person.anticipations = static_cast<double>(anticipations) / person.presented;
+  }
+  if (scored > 0 && data.scored) person.accuracy = static_cast<double>(right) / scored;
+  if (!times.empty()) person.median_time_s = analysis::quantile(std::move(times), 0.5);
+  if (const auto catches = analysis::catch_accuracy(data.trials)) person.catch_accuracy = catches->value;
+}
+
+std::string percent(double share) { return text::number(100 * share, 3) + " %"; }
+
+/// One rule: its words, and what it says of a participant ("" if the participant keeps to it).
+struct StudyRule {
+  std::string words, broken;
+};
+
+/// A share that must not be below (or above) a limit.
+void add_share(std::vector<StudyRule>& rules, const std::string& what, const std::optional<double>& limit,
+               const char* side, const std::optional<double>& found) {
+  if (!limit) return;
+  const bool below = std::string(side) == "below";
+  const bool broken = found && (below ? *found < *limit : *found > *limit);
+  rules.push_back({what + " " + side + " " + percent(*limit), broken ? what + " " + percent(*found) : ""});
+}
+
+void add_time(std::vector<StudyRule>& rules, const std::optional<double>& limit, const char* side,
+              const std::optional<double>& found) {
+  if (!limit) return;
+  const bool below = std::string(side) == "below";
+  const bool broken = found && (below ? *found < *limit : *found > *limit);
+  rules.push_back({std::string("median response time ") + side + " " + text::number(*limit, 4) + " s",
+                   broken ? "median response time " + text::number(*found, 3) + " s" : ""});
+}
+
+std::vector<StudyRule> applied(const protocol::Exclusion& rules, const StudyPerson& person) {
+  std::vector<StudyRule> all;
+  if (rules.fewer_trials_than)
+    all.push_back({"fewer than " + std::to_string(*rules.fewer_trials_than) + " answered trials",
+                   person.answered < *rules.fewer_trials_than
+                       ? std::to_string(person.answered) + " answered trials"
+                       : ""});
+  add_share(all, "proportion correct", rules.accuracy_below, "below", person.accuracy);
+  add_share(all, "catch trials right", rules.catch_accuracy_below, "below", person.catch_accuracy);
+  add_share(all, "timeouts", rules.timeouts_above, "above", person.timeouts);
+  add_share(all, "anticipations", rules.anticipations_above, "above", person.anticipations);
+  add_time(all, rules.median_time_below_s, "below", person.median_time_s);
+  add_time(all, rules.median_time_above_s, "above", person.median_time_s);
+  if (rules.incomplete)
+    all.push_back(
+        {"a session that was not completed", person.incomplete ? "a session was not completed" : ""});
+  return all;
+}
+
+/// Collects the measures of one participant.
+class Measures {
+ public:
+  explicit Measures(StudyPerson& person) : person_(person) {}
+  void add(const std::string& condition, const std::string& measure, const std::string& unit,
+           const std::optional<double>& value) {
+    if (value && std::isfinite(*value))
+      person_.measures.push_back({person_.person, condition, measure, unit, *value});
+  }
+  void add(const std::string& condition, const std::string& measure, const std::string& unit,
+           const std::optional<analysis::Estimate>& estimate) {
+    if (estimate) add(condition, measure, unit, std::optional<double>(estimate->value));
+  }
+
+ private:
+  StudyPerson& person_;
+};
+
+void add_measures(const Summary& summary, StudyPerson& person) {
+  Measures measures(person);
+  const auto& data = summary.data;
+  for (const auto& named : summary.fits) {
+    if (!named.fit.parameters) continue;
+    measures.add(named.name, data.design == Design::two_sided ? "PSE" : "threshold", data.level_unit,
+                 std::optional<double>(named.fit.parameters->threshold));
+    if (slope_estimated(named))
+      measures.add(named.name, named.fit.options.function == terms::Function::normal ? "spread" : "slope",
+                   named.fit.options.function == terms::Function::normal ? data.level_unit : "",
+                   std::optional<double>(named.fit.parameters->slope));
+  }
+  for (const auto& entry : summary.trade.instructions) {
+    if (data.scored) measures.add(entry.instruction, "proportion correct", "", entry.proportion_correct);
+    measures.add(entry.instruction, "median response time", "s", entry.median_s);
+    measures.add(entry.instruction, "EZ boundary", "s = 0.1", entry.boundary);
+    measures.add(entry.instruction, "EZ time outside the decision", "s", entry.nondecision_s);
+    measures.add(entry.instruction, "LISAS", "s", entry.lisas_s);
+    measures.add(entry.instruction, "inverse efficiency", "s", entry.inverse_efficiency_s);
+    measures.add(entry.instruction, "BIS", "SD", entry.balanced);
+  }
+  for (const auto& detection : summary.detections)
+    if (!detection.level) {
+      measures.add(detection.condition, "d'", "", detection.d_prime);
+      measures.add(detection.condition, "criterion c", "", detection.criterion);
+    }
+  // a second procedure of the same condition would be a second value of the same measure
+  for (const auto& settings : summary.settings) {
+    const auto condition = settings.condition.empty() || summary.settings.size() == 1
+                               ? (summary.settings.size() == 1 ? settings.condition : settings.procedure)
+                               : settings.procedure + ", " + settings.condition;
+    measures.add(condition, "mean setting", data.level_unit, settings.mean);
+    measures.add(condition, "scatter of settings", data.level_unit, settings.sd);
+  }
+  for (const auto& judged : summary.judgements)
+    measures.add(judged.condition, "exponent of Stevens' law", "", judged.exponent);
+}
+
+/// The lower asymptote that the hierarchical fit takes as known.
+double known_guess(const NamedFit& named) {
+  if (named.fit.options.guess == analysis::Guess::fixed) return named.fit.options.guess_value;
+  if (named.fit.options.guess == analysis::Guess::tied_to_lapse) return 0;
+  for (const auto& point : named.fit.data)
+    if (point.level == analysis::kNoise) return (point.positive + 0.5) / (point.trials + 1.0);
+  return named.fit.parameters ? named.fit.parameters->guess : 0;
+}
+
+GroupFit group_fit(const Study& study, const std::string& condition) {
+  GroupFit group{condition, "", {}};
+  std::vector<analysis::PersonCounts> people;
+  analysis::MixedOptions options;
+  for (const auto& person : study.persons)
+    for (const auto& named : person.fits) {
+      if (!person.excluded.empty() || named.name != condition) continue;
+      const auto& fitted = named.fit.options;
+      options = {fitted.function, fitted.scale, fitted.lapse_low, fitted.lapse_high,
+                 fitted.guess == analysis::Guess::tied_to_lapse};
+      group.positive = named.positive;
+      people.push_back({person.person, named.fit.data, known_guess(named)});
+    }
+  group.result = analysis::fit_mixed(people, options);
+  return group;
+}
+
+}  // namespace
+
+StudyPerson study_person(const SessionData& data, const protocol::Exclusion& rules, bool incomplete) {
+  StudyPerson person;
+  person.person = data.participant;
+  person.incomplete = incomplete;
+  count_trials(data, person);
+  auto kept = data;
+  kept.replicates = kStudyReplicates;
+  auto summary = summarise(kept);
+  add_measures(summary, person);
+  for (auto& named : summary.fits) {
+    named.intervals.band_level.clear(), named.intervals.band_low.clear(), named.intervals.band_high.clear();
+    person.fits.push_back(std::move(named));
+  }
+  for (const auto& rule : applied(rules, person))
+    if (!rule.broken.empty()) person.excluded.push_back(rule.broken);
+  return person;
+}
+
+std::vector<std::string> rules_in_words(const protocol::Exclusion& rules) {
+  std::vector<std::string> words;
+  for (const auto& rule : applied(rules, {})) words.push_back(rule.words);
+  return words;
+}
+
+void finish_study(Study& study) {
+  std::vector<PersonMeasure> measures;
+  std::vector<std::string> conditions;
+  for (const auto& name : study.settings.conditions) conditions.push_back(name);
+  for (const auto& person : study.persons) {
+    if (!person.excluded.empty()) continue;
+    measures.insert(measures.end(), person.measures.begin(), person.measures.end());
+    for (const auto& named : person.fits)
+      if (std::find(conditions.begin(), conditions.end(), named.name) == conditions.end())
+        conditions.push_back(named.name);
+  }
+  // the conditions of the protocol come first, whatever order the first participant had
+  const auto place = [&conditions](const PersonMeasure& measure) {
+    return std::find(conditions.begin(), conditions.end(), measure.condition) - conditions.begin();
+  };
+  std::stable_sort(measures.begin(), measures.end(),
+                   [&place](const PersonMeasure& a, const PersonMeasure& b) { return place(a) < place(b); });
+  study.means = analysis::group_means(measures);
+  study.effects = analysis::effects(measures);
+  for (const auto& condition : conditions) {
+    const bool fitted = std::any_of(study.persons.begin(), study.persons.end(), [&](const auto& person) {
+      return person.excluded.empty() &&
+             std::any_of(person.fits.begin(), person.fits.end(),
+                         [&](const auto& named) { return named.name == condition; });
+    });
+    if (fitted) study.groups.push_back(group_fit(study, condition));
+  }
+}
+
+}  // namespace turnpoint::report

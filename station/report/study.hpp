@@ -1,0 +1,77 @@
+#pragma once
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "station/analysis/group.hpp"
+#include "station/analysis/mixed_fit.hpp"
+#include "station/protocol/protocol.hpp"
+#include "station/report/summary.hpp"
+
+namespace turnpoint::report {
+
+/// What a study needs of one participant: no trials, so that memory does not grow with their number.
+struct StudyPerson {
+  std::string person;
+  std::vector<std::string> sessions;       ///< ids
+  bool incomplete = false;                 ///< a session was not completed
+  int presented = 0, answered = 0;         ///< experimental trials
+  double timeouts = 0, anticipations = 0;  ///< shares of the presented trials
+  std::optional<double> accuracy, catch_accuracy, median_time_s;
+  std::vector<std::string> excluded;  ///< the rules that exclude the participant; empty: takes part
+  std::vector<NamedFit> fits;         ///< one for each condition; without bands
+  std::vector<analysis::PersonMeasure> measures;
+};
+
+/// The hierarchical fit of one condition.
+struct GroupFit {
+  std::string condition;  ///< "" if there is only one
+  std::string positive;   ///< the answer whose probability the curve shows
+  analysis::MixedResult result;
+};
+
+struct Study {
+  SessionData settings;            ///< how the trials are analysed; without trials
+  std::vector<Fact> facts;         ///< rows for the head of the report
+  std::vector<std::string> rules;  ///< the rules of exclusion, as the protocol states them
+  std::vector<StudyPerson> persons;
+  std::vector<GroupFit> groups;
+  std::vector<analysis::GroupMean> means;
+  std::vector<analysis::Effect> effects;
+  std::vector<analysis::Statement> statements;
+};
+
+/// Number of replicates for the intervals of single participants.
+constexpr int kStudyReplicates = 400;
+
+/// Analyses the trials of one participant, from all sessions together, and applies the rules.
+StudyPerson study_person(const SessionData& data, const protocol::Exclusion& rules, bool incomplete);
+
+/// The rules as sentences, in the order of the manual.
+std::vector<std::string> rules_in_words(const protocol::Exclusion& rules);
+
+/// Computes group fits, means and effects from the participants who are not excluded.
+void finish_study(Study& study);
+
+/// Returns the report as one self-contained page, or as one JSON document without NaN.
+std::string to_html(const Study& study);
+std::string to_json(const Study& study);
+
+std::optional<plot::Figure> group_curve_figure(const Study& study);
+std::optional<plot::Figure> shrinkage_figure(const Study& study);
+std::optional<plot::Figure> group_trade_figure(const Study& study);
+
+/// A table with one header row, as CSV.
+struct Table {
+  std::string name;  ///< file name
+  std::string csv;
+};
+/// Tidy tables for other programs: answers.csv (one row for each participant, condition and level),
+/// measures.csv, participants.csv and groups.csv.
+std::vector<Table> study_tables(const Study& study);
+/// The header and the rows of trials.csv: one row for each experimental trial of a participant.
+std::string trial_table_header();
+std::string trial_table_rows(const StudyPerson& person, const SessionData& data);
+
+}  // namespace turnpoint::report

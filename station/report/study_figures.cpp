@@ -1,0 +1,156 @@
+#include <algorithm>
+#include <cmath>
+
+#include "station/plot/chart.hpp"
+#include "station/report/study.hpp"
+
+namespace turnpoint::report {
+
+namespace {
+
+plot::Line curve_of(const analysis::MixedOptions& options, const analysis::Psychometric& parameters,
+                    const plot::Axis& axis, int series) {
+  plot::Line line;
+  line.series = series;
+  for (int i = 0; i <= 80; ++i) {
+    const double share = i / 80.0;
+    const double x = axis.scale == plot::AxisScale::log10 ? axis.low * std::pow(axis.high / axis.low, share)
+                                                          : axis.low + share * (axis.high - axis.low);
+    line.x.push_back(x);
+    line.y.push_back(analysis::probability(options.function, options.scale, parameters, x));
+  }
+  return line;
+}
+
+/// The group's function, with the mean of the participants' lower asymptotes.
+analysis::Psychometric group_parameters(const analysis::MixedFit& fit) {
+  double guess = 0;
+  for (const auto& person : fit.persons)
+    guess += person.parameters.guess / static_cast<double>(fit.persons.size());
+  return {fit.threshold->value, fit.slope->value, guess, fit.lapse};
+}
+
+std::vector<double> levels_of(const Study& study) {
+  std::vector<double> levels;
+  for (const auto& person : study.persons)
+    for (const auto& named : person.fits)
+      for (const auto& point : named.fit.data)
+        if (person.excluded.empty() && point.level != analysis::kNoise) levels.push_back(point.level);
+  return levels;
+}
+
+}  // namespace
+
+std::optional<plot::Figure> group_curve_figure(const Study& study) {
+  const auto levels = levels_of(study);
+  plot::Figure figure;
+  figure.title = "Psychometric functions of the participants and of the group";
+  figure.columns = study.groups.size() > 1 ? 2 : 1;
+  figure.chart_width_px = study.groups.size() > 1 ? 400 : 620;
+  figure.chart_height_px = 330;
+  int series = -1;
+  for (const auto& group : study.groups) {
+    ++series;
+    if (!group.result.fit || !group.result.fit->threshold) continue;
+    const auto& fit = *group.result.fit;
+    plot::Chart chart;
+    chart.title = group.condition.empty() ? "all trials" : group.condition;
+    chart.x = plot::fitted(
+        study.settings.level_label, levels, 0.05,
+        fit.options.scale == analysis::Scale::log10 ? plot::AxisScale::log10 : plot::AxisScale::linear);
+    chart.y = {"Proportion " + group.positive + " (0 to 1)", -0.03, 1.03};
+    if (study.settings.design == Design::forced_choice) chart.y.low = 0.3;
+    for (const auto& person : fit.persons)
+      if (person.threshold)
+        chart.layers.push_back(curve_of(fit.options, person.parameters, chart.x, plot::kNeutral));
+    auto whole = curve_of(fit.options, group_parameters(fit), chart.x, series);
+    whole.name = "group";
+    chart.layers.push_back(std::move(whole));
+    figure.charts.push_back(std::move(chart));
+  }
+  if (figure.charts.empty()) return std::nullopt;
+  return figure;
+}
+
+std::optional<plot::Figure> shrinkage_figure(const Study& study) {
+  plot::Figure figure;
+  figure.title = "Thresholds of the participants, alone and with partial pooling";
+  figure.chart_width_px = 620;
+  figure.chart_height_px = 260;
+  int series = -1;
+  for (const auto& group : study.groups) {
+    ++series;
+    if (!group.result.fit || !group.result.fit->threshold) continue;
+    plot::Points alone, pooled;
+    alone.name = "alone", alone.series = plot::kNeutral;
+    pooled.name = "partial pooling", pooled.series = series;
+    std::vector<double> all;
+    double number = 0;
+    for (const auto& person : group.result.fit->persons) {
+      ++number;
+      if (person.threshold) {
+        pooled.x.push_back(number), pooled.y.push_back(person.threshold->value);
+        pooled.low.push_back(person.threshold->interval.low);
+        pooled.high.push_back(person.threshold->interval.high);
+        all.insert(all.end(), {pooled.y.back(), pooled.low.back(), pooled.high.back()});
+      }
+      for (const auto& single : study.persons)
+        for (const auto& named : single.fits)
+          if (single.person == person.person && named.name == group.condition && named.fit.parameters) {
+            alone.x.push_back(number + 0.25), alone.y.push_back(named.fit.parameters->threshold);
+            alone.open.push_back(true), all.push_back(alone.y.back());
+          }
+    }
+    if (all.empty()) continue;
+    plot::Chart chart;
+    chart.title = group.condition.empty() ? "all trials" : group.condition;
+    chart.x = {"Participant (number in the table below)", 0.4, number + 0.6, plot::AxisScale::linear, true};
+    chart.y = plot::fitted(study.settings.level_label, all, 0.08);
+    chart.layers.push_back(
+        plot::Rule{plot::Rule::Direction::horizontal, group.result.fit->threshold->value, "group"});
+    chart.layers.push_back(alone);
+    chart.layers.push_back(pooled);
+    figure.charts.push_back(std::move(chart));
+  }
+  if (figure.charts.empty()) return std::nullopt;
+  return figure;
+}
+
+std::optional<plot::Figure> group_trade_figure(const Study& study) {
+  plot::Chart chart;
+  std::vector<double> times, accuracies;
+  std::vector<std::string> conditions;
+  for (const auto& mean : study.means)
+    if (mean.measure == "proportion correct") conditions.push_back(mean.condition);
+  int series = 0;
+  for (const auto& condition : conditions) {
+    plot::Points points;
+    points.series = series++;
+    points.name = conditions.size() > 1 ? condition : "";
+    for (const auto& person : study.persons) {
+      std::optional<double> time, accuracy;
+      for (const auto& measure : person.measures) {
+        if (measure.condition != condition) continue;
+        if (measure.measure == "median response time") time = measure.value;
+        if (measure.measure == "proportion correct") accuracy = measure.value;
+      }
+      if (!time || !accuracy || !person.excluded.empty()) continue;
+      points.x.push_back(*time), points.y.push_back(*accuracy);
+    }
+    times.insert(times.end(), points.x.begin(), points.x.end());
+    accuracies.insert(accuracies.end(), points.y.begin(), points.y.end());
+    if (!points.x.empty()) chart.layers.push_back(std::move(points));
+  }
+  if (times.empty()) return std::nullopt;
+  chart.x = plot::fitted("Median response time (s)", times, 0.1);
+  const double lowest = *std::min_element(accuracies.begin(), accuracies.end());
+  chart.y = {"Proportion correct (0 to 1)", std::min(0.45, lowest - 0.03), 1.03};
+  plot::Figure figure;
+  figure.title = "Speed and accuracy of each participant";
+  figure.chart_width_px = 620;
+  figure.chart_height_px = 330;
+  figure.charts.push_back(std::move(chart));
+  return figure;
+}
+
+}  // namespace turnpoint::report

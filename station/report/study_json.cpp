@@ -1,0 +1,104 @@
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "station/report/json_parts.hpp"
+#include "station/report/study.hpp"
+
+namespace turnpoint::report {
+
+namespace {
+
+Json person_json(const StudyPerson& person) {
+  Json json{{"participant", person.person},
+            {"sessions", person.sessions},
+            {"presented", person.presented},
+            {"answered", person.answered},
+            {"timeouts", value(person.timeouts)},
+            {"anticipations", value(person.anticipations)},
+            {"accuracy", value(person.accuracy)},
+            {"catch_accuracy", value(person.catch_accuracy)},
+            {"median_time_s", value(person.median_time_s)},
+            {"incomplete", person.incomplete},
+            {"excluded", person.excluded}};
+  json["fits"] = Json::array();
+  for (const auto& named : person.fits) {
+    const auto& p = named.fit.parameters;
+    json["fits"].push_back({{"condition", named.name},
+                            {"threshold", p ? value(p->threshold) : Json(nullptr)},
+                            {"threshold_interval", value(named.intervals.threshold)},
+                            {"slope", p && slope_estimated(named) ? value(p->slope) : Json(nullptr)},
+                            {"slope_interval", value(named.intervals.slope)},
+                            {"lapse", p ? value(p->lapse) : Json(nullptr)},
+                            {"statements", value(named.fit.statements)}});
+  }
+  json["measures"] = Json::array();
+  for (const auto& measure : person.measures)
+    json["measures"].push_back({{"condition", measure.condition},
+                                {"measure", measure.measure},
+                                {"unit", measure.unit},
+                                {"value", value(measure.value)}});
+  return json;
+}
+
+Json group_json(const GroupFit& group) {
+  Json json{{"condition", group.condition}, {"positive", group.positive}, {"fit", nullptr}};
+  auto statements = group.result.statements;
+  if (const auto& fit = group.result.fit) {
+    statements.insert(statements.end(), fit->statements.begin(), fit->statements.end());
+    Json persons = Json::array();
+    for (const auto& person : fit->persons)
+      persons.push_back({{"participant", person.person},
+                         {"trials", person.trials},
+                         {"threshold", value(person.threshold)},
+                         {"slope", person.threshold ? value(person.parameters.slope) : Json(nullptr)},
+                         {"shrinkage", value(person.shrinkage)}});
+    json["fit"] = {{"threshold", value(fit->threshold)},
+                   {"slope", value(fit->slope)},
+                   {"threshold_sd", value(fit->threshold_sd)},
+                   {"lapse", value(fit->lapse)},
+                   {"intercept", value(fit->intercept)},
+                   {"intercept_se", value(fit->intercept_se)},
+                   {"intercept_sd", value(fit->intercept_sd)},
+                   {"rate", value(fit->rate)},
+                   {"rate_se", value(fit->rate_se)},
+                   {"rate_sd", value(fit->rate_sd)},
+                   {"correlation", value(fit->correlation)},
+                   {"log_likelihood", value(fit->log_likelihood)},
+                   {"participants", persons}};
+  }
+  json["statements"] = value(statements);
+  return json;
+}
+
+}  // namespace
+
+std::string to_json(const Study& study) {
+  Json json{{"title", study.settings.title}, {"run_mode", study.settings.run_mode}};
+  for (const auto& [name, text] : study.facts) json["facts"][name] = text;
+  json["rules"] = study.rules;
+  json["participants"] = Json::array();
+  for (const auto& person : study.persons) json["participants"].push_back(person_json(person));
+  json["groups"] = Json::array();
+  for (const auto& group : study.groups) json["groups"].push_back(group_json(group));
+  json["means"] = Json::array();
+  for (const auto& mean : study.means)
+    json["means"].push_back({{"measure", mean.measure},
+                             {"unit", mean.unit},
+                             {"condition", mean.condition},
+                             {"participants", mean.persons},
+                             {"mean", value(mean.mean)},
+                             {"sd", value(mean.sd)}});
+  json["effects"] = Json::array();
+  for (const auto& effect : study.effects)
+    json["effects"].push_back({{"measure", effect.measure},
+                               {"unit", effect.unit},
+                               {"first", effect.first},
+                               {"second", effect.second},
+                               {"participants", effect.persons},
+                               {"difference", value(effect.difference)},
+                               {"standardised", value(effect.standardised)}});
+  json["statements"] = value(study.statements);
+  return json.dump(2);
+}
+
+}  // namespace turnpoint::report

@@ -1,0 +1,125 @@
+#include <cmath>
+
+#include "station/report/study.hpp"
+#include "station/text/number.hpp"
+
+namespace turnpoint::report {
+
+namespace {
+
+/// A field of a CSV file (RFC 4180).
+std::string csv_field(const std::string& text) {
+  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
+  std::string quoted = "\"";
+  for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return quoted + "\"";
+}
+
+std::string csv_number(double value) { return std::isfinite(value) ? text::number(value, 12) : ""; }
+std::string csv_number(const std::optional<double>& value) { return value ? csv_number(*value) : ""; }
+
+const char* yes_or_no(bool value) { return value ? "yes" : "no"; }
+
+const char* function_name(terms::Function function) {
+  switch (function) {
+    case terms::Function::weibull:
+      return "weibull";
+    case terms::Function::normal:
+      return "normal";
+    case terms::Function::logistic:
+      break;
+  }
+  return "logistic";
+}
+
+std::string answers_table(const Study& study) {
+  std::string csv = "participant,excluded,condition,level,axis,trials,positive\n";
+  for (const auto& person : study.persons)
+    for (const auto& named : person.fits)
+      for (const auto& point : named.fit.data) {
+        if (point.level == analysis::kNoise) continue;
+        const auto& options = named.fit.options;
+        csv += csv_field(person.person) + "," + yes_or_no(!person.excluded.empty()) + "," +
+               csv_field(named.name) + "," + csv_number(point.level) + "," +
+               csv_number(analysis::axis_position(options.function, options.scale, point.level)) + "," +
+               std::to_string(point.trials) + "," + std::to_string(point.positive) + "\n";
+      }
+  return csv;
+}
+
+std::string measures_table(const Study& study) {
+  std::string csv = "participant,excluded,condition,measure,unit,value\n";
+  for (const auto& person : study.persons)
+    for (const auto& measure : person.measures)
+      csv += csv_field(person.person) + "," + yes_or_no(!person.excluded.empty()) + "," +
+             csv_field(measure.condition) + "," + csv_field(measure.measure) + "," + csv_field(measure.unit) +
+             "," + csv_number(measure.value) + "\n";
+  return csv;
+}
+
+std::string participants_table(const Study& study) {
+  std::string csv =
+      "participant,sessions,presented,answered,accuracy,catch_accuracy,timeouts,anticipations,median_time_s,"
+      "incomplete,excluded,reasons\n";
+  for (const auto& person : study.persons) {
+    std::string reasons;
+    for (const auto& reason : person.excluded) reasons += (reasons.empty() ? "" : "; ") + reason;
+    csv += csv_field(person.person) + "," + std::to_string(person.sessions.size()) + "," +
+           std::to_string(person.presented) + "," + std::to_string(person.answered) + "," +
+           csv_number(person.accuracy) + "," + csv_number(person.catch_accuracy) + "," +
+           csv_number(person.timeouts) + "," + csv_number(person.anticipations) + "," +
+           csv_number(person.median_time_s) + "," + yes_or_no(person.incomplete) + "," +
+           yes_or_no(!person.excluded.empty()) + "," + csv_field(reasons) + "\n";
+  }
+  return csv;
+}
+
+std::string groups_table(const Study& study) {
+  std::string csv =
+      "condition,function,guess,lapse,intercept,rate,intercept_se,rate_se,intercept_sd,rate_sd,correlation,"
+      "log_likelihood,threshold\n";
+  for (const auto& group : study.groups) {
+    const auto& fit = group.result.fit;
+    if (!fit) continue;
+    double guess = 0;
+    for (const auto& person : fit->persons)
+      guess += person.parameters.guess / static_cast<double>(fit->persons.size());
+    csv += csv_field(group.condition) + "," + function_name(fit->options.function) + "," + csv_number(guess) +
+           "," + csv_number(fit->lapse) + "," + csv_number(fit->intercept) + "," + csv_number(fit->rate) +
+           "," + csv_number(fit->intercept_se) + "," + csv_number(fit->rate_se) + "," +
+           csv_number(fit->intercept_sd) + "," + csv_number(fit->rate_sd) + "," +
+           csv_number(fit->correlation) + "," + csv_number(fit->log_likelihood) + "," +
+           (fit->threshold ? csv_number(fit->threshold->value) : "") + "\n";
+  }
+  return csv;
+}
+
+}  // namespace
+
+std::vector<Table> study_tables(const Study& study) {
+  return {{"answers.csv", answers_table(study)},
+          {"measures.csv", measures_table(study)},
+          {"participants.csv", participants_table(study)},
+          {"groups.csv", groups_table(study)}};
+}
+
+std::string trial_table_header() {
+  return "participant,excluded,condition,block,procedure,level,response,correct,outcome,response_time_s\n";
+}
+
+std::string trial_table_rows(const StudyPerson& person, const SessionData& data) {
+  std::string csv;
+  for (const auto& trial : data.trials) {
+    if (trial.type != analysis::TrialType::experimental) continue;
+    const auto choice = trial.response ? static_cast<std::size_t>(*trial.response) : data.choices.size();
+    csv += csv_field(person.person) + "," + yes_or_no(!person.excluded.empty()) + "," +
+           csv_field(trial.instruction) + "," + csv_field(trial.block) + "," + csv_field(trial.procedure) +
+           "," + csv_number(trial.level) + "," +
+           (choice < data.choices.size() ? csv_field(data.choices[choice]) : "") + "," +
+           (trial.correct ? (*trial.correct ? "1" : "0") : "") + "," + terms::name(trial.outcome) + "," +
+           csv_number(trial.response_time_s) + "\n";
+  }
+  return csv;
+}
+
+}  // namespace turnpoint::report

@@ -1,0 +1,20 @@
+#pragma once
+#include "station/scene/planner.hpp"
+
+namespace turnpoint::scene {
+
+/// A part of the surface, in m from the wide end.
+struct Stretch {
+  double from_m = 0, to_m = 0;
+};
+
+/// Returns the displacement that a plan predicts for this part of the surface (rms over the part, without a
+/// finger). Throws terms::UsageError if the part is not on the surface.
+double mean_displacement_m(Planner& planner, const DrivePlan& plan, const Stretch& stretch);
+
+/// Returns the plan with all amplitudes multiplied by `factor`; a factor of 0 removes the tones. Predicted
+/// friction is that of the new amplitudes only for the whole surface (`lowest_friction`); figures of the zone
+/// and audible products are dropped.
+DrivePlan scaled(Planner& planner, DrivePlan plan, double factor);
+
+}  // namespace turnpoint::scene

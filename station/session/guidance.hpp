@@ -1,0 +1,34 @@
+#pragma once
+#include <cstdint>
+#include <optional>
+
+#include "station/protocol/protocol.hpp"
+#include "station/sensing/trial_finger.hpp"
+#include "station/session/page.hpp"
+
+namespace turnpoint::session {
+
+/// Decides what the bars on the participant's page show, and when they stand still. Pure.
+class Guide {
+ public:
+  static constexpr std::int64_t kEvery_ns = 50'000'000;  ///< between two movements of the bars
+
+  /// Without guidance in the protocol, there are no bars.
+  explicit Guide(const std::optional<protocol::Sensing>& sensing);
+
+  bool guides() const { return sensing_.has_value(); }
+  /// The bars as they were last shown; empty without guidance.
+  const std::optional<Guidance>& bars() const { return bars_; }
+
+  /// Shows the finger as it is now. Returns true if the bars have changed.
+  bool move(const std::optional<sensing::FingerNow>& finger);
+  /// While a stimulus is presented, the bars stand still, unless the protocol asks for live guidance.
+  /// Returns true if this changed.
+  bool freeze(bool during_stimulus);
+
+ private:
+  std::optional<protocol::Sensing> sensing_;
+  std::optional<Guidance> bars_;
+};
+
+}  // namespace turnpoint::session

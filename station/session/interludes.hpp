@@ -1,0 +1,88 @@
+#pragma once
+#include <functional>
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "station/protocol/interludes.hpp"
+#include "station/session/operator_gate.hpp"
+#include "station/session/pages.hpp"
+#include "station/session/stage.hpp"
+#include "station/store/session_log.hpp"
+
+namespace turnpoint::session {
+
+/// What the log of a session that is resumed says about interludes and scores.
+struct Earlier {
+  std::vector<records::EventRow> events;
+  std::vector<records::BlockRecord> blocks;
+};
+
+/// Runs what comes before, between and after the blocks: consent, questionnaires, explanations, screenings.
+/// Each answer is durable before the next question appears, so a session that dies continues with the next
+/// question.
+class Interludes {
+ public:
+  /// Presents an example while `page` is shown.
+  using Player = std::function<Flow(const protocol::Example&, Page page)>;
+
+  /// All references must outlive this object.
+  Interludes(const Setup& setup, const Pages& pages, const trial::Director& director, OperatorGate& gate,
+             Stage& stage, store::SessionLog& log, Player player);
+
+  /// Takes over what was answered and scored before the session was resumed.
+  void restore(const Earlier& earlier);
+
+  /// Runs what comes before this block; what comes after the last block if there is no such block. Does
+  /// nothing if it is already done.
+  Flow before(int block_index);
+
+  /// Counts a scored trial.
+  void score(int block_index, int attempt, const std::string& block, bool correct);
+
+  /// Why the session ends before its blocks are done; "" if it does not.
+  const std::string& ended_because() const { return ended_because_; }
+
+ private:
+  struct Score {
+    std::string block;
+    int attempt = 0, right = 0, trials = 0;
+  };
+  /// What somebody did on a page; empty if the session stops.
+  using Reply = std::optional<Input>;
+
+  Flow run(const protocol::Interlude& interlude);
+  Flow ask_items(const protocol::Interlude& interlude);
+  Flow consent(const protocol::Interlude& interlude);
+  Flow explain(const protocol::Interlude& interlude);
+  Flow screen(const protocol::Interlude& interlude);
+  Flow end(const protocol::Interlude& interlude, const std::string& reason);
+  Reply reply(const Page& page, const std::function<bool(const Input&)>& accepts);
+  std::optional<Reply> ask(const protocol::Interlude& interlude, std::size_t index, bool back);
+  void simulate_answer(const protocol::Interlude& interlude, std::size_t index);
+  void simulate(InputKind kind, int value, double number = 0);
+  void keep_answer(const protocol::Interlude& interlude, const std::string& item, const std::string& answer,
+                   double response_time_s);
+  /// The answers of this questionnaire at this occasion, in the order of its items.
+  std::vector<std::string> given(const protocol::Interlude& interlude) const;
+  protocol::Answers answers() const;
+
+  const Setup& setup_;
+  const Pages& pages_;
+  const trial::Director& director_;
+  OperatorGate& gate_;
+  Stage& stage_;
+  store::SessionLog& log_;
+  Player player_;
+  const std::vector<protocol::Block> blocks_;
+  std::vector<records::AnswerRow> standing_;
+  std::map<int, Score> scores_;  ///< by block index; of the newest attempt
+  std::set<std::string> done_;   ///< by records::place_name()
+  int occasion_ = 0;
+  std::string ended_because_;
+};
+
+}  // namespace turnpoint::session

@@ -1,0 +1,96 @@
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "physics/centre_line.hpp"
+#include "station/scene/planner.hpp"
+#include "station/session/session_run.hpp"
+#include "station/system/thermometer.hpp"
+#include "station/text/number.hpp"
+
+namespace turnpoint::session {
+
+namespace {
+
+constexpr double kFlag_K = 3;
+constexpr double kCorrect_m = 0.2e-3;
+// A share of 1 % would be 40 K: that is damage and no temperature, and the proof must see it.
+constexpr double kMostDrift = 0.01;
+
+}  // namespace
+
+double boundary_shift_m(const physics::Surface& surface, double frequency_Hz, double share) {
+  const auto then = physics::turning_point_m(surface, frequency_Hz);
+  const auto now = physics::turning_point_m(surface, frequency_Hz / (1 + share));
+  return then && now ? *now - *then : 0;
+}
+
+/// Reads the thermometers at the begin of the session; later temperatures are compared with these.
+void SessionRun::begin_drift() {
+  auto capture = stage_->capture();
+  if (!capture)
+    if (const auto card = card_capture_of(setup_.rig)) capture = card->setup;
+  if (capture && !capture->pick_ups.empty()) drift_.emplace(capture->pick_ups);
+  if (!setup_.rig.thermometers) return;
+  thermometers_ = {system::find_thermometer(setup_.rig.thermometers->plate_uri, setup_.thermometers),
+                   system::find_thermometer(setup_.rig.thermometers->frame_uri, setup_.thermometers)};
+}
+
+/// Logs the temperatures before a trial. A change of 3 K since the first reading is flagged once; a return
+/// is not.
+void SessionRun::log_temperature() {
+  if (thermometers_.empty()) return;
+  const auto plate = system::read_thermometer_C(thermometers_[0]);
+  const auto frame = system::read_thermometer_C(thermometers_[1]);
+  const auto shown = [](const std::optional<double>& value) {
+    return value ? text::number(*value, 4) : std::string("unknown");
+  };
+  log_.event({stage_->now_ns(), "temperature", "plate " + shown(plate) + " C, frame " + shown(frame) + " C",
+              trial_index()});
+  const std::array now{plate, frame};
+  for (std::size_t k = 0; k < now.size(); ++k) {
+    if (!now[k]) continue;
+    if (!first_C_[k]) first_C_[k] = now[k];
+    const double change_K = *now[k] - *first_C_[k];
+    if (std::abs(change_K) < kFlag_K || warm_[k]) continue;
+    warm_[k] = true;
+    log_.event({stage_->now_ns(), "temperature_flag",
+                fmt::format("the {} changed by {} K since the session began", k == 0 ? "plate" : "frame",
+                            text::number(change_K, 3)),
+                trial_index()});
+  }
+}
+
+/// Follows the resonances of the surface by the phases of an interval's tones.
+void SessionRun::follow_drift(const sensing::IntervalResult& measured) {
+  using terms::Proof;
+  if (!drift_ || (measured.verdict != Proof::ok && measured.verdict != Proof::flagged)) return;
+  if (const auto found = drift_->take(measured.tones, applied_drift_)) newest_drift_ = found;
+}
+
+/// If the boundaries have moved by 0.2 mm or more since the last correction, the frequencies of the following
+/// trials are corrected. The trial that is already planned keeps its frequencies.
+void SessionRun::correct_drift() {
+  if (!newest_drift_) return;
+  const auto drift = *std::exchange(newest_drift_, std::nullopt);
+  double largest_m = 0;
+  const auto surface = scene::surface_of(setup_.rig);
+  for (const auto& transducer : setup_.rig.transducers)
+    for (const double f :
+         {transducer.low_Hz, std::sqrt(transducer.low_Hz * transducer.high_Hz), transducer.high_Hz})
+      if (const double shift_m = boundary_shift_m(surface, f, (1 + drift.share) / (1 + applied_drift_) - 1);
+          std::abs(shift_m) > std::abs(largest_m))
+        largest_m = shift_m;
+  if (std::abs(largest_m) < kCorrect_m || std::abs(drift.share) > kMostDrift) return;
+  applied_drift_ = drift.share;
+  plans_.set_drift(drift.share);
+  stage_->set_drift(drift.share);
+  log_.event(
+      {stage_->now_ns(), "drift",
+       fmt::format("the resonances moved by {} % since the calibration, boundaries by up to {} mm since "
+                   "the last correction; frequencies are corrected",
+                   text::number(100 * drift.share, 3), text::number(1e3 * largest_m, 3)),
+       trial_index()});
+}
+
+}  // namespace turnpoint::session

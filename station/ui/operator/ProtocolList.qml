@@ -1,0 +1,78 @@
+import QtQuick
+import Turnpoint
+
+// The protocols of the station's folder, one of which is chosen.
+Rectangle {
+    id: root
+    required property Theme theme
+    required property var protocols
+    required property int selected
+    required property string emptyText
+    required property string unusableText
+    signal chosen(index: int)
+
+    radius: theme.radius
+    color: theme.raised
+    border { color: theme.line; width: 1 }
+    PlainText {
+        objectName: "noProtocols"
+        visible: root.protocols.length === 0
+        anchors { fill: parent; margins: 1.4 * root.theme.unit }
+        text: root.emptyText
+        color: root.theme.ink
+        font.pixelSize: root.theme.textBody
+        wrapMode: Text.Wrap
+    }
+    ListView {
+        id: list
+        objectName: "protocols"
+        anchors { fill: parent; margins: 0.5 * root.theme.unit }
+        clip: true
+        boundsBehavior: Flickable.StopAtBounds
+        spacing: 0.3 * root.theme.unit
+        model: root.protocols
+        currentIndex: root.selected
+        keyNavigationEnabled: true
+        delegate: Rectangle {
+            id: card
+            required property var modelData
+            required property int index
+            readonly property bool chosen: index === root.selected
+            objectName: "protocol" + index
+            Accessible.role: Accessible.ListItem
+            Accessible.name: modelData.id + ", " + (modelData.usable ? modelData.title : root.unusableText)
+            Accessible.selected: chosen
+            Accessible.onPressAction: root.chosen(index)
+            activeFocusOnTab: true
+            Keys.onSpacePressed: root.chosen(index)
+            Keys.onReturnPressed: root.chosen(index)
+            border { color: root.theme.ink; width: activeFocus ? root.theme.stroke : 0 }
+            width: list.width
+            height: Math.max(root.theme.controlHeight, words.implicitHeight + root.theme.unit)
+            radius: root.theme.radius
+            color: chosen ? root.theme.action : root.theme.raised
+            Column {
+                id: words
+                anchors { left: parent.left; right: parent.right; verticalCenter: parent.verticalCenter; margins: 0.9 * root.theme.unit }
+                PlainText {
+                    width: parent.width
+                    text: card.modelData.id
+                    color: card.chosen ? root.theme.actionText : root.theme.ink
+                    font { pixelSize: root.theme.textBody; weight: Font.DemiBold }
+                    elide: Text.ElideRight
+                }
+                PlainText {
+                    width: parent.width
+                    text: card.modelData.usable ? card.modelData.title : root.unusableText
+                    color: card.chosen ? root.theme.actionText : card.modelData.usable ? root.theme.quiet : root.theme.wrong
+                    font.pixelSize: root.theme.textSmall
+                    wrapMode: Text.Wrap
+                    maximumLineCount: 3
+                    elide: Text.ElideRight
+                }
+            }
+            TapHandler { onTapped: root.chosen(card.index) }
+        }
+    }
+    ScrollCue { theme: root.theme; place: list }
+}

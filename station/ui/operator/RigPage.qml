@@ -1,0 +1,221 @@
+import QtQuick
+import Turnpoint
+
+// The rig: its calibration, what the doctor and the self-test find, and how the operator's pages look.
+Rectangle {
+    id: root
+    required property RigController rig
+    required property real pixelsPerMm
+    readonly property bool tall: height > width
+    property bool testing: false
+    readonly property var languages: [{ code: "en", name: "English" }, { code: "de", name: "Deutsch" }, { code: "es", name: "Español" },
+                                      { code: "ja", name: "日本語" }, { code: "zh", name: "中文" }, { code: "ar", name: "العربية" }]
+
+    color: look.paper
+    Component.onCompleted: rig.open()
+
+    Theme {
+        id: look
+        width: root.width
+        height: root.height
+        pixelsPerMm: root.pixelsPerMm
+        dense: true
+    }
+    Texts { id: texts; language: OperatorScreen.language }
+
+    OperatorCard {
+        id: state
+        anchors { left: parent.left; top: parent.top; margins: look.margin }
+        width: root.tall ? root.width - 2 * look.margin : 0.4 * root.width
+        height: root.tall ? 0.42 * root.height : root.height - 2 * look.margin
+        theme: look
+        heading: texts.text("operator.calibration")
+        PlainText {
+            objectName: "calibrationState"
+            width: state.inner
+            text: root.rig.calibrationState === "good" ? texts.text("operator.calibration_good")
+                : root.rig.calibrationState === "ageing" ? texts.text("operator.calibration_ageing")
+                : root.rig.calibrationState === "bad" ? texts.text("operator.calibration_bad") : texts.text("operator.calibration_none")
+            color: root.rig.calibrationState === "bad" ? look.wrong : look.ink
+            font { pixelSize: look.textBody; weight: Font.DemiBold }
+            wrapMode: Text.Wrap
+        }
+        FactTable { width: state.inner; theme: look; facts: root.rig.calibration; labelWidth: 0.3 * width }
+        PlainText {
+            width: state.inner
+            text: root.rig.path
+            color: look.quiet
+            font.pixelSize: look.textSmall
+            wrapMode: Text.WrapAnywhere
+        }
+        PlainText {
+            width: state.inner
+            topPadding: look.unit
+            text: texts.text("operator.screen")
+            color: look.action
+            font { pixelSize: look.textBody; weight: Font.Bold }
+        }
+        Flow {
+            width: state.inner
+            spacing: 0.6 * look.unit
+            Repeater {
+                model: root.languages
+                ChoiceButton {
+                    required property var modelData
+                    objectName: "screen-" + modelData.code
+                    theme: look
+                    chosen: OperatorScreen.language === modelData.code
+                    text: modelData.name
+                    onActivated: OperatorScreen.language = modelData.code
+                }
+            }
+        }
+        Flow {
+            width: state.inner
+            spacing: 0.6 * look.unit
+            ChoiceButton { objectName: "light"; theme: look; chosen: !OperatorScreen.dark; text: texts.text("operator.light"); onActivated: OperatorScreen.dark = false }
+            ChoiceButton { objectName: "dark"; theme: look; chosen: OperatorScreen.dark; text: texts.text("operator.dark"); onActivated: OperatorScreen.dark = true }
+        }
+        Flow {
+            width: state.inner
+            spacing: look.unit
+            ActionButton {
+                objectName: "smaller"
+                theme: look
+                primary: false
+                glyph: "minus"
+                label: texts.text("operator.text_smaller")
+                enabled: OperatorScreen.textPercent > 100
+                onActivated: OperatorScreen.textPercent -= 25
+            }
+            PlainText {
+                objectName: "textSize"
+                height: look.controlHeight
+                verticalAlignment: Text.AlignVCenter
+                text: texts.text("operator.text_size").arg(OperatorScreen.textPercent)
+                color: look.ink
+                font.pixelSize: look.textBody
+            }
+            ActionButton {
+                objectName: "larger"
+                theme: look
+                primary: false
+                glyph: "plus"
+                label: texts.text("operator.text_larger")
+                enabled: OperatorScreen.textPercent < 200
+                onActivated: OperatorScreen.textPercent += 25
+            }
+        }
+    }
+    Flow {
+        id: tabs
+        anchors { left: results.left; right: results.right; top: root.tall ? state.bottom : parent.top; topMargin: root.tall ? look.unit : look.margin }
+        spacing: look.unit
+        ChoiceButton { objectName: "doctorTab"; theme: look; chosen: !root.testing; text: texts.text("operator.doctor"); onActivated: root.testing = false }
+        ChoiceButton { objectName: "selfTestTab"; theme: look; chosen: root.testing; text: texts.text("operator.self_test"); onActivated: root.testing = true }
+    }
+    OperatorCard {
+        id: results
+        anchors { left: root.tall ? parent.left : state.right; right: parent.right; top: tabs.bottom; bottom: begin.top; margins: look.margin; topMargin: look.unit; bottomMargin: look.unit; leftMargin: root.tall ? look.margin : look.unit }
+        theme: look
+        PlainText {
+            objectName: "rigSays"
+            width: results.inner
+            text: root.rig.asked === "press_stop" ? texts.text("operator.press_stop")
+                : root.rig.asked === "release_stop" ? texts.text("operator.release_stop")
+                : root.rig.asked === "press_button" ? texts.text("operator.press_button").arg(root.rig.askedButton)
+                : root.rig.busy !== "" ? texts.text("operator.working")
+                : root.testing ? texts.text("operator.self_test_text") : texts.text("operator.doctor_text")
+            color: look.ink
+            font { pixelSize: look.textBody; weight: root.rig.busy !== "" ? Font.Bold : Font.Normal }
+            wrapMode: Text.Wrap
+        }
+        Repeater {
+            model: root.rig.errors
+            PlainText {
+                required property string modelData
+                width: results.inner
+                text: modelData
+                color: look.wrong
+                font { pixelSize: look.textBody; weight: Font.DemiBold }
+                wrapMode: Text.Wrap
+            }
+        }
+        Repeater {
+            model: root.testing ? root.rig.checks : root.rig.findings
+            Column {
+                id: finding
+                required property var modelData
+                required property int index
+                readonly property string state: modelData.status ?? modelData.verdict
+                objectName: "finding" + index
+                // The findings are in English, so they are not mirrored.
+                LayoutMirroring.enabled: false
+                LayoutMirroring.childrenInherit: true
+                width: results.inner
+                spacing: 0.2 * look.unit
+                Item {
+                    width: parent.width
+                    height: Math.max(named.implicitHeight, judged.implicitHeight)
+                    PlainText {
+                        id: named
+                        anchors { left: parent.left; right: judged.left; rightMargin: look.unit }
+                        text: finding.modelData.name
+                        color: look.ink
+                        font { pixelSize: look.textBody; weight: Font.DemiBold }
+                        wrapMode: Text.Wrap
+                    }
+                    PlainText {
+                        id: judged
+                        anchors.right: parent.right
+                        text: finding.state === "ok" ? texts.text("operator.good") : finding.state === "warning" ? texts.text("operator.warning")
+                            : finding.state === "failed" ? texts.text("operator.failed") : texts.text("operator.not_possible")
+                        color: finding.state === "failed" ? look.wrong : finding.state === "ok" ? look.right : look.quiet
+                        font { pixelSize: look.textBody; weight: Font.Bold }
+                    }
+                }
+                // The reading, from 0 to its limit.
+                Rectangle {
+                    objectName: visible ? "gauge" + finding.index : ""
+                    visible: (finding.modelData.share ?? -1) >= 0
+                    width: 0.5 * parent.width
+                    height: 0.8 * look.unit
+                    radius: height / 2
+                    color: look.paper
+                    border { color: look.line; width: 1 }
+                    Rectangle {
+                        width: Math.max(height, parent.width * (finding.modelData.share ?? 0))
+                        height: parent.height
+                        radius: height / 2
+                        color: finding.state === "failed" ? look.wrong : look.action
+                    }
+                }
+                PlainText {
+                    width: parent.width
+                    text: finding.modelData.what
+                    color: look.quiet
+                    font.pixelSize: look.textSmall
+                    wrapMode: Text.Wrap
+                }
+                PlainText {
+                    visible: text !== "→ "
+                    width: parent.width
+                    text: "→ " + (finding.modelData.mend ?? "")
+                    color: look.ink
+                    font.pixelSize: look.textSmall
+                    wrapMode: Text.Wrap
+                }
+            }
+        }
+    }
+    ActionButton {
+        id: begin
+        objectName: root.testing ? "selfTest" : "examine"
+        anchors { right: parent.right; bottom: parent.bottom; margins: look.margin }
+        theme: look
+        enabled: root.rig.busy === ""
+        holdMs: root.testing ? 900 : 0
+        text: root.testing ? texts.text("operator.hold_to_test") : texts.text("operator.examine")
+        onActivated: root.testing ? root.rig.selfTest() : root.rig.examine()
+    }
+}

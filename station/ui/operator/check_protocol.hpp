@@ -1,0 +1,19 @@
+#pragma once
+#include <functional>
+#include <stop_token>
+#include <string>
+
+#include "station/simulation/check.hpp"
+
+namespace turnpoint::ui {
+
+/// Checks a protocol file on a rig file; like simulation::check().
+using Checker = std::function<simulation::Check(const std::string& protocol, const std::string& rig,
+                                                const std::stop_token& stop)>;
+
+/// Checks a protocol as `turnpoint check` does, with the rig's calibration and with few simulated sessions,
+/// so that a page can show the result soon.
+simulation::Check check_protocol(const std::string& protocol, const std::string& rig,
+                                 const std::stop_token& stop);
+
+}  // namespace turnpoint::ui

@@ -1,0 +1,186 @@
+#include "station/ui/operator/rig_controller.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <sstream>
+
+#include "station/calibration/apply.hpp"
+#include "station/calibration/calibration.hpp"
+#include "station/maintenance/doctor.hpp"
+#include "station/rig/rig.hpp"
+#include "station/session/self_test_rig.hpp"
+#include "station/setup/prepare.hpp"
+#include "station/ui/operator/facts.hpp"
+
+namespace turnpoint::ui {
+
+namespace {
+
+/// Number of days before the end of a calibration from which on the page says that it ends soon.
+constexpr int kSoon_days = 14;
+
+using Facts = std::vector<std::pair<std::string, std::string>>;
+
+/// What was measured for a calibration.
+std::string measured(const calibration::Calibration& made) {
+  std::string text;
+  const auto add = [&text](bool there, const char* what) {
+    if (there) text += (text.empty() ? "" : ", ") + std::string(what);
+  };
+  add(!made.transducers.empty(), "response");
+  add(made.boundary.has_value(), "boundary");
+  add(made.friction.has_value(), "friction");
+  add(!made.sound.empty(), "sound level");
+  add(made.panel.has_value(), "panel latency");
+  add(!made.pick_ups.empty(), "pick-ups");
+  return text;
+}
+
+Facts facts_of(const calibration::Calibration& made, const std::string& path, int left_days) {
+  Facts facts{{"File", std::filesystem::path(path).filename().string()},
+              {"Made on", made.made_on + " (" + std::to_string(made.valid_days - left_days) + " days ago)"},
+              {"Valid", left_days >= 0 ? "for " + std::to_string(left_days) + " more days"
+                                       : "expired " + std::to_string(-left_days) + " days ago"},
+              {"Measured", measured(made)}};
+  if (!made.note.empty()) facts.emplace_back("Note", made.note);
+  return facts;
+}
+
+const char* word(lines::Finding::Status status) {
+  using Status = lines::Finding::Status;
+  return status == Status::ok ? "ok" : status == Status::warning ? "warning" : "failed";
+}
+
+const char* word(session::Request::Kind kind) {
+  using Kind = session::Request::Kind;
+  return kind == Kind::press_stop     ? "press_stop"
+         : kind == Kind::release_stop ? "release_stop"
+                                      : "press_button";
+}
+
+/// A reading as a share of its limit, from 0 to 1; -1 if there is no number.
+double share_of_limit(const session::CheckRow& check) {
+  if (!check.value || !check.limit || *check.limit == 0) return -1;
+  return std::min(1.0, std::abs(*check.value / *check.limit));
+}
+
+}  // namespace
+
+RigController::RigController(const setup::StationRequest& request, QObject* parent)
+    : QObject(parent),
+      rig_(request.rig),
+      data_folder_(std::filesystem::absolute(request.database).parent_path().string()),
+      worker_(*this) {}
+
+void RigController::open() {
+  calibration_.clear();
+  calibration_state_ = "none";
+  if (busy_.isEmpty()) errors_.clear();
+  try {
+    const auto rig = rig::load(rig_);
+    const auto file = calibration::newest_for(rig.path);
+    if (!file.empty()) {
+      const auto made = calibration::load(file);
+      const auto today = calibration::today();
+      const int left_days = calibration::days_left(made, today);
+      calibration_ = facts_of(made, file, left_days);
+      const auto problems = calibration::problems(made, rig.sha256, today);
+      for (const auto& problem : problems) calibration_.emplace_back("Not used", problem);
+      calibration_state_ = !problems.empty() ? "bad" : left_days <= kSoon_days ? "ageing" : "good";
+    }
+  } catch (const std::exception& error) {
+    calibration_state_ = "bad";
+    errors_ = to_list(lines_of(error));
+  }
+  Q_EMIT changed();
+}
+
+/// Runs a job on the worker thread, unless another one is running. The function that it returns runs on the
+/// GUI thread.
+void RigController::run(const QString& what, std::function<std::function<void()>()> job) {
+  if (!busy_.isEmpty()) return;
+  busy_ = what;
+  errors_.clear();
+  Q_EMIT changed();
+  worker_.start([this, job = std::move(job)](const std::stop_token&) -> std::function<void()> {
+    std::function<void()> result;
+    std::vector<std::string> errors;
+    try {
+      result = job();
+    } catch (const std::exception& error) {
+      errors = lines_of(error);
+    }
+    return [this, result, errors] {
+      busy_.clear();
+      asked_.clear();
+      errors_ = to_list(errors);
+      if (result) result();
+      Q_EMIT changed();
+    };
+  });
+}
+
+void RigController::examine() {
+  findings_.clear();
+  run("doctor", [this]() -> std::function<void()> {
+    std::ostringstream messages;  // the page shows the calibration elsewhere
+    auto findings = maintenance::examine(setup::calibrated_rig(rig_, "", messages), data_folder_);
+    return [this, findings = std::move(findings)] { findings_ = findings; };
+  });
+}
+
+void RigController::selfTest() {
+  checks_.clear();
+  run("self_test", [this]() -> std::function<void()> {
+    std::ostringstream messages;
+    const auto rig = setup::calibrated_rig(rig_, "", messages);
+    auto checks = session::self_test(
+        rig,
+        [this](const session::Request& request) {
+          QMetaObject::invokeMethod(
+              this,
+              [this, what = QString(word(request.kind)), button = QString::fromStdString(request.name)] {
+                ask(what, button);
+              },
+              Qt::QueuedConnection);
+        },
+        data_folder_);
+    return [this, checks = std::move(checks)] { checks_ = checks; };
+  });
+}
+
+void RigController::ask(const QString& what, const QString& button) {
+  if (busy_.isEmpty()) return;
+  asked_ = what;
+  asked_button_ = button;
+  Q_EMIT changed();
+}
+
+QVariantList RigController::calibration() const { return to_list(calibration_); }
+
+QVariantList RigController::findings() const {
+  QVariantList list;
+  for (const auto& finding : findings_)
+    list += QVariantMap{{"name", QString::fromStdString(finding.name)},
+                        {"status", word(finding.status)},
+                        {"what", QString::fromStdString(finding.what)},
+                        {"mend", QString::fromStdString(finding.mend)}};
+  return list;
+}
+
+QVariantList RigController::checks() const {
+  QVariantList list;
+  for (const auto& check : checks_)
+    list += QVariantMap{{"name", QString::fromStdString(check.name)},
+                        {"verdict", check.verdict == session::Verdict::passed   ? "ok"
+                                    : check.verdict == session::Verdict::failed ? "failed"
+                                                                                : "absent"},
+                        {"what", QString::fromStdString(check.what)},
+                        {"share", share_of_limit(check)}};
+  return list;
+}
+
+}  // namespace turnpoint::ui
+
+#include "moc_rig_controller.cpp"

@@ -1,0 +1,77 @@
+#pragma once
+#include <QObject>
+#include <QQmlEngine>
+#include <QVariantList>
+#include <functional>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "station/lines/probe.hpp"
+#include "station/session/self_test.hpp"
+#include "station/setup/station_request.hpp"
+#include "station/ui/platform/newest_job.hpp"
+
+namespace turnpoint::ui {
+
+/// The page of the rig: its calibration and the age of this, the doctor, and the self-test with its readings.
+/// The doctor and the self-test run on a separate thread, one at a time, and use the devices of the rig; no
+/// session may begin meanwhile. GUI thread only.
+class RigController : public QObject {
+  Q_OBJECT
+  QML_ELEMENT
+  QML_UNCREATABLE("made by the program")
+  Q_PROPERTY(QString path READ path CONSTANT)
+  Q_PROPERTY(QVariantList calibration READ calibration NOTIFY changed)  ///< facts as {label, value}
+  /// good, ageing (it expires within 14 days), bad or none
+  Q_PROPERTY(QString calibrationState READ calibration_state NOTIFY changed)
+  Q_PROPERTY(QString busy READ busy NOTIFY changed)  ///< doctor, self_test or ""
+  /// findings of the doctor as {name, status: ok | warning | failed, what, mend}
+  Q_PROPERTY(QVariantList findings READ findings NOTIFY changed)
+  /// checks of the self-test as {name, verdict: ok | failed | absent (not possible), what, share}; `share` is
+  /// the reading as a share of its limit, -1 without a number
+  Q_PROPERTY(QVariantList checks READ checks NOTIFY changed)
+  /// what the self-test waits for: press_stop, release_stop, press_button or ""
+  Q_PROPERTY(QString asked READ asked NOTIFY changed)
+  Q_PROPERTY(QString askedButton READ asked_button NOTIFY changed)
+  Q_PROPERTY(QStringList errors READ errors NOTIFY changed)
+
+ public:
+  explicit RigController(const setup::StationRequest& request, QObject* parent = nullptr);
+
+  QString path() const { return QString::fromStdString(rig_); }
+  QVariantList calibration() const;
+  QString calibration_state() const { return calibration_state_; }
+  QString busy() const { return busy_; }
+  QVariantList findings() const;
+  QVariantList checks() const;
+  QString asked() const { return asked_; }
+  QString asked_button() const { return asked_button_; }
+  QStringList errors() const { return errors_; }
+
+  /// Reads the calibration again.
+  Q_INVOKABLE void open();
+  Q_INVOKABLE void examine();
+  /// Arms the amplifier and plays quiet tones. The page makes the operator hold a button for it.
+  Q_INVOKABLE void selfTest();
+
+ Q_SIGNALS:
+  void changed();
+
+ private:
+  void run(const QString& what, std::function<std::function<void()>()> job);
+  void ask(const QString& what, const QString& button);
+
+  std::string rig_, data_folder_;
+  std::vector<std::pair<std::string, std::string>> calibration_;
+  QString calibration_state_ = "none";
+  QString busy_, asked_, asked_button_;
+  std::vector<lines::Finding> findings_;
+  std::vector<session::CheckRow> checks_;
+  QStringList errors_;
+  NewestJob
+      worker_;  // The last member, so that its thread ends before the objects that it uses are destroyed.
+};
+
+}  // namespace turnpoint::ui

@@ -1,0 +1,297 @@
+#include "station/ui/operator/sessions_controller.hpp"
+
+#include <fmt/format.h>
+
+#include <QDateTime>
+#include <algorithm>
+#include <filesystem>
+#include <utility>
+
+#include "station/desk/report_pages.hpp"
+#include "station/store/annotate.hpp"
+#include "station/store/backup.hpp"
+#include "station/store/export.hpp"
+#include "station/ui/operator/facts.hpp"
+
+namespace turnpoint::ui {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+QVariantMap to_map(const desk::SessionLine& session) {
+  return {{"id", QString::fromStdString(session.session_id)},
+          {"person", QString::fromStdString(session.person)},
+          {"protocol", QString::fromStdString(session.protocol)},
+          {"started", QString::fromStdString(session.started.substr(0, 16)).replace('T', ' ')},
+          {"mode", QString::fromStdString(session.run_mode)},
+          {"status", QString::fromStdString(session.status)},
+          {"reason", QString::fromStdString(session.reason)},
+          {"trials", session.trials},
+          {"resumable", session.resumable}};
+}
+
+std::string joined_lines(const std::vector<std::string>& lines) {
+  std::string text;
+  for (const auto& line : lines) text += (text.empty() ? "" : "\n") + line;
+  return text;
+}
+
+/// What a withdrawal deletes, in words.
+std::vector<std::string> words_of(const store::Withdrawal& gone, const char* verb) {
+  std::vector<std::string> words{fmt::format("{} {}: {} sessions, {} trials, {} events and {} notes.",
+                                             gone.participant, verb, gone.sessions.size(), gone.trials,
+                                             gone.events, gone.annotations)};
+  if (!gone.removed_copies.empty())
+    words.push_back(fmt::format("Copies beside the database {}: {}.", verb, gone.removed_copies.size()));
+  for (const auto& path : gone.remaining_copies)
+    words.push_back(path + " still contains these data or cannot be read. Remove it by hand.");
+  return words;
+}
+
+/// The options for withdrawing everything of a person, with the folder of the last backup if it is reachable.
+store::WithdrawOptions withdrawal_of(const std::string& person, const std::string& database) {
+  store::WithdrawOptions options;
+  options.participant = person;
+  const auto last = store::last_backup(database);
+  if (!last) return options;
+  const auto folder = fs::path(last->path).parent_path();
+  std::error_code unreachable;
+  if (fs::is_directory(folder, unreachable)) options.backup_directory = folder.string();
+  return options;
+}
+
+std::string what_is_not_searched(const store::WithdrawOptions& options) {
+  return options.backup_directory.empty()
+             ? "No folder of backups can be reached, so backups were not searched. Remove them, and exported "
+               "files, "
+               "by hand."
+             : "Backups in " + options.backup_directory +
+                   " are included. Remove exported files, and backups in other places, by hand.";
+}
+
+}  // namespace
+
+SessionsController::SessionsController(const setup::StationRequest& request, maintenance::DiskSources disks,
+                                       QObject* parent)
+    : QObject(parent),
+      database_(fs::absolute(request.database).string()),
+      sources_(std::move(disks)),
+      worker_(*this) {
+  report_.save_in((fs::path(database_).parent_path() / "figures").string());
+}
+
+void SessionsController::open() {
+  said_.clear();
+  failed_ = false;
+  try {
+    read_list();
+  } catch (const std::exception& error) {
+    failed_ = true;
+    said_ = to_list(lines_of(error));
+  }
+  lookForDisks();
+}
+
+void SessionsController::read_list() {
+  all_ = desk::session_lines(database_);
+  if (line() == nullptr) chosen_ = all_.empty() ? "" : all_.front().session_id;
+}
+
+void SessionsController::setSearch(const QString& search) {
+  search_ = search;
+  Q_EMIT changed();
+}
+
+void SessionsController::lookForDisks() {
+  try {
+    disks_ = maintenance::removable_disks(sources_);
+  } catch (const std::exception& error) {  // a disk was unplugged while it was looked at
+    disks_.clear();
+    said_ = to_list(lines_of(error));
+    failed_ = true;
+  }
+  Q_EMIT changed();
+}
+
+const desk::SessionLine* SessionsController::line() const {
+  const auto found = std::find_if(all_.begin(), all_.end(),
+                                  [this](const auto& session) { return session.session_id == chosen_; });
+  return found == all_.end() ? nullptr : &*found;
+}
+
+void SessionsController::select(int index) {
+  const auto shown = sessions();
+  if (busy_ || index < 0 || index >= shown.size()) return;
+  chosen_ = shown[index].toMap()["id"].toString().toStdString();
+  said_.clear();
+  failed_ = false;
+  Q_EMIT changed();
+}
+
+/// Runs an action on the worker thread. An action is never abandoned, because it writes files.
+void SessionsController::act(std::function<Done()> action) {
+  if (busy_) return;
+  busy_ = true;
+  failed_ = false;
+  said_.clear();
+  Q_EMIT changed();
+  worker_.start([this, action = std::move(action)](const std::stop_token&) -> std::function<void()> {
+    Done done;
+    bool failed = false;
+    try {
+      done = action();
+    } catch (const std::exception& error) {
+      done.said = lines_of(error);
+      failed = true;
+    }
+    return [this, done = std::move(done), failed] {
+      busy_ = false;
+      failed_ = failed;
+      said_ = to_list(done.said);
+      if (done.then) done.then();
+      Q_EMIT changed();
+    };
+  });
+}
+
+void SessionsController::makeReport() {
+  if (line() == nullptr || line()->trials == 0) return;
+  report_.clear();
+  act([this, id = chosen_] {
+    report_.take(desk::report_pages(database_, id));
+    return Done{};
+  });
+}
+
+void SessionsController::annotate(const QString& note) {
+  if (line() == nullptr || note.trimmed().isEmpty()) return;
+  act([this, id = chosen_, text = note.trimmed().toStdString()] {
+    store::annotate(database_, id, text);
+    return Done{{"The note was added."}, [this] { read_list(); }};
+  });
+}
+
+std::string SessionsController::folder_of(int place) const {
+  if (place == 0) return (fs::path(database_).parent_path() / "exports").string();
+  return disks_[static_cast<std::size_t>(place) - 1].folder;
+}
+
+/// Mounts the disk of a place, if it is a disk that is not mounted, and returns the folder.
+static std::string mounted(std::string folder, const std::vector<maintenance::Disk>& disks, int place,
+                           const maintenance::DiskSources& sources) {
+  return place > 0 && folder.empty() ? maintenance::mount(disks[static_cast<std::size_t>(place) - 1], sources)
+                                     : std::move(folder);
+}
+
+void SessionsController::exportTo(int place, bool all, const QString& format) {
+  if (!is_place(place) || (!all && line() == nullptr)) return;
+  store::ExportOptions options;
+  if (!all) options.session_id = chosen_;
+  if (format == "bids") options.format = store::ExportFormat::bids;
+  // A folder of its own for each export, so that no file of an earlier export stands beside newer ones.
+  const auto name =
+      "turnpoint-export-" + QDateTime::currentDateTime().toString("yyyy-MM-dd-hhmmss").toStdString();
+  act([this, options, name, place, disks = disks_, folder = folder_of(place)] {
+    const auto to = (fs::path(mounted(folder, disks, place, sources_)) / name).string();
+    const auto files = store::export_data(database_, to, options);
+    return Done{{fmt::format("{} files were written to {}.", files.size(), to)}, [this] { lookForDisks(); }};
+  });
+}
+
+void SessionsController::backUpTo(int place) {
+  if (!is_place(place)) return;
+  act([this, place, disks = disks_, folder = folder_of(place)] {
+    store::BackupOptions options;
+    const auto at = mounted(folder, disks, place, sources_);
+    options.directory = place == 0 ? (fs::path(database_).parent_path() / "backups").string()
+                                   : (fs::path(at) / "turnpoint-backups").string();
+    // The folder of a disk that was pulled out in the meantime would lie on the system's own disk.
+    if (place > 0) options.destination = store::Destination::disk;
+    const auto report = store::backup(database_, options);
+    std::vector<std::string> said{
+        fmt::format("{}: {} sessions and {} trials. The backup was read back and checked.", report.path,
+                    report.sessions, report.trials)};
+    if (place == 0)
+      said.push_back(
+          "This backup is on the same machine as the database. Make another one on a separate disk.");
+    if (!report.unrecorded.empty()) said.push_back(report.unrecorded);
+    return Done{said, [this] { lookForDisks(); }};
+  });
+}
+
+void SessionsController::eject(int place) {
+  if (!is_place(place) || place == 0) return;
+  act([this, disk = disks_[static_cast<std::size_t>(place) - 1]] {
+    maintenance::eject(disk, sources_);
+    return Done{{disk.name + " can be unplugged now."}, [this] { lookForDisks(); }};
+  });
+}
+
+void SessionsController::planWithdrawal() {
+  if (line() == nullptr) return;
+  act([this, person = line()->person] {
+    const auto options = withdrawal_of(person, database_);
+    auto plan = words_of(store::plan_withdrawal(database_, options), "would be deleted");
+    plan.push_back(what_is_not_searched(options));
+    return Done{{}, [this, words = joined_lines(plan), person] {
+                  consequence_ = QString::fromStdString(words);
+                  withdrawing_ = person;
+                  Q_EMIT planned();
+                }};
+  });
+}
+
+void SessionsController::withdraw() {
+  if (withdrawing_.empty() || busy_) return;
+  act([this, person = std::exchange(withdrawing_, {})] {
+    const auto options = withdrawal_of(person, database_);
+    auto words = words_of(store::withdraw(database_, options), "deleted");
+    words.push_back(what_is_not_searched(options));
+    return Done{words, [this] {
+                  consequence_.clear();
+                  read_list();
+                }};
+  });
+}
+
+QVariantList SessionsController::sessions() const {
+  QVariantList list;
+  for (const auto& session : all_)
+    if (desk::matches(session, search_.toStdString())) list += to_map(session);
+  return list;
+}
+
+int SessionsController::selected() const {
+  int index = 0;
+  for (const auto& session : all_) {
+    if (!desk::matches(session, search_.toStdString())) continue;
+    if (session.session_id == chosen_) return index;
+    ++index;
+  }
+  return -1;
+}
+
+QVariant SessionsController::chosen() const { return line() == nullptr ? QVariantMap() : to_map(*line()); }
+
+QStringList SessionsController::notes() const {
+  return line() == nullptr ? QStringList() : to_list(line()->notes);
+}
+
+QVariantList SessionsController::places() const {
+  QVariantList list{
+      QVariantMap{{"name", ""},
+                  {"folder", QString::fromStdString(fs::path(database_).parent_path().string())},
+                  {"disk", false},
+                  {"mounted", true}}};
+  for (const auto& disk : disks_)
+    list += QVariantMap{{"name", QString::fromStdString(disk.name)},
+                        {"folder", QString::fromStdString(disk.folder)},
+                        {"disk", true},
+                        {"mounted", !disk.folder.empty()}};
+  return list;
+}
+
+}  // namespace turnpoint::ui
+
+#include "moc_sessions_controller.cpp"

@@ -1,0 +1,77 @@
+import QtQuick
+import Turnpoint
+
+// One page of an explanation: a text, perhaps a picture, and perhaps examples that the participant can feel as
+// often as wished. While an example is presented, nothing can be pressed.
+Item {
+    id: root
+    required property Theme theme
+    required property Texts texts
+    required property SessionBridge bridge
+    property bool armed: true
+    readonly property PageModel page: bridge.page
+    readonly property bool illustrated: page.picture !== ""
+    readonly property bool feels: page.answers.length > 0
+
+    Item {
+        id: upper
+        anchors {
+            left: parent.left; right: parent.right; top: parent.top
+            bottom: root.feels ? examples.top : go.top; bottomMargin: root.theme.unit
+        }
+        Image {
+            id: picture
+            objectName: "picture"
+            visible: root.illustrated
+            anchors { left: parent.left; right: parent.right; top: parent.top }
+            height: root.illustrated ? (root.feels ? 0.4 : 0.58) * parent.height : 0
+            source: root.page.picture
+            fillMode: Image.PreserveAspectFit
+            mirror: false
+        }
+        PlainText {
+            anchors { left: parent.left; right: parent.right; top: picture.bottom; bottom: parent.bottom; topMargin: root.illustrated ? root.theme.unit : 0 }
+            text: root.page.playing ? root.texts.slideNow : root.texts.phrased(root.page.text)
+            color: root.theme.ink
+            font { pixelSize: (root.page.playing ? 1.5 : 1.1) * root.theme.textBody; weight: root.page.playing ? Font.Bold : Font.Normal }
+            fontSizeMode: Text.Fit
+            minimumPixelSize: root.theme.textSmall
+            wrapMode: Text.Wrap
+            horizontalAlignment: Text.AlignHCenter
+            verticalAlignment: Text.AlignVCenter
+        }
+    }
+    Row {
+        id: examples
+        visible: root.feels
+        anchors { horizontalCenter: parent.horizontalCenter; bottom: go.top; bottomMargin: root.theme.targetGap }
+        spacing: root.theme.targetGap
+        readonly property real share: (root.width - (root.page.answers.length - 1) * spacing) / Math.max(1, root.page.answers.length)
+        Repeater {
+            model: root.page.answers.length
+            ActionButton {
+                required property int index
+                objectName: "example" + index
+                width: Math.min(examples.share, 34 * root.theme.unit)
+                height: root.theme.targetMin
+                theme: root.theme
+                primary: false
+                enabled: !root.page.playing
+                armed: root.armed
+                text: root.page.answers[index] ?? ""
+                onActivated: root.bridge.choose(index)
+            }
+        }
+    }
+    ActionButton {
+        id: go
+        objectName: "proceed"
+        anchors { horizontalCenter: parent.horizontalCenter; bottom: parent.bottom }
+        width: Math.max(implicitWidth, 26 * root.theme.unit)
+        theme: root.theme
+        enabled: !root.page.playing
+        armed: root.armed
+        text: root.texts.proceed
+        onActivated: root.bridge.next()
+    }
+}

@@ -1,0 +1,65 @@
+import QtQuick
+import Turnpoint
+
+// A question of a questionnaire, or the form of a consent: a text, which scrolls if it is long, and below it
+// answers of equal size. A touch on an answer leads to the next question; Back is in the header.
+Item {
+    id: root
+    required property Theme theme
+    required property Texts texts
+    required property SessionBridge bridge
+    property bool armed: true
+    readonly property PageModel page: bridge.page
+
+    Flickable {
+        id: scroll
+        objectName: "questionText"
+        anchors {
+            left: parent.left; right: parent.right; top: parent.top
+            bottom: answers.top; bottomMargin: root.theme.unit
+        }
+        contentHeight: Math.max(height, words.implicitHeight)
+        clip: true
+        boundsBehavior: Flickable.StopAtBounds
+        // a new question begins at its top
+        readonly property string text: root.page.text
+        onTextChanged: contentY = 0
+        PlainText {
+            id: words
+            width: scroll.width - 2 * root.theme.unit
+            x: root.theme.unit
+            height: scroll.contentHeight
+            text: root.texts.phrased(root.page.text)
+            color: root.theme.ink
+            font { pixelSize: (wordy ? 1 : 1.15) * root.theme.textBody; weight: wordy ? Font.Normal : Font.Medium }
+            readonly property bool wordy: root.page.text.length > 240
+            lineHeight: wordy ? 1.15 : 1
+            wrapMode: Text.Wrap
+            horizontalAlignment: wordy ? Text.AlignLeft : Text.AlignHCenter
+            verticalAlignment: wordy ? Text.AlignTop : Text.AlignVCenter
+        }
+    }
+    ScrollCue { theme: root.theme; place: scroll }
+    AnswerRow {
+        id: answers
+        anchors { left: parent.left; right: parent.right; bottom: parent.bottom }
+        height: Math.min(Math.max(leastHeight, 0.3 * parent.height), rows * 18 * root.theme.unit)
+        theme: root.theme
+        answers: root.page.answers
+        captions: root.page.captions
+        pressed: field.pressed
+    }
+    TouchField {
+        id: field
+        objectName: "questionField"
+        anchors { left: parent.left; right: parent.right; bottom: parent.bottom }
+        height: answers.height
+        bridge: root.bridge
+        row: answers
+        count: root.page.answers.length
+        columns: answers.columns
+        gap: answers.gap
+        pixelsPerMm: root.theme.pixelsPerMm
+        open: root.visible && root.armed && root.page.answersOpen
+    }
+}

@@ -1,0 +1,44 @@
+#pragma once
+#include <QtQml/qqmlregistration.h>
+#include <QObject>
+#include <QString>
+
+namespace turnpoint::ui {
+
+/// How the operator's pages look: language, light or dark theme, and size of the text. The participant's
+/// pages do not depend on it, because they are part of the study. GUI thread only.
+class OperatorScreen : public QObject {
+  Q_OBJECT
+  QML_ELEMENT
+  QML_SINGLETON
+  /// language of the labels; findings and messages are in English, like those of the command line
+  Q_PROPERTY(QString language READ language WRITE set_language NOTIFY changed)
+  Q_PROPERTY(bool dark READ dark WRITE set_dark NOTIFY changed)
+  Q_PROPERTY(int textPercent READ text_percent WRITE set_text_percent NOTIFY changed)  ///< 100 to 200
+
+ public:
+  explicit OperatorScreen(QObject* parent = nullptr);
+
+  QString language() const { return language_; }
+  bool dark() const { return dark_; }
+  int text_percent() const { return text_percent_; }
+  void set_language(const QString& language);
+  void set_dark(bool dark);
+  void set_text_percent(int percent);
+
+  /// Takes the choices from a file, and writes every later choice to it. A file that is missing, and any
+  /// value in it that is not allowed, leaves the defaults.
+  void keep_in(const QString& file);
+
+ Q_SIGNALS:
+  void changed();
+
+ private:
+  void keep() const;
+
+  QString file_, language_ = "en";
+  bool dark_ = false;
+  int text_percent_ = 100;
+};
+
+}  // namespace turnpoint::ui

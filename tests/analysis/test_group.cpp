@@ -1,0 +1,56 @@
+#include "station/analysis/group.hpp"
+#include "tests/support/catch.hpp"
+
+using namespace turnpoint::analysis;
+
+namespace {
+
+/// Student's sleep data (1908): hours of sleep gained with two drugs by the same ten patients.
+std::vector<PersonMeasure> sleep() {
+  const std::vector<double> first{0.7, -1.6, -0.2, -1.2, -0.1, 3.4, 3.7, 0.8, 0.0, 2.0};
+  const std::vector<double> second{1.9, 0.8, 1.1, 0.1, -0.1, 4.4, 5.5, 1.6, 4.6, 3.4};
+  std::vector<PersonMeasure> all;
+  for (std::size_t i = 0; i < first.size(); ++i) {
+    const auto person = "P" + std::to_string(i);
+    all.push_back({person, "one", "sleep", "h", first[i]});
+    all.push_back({person, "two", "sleep", "h", second[i]});
+  }
+  return all;
+}
+
+}  // namespace
+
+TEST_CASE("The effect of a condition is that of R's paired t test", "[group]") {
+  // t.test(extra ~ group, sleep, paired = TRUE): 1.58, from 0.7001142 to 2.4598858; d_z = 1.58 / 1.229995
+  const auto found = effects(sleep());
+  REQUIRE(found.size() == 1);
+  CHECK(found[0].first == "one");
+  CHECK(found[0].second == "two");
+  CHECK(found[0].persons == 10);
+  CHECK(found[0].difference->value == Approx(1.58));
+  CHECK(found[0].difference->interval.low == Approx(0.7001142).epsilon(1e-6));
+  CHECK(found[0].difference->interval.high == Approx(2.4598858).epsilon(1e-6));
+  CHECK(*found[0].standardised == Approx(1.58 / 1.229995).epsilon(1e-5));
+}
+
+TEST_CASE("Means count each participant once, and effects only those with both conditions", "[group]") {
+  auto measures = sleep();
+  measures.erase(measures.begin());  // P0 has only the second drug
+  const auto means = group_means(measures);
+  REQUIRE(means.size() == 2);
+  // conditions are in the order in which they first occur
+  CHECK(means[0].condition == "two");
+  CHECK(means[0].persons == 10);
+  CHECK(means[0].mean->value == Approx(2.33));
+  CHECK(means[0].sd == Approx(2.002249).epsilon(1e-6));
+  CHECK(means[1].persons == 9);
+  CHECK(effects(measures)[0].persons == 9);
+}
+
+TEST_CASE("Two participants have no interval", "[group]") {
+  const std::vector<PersonMeasure> two{
+      {"A", "x", "m", "", 1}, {"B", "x", "m", "", 2}, {"A", "y", "m", "", 3}};
+  CHECK_FALSE(group_means(two)[0].mean);
+  CHECK_FALSE(effects(two)[0].difference);
+  CHECK(effects(two)[0].persons == 1);
+}

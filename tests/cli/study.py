@@ -1,0 +1,140 @@
+"""study.py PROGRAM: the report of a study with two stations, its rules of exclusion, and its tables in R and Python."""
+import csv
+import json
+import math
+import os
+import shutil
+import statistics
+import subprocess
+import sys
+import tempfile
+import unittest
+
+HERE = os.path.dirname(os.path.realpath(__file__))
+SOURCE = os.path.dirname(os.path.dirname(HERE))
+SCRIPTS = os.path.join(SOURCE, "station/report/scripts")
+PROGRAM = os.path.realpath(sys.argv.pop(1))
+# bias and threshold of each observer: the participants differ. The last one cannot tell the stimuli apart.
+OBSERVERS = [(-0.12, 0.10), (0.05, 0.14), (0.12, 0.08), (-0.03, 0.18), (0.0, 0.12), (0.09, 0.22), (-0.08, 0.09), (0.0, 40)]
+
+
+def has(command):
+    return subprocess.run(command, capture_output=True, check=False).returncode == 0
+
+
+class Study(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = tempfile.mkdtemp()
+        for i, (bias, threshold) in enumerate(OBSERVERS):
+            cls.call(["run", "speed-accuracy", "--participant", f"P{i + 1:02}", "--db", f"lab{i % 2}.sqlite", "--headless", "--observer",
+                      f"sim:bias={bias},threshold={threshold}", "--seed", str(i + 1)])
+        cls.both = ["--db", "lab0.sqlite", "lab1.sqlite"]
+        cls.call(["report", "--study", *cls.both, "--out", "study.html", "--tables", "tables"])
+        cls.study = json.loads(cls.call(["report", "--study", *cls.both, "--json"]))
+
+    @classmethod
+    def tearDownClass(cls):
+        shutil.rmtree(cls.folder)
+
+    @classmethod
+    def call(cls, words, status=0):
+        done = subprocess.run([PROGRAM, *words], cwd=cls.folder, capture_output=True, text=True, check=False)
+        assert done.returncode == status, (words, done.returncode, done.stderr)
+        return done.stdout if status == 0 else done.stderr
+
+    def rows(self, name):
+        with open(os.path.join(self.folder, "tables", name), encoding="utf-8", newline="") as table:
+            return list(csv.DictReader(table))
+
+    def test_the_protocols_rules_exclude_whom_they_name_and_nobody_else(self):
+        excluded = {p["participant"]: p["excluded"] for p in self.study["participants"]}
+        self.assertEqual([name for name, why in excluded.items() if why], ["P08"])
+        self.assertTrue(any("proportion correct" in why for why in excluded["P08"]), excluded["P08"])
+        for group in self.study["groups"]:
+            self.assertEqual([p["participant"] for p in group["fit"]["participants"]], [f"P0{i}" for i in range(1, 8)])
+
+    def test_without_rules_everybody_takes_part(self):
+        with open(os.path.join(SOURCE, "protocols/speed-accuracy.toml"), encoding="utf-8") as file:
+            head, rest = file.read().split("[exclusion]")
+        with open(os.path.join(self.folder, "free.toml"), "w", encoding="utf-8") as file:
+            file.write(head.replace('id = "speed-accuracy"', 'id = "free"') + "[resume]" + rest.split("[resume]")[1])
+        self.call(["run", "free.toml", "--participant", "P01", "--db", "free.sqlite", "--headless", "--observer", "sim:threshold=40"])
+        study = json.loads(self.call(["report", "--study", "--db", "free.sqlite", "--json"]))
+        self.assertEqual(study["rules"], [])
+        self.assertEqual(study["participants"][0]["excluded"], [])
+        self.assertEqual(study["groups"][0]["statements"][0]["code"], "few-participants")
+
+    def test_accuracies_and_medians_are_those_of_the_export(self):
+        times, right = {}, {}
+        for station in (0, 1):
+            self.call(["export", "--db", f"lab{station}.sqlite", "--out", f"export{station}"])
+            with open(os.path.join(self.folder, f"export{station}/speed-accuracy/trials.csv"), encoding="utf-8", newline="") as table:
+                for row in csv.DictReader(table):
+                    if row["practice"] in ("1", "true") or row["outcome"] != "answered":
+                        continue
+                    times.setdefault(row["participant_id"], []).append(float(row["response_time"]))
+                    right.setdefault(row["participant_id"], []).append(row["correct"] in ("1", "true"))
+        for person in self.study["participants"]:
+            name = person["participant"]
+            self.assertEqual(person["answered"], len(times[name]))
+            self.assertAlmostEqual(person["median_time_s"], statistics.median(times[name]), places=6)
+            self.assertAlmostEqual(person["accuracy"], statistics.mean(right[name]), places=9)
+
+    def test_the_same_session_in_two_files_counts_once(self):
+        shutil.copy(os.path.join(self.folder, "lab0.sqlite"), os.path.join(self.folder, "copy.sqlite"))
+        again = json.loads(self.call(["report", "--study", *self.both, "copy.sqlite", "--json"]))
+        self.assertEqual(again["effects"], self.study["effects"])
+        self.assertEqual(again["statements"][0]["code"], "copies")
+
+    def test_mixed_studies_are_refused(self):
+        self.call(["run", "demo", "--participant", "P01", "--db", "two.sqlite", "--headless", "--observer", "sim"])
+        self.assertIn("choose with --protocol", self.call(["report", "--study", *self.both, "two.sqlite"], 2))
+        self.assertIn("--study", self.call(["report", *self.both], 2))
+        self.assertIn("leave out --session", self.call(["report", "--study", *self.both, "--participant", "P01"], 2))
+
+    def test_the_page_stands_alone_and_shows_all_parts(self):
+        with open(os.path.join(self.folder, "study.html"), encoding="utf-8") as file:
+            page = file.read()
+        for title in ("Participants", "Psychometric function of the group", "Effects"):
+            self.assertIn(f"<h2>{title}</h2>", page)
+        self.assertEqual(page.count("<svg"), 3)
+        for word in ("<script", "http-equiv", "nan", "inf<"):
+            self.assertNotIn(word, page.lower().replace("confidence", ""))
+
+    def test_pandas_finds_the_same_effects(self):
+        if not has([sys.executable, "-c", "import pandas"]):
+            self.skipTest("needs pandas")
+        out = subprocess.run([sys.executable, os.path.join(SCRIPTS, "study.py"), "tables"], cwd=self.folder, capture_output=True, text=True,
+                             check=True).stdout
+        found = {tuple(line.split(",")[:3]): line.split(",")[3:] for line in out.splitlines()}
+        for effect in self.study["effects"]:
+            key = (effect["measure"], effect["first"], effect["second"])
+            sign = 1 if key in found else -1  # pandas sorts the conditions
+            value, _, persons = found[key if sign == 1 else (key[0], key[2], key[1])]
+            self.assertAlmostEqual(sign * float(value), effect["difference"]["value"], delta=1e-5 * max(1, abs(float(value))))
+            self.assertEqual(int(persons), effect["participants"])
+
+    def test_lme4_finds_the_same_groups(self):
+        if not has(["Rscript", "-e", "library(lme4)"]):
+            self.skipTest("needs R and lme4")
+        out = subprocess.run(["Rscript", os.path.join(SCRIPTS, "study.R"), "tables"], cwd=self.folder, capture_output=True, text=True,
+                             check=True).stdout
+        found = [line.split(",") for line in out.splitlines()]
+        errors = {}
+        for row in self.rows("groups.csv"):
+            errors["rate", row["condition"]] = float(row["rate_se"])
+            errors["threshold", row["condition"]] = float(row["intercept_se"]) / float(row["rate"])
+        compared = 0
+        for what, condition, theirs, ours in found:
+            if what == "log_likelihood":
+                self.assertGreater(float(ours), float(theirs) - 0.01)  # lme4 must not find a better maximum
+                self.assertLess(float(ours), float(theirs) + 0.3)
+            elif what in ("rate", "threshold"):
+                self.assertLess(math.fabs(float(ours) - float(theirs)), 0.1 * errors[what, condition])
+                compared += 1
+        self.assertEqual(compared, 4)
+
+
+if __name__ == "__main__":
+    unittest.main()

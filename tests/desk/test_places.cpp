@@ -1,0 +1,105 @@
+// What the operator's pages of studies and sessions show.
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "station/desk/choices.hpp"
+#include "station/desk/cue_advice.hpp"
+#include "station/desk/session_list.hpp"
+#include "station/setup/prepare.hpp"
+#include "station/store/annotate.hpp"
+#include "tests/support/catch.hpp"
+
+using namespace turnpoint;
+namespace fs = std::filesystem;
+
+namespace {
+
+const std::string kHere = TURNPOINT_SOURCE_DIR;
+
+struct Scratch {
+  fs::path path = fs::temp_directory_path() / ("turnpoint-places-" + std::to_string(::getpid()));
+  Scratch() {
+    fs::remove_all(path);
+    fs::create_directories(path);
+  }
+  ~Scratch() { fs::remove_all(path); }
+};
+
+/// Runs a session of this participant with a simulated observer, and returns its id.
+std::string run_session(const std::string& database, const std::string& participant) {
+  setup::RunRequest request;
+  request.protocol = kHere + "/protocols/demo.toml";
+  request.rig = kHere + "/tests/support/thin_plate.toml";
+  request.participant = participant;
+  request.database = database;
+  request.observer = "sim";
+  request.seed = 1;
+  session::Inputs inputs;
+  return session::run(setup::prepare(request), nullptr, inputs).session_id;
+}
+
+std::vector<std::string> found(const std::vector<desk::SessionLine>& lines, const std::string& search) {
+  std::vector<std::string> people;
+  for (const auto& line : lines)
+    if (desk::matches(line, search)) people.push_back(line.person);
+  return people;
+}
+
+}  // namespace
+
+TEST_CASE("sessions are listed newest first, and each word of a search must occur", "[sessions]") {
+  const Scratch scratch;
+  const auto database = (scratch.path / "lab.sqlite").string();
+  CHECK(desk::session_lines(database).empty());
+  const auto first = run_session(database, "P01");
+  run_session(database, "P02");
+  store::annotate(database, first, "Fire alarm in block 2");
+  const auto lines = desk::session_lines(database);
+  REQUIRE(lines.size() == 2);
+  CHECK(lines[0].person == "P02");
+  CHECK(lines[1].session_id == first);
+  CHECK(lines[1].trials == 10);
+  CHECK(lines[1].status == "completed");
+  CHECK_FALSE(lines[1].resumable);
+  using List = std::vector<std::string>;
+  CHECK(found(lines, "") == List{"P02", "P01"});
+  CHECK(found(lines, "p01") == List{"P01"});
+  CHECK(found(lines, "DEMO simulated") == List{"P02", "P01"});
+  CHECK(found(lines, "fire demo") == List{"P01"});
+  CHECK(found(lines, "fire P02").empty());
+}
+
+TEST_CASE("a check's remarks have file, line and hint, problems first", "[studies]") {
+  simulation::Check check;
+  check.warnings = {{{"/a/study.toml", 9, 1}, "no practice", ""}};
+  check.notes = {{{"/a/study.toml", 4, 1}, "listed twice", ""}};
+  check.problems = {{{"/a/study.toml", 12, 3}, "unknown key \"boundry_mm\"", "did you mean boundary_mm?"}};
+  const auto words = desk::words_of(check);
+  using Kind = desk::CheckWords::Remark::Kind;
+  REQUIRE(words.remarks.size() == 3);
+  CHECK(words.remarks[0].kind == Kind::problem);
+  CHECK(words.remarks[0].file == "study.toml");
+  CHECK(words.remarks[0].line == 12);
+  CHECK(words.remarks[0].what == "unknown key \"boundry_mm\"");
+  CHECK(words.remarks[0].hint == "did you mean boundary_mm?");
+  CHECK(words.remarks[1].kind == Kind::warning);
+  CHECK(words.remarks[2].kind == Kind::note);
+}
+
+TEST_CASE("there is advice for every cue that a check reports, and only a cue that helps gets it",
+          "[studies]") {
+  const auto words = desk::words_of(simulation::check(kHere + "/protocols/friction-2ifc.toml",
+                                                      kHere + "/tests/support/thin_plate.toml", {5}));
+  REQUIRE(words.cues.size() == 8);
+  int leaks = 0;
+  for (const auto& cue : words.cues) {
+    INFO(cue.name);
+    CHECK_FALSE(desk::cue_advice(cue.name).empty());
+    CHECK(cue.advice == (cue.leaks ? desk::cue_advice(cue.name) : ""));
+    leaks += cue.leaks;
+  }
+  CHECK(leaks > 0);
+  CHECK_THROWS_AS(desk::cue_advice("colour"), std::logic_error);
+}

@@ -1,0 +1,125 @@
+// Disks that can be taken out, in folders laid out like the kernel's, with a script in place of udisksctl.
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "station/maintenance/disks.hpp"
+#include "station/system/read_file.hpp"
+#include "tests/support/catch.hpp"
+
+using namespace turnpoint;
+namespace fs = std::filesystem;
+
+namespace {
+
+/// A machine with an internal disk, a USB stick with one partition, an empty card reader, and a memory card
+/// without partitions from which the machine runs.
+struct Machine {
+  fs::path folder = fs::temp_directory_path() / ("turnpoint-disks-" + std::to_string(::getpid()));
+  maintenance::DiskSources sources{(folder / "block").string(), (folder / "mountinfo").string(),
+                                   (folder / "udisksctl").string()};
+
+  Machine() {
+    fs::remove_all(folder);
+    disk("nvme0n1", "0", "2000000000", "259:0", "Samsung");
+    disk("sda", "1", "61440000", "8:0", "Ultra Fit       ");
+    partition("sda", "sda1", "8:1");
+    disk("sdb", "1", "0", "8:16", "Card Reader");
+    disk("mmcblk0", "1", "30000000", "179:0", "");
+    mounts("");
+  }
+  ~Machine() { fs::remove_all(folder); }
+
+  void write(const fs::path& path, const std::string& text) const {
+    fs::create_directories(path.parent_path());
+    std::ofstream(path) << text;
+  }
+  void disk(const std::string& name, const std::string& removable, const std::string& sectors,
+            const std::string& number, const std::string& model) const {
+    const auto block = fs::path(sources.blocks) / name;
+    write(block / "removable", removable + "\n");
+    write(block / "size", sectors + "\n");
+    write(block / "dev", number + "\n");
+    if (!model.empty()) write(block / "device/model", model + "\n");
+  }
+  void partition(const std::string& disk, const std::string& name, const std::string& number) const {
+    write(fs::path(sources.blocks) / disk / name / "partition", "1\n");
+    write(fs::path(sources.blocks) / disk / name / "dev", number + "\n");
+  }
+  void mounts(const std::string& more) const {
+    write(sources.mounts, "25 1 179:0 / / rw,noatime shared:1 - ext4 /dev/mmcblk0 rw\n" + more);
+  }
+  /// udisksctl as a script that notes its arguments and then does this.
+  void udisks(const std::string& does) const {
+    write(sources.tool, "#!/bin/sh\necho \"$@\" >> " + (folder / "asked").string() + "\n" + does + "\n");
+    fs::permissions(sources.tool, fs::perms::owner_all);
+  }
+  std::string asked() const { return system::read_file((folder / "asked").string()); }
+};
+
+/// The message of the error that a call throws; "" if it throws none.
+template <typename Call>
+std::string error_of(Call call) {
+  try {
+    call();
+  } catch (const std::exception& error) {
+    return error.what();
+  }
+  return "";
+}
+
+const std::string kStick = "31 25 8:1 / /media/lab/MY\\040STICK rw,nosuid shared:9 - vfat /dev/sda1 rw\n";
+
+}  // namespace
+
+TEST_CASE("a USB stick is listed with its model, size and folder, and nothing that the system runs from",
+          "[disks]") {
+  const Machine machine;
+  const auto before = maintenance::removable_disks(machine.sources);
+  REQUIRE(before.size() == 1);
+  CHECK(before[0] == maintenance::Disk{"/dev/sda1", "Ultra Fit, 31 GB", ""});
+  machine.mounts(kStick);
+  const auto after = maintenance::removable_disks(machine.sources);
+  REQUIRE(after.size() == 1);
+  CHECK(after[0].folder == "/media/lab/MY STICK");
+}
+
+TEST_CASE("a disk is mounted through udisks, and its folder is the one that the kernel reports", "[disks]") {
+  const Machine machine;
+  const auto disk = maintenance::removable_disks(machine.sources).at(0);
+  machine.udisks("printf '%s\\n' '" + kStick.substr(0, kStick.size() - 1) + "' >> " + machine.sources.mounts);
+  CHECK(maintenance::mount(disk, machine.sources) == "/media/lab/MY STICK");
+  CHECK(machine.asked() == "mount --no-user-interaction --block-device /dev/sda1\n");
+}
+
+TEST_CASE("a disk that cannot be mounted is named with what udisks said", "[disks]") {
+  const Machine machine;
+  const auto disk = maintenance::removable_disks(machine.sources).at(0);
+  machine.udisks("echo 'unknown filesystem type exfat' >&2; exit 1");
+  CHECK(error_of([&] { maintenance::mount(disk, machine.sources); }) ==
+        "Ultra Fit, 31 GB (/dev/sda1) could not be mounted: unknown filesystem type exfat\n");
+}
+
+TEST_CASE("ejecting unmounts and then switches off, and stops if the disk is in use", "[disks]") {
+  const Machine machine;
+  machine.mounts(kStick);
+  const auto disk = maintenance::removable_disks(machine.sources).at(0);
+  machine.udisks("case $1 in power-off) exit 1;; esac");  // a card cannot be switched off
+  maintenance::eject(disk, machine.sources);
+  CHECK(machine.asked() ==
+        "unmount --no-user-interaction --block-device /dev/sda1\n"
+        "power-off --no-user-interaction --block-device /dev/sda1\n");
+  fs::remove(machine.folder / "asked");
+  machine.udisks("echo 'target is busy'; exit 1");
+  CHECK(error_of([&] {
+          maintenance::eject(disk, machine.sources);
+        }).find("do not unplug it: target is busy") != std::string::npos);
+  CHECK(machine.asked() == "unmount --no-user-interaction --block-device /dev/sda1\n");
+}
+
+TEST_CASE("without udisks the error names the Debian package", "[disks]") {
+  const Machine machine;
+  const auto disk = maintenance::removable_disks(machine.sources).at(0);
+  CHECK(error_of([&] { maintenance::eject(disk, machine.sources); }).find("udisks2") != std::string::npos);
+}

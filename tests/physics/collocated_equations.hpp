@@ -1,0 +1,42 @@
+#pragma once
+// The equations of membranes and plates at points across the strip, for CollocatedField. The unit of length
+// is 1/k, where k is the wavenumber of a free wave.
+#include <Eigen/Core>
+#include <complex>
+#include <functional>
+
+#include "physics/piston_lift.hpp"
+#include "physics/surface.hpp"
+#include "physics/taper.hpp"
+
+namespace turnpoint::physics_test {
+
+// The unknowns u at one x are the values of one or more fields at the points across. They obey
+//   second u'' + first(x) u' + (here(x) + inertia mass) u = -(source(x) + inertia mass lift(x)).
+struct CollocatedEquations {
+  Eigen::VectorXd second;
+  std::function<void(double x_m, Eigen::MatrixXd& first, Eigen::MatrixXd& here)> at;
+  Eigen::MatrixXd mass;
+  std::complex<double> inertia;
+  // empty if there is no load
+  std::function<void(double x_m, Eigen::VectorXd& source, Eigen::VectorXd& lift)> load;
+  // At both ends, the first `drive.size()` unknowns are given: `drive` at the drive edge, 0 at the far end.
+  // If there are more unknowns, the derivatives of these by x are given instead of the others.
+  Eigen::VectorXd drive, drive_slope;
+  Eigen::RowVectorXd centre;  // displacement of the centre line
+};
+
+// Chebyshev points from -1 to 1, and the matrix that differentiates values at them (Trefethen, Spectral
+// Methods in MATLAB, program cheb).
+Eigen::VectorXd chebyshev_points(int n);
+Eigen::MatrixXd differentiation(const Eigen::VectorXd& points);
+
+// Wavenumber of a free wave: that of D k^4 + N k^2 = rho h omega^2, or of Mindlin's equations.
+double free_wavenumber_per_m(const physics::Surface& surface, double frequency_Hz);
+
+// `across` is the number of points from the centre to the side beyond half the phase across. The plate theory
+// may be kirchhoff or mindlin. `lift` is the jump of a membrane's piston; plates have none.
+CollocatedEquations equations_of(const physics::Surface& surface, double frequency_Hz, int across,
+                                 const physics::PistonLift* lift);
+
+}  // namespace turnpoint::physics_test

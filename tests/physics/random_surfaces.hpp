@@ -1,0 +1,105 @@
+#pragma once
+// Random surfaces of every kind, for a frequency of 20 kHz.
+#include <cmath>
+#include <limits>
+
+#include "physics/dispersion.hpp"
+#include "physics/surface.hpp"
+#include "tests/physics/random_scenes.hpp"
+
+namespace turnpoint::physics_test {
+
+inline constexpr double frequency_Hz = 20000;
+
+// A table of 4 to 6 points with long, nearly even parts and steep steps. Higher modes are trapped between the
+// steps.
+inline physics::TabulatedTaper stepped_table(Draw& draw, double w0, double length) {
+  physics::TabulatedTaper table{{{0, w0}}};
+  const int points = 4 + static_cast<int>(draw.next() % 3);
+  double x = 0, w = w0;
+  for (int i = 1; i < points; ++i) {
+    x += length / (points - 1) * draw.between(0.6, 1.4);
+    const double left = w - 0.05 * w0;
+    const double fall = draw.next() % 2 == 0 ? draw.between(0.4, 0.8) : draw.between(0.005, 0.05);
+    w -= i == points - 1 ? left : left * fall;
+    table.points.push_back({x, w});
+  }
+  return table;
+}
+
+// Sets taper and length: linear, exponential, or a smooth or stepped table. `ratio` is the half-width of the
+// drive edge over `cut`, the cut-off half-width.
+inline void random_taper(Draw& draw, physics::Surface& s, double cut, double ratio, double slope) {
+  const double w0 = ratio * cut, length = w0 / slope;
+  switch (draw.next() % 4) {
+    case 0:
+      s.taper = physics::LinearTaper{w0, slope};
+      s.length_m = length * draw.between(0.9, 1);
+      break;
+    case 1:
+      s.taper = physics::ExponentialTaper{w0, cut / slope};
+      s.length_m = cut / slope * (std::log(ratio) + 1.8);
+      break;
+    case 2:
+      s.taper = physics::TabulatedTaper{{{0, w0},
+                                         {0.3 * length, w0 * draw.between(0.65, 0.8)},
+                                         {0.6 * length, w0 * draw.between(0.35, 0.5)},
+                                         {0.95 * length, 0.05 * w0}}};
+      s.length_m = 0.95 * length;
+      break;
+    default: {
+      const physics::TabulatedTaper table = stepped_table(draw, w0, length);
+      s.taper = table;
+      s.length_m = table.points.back().x_m;
+    }
+  }
+}
+
+inline double random_quality_factor(Draw& draw) {
+  return draw.next() % 3 == 0 ? std::numeric_limits<double>::infinity() : draw.spread(5, 2000);
+}
+
+// A membrane with any taper and both drives.
+inline physics::Surface random_membrane(Draw& draw) {
+  physics::Surface s = physics::seed_brass();
+  const double cut = physics::cut_off_half_width_m(s, frequency_Hz);
+  const double ratio = draw.between(1.15, 10), slope = draw.spread(0.02, 0.5);
+  s.quality_factor = random_quality_factor(draw);
+  s.drive = draw.next() % 3 == 0 ? physics::DriveShape::piston : physics::DriveShape::cosine;
+  random_taper(draw, s, cut, ratio, slope);
+  return s;
+}
+
+// A plate of 0.3 to 3 mm with any taper, driven with the shape of its first mode: one in four simply
+// supported, one in four clamped under tension, the others clamped and free of tension.
+inline physics::Surface random_thin_plate(Draw& draw) {
+  physics::Surface s = physics::aluminium_plate();
+  s.thickness_m = draw.spread(0.3e-3, 3e-3);
+  const auto kind = draw.next() % 4;
+  if (kind == 0) s.edges = physics::Edges::supported;
+  const double free_cut = physics::cut_off_half_width_m(s, frequency_Hz);
+  if (kind <= 1) {  // the boundary layer of the tension is 3 to 1/15 of the half-width
+    const double layers = draw.spread(0.3, 15);
+    s.bending = physics::Bending::on;
+    s.tension_Pa =
+        layers * layers * *physics::bending_stiffness_N_m(s) / (free_cut * free_cut * s.thickness_m);
+  }
+  s.quality_factor = random_quality_factor(draw);
+  const double ratio = draw.between(1.15, 5), slope = draw.spread(0.02, 0.5);
+  random_taper(draw, s, physics::cut_off_half_width_m(s, frequency_Hz), ratio, slope);
+  return s;
+}
+
+// A clamped plate by Mindlin's theory, with h/W at the cut-off from 0.05 to 0.5.
+inline physics::Surface random_thick_plate(Draw& draw) {
+  physics::Surface s = physics::aluminium_plate();
+  s.theory = physics::PlateTheory::mindlin;
+  s.poisson = draw.between(0.1, 0.45);
+  s.thickness_m = draw.spread(0.1e-3, 10e-3);
+  s.quality_factor = random_quality_factor(draw);
+  const double ratio = draw.between(1.15, 4), slope = draw.spread(0.02, 0.3);
+  random_taper(draw, s, physics::cut_off_half_width_m(s, frequency_Hz), ratio, slope);
+  return s;
+}
+
+}  // namespace turnpoint::physics_test

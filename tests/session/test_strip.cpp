@@ -1,0 +1,115 @@
+#include <cmath>
+
+#include "station/analysis/quantile.hpp"
+#include "station/desk/live_view.hpp"
+#include "station/desk/report_data.hpp"
+#include "station/report/figures.hpp"
+#include "tests/session/measured_session.hpp"
+#include "tests/support/catch.hpp"
+
+// Friction along the strip beside the planned boundary, in the report and for the operator.
+
+using namespace turnpoint;
+using namespace measured;
+
+namespace {
+
+std::string demo_with(const TemporaryFolder& folder, const std::string& sensing) {
+  std::ostringstream text;
+  text << std::ifstream(shipped("demo")).rdbuf();
+  auto protocol = text.str();
+  const std::pair<std::string, std::string> changes[] = {{"edge = \"p50\"", "edge = { friction = 0.55 }"},
+                                                         {"displacement_um = 1.0", "displacement_um = 3.0"},
+                                                         {"explore_s = 4.0", "explore_s = 12.0"},
+                                                         {"deadline_s = 6.0", "deadline_s = 15.0"},
+                                                         {"repeats = 2\n", "repeats = 1\n"},
+                                                         {"[timing]", sensing + "[timing]"}};
+  for (const auto& [from, to] : changes) {
+    const auto at = protocol.find(from);
+    REQUIRE(at != std::string::npos);
+    protocol.replace(at, from.size(), to);
+  }
+  const auto path = folder / "demo.toml";
+  std::ofstream(path) << protocol;
+  return path;
+}
+
+/// Keeps the newest row, and what the page of the operator shows about it.
+struct Sensors : session::Monitor {
+  std::optional<protocol::Sensing> asked;
+  std::map<std::string, std::string> facts;
+  void trial_begins(const trial::TrialSpec&, const protocol::Block&,
+                    const session::PlanAhead::Plans&) override {}
+  void trial_ended(const trial::TrialSpec&, const records::TrialRow& row) override {
+    facts.clear();
+    for (const auto& [label, value] : desk::sensors_of(row, asked)) facts[label] = value;
+  }
+};
+
+report::SessionData data_of(const std::string& sensing, Sensors& sensors) {
+  TemporaryFolder folder;
+  setup::RunRequest request;
+  request.protocol = demo_with(folder, sensing);
+  request.rig = with_capture(folder, kCells);
+  request.participant = "P01";
+  request.database = folder / "a.sqlite";
+  request.observer = "sim:residual=10";
+  request.seed = 7;
+  const auto setup = setup::prepare(request);
+  sensors.asked = setup.protocol.sensing;
+  session::Inputs inputs;
+  const auto summary =
+      session::run(setup, nullptr, inputs, std::make_unique<session::SimulatedRoom>(setup.rig), &sensors);
+  return desk::report_data(request.database, summary.session_id);
+}
+
+double mean_between(const analysis::FrictionCurve& curve, double from_mm, double to_mm) {
+  std::vector<double> values;
+  for (std::size_t i = 0; i < curve.friction.size(); ++i)
+    if (curve.from_boundary_mm[i] > from_mm && curve.from_boundary_mm[i] < to_mm)
+      values.push_back(curve.friction[i]);
+  REQUIRE(values.size() >= 5);
+  return analysis::mean(values);
+}
+
+}  // namespace
+
+TEST_CASE("the report has friction along the strip, which rises at the planned boundary",
+          "[session][strip]") {
+  Sensors sensors;
+  const auto data = data_of("", sensors);
+  REQUIRE(data.strip.size() == 2);
+  for (const auto& curve : data.strip) {
+    INFO(curve.direction);
+    // The finger's friction at rest is 0.8; the boundary is where it has fallen to 0.55 of this.
+    CHECK(mean_between(curve, -30, -6) < 0.4);
+    CHECK(mean_between(curve, 15, 35) == Approx(0.8).epsilon(0.08));
+    CHECK(mean_between(curve, -5, 5.1) == Approx(0.55 * 0.8).margin(0.12));
+    for (const double se : curve.se) CHECK((se > 0 && se < 0.2));
+  }
+  const auto chart = report::strip_chart(data.strip);
+  REQUIRE(chart);
+  CHECK(chart->layers.size() == 3);
+  CHECK(std::get<plot::Rule>(chart->layers.front()).at == 0);
+  CHECK(data.repeats.empty());
+  SECTION("the operator sees what the sensors measured") {
+    CHECK(sensors.facts.at("Finger") == "ok");
+    CHECK(sensors.facts.at("Normal force").find("N, SD") != std::string::npos);
+    CHECK(sensors.facts.count("Pick-up, level") == 1);
+    CHECK(sensors.facts.count("Zero of the cells") == 1);
+  }
+  SECTION("without curves there is no chart") { CHECK_FALSE(report::strip_chart({})); }
+}
+
+TEST_CASE("the report counts the trials that were presented again, by level", "[session][strip]") {
+  Sensors sensors;
+  const auto data = data_of(
+      "[sensing]\nspeed_mm_s = [200, 300]\nstrokes = 1\noutside = \"repeat\"\nrepeats = 1\n", sensors);
+  REQUIRE(data.repeats.size() == 5);
+  for (const auto& at : data.repeats) {
+    CHECK(at.presented == 2);  // the first time in vain, then marked
+    CHECK(at.repeated == 1);
+  }
+  CHECK(sensors.facts.at("Finger") == "slow");
+  CHECK(sensors.facts.at("Speed").find("asked for 200 to 300 mm/s") != std::string::npos);
+}

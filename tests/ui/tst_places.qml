@@ -1,0 +1,269 @@
+import QtQuick
+import QtTest
+import Turnpoint
+
+// The operator's pages of the whole program, reached through the bar and operated by taps: what they show, what they
+// write, and that nothing that cannot be undone happens by a stray tap.
+Item {
+    id: stage
+    width: 1280
+    height: 800
+
+    TestCase {
+        name: "Places"
+        when: windowShown
+
+        function init() { room.open("1234") }
+        function cleanup() {
+            room.close()
+        }
+
+        function find(parent, name) {
+            for (let i = 0; parent && i < parent.children.length; ++i) {
+                const child = parent.children[i]
+                if (!child.visible) continue
+                const found = child.objectName === name ? child : find(child, name)
+                if (found) return found
+            }
+            return null
+        }
+        function says(wanted, parent = room.screen) {
+            for (let i = 0; i < parent.children.length; ++i) {
+                const child = parent.children[i]
+                if (!child.visible) continue
+                if ((child.text ?? "").toString().includes(wanted) || says(wanted, child)) return true
+            }
+            return false
+        }
+        function shown(name) { return find(room.screen, name) !== null }
+        function appears(name) {
+            tryVerify(() => shown(name) && find(room.screen, name).enabled && find(room.screen, name).armed !== false, 20000, name)
+            return find(room.screen, name)
+        }
+        function tap(name) {
+            const button = appears(name)
+            wait(20)
+            mouseClick(button, button.width / 2, button.height / 2)
+        }
+        function key(code) {
+            room.pressKey(code)
+            room.releaseKey(code)
+        }
+        function goTo(place) {
+            tap("bar-" + place)
+            appears(place + "Page")
+        }
+        function type(text) {
+            for (const letter of text) tap("letter" + letter)
+            tap("keepEntry")
+        }
+        function interrupt() {
+            compare(room.cutOffSession("pilot"), -9)
+            goTo("sessions")
+            tryVerify(() => shown("session0"), 5000)
+        }
+
+        function test_the_bar_leads_to_each_page_and_back() {
+            for (const place of ["studies", "sessions", "rig"]) {
+                goTo(place)
+                verify(!shown("operatorPage"))
+            }
+            tap("bar-run")
+            appears("operatorPage")
+        }
+
+        function test_studies_shows_every_problem_with_its_line_and_hint() {
+            room.addMistaken()
+            goTo("studies")
+            tap("protocol0")
+            tryVerify(() => says("Cannot be used", find(room.screen, "verdict").parent), 20000)
+            verify(says("mistaken.toml   ·   line 2"))
+            verify(says("mistaken.toml   ·   line 3"))
+            verify(says("protocl"))
+            verify(says("titel"))
+            verify(says("→ "))
+            compare(find(room.screen, "runStudy").enabled, false)
+        }
+
+        function test_a_study_with_cues_gives_advice_and_leads_to_run() {
+            goTo("studies")
+            tryVerify(() => find(room.screen, "runStudy").enabled, 20000)
+            verify(says("right with this cue alone"))
+            tap("runStudy")
+            appears("operatorPage")
+            tryVerify(() => room.operating.mayBegin, 20000)
+            compare(room.operating.selected, 0)
+        }
+
+        function test_sessions_without_a_database_says_so() {
+            goTo("sessions")
+            verify(says("No session has been recorded yet"))
+            compare(find(room.screen, "export").enabled, false)
+        }
+
+        function test_a_session_is_found_annotated_reported_and_resumed() {
+            interrupt()
+            tap("addNote")
+            type("cold hands")
+            tryVerify(() => says("• cold hands"), 5000)
+            tap("search")
+            type("cold t1")
+            tryVerify(() => says("“cold t1”"), 1000)
+            verify(shown("session0"))
+            tap("search")
+            type("x")
+            tryVerify(() => says("No session matches the search."), 1000)
+            tap("clearSearch")
+            verify(shown("session0"))
+            tap("makeReport")
+            appears("storedReport")
+            tap("saveFigure")
+            const saved = room.filesIn("figures").join(" ")
+            verify(/\.svg( |$)/.test(saved) && /\.pdf( |$)/.test(saved), saved)
+            compare(room.startOf("figures", ".pdf", 5), "%PDF-")
+            compare(room.startOf("figures", ".svg", 4), "<svg")
+            tap("closeReport")
+            verify(!shown("storedReport"))
+            tap("resumeThis")
+            tryVerify(() => !shown("stationPages"), 20000)
+        }
+
+        function test_an_export_goes_to_a_usb_stick_which_is_mounted_and_ejected() {
+            interrupt()
+            tap("export")
+            verify(shown("noDisk"))
+            room.plugIn()
+            tap("lookAgain")
+            verify(!shown("noDisk") && says("Test, 16 GB"))
+            tap("exportAll")
+            tap("place1")
+            tryVerify(() => says("files were written to"), 20000)
+            const files = room.filesIn("stick")
+            verify(files.some(file => /^turnpoint-export-[-0-9]+\/.*\/trials\.csv$/.test(file)), files.join(" "))
+            compare(room.askedUdisks(), "mount")
+            tap("eject1")
+            tryVerify(() => says("can be unplugged now"), 5000)
+            compare(room.askedUdisks(), "mount unmount power-off")
+            verify(!shown("eject1"))
+        }
+
+        function test_a_backup_is_never_written_to_a_disk_that_is_only_a_folder() {
+            interrupt()
+            room.plugIn()
+            tap("backUp")
+            tap("place1")
+            // The stick of this test is a folder on the database's own disk, as after somebody has pulled it out.
+            tryVerify(() => says("no disk is mounted"), 20000)
+            compare(room.filesIn("stick"), [])
+            tap("backUp")
+            tap("place0")
+            tryVerify(() => says("The backup was read back and checked."), 20000)
+            verify(room.filesIn("backups").some(file => file.endsWith(".sqlite")))
+        }
+
+        function test_a_withdrawal_states_its_consequence_and_happens_only_when_confirmed() {
+            interrupt()
+            const place = appears("withdraw").mapToItem(room.screen, find(room.screen, "withdraw").width / 2, 10)
+            for (let i = 0; i < 4; ++i) mouseClick(room.screen, place.x, place.y)
+            tryVerify(() => shown("withdrawing"), 5000)
+            for (let i = 0; i < 4; ++i) mouseClick(room.screen, place.x, place.y)
+            wait(400)
+            for (let i = 0; i < 4; ++i) mouseClick(room.screen, place.x, place.y)
+            verify(shown("withdrawing"))
+            compare(find(room.screen, "withdrawing").text.split(",")[0], "T1 would be deleted: 1 sessions")
+            verify(says("This cannot be undone."))
+            tap("keep")
+            verify(!shown("withdrawing") && shown("session0"))
+            tap("withdraw")
+            tap("confirm")
+            tryVerify(() => says("T1 deleted: 1 sessions, 2 trials"), 20000)
+            verify(!shown("session0"))
+            verify(says("No session has been recorded yet"))
+        }
+
+        function test_the_rig_is_examined_and_tested_and_other_pages_wait_meanwhile() {
+            room.calibrate()
+            goTo("rig")
+            verify(says("In use"))
+            verify(says("30 more days"))
+            tap("examine")
+            tryVerify(() => shown("finding0"), 60000)
+            verify(says("converter"))
+            tap("selfTestTab")
+            const test = appears("selfTest")
+            mouseClick(test)
+            wait(100)
+            verify(!shown("finding0"))
+            mousePress(test)
+            tryVerify(() => !find(room.screen, "bar-run").enabled, 3000)
+            mouseRelease(test)
+            tryVerify(() => shown("finding0") && find(room.screen, "bar-run").enabled, 60000)
+            verify(says("gate"))
+            verify(shown("gauge0"))
+        }
+
+        function test_language_theme_and_text_size_are_kept() {
+            goTo("rig")
+            tap("screen-de")
+            verify(says("Kalibrierung") && says("Sitzungen"))
+            tap("dark")
+            tap("larger")
+            compare(room.look.textPercent, 125)
+            room.reopen("1234")
+            appears("operatorPage")
+            compare(room.look.language, "de")
+            compare(room.look.dark, true)
+            compare(room.look.textPercent, 125)
+            verify(says("Studien"))
+        }
+
+        function test_the_pages_are_operated_by_keyboard() {
+            appears("bar-sessions").forceActiveFocus()
+            key(Qt.Key_Return)
+            appears("sessionsPage")
+            find(room.screen, "bar-rig").forceActiveFocus()
+            key(Qt.Key_Space)
+            appears("rigPage")
+            const reached = []
+            for (let i = 0; i < 30; ++i) {
+                key(Qt.Key_Tab)
+                const name = find(room.screen, "bar").Window.window.activeFocusItem.objectName
+                if (!reached.includes(name)) reached.push(name)
+            }
+            for (const name of ["bar-run", "bar-studies", "dark", "larger", "doctorTab", "selfTestTab", "examine"])
+                verify(reached.includes(name), name + " in " + reached.join(" "))
+            find(room.screen, "dark").forceActiveFocus()
+            key(Qt.Key_Space)
+            compare(room.look.dark, true)
+        }
+
+        function test_an_amplifier_is_armed_by_keyboard_only_if_the_key_is_held() {
+            appears("arm").forceActiveFocus()
+            key(Qt.Key_Space)
+            wait(50)
+            compare(room.operating.armed, false)
+            room.pressKey(Qt.Key_Space)
+            tryVerify(() => room.operating.armed, 3000)
+            room.releaseKey(Qt.Key_Space)
+            compare(room.operating.armed, true)
+        }
+
+        function test_a_screen_reader_finds_every_control_of_each_page_with_a_name() {
+            interrupt()
+            for (const place of ["run", "studies", "sessions", "rig"]) {
+                tap("bar-" + place)
+                wait(50)
+                compare(inspector.unnamedControls(room.screen), [], place)
+                const found = inspector.controls(room.screen)
+                verify(found.includes("tab: Sessions"), found.join("; "))
+            }
+            tap("bar-run")
+            tryVerify(() => inspector.controls(room.screen).includes("button: Begin pilot"), 5000)
+            goTo("sessions")
+            tap("addNote")
+            const found = inspector.controls(find(room.screen, "noting"))
+            verify(found.includes("text: A note to be stored with the session"), found.join("; "))
+            verify(found.includes("button: q"))
+        }
+    }
+}
