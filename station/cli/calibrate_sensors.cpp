@@ -8,6 +8,7 @@
 #include "station/cli/shared_options.hpp"
 #include "station/maintenance/pick_up_sweep.hpp"
 #include "station/session/session.hpp"
+#include "station/session/stage.hpp"
 #include "station/system/write_file.hpp"
 #include "station/text/number.hpp"
 

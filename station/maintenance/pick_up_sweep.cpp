@@ -12,6 +12,7 @@
 #include "station/rig/csv.hpp"
 #include "station/sensing/sweep.hpp"
 #include "station/session/session.hpp"
+#include "station/session/stage.hpp"
 #include "station/terms/usage_error.hpp"
 
 namespace turnpoint::maintenance {

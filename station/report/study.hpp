@@ -6,6 +6,7 @@
 
 #include "station/analysis/group.hpp"
 #include "station/analysis/mixed_fit.hpp"
+#include "station/plot/chart.hpp"
 #include "station/protocol/protocol.hpp"
 #include "station/report/summary.hpp"
 
