@@ -1,0 +1,57 @@
+#pragma once
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "station/design/parts.hpp"
+#include "station/text/toml.hpp"
+
+namespace turnpoint::design {
+
+/// The way to a key: {"block", "0", "levels"}.
+using Path = std::vector<std::string>;
+
+/// A TOML text whose values can be changed one by one. A change returns the whole new text, in which every
+/// byte that does not belong to the changed key is as before: comments, order, blank lines, line breaks.
+/// Changes throw std::logic_error for a path that they cannot use, and text::BadInput if the new text would
+/// not be valid TOML.
+class Document {
+ public:
+  /// Throws text::BadInput, with `file` as the name of the file, if the text is not valid TOML.
+  Document(std::string text, std::string file);
+
+  const std::string& text() const { return text_; }
+  const Part& root() const { return root_; }
+  /// The part at this path; nullptr if there is none.
+  const Part* find(const Path& path) const;
+  /// The value as written, without comments; "" if there is none.
+  std::string written(const Path& path) const;
+  /// The value of a scalar, array or inline table.
+  text::Value value(const Part& part) const;
+  /// The innermost part at this line (from 1), as a path; empty if the line belongs to no key.
+  Path at_line(int line) const;
+
+  /// Gives a key a value, written as TOML. A key that does not exist is added after the others of its table.
+  /// Tables that do not exist are added too.
+  std::string with(const Path& path, const std::string& value) const;
+  /// Removes a key with its line, an item of a list, or a whole table.
+  std::string without(const Path& path) const;
+  /// Adds a copy of a table after it. A table of a list ([[block]]) gets this `name`; another one
+  /// ([scene.edge]) is called so.
+  std::string with_copy(const Path& path, const std::string& name) const;
+
+ private:
+  std::string inserted(const Path& path, const std::string& value) const;
+  std::string inside_braces(const Part& table, const std::string& entry) const;
+  std::string new_line_at(std::size_t at, const std::string& line) const;
+  std::string checked(std::string text) const;
+
+  std::string text_, file_, line_break_ = "\n";
+  Part root_;
+};
+
+/// Writes a text as a TOML string, and a name as a TOML key.
+std::string quoted(const std::string& text);
+std::string key_of(const std::string& name);
+
+}  // namespace turnpoint::design

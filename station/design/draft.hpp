@@ -1,0 +1,40 @@
+#pragma once
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "station/design/document.hpp"
+#include "station/text/problem.hpp"
+
+namespace turnpoint::design {
+
+/// A protocol file while somebody works on it: its text, which may be wrong at times, and the texts before.
+class Draft {
+ public:
+  Draft(std::string text, std::string file);
+
+  const std::string& text() const { return texts_[now_]; }
+  const std::string& file() const { return file_; }
+  /// The text with its keys; nullptr while it is not valid TOML.
+  const Document* document() const { return document_ ? &*document_ : nullptr; }
+  /// Why the text is not valid TOML.
+  const std::vector<text::Problem>& problems() const { return problems_; }
+
+  /// Replaces the whole text. Does nothing if it is the same.
+  void change(std::string text);
+  bool can_undo() const { return now_ > 0; }
+  bool can_redo() const { return now_ + 1 < texts_.size(); }
+  void undo();
+  void redo();
+
+ private:
+  void read();
+
+  std::string file_;
+  std::vector<std::string> texts_;
+  std::size_t now_ = 0;
+  std::optional<Document> document_;
+  std::vector<text::Problem> problems_;
+};
+
+}  // namespace turnpoint::design
