@@ -65,7 +65,7 @@ struct Options {
   std::vector<std::string> places;
 };
 
-/// Reads PROTOCOL=N.
+/// Reads the argument of --places: PROTOCOL=N.
 std::pair<std::string, std::int64_t> place_option(const std::string& word) {
   const auto at = word.rfind('=');
   std::int64_t count = 0;

@@ -127,7 +127,7 @@ void report_study(Options options, Context& context) {
 void report_databases(Options options, Context& context) {
   std::deque<collector::ReadableDatabase> readable;
   for (auto& database : options.databases) {
-    // The address of a collector may contain a password.
+    // Do not show the address of a collector: it may contain a password.
     options.names.push_back(collector::is_server(database) ? "collector" : database);
     database = readable.emplace_back(database).path();
   }

@@ -38,8 +38,8 @@ void require_version(Connection& server) {
       "");
 }
 
-/// In a station's file, the newest session has the newest trials. Here, the session whose last trial is
-/// newest.
+/// Orders trials by the age of their session. In a station's file, readers find the newest session by the row
+/// of its newest trial. So the session whose last trial is the newest is copied last.
 std::string order_of(const CollectedTable& table) {
   if (table.name != "trial") return "ORDER BY " + quoted_list(table.key);
   return "JOIN (SELECT session_id, max(recorded_realtime_ns) AS newest FROM turnpoint.trial GROUP BY "

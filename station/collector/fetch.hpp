@@ -3,7 +3,7 @@
 
 namespace turnpoint::collector {
 
-/// True for a database that is on a server: postgresql://... or postgres://...
+/// True if this names a database on a server: postgresql://... or postgres://...
 bool is_server(const std::string& database);
 
 /// A database for a command that reads. One on a server is first copied to a temporary file, which only its

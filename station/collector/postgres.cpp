@@ -43,7 +43,8 @@ std::int64_t Rows::integer(int row, int column) const {
 void Connection::Finish::operator()(pg_conn* connection) const { PQfinish(connection); }
 
 Connection::Connection(const std::string& to) {
-  // Values in the connection string replace those before it.
+  // libpq takes the last value of a keyword, so values in the connection string replace the defaults before
+  // it.
   const char* const keywords[] = {
       "sslmode",          "connect_timeout", "tcp_user_timeout", "keepalives_idle",
       "application_name", "client_encoding", "dbname",           nullptr};
@@ -120,7 +121,7 @@ ServerTransaction::~ServerTransaction() {
   try {
     connection_.query("ROLLBACK");
   } catch (const ServerError&) {
-    // The connection is lost, and with it the transaction.
+    // Ignore the error: the connection is lost, so the server rolls the transaction back.
   }
 }
 

@@ -22,7 +22,8 @@ CREATE OR REPLACE FUNCTION turnpoint.coded(v bytea) RETURNS bytea LANGUAGE sql I
   $$ SELECT CASE WHEN v IS NULL THEN 'n0:'::bytea ELSE ('b' || octet_length(v)::text || ':')::bytea || v END $$;
 )sql";
 
-/// Returns an expression of type bytea: a row as store/checksum.cpp hashes it, without the end of the line.
+/// Returns an SQL expression of type bytea: the bytes of a row that store/checksum.cpp hashes, without the
+/// end of the line.
 std::string coded_columns(const CollectedTable& table, const std::vector<Covered>& columns,
                           const std::string& alias) {
   std::string expression = "''::bytea", texts;
@@ -51,7 +52,7 @@ std::string qualified_order(const std::string& order, const CollectedTable& tabl
     const auto end = std::min(order.find(',', at), order.size());
     const auto name = order.substr(at, end - at);
     list += (list.empty() ? "t." : ", t.") + quoted(name);
-    if (table.column(name).type == "TEXT") list += " COLLATE \"C\"";  // the order of the bytes, as in SQLite
+    if (table.column(name).type == "TEXT") list += " COLLATE \"C\"";  // sort by bytes, as SQLite does
     at = end + 1;
   }
   return list;
@@ -96,7 +97,7 @@ BEGIN
   return sql + "  RETURN encode(sha256(content), 'hex');\nEND $fn$;\n";
 }
 
-/// Checks that the arriving rows lie beyond the last link that is stored, and inserts them.
+/// Returns the SQL that checks that the arriving rows come after the last stored link, and inserts them.
 std::string take_rows(const CollectedTable& table) {
   const auto& part = *table.chain;
   return fmt::format(
@@ -107,7 +108,7 @@ std::string take_rows(const CollectedTable& table) {
       table.name, quoted(part.counter), part.last, column_list(table));
 }
 
-/// Inserts rows that other sessions may have brought before, and checks that these are equal.
+/// Returns the SQL that inserts rows which several sessions share. A row that is already there must be equal.
 std::string take_shared(const CollectedTable& table, const std::string& conflict) {
   std::string same;
   for (const auto& name : table.key)

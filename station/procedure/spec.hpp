@@ -58,8 +58,8 @@ struct Stop {
   StopRule rule = StopRule::any;
 };
 
-/// Starting levels of the series of one direction: a list of which each is used equally often, or an interval
-/// from which each series draws one. Without both there are no series of this direction.
+/// Starting levels of the series in one direction. Either a list, of which each is used equally often, or an
+/// interval, from which each series draws one. If both are empty, there are no series in this direction.
 struct SeriesStarts {
   std::vector<double> values;
   std::optional<std::pair<double, double>> uniform;
@@ -96,11 +96,11 @@ struct Spec {
   std::optional<int> initial_down;
   int discard_reversals = 0;  ///< number of reversals at the start that the estimate leaves out
 
-  // The first two members are also for adjustments: the starts from below and from above.
-  // The following members are for the method of limits, in addition to `step` (one step), `min` and `max`.
+  // The first two members are also used by adjustments: the starts from below and from above. The rest is for
+  // the method of limits, which also uses `step` (one step), `min` and `max`.
   SeriesStarts ascending, descending;
-  int series = 0;    ///< number of series, of both directions together
-  int n_change = 1;  ///< number of new answers in a row that end a series
+  int series = 0;    ///< number of series in both directions together
+  int n_change = 1;  ///< a series ends when the new answer has come this many times in a row
   Directions directions = Directions::alternate;
 
   // The following members are for procedures with a posterior.

@@ -13,7 +13,7 @@ namespace {
 // Time for which a simulated participant reads a question or an explanation.
 constexpr std::int64_t kReads_ns = 1'500'000'000;
 
-/// The answer that an input gives to an item, as it is stored.
+/// Returns the answer to store for an item when this input was given.
 std::string answer_of(const protocol::Item& item, const Input& input) {
   if (input.kind == InputKind::value) return text::exact(input.number);
   return item.choices.at(static_cast<std::size_t>(input.value)).id;
@@ -111,7 +111,7 @@ Interludes::Reply Interludes::reply(const Page& page, const std::function<bool(c
   while (!gate_.stop_asked()) {
     auto waited = stage_.wait_until(kForever);
     if (!waited) continue;
-    // a response button answers trials, not questions
+    // the rig's response buttons answer trials, not questions
     const bool button = waited->kind == InputKind::button;
     const auto input = gate_.received(std::move(*waited));
     if (gate_.handle_on_page(page, input) == Flow::stop) return std::nullopt;
@@ -167,7 +167,7 @@ std::vector<std::string> Interludes::given(const protocol::Interlude& interlude)
   return items;
 }
 
-/// Asks one item. Empty if the session stops; an empty reply means Back.
+/// Asks one item. Returns nothing if the session stops, and an empty reply if the participant pressed Back.
 std::optional<Interludes::Reply> Interludes::ask(const protocol::Interlude& interlude, std::size_t index,
                                                  bool back) {
   const auto& item = interlude.items[index];

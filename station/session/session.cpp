@@ -101,8 +101,8 @@ records::SessionStart start_of(const Setup& setup, std::uint64_t seed, const std
   return start;
 }
 
-/// The start of a run of the session. `now_ns` is read from the clock of the stage, which is virtual in a
-/// simulated session.
+/// Describes a new segment of the session. `now_ns` is read from the clock of the stage, which is virtual in
+/// a simulated session.
 records::SegmentStart segment(const std::string& reason, std::int64_t now_ns) {
   const auto clocks = system::read_clocks();
   return {boot_id(), reason, now_ns, clocks.boottime_ns, clocks.realtime_ns};
@@ -138,7 +138,7 @@ drive::StreamConfig simulated_stream(const rig::Rig& rig) {
   config.virtual_lead_frames = std::int64_t{config.output.periods} * config.output.period_frames;
   const bool hardware = config.output.uri.starts_with("alsa:") && config.output.allow_plugin.empty();
   if (hardware) config.output.uri = "null:";
-  // Do not compute samples that are discarded: half an hour has 300 million frames.
+  // Without a reader, skip the computation of samples: half an hour has 300 million frames.
   if (config.output.uri == "null:" && !simulates_capture(rig)) config.samples = drive::Samples::passed;
   return config;
 }

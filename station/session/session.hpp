@@ -49,7 +49,7 @@ struct Setup {
   /// run the self-test before the first block; without a simulated observer, the operator has then armed the
   /// amplifier
   bool self_test = false;
-  /// the operator's reason to continue although a check of the self-test failed; "" asks for it
+  /// the operator's reason to continue if a check of the self-test fails; with "", the operator is asked
   std::string despite = {};
   /// where the kernel lists its temperature sensors
   std::string thermometers = "/sys/class/hwmon";
@@ -88,7 +88,8 @@ Summary run(const Setup& setup, Display* display, Inputs& inputs, Monitor* monit
 
 class SimulatedRoom;
 
-/// Runs a simulated session in this room, which may have faults; null if nothing is captured.
+/// Runs a simulated session with this simulated room, to which a test may have given faults. A null room
+/// means that nothing is captured.
 Summary run(const Setup& setup, Display* display, Inputs& inputs, std::unique_ptr<SimulatedRoom> room,
             Monitor* monitor = nullptr);
 

@@ -10,7 +10,7 @@ using random::Stream;
 
 namespace {
 
-/// The movement of a block of strokes is measured at most this long after its end.
+/// Longest time from the end of a stimulus of strokes until its movement is known.
 constexpr double kMeasured_s = 5;
 
 /// Returns the easiest levels, for warm-up: the highest level or, if there are levels on both sides of zero,
@@ -170,7 +170,8 @@ std::optional<TrialSpec> Director::State::practice_trial() const {
   return spec;
 }
 
-/// A trial of a block of strokes. In a training, "right" is a movement as [sensing] asks for.
+/// Returns a trial of a block of strokes. In a training, the "right" answer is a movement within the limits
+/// of [sensing].
 std::optional<TrialSpec> Director::State::strokes_trial() const {
   if (static_cast<std::size_t>(trial) >= practice_levels.size()) return std::nullopt;
   const bool training = now()->kind == protocol::BlockKind::training;
