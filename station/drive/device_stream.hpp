@@ -55,7 +55,8 @@ class DeviceStream : public Stream {
 
  private:
   /// A position or rate that the audio thread sends to the control thread, with the number of restarts or
-  /// losses at that time. So the control thread can ignore measurements from before the latest restart.
+  /// losses at that time. By this number, the control thread recognises and ignores measurements from before
+  /// the latest restart.
   struct StampedPosition {
     std::uint32_t relation = 0;
     Position position;

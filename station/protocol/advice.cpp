@@ -59,7 +59,8 @@ void check_fineness(AdviceList& advice, const procedure::Spec& spec) {
   }
 }
 
-// If everybody feels every level, no threshold can be found. Training to a criterion finds none.
+// Reports levels that are all so large that everybody feels them: no threshold can be found then. A procedure
+// that ends at a criterion (stop.right) is for training and looks for no threshold.
 void check_coarseness(AdviceList& advice, const procedure::Spec& spec) {
   if (spec.stop.right) return;
   auto levels = spec.values;

@@ -51,7 +51,7 @@ void advise_on_answers(AdviceList& advice);
 void advise_on_times(AdviceList& advice);
 /// Checks the grids, rates, thresholds and stopping rules of procedures.
 void advise_on_grids(AdviceList& advice);
-/// Checks blocks, instructions, labels and questions, and the analysis.
+/// Checks blocks, instructions, labels, questions, and the analysis.
 void advise_on_plan(AdviceList& advice);
 /// Finds questions that ask for what identifies a person, and answers that look the same.
 void advise_on_interludes(AdviceList& advice);

@@ -10,8 +10,8 @@ namespace turnpoint::protocol {
 
 namespace {
 
-// The values of a factor in the trials of a source: the levels that the source sets, or the value that the
-// block fixes, or otherwise all levels of the factor.
+// Returns the values that a factor has in the trials of a source: the levels that the source sets, or the
+// value that the block fixes, or otherwise all levels of the factor.
 std::vector<FactorValue> values_of(const Factor& factor, const Source& source) {
   if (factor.name == source.level) return {source.levels.begin(), source.levels.end()};
   const auto fixed = source.block->fixed.find(factor.name);
@@ -32,7 +32,7 @@ void cross(const Protocol& protocol, const Source& source, const std::string& sc
         next.push_back(std::move(combination));
       }
     product = std::move(next);
-    // thinned() will keep only some of the combinations, so this part of a large design is enough.
+    // thinned() will keep only some of the combinations, so of a large design these first ones are enough.
     if (product.size() > 20000) product.resize(20000);
   }
   all.insert(all.end(), product.begin(), product.end());

@@ -17,7 +17,7 @@ using procedure::Kind;
 using text::number;
 using text::Problem;
 
-/// A displacement far too small to be felt, but larger than rounding errors.
+/// A displacement below this is far too small to be felt, but is no mere rounding error.
 constexpr double least_displacement_um = 0.001;
 
 std::string trimmed(const std::string& text) {
@@ -109,8 +109,8 @@ void check_task(AdviceList& advice) {
                  "set feedback = \"none\"");
 }
 
-/// The largest number of trials in a block, including catch trials; empty if the answers decide when the
-/// block ends.
+/// Returns the largest number of trials in a block, including catch trials; empty if the answers decide when
+/// the block ends.
 std::optional<double> most_trials(const Protocol& protocol, const Block& block) {
   if (block.trials) return *block.trials;
   double trials = static_cast<double>(block.levels.size());

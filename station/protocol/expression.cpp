@@ -162,8 +162,8 @@ class Parser {
   int depth_ = 0;
 };
 
-// The place in the file of a character of the text. The text starts one column after its opening quote.
-// Columns count characters, not bytes.
+// Returns the place in the file of one character of an expression's text. The text starts one column after
+// its opening quote. Columns count characters, not bytes.
 text::Place inside(const text::Place& place, const std::string& source, std::size_t at) {
   const auto end = source.begin() + static_cast<std::ptrdiff_t>(std::min(at, source.size()));
   const auto characters = std::count_if(

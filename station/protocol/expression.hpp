@@ -23,7 +23,7 @@ std::optional<Comparison> parse_comparison(const std::string& source, const text
 std::optional<Linear> linear_from(const text::Value& value, const std::string& key, const text::Range& range,
                                   const std::vector<Factor>& factors, text::Findings& findings);
 
-/// The smallest and largest value of the expression if each factor varies over its range or levels
+/// Returns the smallest and largest value of the expression if each factor varies over its range or levels
 /// independently of the others.
 std::pair<double, double> bounds(const Linear& expression, const std::vector<Factor>& factors);
 

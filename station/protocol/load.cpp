@@ -9,7 +9,7 @@ namespace turnpoint::protocol {
 
 namespace {
 
-/// True if the file begins like a PNG or a JPEG file.
+/// True if the first bytes of the file are those of a PNG or JPEG file.
 bool is_picture(const std::string& path) {
   std::string start(4, '\0');
   std::ifstream file(path, std::ios::binary);

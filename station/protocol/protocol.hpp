@@ -129,7 +129,7 @@ struct Choice {
   Localised label;
 };
 
-/// A text at a value of a rating scale.
+/// The text at one value of a rating scale.
 struct Anchor {
   double at = 0;
   Localised text;
@@ -254,7 +254,8 @@ struct Block {
   std::optional<Catch> catch_trials;
   std::optional<Break> break_after;
   Factors fixed;  ///< factors that the sequence sets for the whole block, such as instruction = "speed"
-  std::size_t part = 0;  ///< set by block_order(): which part of the plan the block belongs to
+  /// index of the part of the plan (a block or a sequence) from which block_order() made the block
+  std::size_t part = 0;
   Place place;
 };
 
@@ -272,8 +273,8 @@ struct Instruction {
   std::optional<std::pair<double, double>> target_accuracy;
 };
 
-/// What a participant can be asked to compare with: an earlier answer ("about-you.age"), or the proportion
-/// correct in a block ("practice.accuracy").
+/// A condition on an earlier answer ("about-you.age") or on the proportion correct in a block
+/// ("practice.accuracy").
 struct AnswerCondition {
   std::string about;
   Relation relation = Relation::equal;
@@ -326,12 +327,15 @@ enum class InterludeKind { questionnaire, consent, explanation, screening };
 struct Interlude {
   InterludeKind kind = InterludeKind::questionnaire;
   std::string name;
-  std::size_t above = 0;    ///< how many parts of the plan stand above it in the file
-  std::string after_each;   ///< name of a block or sequence: it comes after each of its blocks
-  std::vector<Item> items;  ///< of a questionnaire; a consent has one, "consent": agree, refuse
+  /// number of parts of the plan (blocks and sequences) that are above the interlude in the file
+  std::size_t above = 0;
+  std::string after_each;  ///< name of a block or sequence: the interlude comes after each of its blocks
+  /// items of a questionnaire; a consent has a single item, "consent", with the choices agree and refuse
+  std::vector<Item> items;
   std::vector<ExplanationPage> pages;
-  std::vector<AnswerCondition> pass;  ///< of a screening: the session goes on if all of them hold
-  /// what a participant reads who has refused, or did not pass the screening
+  /// for a screening: the session continues if all of these conditions hold
+  std::vector<AnswerCondition> pass;
+  /// text for a participant who has refused the consent, or did not pass the screening
   Localised farewell;
   Place place;
 };
@@ -365,18 +369,19 @@ struct Resume {
   std::string restart_unit;  ///< "block" if a resumed session restarts the interrupted block, otherwise ""
 };
 
-/// What the station gives out a trigger code for: a trial begins, an interval begins, an interval changes to
-/// its next scene, the participant answers.
+/// Events for which the station can send a trigger code: a trial begins, an interval begins, an interval
+/// changes to its next scene, the participant answers.
 enum class TriggerEvent { trial, onset, change, response };
 
-/// The code of an event in the trials of one condition.
+/// The trigger code of one event in the trials of one condition.
 struct TriggerCode {
   TriggerEvent event = TriggerEvent::trial;
-  std::string condition;  ///< name as given by conditions(); "" for trials that belong to none
-  int code = 0;           ///< 1 to 255
+  /// the condition's name, as in conditions(); "" for trials that belong to no condition
+  std::string condition;
+  int code = 0;  ///< 1 to 255
 };
 
-/// Which events get a code, and codes that the file states instead of the default ones.
+/// Which events get a trigger code, and the codes that the file gives explicitly instead of the defaults.
 struct Triggers {
   std::vector<TriggerEvent> send{TriggerEvent::trial, TriggerEvent::onset, TriggerEvent::change,
                                  TriggerEvent::response};
@@ -386,11 +391,12 @@ struct Triggers {
 
 /// The movement that the protocol asks for, on rigs that measure the finger.
 struct Sensing {
-  std::optional<std::pair<double, double>> normal_N, speed_mm_s;  ///< empty: any
+  /// range of the normal force and of the speed; empty: any value is accepted
+  std::optional<std::pair<double, double>> normal_N, speed_mm_s;
   double fraction = 0.8;  ///< required fraction of the strokes' time with force and speed in range
   int strokes = 2;        ///< least number of strokes in a trial
-  /// How often a trial whose movement was wrong is presented again. After that, and with 0, the trial counts,
-  /// and its row says what was wrong.
+  /// How often a trial with a wrong movement is presented again. After the last repetition, or with 0 at
+  /// once, the trial counts, and its row says what was wrong.
   int repeats = 0;
   /// Whether pages show bars with normal force and speed, and whether the bars also move during stimuli.
   bool guidance = false, live_guidance = false;

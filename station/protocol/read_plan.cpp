@@ -21,7 +21,7 @@ void read_what(TableReader& reader, Block& block, const Reading& reading) {
   for (const auto& spec : reading.protocol.procedures) known.push_back(spec.name);
   std::set<std::string> seen;
   for (const auto& name : block.procedures) {
-    // Without this check, every name in the list would be reported as unknown if no procedure could be read.
+    // `known` is empty if no procedure could be read. Do not report every name in the list as unknown then.
     if (!known.empty() && std::find(known.begin(), known.end(), name) == known.end())
       reader.problem("procedures", "unknown procedure \"" + name + "\"", suggestion(name, known));
     if (!seen.insert(name).second)

@@ -161,8 +161,8 @@ void read_procedures(TableReader& file, Reading& reading) {
     const bool broken_copy = !found.problems.empty();
     Spec spec;
     if (!broken_copy) spec = read_procedure(whole, reading, found);
-    // A mistake in a procedure is found again in each procedure that copies it, so only one problem is
-    // reported at each place in the file.
+    // If a procedure contains a mistake, every procedure that copies it contains the mistake too. So report
+    // only one problem for each place in the file.
     for (auto& problem : found.problems)
       if (places.insert({problem.place.line, problem.place.column}).second)
         reading.findings.problems.push_back(std::move(problem));

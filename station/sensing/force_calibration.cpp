@@ -28,7 +28,7 @@ Force product(const Readings& readings, const Matrix& matrix) {
   return {sum[0], sum[1], sum[2]};
 }
 
-/// Normal force, lateral force and moment that a weight exerts.
+/// Returns the normal force, lateral force and moment that a weight exerts.
 std::array<double, 3> load(const DeadWeight& weight) {
   return {weight.normal_N, weight.lateral_N, weight.normal_N * weight.position_mm};
 }
@@ -70,8 +70,8 @@ Fit fit(const std::vector<DeadWeight>& weights, const Loads& loads, const Loads&
   return result;
 }
 
-/// Changes of all loads by one standard deviation of each source of error. The sources are each place, each
-/// direction of the pulley, and the masses as a whole.
+/// Returns the changes of all loads if one source of error changes by one standard deviation, for each
+/// source. The sources are each place, each direction of the pulley, and the masses as a whole.
 std::vector<Loads> load_changes(const std::vector<DeadWeight>& weights, const WeightErrors& errors) {
   std::vector<Loads> all;
   const auto source = [&](auto change) {

@@ -98,8 +98,8 @@ struct Tare {
   double sd_N = 0;     ///< standard deviation of normal or lateral force, whichever is larger
 };
 
-/// Takes the mean of all points (300 ms or more) as the tare, and compares it with the previous tare
-/// `before`.
+/// Takes the mean of all points (300 ms or more) as the new tare, and compares it with `before`, the previous
+/// tare.
 Tare tare(std::span<const BridgePoint> points, Band band, const ForceCalibration& calibration,
           const Readings& before);
 

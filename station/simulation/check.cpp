@@ -38,8 +38,8 @@ double longest_s(const Protocol& protocol) {
   return protocol.task.duration_s.value_or(protocol.timing.explore_s.value_or(0));
 }
 
-/// The observer of `run --observer sim`, with one difference: setting a slider takes as long as it takes a
-/// person.
+/// Returns the observer of `run --observer sim`, except that setting a slider takes as long as it would take
+/// a person.
 Rehearser person(const Protocol& protocol) {
   auto person = rehearser(observer::Observer{observer::Parameters{}});
   person.adjust = [adjust = person.adjust, done_s = std::min(setting_s, longest_s(protocol))](
@@ -164,7 +164,7 @@ std::vector<text::Problem> language_notes(const Protocol& protocol) {
 Spread spread_of(std::vector<double> values) {
   if (values.empty()) return {};
   std::sort(values.begin(), values.end());
-  // Of n sorted values, the share k / (n + 1) of all sessions is expected below the k-th.
+  // Of n sorted values, the k-th is an estimate of the quantile k / (n + 1).
   const auto last = static_cast<long>(values.size()) - 1;
   const auto at = [&](double share) {
     const auto k = std::lround(share * static_cast<double>(last + 2)) - 1;
@@ -227,7 +227,8 @@ Check check(const std::string& protocol_path, const std::string& rig_path, const
     if (check.problems.empty()) {
       if (options.finger) check.finger = shares(check.survey, *rig);
       if (options.sound) check.sound = loudest(check.survey, *rig, stop, options.steps);
-      if (finish.stop_requested()) check.sound.reset();  // it may be the limit of some scenes only
+      // the limit may not cover all scenes, because the work was stopped early
+      if (finish.stop_requested()) check.sound.reset();
       check.cues = cue_guard(*protocol, *rig, check.survey, stop, options.steps);
     }
     check.stopped = finish.stop_requested();

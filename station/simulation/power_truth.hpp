@@ -31,7 +31,8 @@ class GeneratingValues {
            const observer::Question& question, const observer::Observer& observer);
   void add(const GeneratingValues& other);
 
-  /// The sums of one condition, which can be added to others. They do not include the questions.
+  /// Sums over the trials of one condition. Sums of several sessions can be added. The questions are not part
+  /// of them.
   struct Sum {
     double deadline_s = 0;  ///< deadline of the first trial
     bool one_deadline = true;

@@ -29,8 +29,8 @@ double trials_of(const Protocol& protocol, const Block& block) {
   return trials;
 }
 
-// True if the first trials of this block differ on average from the later ones. They do not in a shuffled
-// list, every part of which has the same trials on average.
+// True if the first trials of this block differ, on average, from the later ones. In a shuffled list they do
+// not, because every part of it has the same trials on average.
 bool begins_unlike_it_goes_on(const Protocol& protocol, const Block& block) {
   if (block.practice || !block.trials || *block.trials >= trials_of(protocol, block)) return false;
   bool unlike = block.procedures.size() > 1;
