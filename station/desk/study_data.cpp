@@ -16,13 +16,14 @@ namespace turnpoint::desk {
 
 namespace {
 
-/// A session and the file that has it.
+/// A session, and the file in which it was found.
 struct Found {
   std::string database;
   store::SessionRecord session;
 };
 
-/// All sessions with trials that the choice allows, each once.
+/// Returns all sessions with trials that the choice allows. A session that several files contain is returned
+/// once.
 std::vector<Found> sessions_of(const StudyChoice& choice, int& copies) {
   std::vector<Found> all;
   std::set<std::string> seen;
@@ -45,7 +46,8 @@ std::vector<Found> sessions_of(const StudyChoice& choice, int& copies) {
   return all;
 }
 
-/// Refuses sessions that differ in something that the study must choose.
+/// Throws if the sessions differ in something, such as the protocol, for which the study must choose one
+/// value.
 void require_one(const std::vector<Found>& all, const std::string& what, const std::string& option,
                  const std::function<std::string(const store::SessionStart&)>& of) {
   std::map<std::string, int> counts;
@@ -72,8 +74,8 @@ void require_one_study(const StudyChoice& choice, const std::vector<Found>& all)
               [](const auto& start) { return std::string(store::name(start.run_mode)); });
 }
 
-/// CODE@STATION for each person of each file. A person without a station in the name is at home where the
-/// first session was made.
+/// Returns the name CODE@STATION for each person of each file. If a name contains no station, it is the
+/// station at which the person's first session was made.
 std::map<std::pair<std::string, std::string>, std::string> full_names(const std::vector<Found>& all) {
   std::map<std::pair<std::string, std::string>, std::string> names;
   for (const auto& found : all) {
@@ -85,8 +87,8 @@ std::map<std::pair<std::string, std::string>, std::string> full_names(const std:
   return names;
 }
 
-/// Sessions by participant: the same code at two stations is two people, unless their file says that they are
-/// one.
+/// Groups sessions by participant. The same code at two stations stands for two people, unless their file
+/// says that they are one person.
 std::map<std::string, std::vector<Found>> by_person(std::vector<Found> all) {
   const auto code_of = [](const std::string& person) { return person.substr(0, person.rfind('@')); };
   const auto names = full_names(all);
@@ -104,7 +106,7 @@ std::map<std::string, std::vector<Found>> by_person(std::vector<Found> all) {
   return people;
 }
 
-/// The trials of all sessions of one participant.
+/// Returns the trials of all sessions of one participant.
 report::SessionData data_of(const std::string& person, const std::vector<Found>& sessions,
                             const protocol::Protocol& protocol) {
   report::SessionData all;
@@ -125,7 +127,7 @@ report::SessionData data_of(const std::string& person, const std::vector<Found>&
   all.title = protocol.title;
   all.participant = person;
   report::add_trials(blocks, protocol, all);
-  // the procedures' own estimates belong to single sessions, whose seeds and blocks they need
+  // estimates of procedures and forces cannot be combined over sessions, so leave them out
   all.estimates.clear(), all.finger.clear();
   return all;
 }

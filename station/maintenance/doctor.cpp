@@ -187,7 +187,7 @@ void input(std::vector<lines::Finding>& checks) {
                       ""});
 }
 
-// A check of the self-test as the doctor reports it; `mend` says what to do if it failed.
+// Converts a check of the self-test to a finding of the doctor. `mend` says what to do if the check failed.
 lines::Finding finding(const records::CheckRow& check, const std::string& mend) {
   if (check.verdict == records::Verdict::failed) return {check.name, Status::failed, check.what, mend};
   return {check.name, Status::ok, check.what, ""};

@@ -2,7 +2,7 @@
 # complete in build/PRESET/python, so that PYTHONPATH can point there.
 set(PYBIND11_FINDPYTHON ON)
 if(NOT SKBUILD)
-  set(Python_EXECUTABLE /usr/bin/python3)   # Debian's own, for which the Debian package is
+  set(Python_EXECUTABLE /usr/bin/python3)  # Debian's own Python, for which the Debian package is built
 endif()
 find_package(pybind11 REQUIRED)
 set(turnpoint_python_folder ${CMAKE_BINARY_DIR}/python/turnpoint)
@@ -27,7 +27,7 @@ foreach(file IN LISTS turnpoint_python_files)
 endforeach()
 
 if(SKBUILD)
-  set(turnpoint_python_install turnpoint)   # inside the wheel
+  set(turnpoint_python_install turnpoint)  # folder of the package inside the wheel
 else()
   set(turnpoint_python_install lib/python3/dist-packages/turnpoint)
 endif()

@@ -40,8 +40,8 @@ py::object python_object(const Cell& cell) {
       cell);
 }
 
-/// A column as a list if it contains a text, else as an array: of integers if none is missing, else of
-/// doubles.
+/// Converts a column: to a list if it contains a text, to an array of integers if no value is missing,
+/// otherwise to an array of doubles.
 py::object column(const Cells& cells) {
   if (std::any_of(cells.begin(), cells.end(), text)) {
     py::list objects;

@@ -37,8 +37,8 @@ Marker read_marker(const text::Value& table, const Rig& rig, text::Findings& fin
   marker.kind = kind == "tone"   ? Marker::Kind::tone
                 : kind == "code" ? Marker::Kind::code
                                  : Marker::Kind::pulse;
-  // The code of an answer may come while an interval is played, and the drive adds the largest amplitudes of
-  // both.
+  // The code of an answer may be sent while an interval is played. It can then overlap the interval's code,
+  // and the drive adds the amplitudes of both.
   const double most = kind == "code" ? 0.49 : 1;
   marker.amplitude =
       reader.number("amplitude", {0, most, Range::Ends::open_low}, kind == "code" ? 0.45 : 0.5);

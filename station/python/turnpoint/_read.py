@@ -8,7 +8,7 @@ import pandas as pd
 from . import _store
 
 TABLES = ("trials", "intervals", "events", "sessions", "self_tests", "answers", "friction_tables")
-PREFIXED = ("=", "+", "-", "@")  # exports put an apostrophe in front of texts that begin so
+PREFIXED = ("=", "+", "-", "@")  # exports put an apostrophe in front of texts that begin with one of these
 # Columns that are texts even if they look like numbers: a participant's code may be 007.
 TEXTS = ("participant_id participant_code session_id run_mode protocol_id protocol_version protocol_sha256 block_name "
          "instruction trial_type procedure level_unit model correct_response response outcome response_zero "

@@ -1,7 +1,8 @@
 import QtQuick
 import Turnpoint
 
-// The rig: its calibration, what the doctor and the self-test find, and how the operator's pages look.
+// The operator's page about the rig: its calibration, the findings of the doctor and the self-test, and
+// settings for how the operator's pages look.
 Rectangle {
     id: root
     required property RigController rig
@@ -174,7 +175,7 @@ Rectangle {
                         font { pixelSize: look.textBody; weight: Font.Bold }
                     }
                 }
-                // The reading, from 0 to its limit.
+                // A bar for the reading, from 0 to its limit.
                 Rectangle {
                     objectName: visible ? "gauge" + finding.index : ""
                     visible: (finding.modelData.share ?? -1) >= 0

@@ -10,7 +10,7 @@ Rectangle {
     required property SessionsController sessions
     required property RigController rig
     required property real pixelsPerMm
-    /// run, studies, sessions or rig
+    /// name of the page that is shown: run, studies, sessions or rig
     property string shown: "run"
     readonly property bool tall: height > width
     readonly property bool busy: rig.busy !== "" || sessions.busy || operating.preparing

@@ -1,8 +1,9 @@
 import QtQuick
 import Turnpoint
 
-// The studies of this station. For the chosen protocol it shows everything that a check says: each problem with its
-// line and a hint, and for each cue that gives answers away what can be done about it.
+// The protocols in the station's folder. For the chosen protocol, the page shows everything that a check
+// says: each problem with its line and a hint, and, for each cue that gives answers away, what can be done
+// about it.
 Rectangle {
     id: root
     required property StudiesController studies

@@ -17,12 +17,12 @@ namespace turnpoint::ui {
 
 namespace {
 
-/// Number of days before the end of a calibration from which on the page says that it ends soon.
+/// The page warns that a calibration ends soon from this number of days before its end.
 constexpr int kSoon_days = 14;
 
 using Facts = std::vector<std::pair<std::string, std::string>>;
 
-/// What was measured for a calibration.
+/// Lists what was measured for a calibration.
 std::string measured(const calibration::Calibration& made) {
   std::string text;
   const auto add = [&text](bool there, const char* what) {
@@ -59,7 +59,7 @@ const char* word(session::Request::Kind kind) {
                                       : "press_button";
 }
 
-/// A reading as a share of its limit, from 0 to 1; -1 if there is no number.
+/// Returns a reading as a share of its limit, from 0 to 1; -1 if the check has no number.
 double share_of_limit(const session::CheckRow& check) {
   if (!check.value || !check.limit || *check.limit == 0) return -1;
   return std::min(1.0, std::abs(*check.value / *check.limit));

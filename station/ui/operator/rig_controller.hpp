@@ -15,7 +15,7 @@
 
 namespace turnpoint::ui {
 
-/// The page of the rig: its calibration and the age of this, the doctor, and the self-test with its readings.
+/// The page of the rig: its calibration and how old this is, the doctor, and the self-test with its readings.
 /// The doctor and the self-test run on a separate thread, one at a time, and use the devices of the rig; no
 /// session may begin meanwhile. GUI thread only.
 class RigController : public QObject {
@@ -29,8 +29,8 @@ class RigController : public QObject {
   Q_PROPERTY(QString busy READ busy NOTIFY changed)  ///< doctor, self_test or ""
   /// findings of the doctor as {name, status: ok | warning | failed, what, mend}
   Q_PROPERTY(QVariantList findings READ findings NOTIFY changed)
-  /// checks of the self-test as {name, verdict: ok | failed | absent (not possible), what, share}; `share` is
-  /// the reading as a share of its limit, -1 without a number
+  /// checks of the self-test as {name, verdict, what, share}. The verdict is ok, failed or absent (not
+  /// possible); `share` is the reading as a share of its limit, or -1 for a check without a number.
   Q_PROPERTY(QVariantList checks READ checks NOTIFY changed)
   /// what the self-test waits for: press_stop, release_stop, press_button or ""
   Q_PROPERTY(QString asked READ asked NOTIFY changed)
@@ -53,7 +53,8 @@ class RigController : public QObject {
   /// Reads the calibration again.
   Q_INVOKABLE void open();
   Q_INVOKABLE void examine();
-  /// Arms the amplifier and plays quiet tones. The page makes the operator hold a button for it.
+  /// Runs the self-test, which arms the amplifier and plays quiet tones. The page therefore makes the
+  /// operator hold a button to start it.
   Q_INVOKABLE void selfTest();
 
  Q_SIGNALS:

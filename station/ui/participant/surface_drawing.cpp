@@ -38,7 +38,8 @@ struct SurfaceDrawing::Layout {
   double px_per_mm = 1;        ///< scale along the strip
   double wide_half = 0, narrow_half = 0;
   double scale_text = 0, flag_text = 0, flag_height = 0;
-  /// 1/20 of the height; strokes and gaps are multiples of it, so that they grow with the item
+  /// a twentieth of the height; widths of strokes and gaps are multiples of it, so that they grow with the
+  /// item
   double unit = 1;
   double length_mm = 1;
   bool wide_left = true;

@@ -20,8 +20,8 @@ StationWindow::Place place_on(const Application& application, bool fullscreen) {
           fullscreen || application.is_bare_panel()};
 }
 
-/// From the moment at which the window shows its first page, a stop signal ends the event loop. Before that,
-/// the signal kills the process.
+/// Makes a stop signal end the event loop, from the moment at which the window shows its first page. Before
+/// that, a stop signal kills the process.
 void stop_in_order(const Application& application, const QQuickWindow& window) {
   auto& stop = application.stop_signals();
   QObject::connect(
@@ -29,8 +29,8 @@ void stop_in_order(const Application& application, const QQuickWindow& window) {
       static_cast<Qt::ConnectionType>(Qt::AutoConnection | Qt::SingleShotConnection));
 }
 
-/// Like the function above. In addition, a stop signal ends the event loop from the beginning of a session,
-/// which may come before the first page.
+/// Like the function above, but a stop signal already ends the event loop from the beginning of a session,
+/// even if no page has been shown yet.
 void stop_in_order(const Application& application, StationWindow& window) {
   stop_in_order(application, window.window());
   QObject::connect(&window, &StationWindow::beginning, &application.stop_signals(), &StopSignals::take_over);

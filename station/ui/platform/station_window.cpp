@@ -51,7 +51,7 @@ bool is_known(const std::string& database, const QString& code) {
   return std::find(known.begin(), known.end(), code.toStdString()) != known.end();
 }
 
-/// The operator's choices of language, theme and text size are kept in a file beside the database.
+/// Keeps the operator's choices of language, theme and text size in a file beside the database.
 void keep_screen_beside(QQmlEngine& engine, const std::string& database) {
   auto* screen = engine.singletonInstance<OperatorScreen*>(qmlTypeId("Turnpoint", 1, 0, "OperatorScreen"));
   if (screen == nullptr) throw std::logic_error("the module Turnpoint has no OperatorScreen");
