@@ -11,11 +11,12 @@ namespace turnpoint::physics {
 namespace {
 
 constexpr double profile_margin = 8, peak_margin = 4;
-// At one place two solutions may agree by chance, so the largest difference near the last maximum bounds the
-// level and the edge as well. It is divided by that maximum, and times the cut-off half-width.
+// Two solutions may agree at one place by chance. So the bounds of level and edge come from the largest
+// difference anywhere near the last maximum: the difference is divided by that maximum and multiplied by
+// these factors, for the edge also by the cut-off half-width.
 constexpr double level_share = 2, position_share = 1;
 constexpr double near_rad = 3;  // phase on either side of the last maximum that counts as near
-// differences of rounding, and of what both solutions neglect
+// largest differences that come from rounding and from effects that both solutions neglect
 constexpr double floor = 1e-8;
 
 constexpr double points_per_radian = 3;
@@ -31,7 +32,7 @@ struct Line {
   }
 };
 
-// The largest difference of two profiles, and the largest value.
+// The largest difference between two profiles, and their largest value.
 struct Worst {
   double difference = 0, most = 0;
   double relative() const { return difference / most; }

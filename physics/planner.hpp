@@ -49,7 +49,8 @@ RungEstimate estimate(const Surface& surface, const PlanRequest& request, Model 
 struct PlanChoice {
   Model model = Model::mode;
   RungEstimate bound;  // error bounds of the chosen model
-  bool inside = true;  // false if no model meets the tolerance; the chosen model then comes closest
+  // false if no model meets the tolerance; the model with the smallest error is then chosen
+  bool inside = true;
   std::string reason;  // why this model was chosen: one sentence with numbers
   std::vector<RungEstimate> considered;
 };
