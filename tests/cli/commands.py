@@ -80,7 +80,7 @@ OUT_OF_RANGE = [
     (["synth", "--tone", "30000", "--seconds", "0", "--out", "null:"], "0.001 to 3600"),
     (["synth", "--tone", "30000", "--seconds", "1", "--ramp-ms", "-1", "--out", "null:"], "0 or more"),
 ]
-# What no message to a user may contain.
+# Parts of internal error messages, which must not appear in any message to a user.
 NOT_FOR_PEOPLE = re.compile(r"terminate called|std::|what\(\)|filesystem error|please report|SELECT|PRAGMA|TEXT|"
                             r"basic_string|Aborted|qt\.qpa")
 
@@ -229,7 +229,8 @@ class Examples(Folder):
                 rig = "simulated-forces" if protocol["id"] == "friction-measured" else "simulated"
                 status, _, err = run(["check", name, "--rig", rig, "--sessions", "0"], self.folder)
                 self.assertEqual(status, 0, err)
-        self.write("demo", b"")  # a file of that name is preferred
+        # a file of this name is used instead of the shipped protocol of the same name
+        self.write("demo", b"")
         self.refused(["check", "demo"], "demo: the file needs the key")
 
 
@@ -284,7 +285,7 @@ class Mistakes(Folder):
         os.mkdir(os.path.join(self.folder, "folder"))
         self.add_sessions("good.sqlite")
         files = ["./missing", "folder", "empty", "binary", "letter"]
-        if os.geteuid() != 0:  # root reads everything
+        if os.geteuid() != 0:  # root can read every file, so this check needs another user
             self.write("unreadable", b"format = 1\n")
             os.chmod(os.path.join(self.folder, "unreadable"), 0)
             files.append("unreadable")
@@ -325,7 +326,8 @@ class Mistakes(Folder):
         for name, rest in CREATES_DATABASE.items():
             for wrong in files[1:]:
                 self.refused([name, "--db", wrong, *rest], wrong, status=1 if wrong in ("empty", "unreadable") else 2)
-        for name in ("empty", "unreadable"):  # the lock beside a file that might be a database
+        # a lock file remains beside these two, because they might be databases
+        for name in ("empty", "unreadable"):
             before.pop(name + ".lock", None)
         after = {name: size for name, size in self.before().items() if name not in ("empty.lock", "unreadable.lock")}
         self.assertEqual(after, before, "a refused command left files behind")
@@ -336,7 +338,7 @@ class Mistakes(Folder):
             if "--session" in self.options(name):
                 got, out, err = run([name, "--db", "good.sqlite", *rest, "--session", "nonsense"], self.folder)
                 self.assertNotRegex(out + err, NOT_FOR_PEOPLE)
-                if name != "sessions":  # an empty list is an answer
+                if name != "sessions":  # an empty list of sessions is a valid answer
                     self.assertRegex(out + err, "nonsense|matches these options|no session with trials", name)
                     self.assertIn(got, (1, 2), name)
 
@@ -360,7 +362,8 @@ class Mistakes(Folder):
             fcntl.flock(lock, fcntl.LOCK_EX)
             for name, rest in WRITES_DATABASE.items():
                 self.refused_in_one_sentence([name, "--db", "busy.sqlite", *rest], "another station process, pid 4711", status=1)
-            for name in ("sessions", "verify", "report"):  # reading works beside a session
+            # commands that only read work while a session is running
+            for name in ("sessions", "verify", "report"):
                 self.assertEqual(run([name, "--db", "busy.sqlite"], self.folder)[0], 0)
 
 

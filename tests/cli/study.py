@@ -110,7 +110,8 @@ class Study(unittest.TestCase):
         found = {tuple(line.split(",")[:3]): line.split(",")[3:] for line in out.splitlines()}
         for effect in self.study["effects"]:
             key = (effect["measure"], effect["first"], effect["second"])
-            sign = 1 if key in found else -1  # pandas sorts the conditions
+            # pandas sorts the conditions, so the difference may have the opposite sign
+            sign = 1 if key in found else -1
             value, _, persons = found[key if sign == 1 else (key[0], key[2], key[1])]
             self.assertAlmostEqual(sign * float(value), effect["difference"]["value"], delta=1e-5 * max(1, abs(float(value))))
             self.assertEqual(int(persons), effect["participants"])
@@ -128,7 +129,8 @@ class Study(unittest.TestCase):
         compared = 0
         for what, condition, theirs, ours in found:
             if what == "log_likelihood":
-                self.assertGreater(float(ours), float(theirs) - 0.01)  # lme4 must not find a better maximum
+                # lme4 must not find a higher maximum than ours
+                self.assertGreater(float(ours), float(theirs) - 0.01)
                 self.assertLess(float(ours), float(theirs) + 0.3)
             elif what in ("rate", "threshold"):
                 self.assertLess(math.fabs(float(ours) - float(theirs)), 0.1 * errors[what, condition])

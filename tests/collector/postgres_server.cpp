@@ -14,7 +14,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The folder of the newest server that is installed.
+/// Returns the folder with the programs of the newest installed PostgreSQL.
 std::string programs() {
   std::vector<std::string> found;
   for (const auto& version : fs::directory_iterator("/usr/lib/postgresql"))
@@ -58,12 +58,12 @@ PostgresServer::~PostgresServer() {
   try {
     stop();
   } catch (const std::exception&) {
-    // A server that does not stop ends by itself when its folder is gone.
+    // Ignore the error: a server whose folder is gone ends by itself.
   }
 }
 
 void PostgresServer::start() {
-  // The data are not to survive a power cut, so nothing waits for the disk.
+  // The data of this server need not survive a power cut, so it need not wait for the disk.
   run("pg_ctl",
       fmt::format("-w -D data -l log -o \"-c listen_addresses='' -c unix_socket_directories={} -c fsync=off"
                   " -c max_connections=60 -c shared_buffers=64MB\" start",

@@ -18,7 +18,7 @@ class PostgresServer {
   std::string as(const std::string& role) const;
   /// Connects as the superuser.
   turnpoint::collector::Connection admin() const;
-  /// Makes a role that speaks for a station.
+  /// Makes a role that may send the sessions of this station.
   void add_station(const std::string& station_id, const std::string& role) const;
   void stop();
   void start();

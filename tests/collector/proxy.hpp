@@ -6,26 +6,26 @@
 #include <string>
 #include <thread>
 
-/// What the network does to one connection. Bytes are counted from its beginning.
+/// How the proxy disturbs one connection. Bytes are counted from the beginning of the connection.
 struct Trouble {
   static constexpr std::uint64_t kNever = std::numeric_limits<std::uint64_t>::max();
   std::uint64_t cut_sent = kNever;      ///< cut before this byte from the client reaches the server
   std::uint64_t cut_received = kNever;  ///< cut before this byte from the server reaches the client
   std::uint64_t corrupt_sent = kNever;  ///< flip a bit of this byte from the client
-  std::uint64_t slow_sent = 0;          ///< pass on this many bytes from the client one by one
+  std::uint64_t slow_sent = 0;          ///< pass on the first so many bytes from the client one by one
 };
 
 /// Listens on a TCP port of the loopback interface, and passes bytes on to a Unix socket and back.
 class Proxy {
  public:
-  /// `trouble` is asked for each connection, from the proxy's thread.
+  /// The proxy's thread calls `trouble` for each connection.
   Proxy(std::string socket, std::function<Trouble()> trouble);
   Proxy(const Proxy&) = delete;
   Proxy& operator=(const Proxy&) = delete;
   ~Proxy();
 
   int port() const { return port_; }
-  /// The most bytes that a finished connection sent and received.
+  /// The largest numbers of bytes that a finished connection has sent and received.
   std::uint64_t sent() const { return sent_; }
   std::uint64_t received() const { return received_; }
 

@@ -64,7 +64,7 @@ TEST_CASE("a push that is cut at any place leaves whole sessions, and the next p
   {
     Proxy proxy(postgres.socket(), connections);
     REQUIRE(collector::push({db, through(proxy, "station_a"), "", "", {}, {}}).complete());
-    // The proxy serves one connection after another, so the first is counted when the next is served.
+    // The proxy serves one connection at a time, so the first one has been counted once this one is served.
     collector::Connection(through(proxy, "station_a")).query("SELECT 1");
     sent = proxy.sent();
     received = proxy.received();
@@ -103,7 +103,7 @@ TEST_CASE("a push that is cut at any place leaves whole sessions, and the next p
   }
   CHECK(failures >= 20);
   CHECK(seen[0] > 0);
-  CHECK(seen[1] > 0);  // a session that was complete stays, although the push failed
+  CHECK(seen[1] > 0);  // sessions that were complete remain on the server although the push failed
 }
 
 TEST_CASE("bytes that change on the way are found, and nothing is stored", "[collector]") {
@@ -125,7 +125,7 @@ TEST_CASE("bytes that change on the way are found, and nothing is stored", "[col
         ++refused;
       }
     }
-    // Whatever the server accepted is what the station has.
+    // Checks that whatever the server accepted equals what the station has.
     whole_sessions(postgres, db);
     CHECK(collector::push({db, postgres.as("station_a"), "", "", {}, {}}).complete());
     CHECK(whole_sessions(postgres, db) == 1);
@@ -158,7 +158,7 @@ TEST_CASE("many stations push at once through a network that cuts, and nothing i
     for (int k = 0; k < stations; ++k)
       pushing.emplace_back([&, k] {
         std::mt19937 random(static_cast<unsigned>(k));
-        // The further a push comes, the further the next one is let through, so that all end.
+        // Each time a push comes further, let the next one come further still, so that the test ends.
         std::uint64_t reach = 8000;
         Proxy proxy(postgres.socket(), [&] {
           Trouble trouble;

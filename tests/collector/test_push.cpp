@@ -24,7 +24,7 @@ std::string uri(const PostgresServer& postgres, const std::string& role) {
   return "postgresql:///turnpoint?host=" + postgres.folder() + "&user=" + role;
 }
 
-/// All exported bytes of a database, by path.
+/// Exports a database and returns the bytes of all files, by path.
 std::map<std::string, std::string> exported(const std::string& database, const std::string& folder) {
   for (const auto format :
        {store::ExportFormat::csv, store::ExportFormat::bids, store::ExportFormat::signals}) {
@@ -91,7 +91,7 @@ TEST_CASE("a push sends each session once, and a continued session is extended",
     auto log = store::SessionLog::resume(db, second, sample::segment("resume"));
     log.begin_block(sample::block());
     log.append(sample::answered(7));
-    // While it runs, it is not sent; what the server has stays.
+    // A session that runs is not sent, and its earlier part stays on the server.
     const auto meanwhile = collector::push(options);
     CHECK(meanwhile.running == 1);
     CHECK(count("trial") == 19);
@@ -162,7 +162,7 @@ TEST_CASE("the server calculates each checksum from what it stored", "[collector
   store::annotate(db, id, "a note");
   auto server = postgres.admin();
   server.query("GRANT USAGE ON SCHEMA public TO turnpoint_owner");
-  // A server that stores something else than what arrived.
+  // Makes a server that stores something other than what arrives.
   const std::pair<std::string, std::string> changes[] = {{"trial", "NEW.\"threshold_sd\" := 1.25"},
                                                          {"tone", "NEW.\"friction\" := NULL"},
                                                          {"signal", "NEW.data := NEW.data || '\\x00'"},

@@ -49,7 +49,7 @@ desk::LiveTrial answered(bool correct, double response_time_s) {
   return trial;
 }
 
-/// Passes on the beginnings of the session's first trials to another monitor, then ends the session.
+/// Passes the beginnings of the session's first trials on to another monitor, then ends the session.
 struct FirstTrials : session::Monitor {
   session::Monitor& to;
   int left;
@@ -63,7 +63,7 @@ struct FirstTrials : session::Monitor {
   }
 };
 
-/// The drives that the page shows, one for each tone, such as "0.512 um on", in order.
+/// Returns the drive amplitudes that the page shows, one for each tone, such as "0.512 um on", in order.
 std::vector<std::string> drives_shown(const desk::LiveState& state) {
   std::vector<std::string> drives;
   for (const auto& [label, value] : state.scene) {

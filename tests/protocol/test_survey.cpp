@@ -31,7 +31,7 @@ std::string problems(const std::string& protocol_text, const rig::Rig& rig) {
 
 bool contains(const std::string& all, const std::string& part) { return all.find(part) != std::string::npos; }
 
-/// The rig with the pick-ups and force cells of simulated-forces.toml.
+/// Returns the rig with the pick-ups and force cells of simulated-forces.toml added.
 rig::Rig with_cells(rig::Rig rig) {
   rig.capture = rig::load(root + "/deploy/rigs/simulated-forces.toml").capture;
   return rig;

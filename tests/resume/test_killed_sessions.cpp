@@ -17,10 +17,10 @@ using namespace turnpoint;
 
 namespace {
 
-/// TURNPOINT_KILLS=1000 makes a long run with that many kills, and with an adaptive protocol in addition.
+/// TURNPOINT_KILLS=1000 makes a long run with this number of kills, which also includes an adaptive protocol.
 const char* const kLong = std::getenv("TURNPOINT_KILLS");
 
-/// A shipped protocol, with texts that are replaced, and the number of kills without TURNPOINT_KILLS.
+/// A shipped protocol with some texts replaced, and the number of kills if TURNPOINT_KILLS is not set.
 struct Case {
   std::string file;
   std::vector<std::pair<std::string, std::string>> edits = {};
@@ -36,7 +36,7 @@ std::vector<Case> shipped() {
   return all;
 }
 
-/// The other kinds of task and procedure, with few trials.
+/// Protocols with the other kinds of task and procedure, shortened to few trials.
 std::vector<Case> other_tasks() {
   const std::pair<std::string, std::string> three_each{"repeats = 15", "repeats = 3"};
   const std::pair<std::string, std::string> few{"repeats = 8", "repeats = 3"};
@@ -139,7 +139,7 @@ void check_equal(const records::TrialRow& a, const records::TrialRow& b) {
   CHECK(a.confidence == b.confidence);
   CHECK(a.outcome == b.outcome);
   REQUIRE(a.response_time_s.has_value() == b.response_time_s.has_value());
-  // The times may differ by one frame.
+  // Times may differ by up to one frame.
   if (a.response_time_s) CHECK(*a.response_time_s == Approx(*b.response_time_s).margin(1e-5));
   CHECK(a.state_hash == b.state_hash);
   REQUIRE(a.tones.size() == b.tones.size());
@@ -160,10 +160,12 @@ void check_killed(const Case& wanted) {
   const auto expected = trials_of(whole, store::list_sessions(whole).front().session_id);
   REQUIRE(!expected.empty());
   std::mt19937 random(3);
-  // Kills at any moment of a session, so that its beginning, its trials and its ending are all hit.
+  // Kill at a random moment of the whole session, so that its beginning, its trials and its end are all
+  // interrupted sometimes.
   std::uniform_int_distribution<useconds_t> moment(0, static_cast<useconds_t>(1.2 * whole_us.count()));
   int kills = 0, finished = 0, resumed = 0;
-  // If the unbroken session ran while the machine was busy, most kills come too late: then try more often.
+  // If the machine was busy when the uninterrupted session was timed, most kills come too late. Then try more
+  // often.
   while (kills < kills_wanted(wanted) || finished == 0 || (resumed == 0 && finished < 100)) {
     const auto db = folder / ("broken" + std::to_string(finished) + ".sqlite");
     const auto setup = setup_for(protocol, db);

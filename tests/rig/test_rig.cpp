@@ -16,7 +16,7 @@ namespace {
 
 const std::string simulated = std::string(TURNPOINT_SOURCE_DIR) + "/deploy/rigs/simulated.toml";
 
-// a rig that mistakes are put into
+// Returns a rig file into which the tests put mistakes.
 std::string source() {
   return system::read_file(std::string(TURNPOINT_SOURCE_DIR) + "/tests/support/thin_plate.toml");
 }
@@ -27,7 +27,7 @@ std::string replaced(std::string where, const std::string& from, const std::stri
   return where.replace(at, from.size(), to);
 }
 
-// The problems of the rig after `from` was replaced with `to`, one per line.
+// Replaces `from` by `to` in the rig file, and returns the problems that are reported, one per line.
 std::string problems(const std::string& from, const std::string& to) {
   try {
     rig::parse(replaced(source(), from, to), "r.toml");

@@ -216,7 +216,8 @@ double planned_rms(const Room& room, const drive::Burst& burst) {
   return std::sqrt(square);
 }
 
-/// A room without faults: levels within 0.3 dB of the plan, noise of 10^-4.5 to 10^-2.5 of full scale.
+/// Returns a room without faults, whose levels are within 0.3 dB of the plan and whose noise is 10^-4.5 to
+/// 10^-2.5 of full scale.
 Room random_room(std::mt19937_64& random) {
   std::uniform_real_distribution<double> uniform(0, 1);
   Room room;

@@ -1,4 +1,4 @@
-// Tests the whole way from captured samples to the felt step, with all parts of the layer.
+// Tests the whole chain of this layer, from captured samples to the felt step.
 #include <algorithm>
 #include <cmath>
 

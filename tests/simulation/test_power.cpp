@@ -68,7 +68,7 @@ TEST_CASE(
 TEST_CASE("the true values are the observer's own parameters, never estimates", "[power]") {
   const auto power = simulation::power(shipped("speed-accuracy"), options("sim:threshold=0.15", 6, 6));
   const auto& right = find(power, "accuracy - speed", "proportion correct");
-  CHECK(right.mean > 0);  // fast answers are less often right
+  CHECK(right.mean > 0);  // the speed instruction reduces accuracy
   CHECK(find(power, "accuracy - speed", "median response time").mean > 0);
   REQUIRE((right.truth && right.coverage && right.interval_width));
   CHECK(right.coverage->trials == static_cast<int>(right.estimates.size()));
@@ -248,7 +248,9 @@ TEST_CASE(
     CHECK(*at.truth > last);
     last = *at.truth;
     REQUIRE(at.coverage);
-    CHECK(at.coverage->value > 0.9);  // Clopper and Pearson's intervals are too long, if anything
+    // intervals of Clopper and Pearson are longer than necessary, so they contain the true value more often
+    // than 95 %
+    CHECK(at.coverage->value > 0.9);
   }
   // Adaptive levels differ from session to session: only d' over all trials can be compared.
   const auto three = simulation::power(shipped("friction-3ifc"), options("sim:threshold=-12,lapse=0", 20, 0));

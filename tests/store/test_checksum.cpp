@@ -315,8 +315,8 @@ TEST_CASE("the encoding of a session, which determines its checksums, never chan
   start.rig_text = "format = \"friction-rig/1\"\n";
   sample::session(db, 2, start);
   auto database = unguarded(db);
-  // Replaces random values, clock times, what zlib made (which depends on its version), and what the sample
-  // has gained since the checksum was recorded.
+  // Gives fixed values to everything that differs between runs: random values, clock times, and data from
+  // zlib, which depend on its version. Removes what the sample contains only since the checksum was recorded.
   database.execute(
       "UPDATE session SET session_id = '00000000-0000-4000-8000-000000000000';"
       "UPDATE trial SET session_id = (SELECT session_id FROM session), recorded_realtime_ns = 5;"

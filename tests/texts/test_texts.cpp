@@ -107,7 +107,7 @@ TEST_CASE("every fault says what happened, what is safe and what to do in each l
       CHECK_FALSE(text.safe.empty());
       CHECK_FALSE(text.to_do.empty());
       if (language != "en") CHECK(text.happened != texts::fault_text(kind, "en").happened);
-      CHECK(pages.insert(text.happened).second);  // each kind of fault has a text of its own
+      CHECK(pages.insert(text.happened).second);  // two kinds of fault must not have the same text
     }
   CHECK(texts::fault_text(terms::FaultKind::amplifier, "fi").safe ==
         texts::fault_text(terms::FaultKind::amplifier, "en").safe);

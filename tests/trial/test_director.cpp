@@ -130,7 +130,7 @@ TEST_CASE("the times of a trial follow its factors", "[session]") {
   auto protocol = shipped("response-signal");
   Director signalled(protocol, 0, 5);
   std::map<double, int> lags;
-  signalled.finish_block();  // the practice
+  signalled.finish_block();  // leave the practice block
   while (const auto spec = signalled.next()) {
     const double lag_s = std::get<double>(spec->factors.at("lag_s"));
     ++lags[lag_s];

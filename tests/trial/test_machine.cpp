@@ -407,8 +407,10 @@ TEST_CASE("confidence is asked for after an answer, and completes the trial", "[
   CHECK_FALSE(machine.wake_ns());  // no deadline
   machine.handle({1500 * ms, EventKind::heard, 0});
   CHECK_FALSE(machine.decided());
-  machine.handle({1400 * ms, EventKind::answer, 2});  // began before the answer
-  machine.handle({1600 * ms, EventKind::answer, 4});  // there are only four degrees
+  // this touch began before the answer, so it is no confidence
+  machine.handle({1400 * ms, EventKind::answer, 2});
+  // index 4 does not exist, because there are only four degrees
+  machine.handle({1600 * ms, EventKind::answer, 4});
   CHECK_FALSE(machine.result().confidence);
   CHECK(machine.result().extra_touches == 2);
   CHECK(enters(machine.handle({20'000 * ms, EventKind::answer, 2}), Phase::interval));
