@@ -94,7 +94,7 @@ class Camera {
   void shoot(const turnpoint::session::Page& page, const QString& name) {
     bridge_.show(page);
     QGuiApplication::processEvents();
-    // Only the operator can open this page with numbers.
+    // Only the operator can open the end page with numbers.
     window_->findChild<QQuickItem*>("participantView")->setProperty("counting", name == "end-operator");
     shoot(name);
   }

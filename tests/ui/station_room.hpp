@@ -56,7 +56,7 @@ class StationRoom : public QObject {
   Q_INVOKABLE QString askedUdisks() const;
   /// Files and folders in a folder of the station, sorted; those of the stick are in "stick".
   Q_INVOKABLE QStringList filesIn(const QString& folder) const;
-  /// The first bytes of the first file below a folder whose name ends so.
+  /// Returns the first bytes of the first file below a folder whose name has this ending.
   Q_INVOKABLE QString startOf(const QString& folder, const QString& ending, int bytes) const;
   /// Presses or releases a key of a keyboard.
   Q_INVOKABLE void pressKey(int key);

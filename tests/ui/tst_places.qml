@@ -2,8 +2,8 @@ import QtQuick
 import QtTest
 import Turnpoint
 
-// The operator's pages of the whole program, reached through the bar and operated by taps: what they show, what they
-// write, and that nothing that cannot be undone happens by a stray tap.
+// Tests the operator's pages in the whole program, reached through the bar and operated by taps: what they
+// show and what they write, and that a stray tap does nothing that cannot be undone.
 Item {
     id: stage
     width: 1280
@@ -152,7 +152,8 @@ Item {
             room.plugIn()
             tap("backUp")
             tap("place1")
-            // The stick of this test is a folder on the database's own disk, as after somebody has pulled it out.
+            // In this test the stick is a folder on the database's own disk, as if somebody had pulled it
+            // out. So the backup must be refused.
             tryVerify(() => says("no disk is mounted"), 20000)
             compare(room.filesIn("stick"), [])
             tap("backUp")
