@@ -156,9 +156,9 @@ void add_report(CommandLine& app, Context& context) {
       "--study", options->study,
       "Report all participants of a protocol together, without those whom its [exclusion] leaves "
       "out");
-  command->add_option(
-      "--protocol-version", options->protocol_version,
-      "With --study: only sessions with this version, or with a text whose SHA-256 begins so");
+  command->add_option("--protocol-version", options->protocol_version,
+                      "With --study: only sessions with this version of the protocol, or with a protocol "
+                      "text whose SHA-256 begins with this");
   command->add_option("--mode", options->mode, "With --study: only sessions of this mode")
       ->check(one_of({"live", "pilot", "simulated"}));
   command

@@ -15,7 +15,8 @@ namespace {
   throw std::logic_error("the text has no key " + all);
 }
 
-/// The tables with headers in and below this part, from the top of the file to its end.
+/// Collects this part and the parts below it, as far as they are tables with headers, in the order of the
+/// file.
 void collect_tables(const Part& part, std::vector<const Part*>& tables) {
   if (part.kind == Part::Kind::table) tables.push_back(&part);
   for (const auto& below : part.parts)
@@ -30,7 +31,7 @@ std::vector<const Part*> tables_of(const Part& part) {
   return tables;
 }
 
-/// The lines of keys below a dotted part.
+/// Collects the lines of all keys below a dotted part.
 void collect_entries(const Part& part, std::vector<Span>& lines) {
   if (part.kind != Part::Kind::dotted) return lines.push_back({part.key.begin, part.value.end});
   for (const auto& below : part.parts) collect_entries(below, lines);
@@ -120,7 +121,7 @@ std::string Document::checked(std::string text) const {
 }
 
 std::string Document::with(const Path& path, const std::string& value) const {
-  // The value must be one value: a line break in it could begin another key.
+  // The text must be exactly one value. A line break in it could begin another key.
   if (path.empty() || text::parse_toml("v = " + value, file_).entries.size() != 1) no_such(path);
   const auto* part = find(path);
   if (part == nullptr) return checked(inserted(path, value));
@@ -149,9 +150,9 @@ std::string Document::inside_braces(const Part& table, const std::string& entry)
 std::string Document::inserted(const Path& path, const std::string& value) const {
   std::size_t known = 0;
   const auto* table = &root_;
-  const Part* header = &root_;  // the innermost table with a header on the way
+  const Part* header = &root_;  // the innermost table with a header on the way to the key
   std::size_t below_header = 0;
-  const Part* braces = nullptr;  // the innermost inline table on the way
+  const Part* braces = nullptr;  // the innermost inline table on the way to the key
   std::size_t below_braces = 0;
   while (known < path.size()) {
     const auto* next = table->find(path[known]);
@@ -178,7 +179,8 @@ std::string Document::inserted(const Path& path, const std::string& value) const
   }
   if (!table->is_table()) no_such(path);
   const bool by_headers = table->kind == Part::Kind::dotted && table->prefix.empty();
-  // A new table of the file gets a header. It comes last, or after its sisters.
+  // A new table gets a header. It is added after the other tables of its list or, if there are none, at the
+  // end of the file.
   if ((table == &root_ && path.size() > 1) || by_headers) {
     std::string title;
     for (std::size_t i = 0; i + 1 < path.size(); ++i) title += (i == 0 ? "" : ".") + key_of(path[i]);
@@ -205,7 +207,7 @@ std::string Document::without(const Path& path) const {
   const auto* parent = find({path.begin(), path.end() - 1});
   auto text = text_;
   if (parent->kind == Part::Kind::array || parent->kind == Part::Kind::inline_table) {
-    // The item goes with the comma after it or, if it is the last one, with the comma before it.
+    // Remove the item with the comma after it or, for the last item, with the comma before it.
     std::vector<Span> items;
     for (const auto& item : parent->parts) items.push_back({item.key.begin, item.value.end});
     const auto index = static_cast<std::size_t>(std::distance(
@@ -225,7 +227,7 @@ std::string Document::without(const Path& path) const {
                            ? (text.starts_with("\xEF\xBB\xBF") ? 3 : 0)
                            : before + 1;
     auto end = std::min(text.find('\n', piece->end), text.size() - 1) + 1;
-    // Of the empty lines around a table that is gone, one is enough.
+    // After a table was removed, keep only one of the empty lines that were before and after it.
     const auto empty_before = begin == 0 || text.substr(0, begin).ends_with("\n" + line_break_);
     if (part->is_table() && empty_before && text.compare(end, line_break_.size(), line_break_) == 0)
       end += line_break_.size();

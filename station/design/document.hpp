@@ -8,13 +8,13 @@
 
 namespace turnpoint::design {
 
-/// The way to a key: {"block", "0", "levels"}.
+/// The path to a key, with indices for the items of lists: {"block", "0", "levels"}.
 using Path = std::vector<std::string>;
 
-/// A TOML text whose values can be changed one by one. A change returns the whole new text, in which every
-/// byte that does not belong to the changed key is as before: comments, order, blank lines, line breaks.
-/// Changes throw std::logic_error for a path that they cannot use, and text::BadInput if the new text would
-/// not be valid TOML.
+/// A TOML text whose values can be changed one by one. A change returns the whole new text. Every byte that
+/// does not belong to the changed key stays as it was: comments, order, blank lines, line breaks. Changes
+/// throw std::logic_error for a path that they cannot use, and text::BadInput if the new text would not be
+/// valid TOML.
 class Document {
  public:
   /// Throws text::BadInput, with `file` as the name of the file, if the text is not valid TOML.
@@ -22,22 +22,22 @@ class Document {
 
   const std::string& text() const { return text_; }
   const Part& root() const { return root_; }
-  /// The part at this path; nullptr if there is none.
+  /// Returns the part at this path; nullptr if there is none.
   const Part* find(const Path& path) const;
-  /// The value as written, without comments; "" if there is none.
+  /// Returns the value as it is written, without comments; "" if there is none.
   std::string written(const Path& path) const;
-  /// The value of a scalar, array or inline table.
+  /// Returns the value of a scalar, array or inline table.
   text::Value value(const Part& part) const;
-  /// The innermost part at this line (from 1), as a path; empty if the line belongs to no key.
+  /// Returns the path of the innermost part at this line (from 1); empty if the line belongs to no key.
   Path at_line(int line) const;
 
-  /// Gives a key a value, written as TOML. A key that does not exist is added after the others of its table.
-  /// Tables that do not exist are added too.
+  /// Sets the value of a key; `value` is written as TOML. A key that does not exist yet is added after the
+  /// other keys of its table, and missing tables are added too.
   std::string with(const Path& path, const std::string& value) const;
   /// Removes a key with its line, an item of a list, or a whole table.
   std::string without(const Path& path) const;
-  /// Adds a copy of a table after it. A table of a list ([[block]]) gets this `name`; another one
-  /// ([scene.edge]) is called so.
+  /// Adds a copy of a table directly after it. A table of a list ([[block]]) gets this `name` as its key
+  /// "name"; another table ([scene.edge]) gets it as the last part of its header.
   std::string with_copy(const Path& path, const std::string& name) const;
 
  private:
@@ -50,7 +50,7 @@ class Document {
   Part root_;
 };
 
-/// Writes a text as a TOML string, and a name as a TOML key.
+/// Write a text as a TOML string, and a name as a TOML key.
 std::string quoted(const std::string& text);
 std::string key_of(const std::string& name);
 

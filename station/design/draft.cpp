@@ -6,7 +6,7 @@ namespace turnpoint::design {
 
 namespace {
 
-// A file has some kilobytes, so this many texts are a few megabytes.
+// How many earlier texts are kept. A protocol has some kilobytes, so this many need a few megabytes.
 constexpr std::size_t most_texts = 500;
 
 }  // namespace

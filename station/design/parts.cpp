@@ -10,13 +10,13 @@ namespace turnpoint::design {
 
 namespace {
 
-/// A key, which may have dots: the text of each name, and where it stands.
+/// A key, which may have several parts separated by dots: the text of each part, and its place.
 struct Key {
   std::vector<std::string> names;
   std::vector<Span> spans;
 };
 
-/// Reads a text that toml++ has accepted, so it need not report errors of syntax.
+/// Reads a text that toml++ has already accepted, so it need not report syntax errors.
 class Reader {
  public:
   explicit Reader(const std::string& text) : text_(text) {}
@@ -95,7 +95,7 @@ class Reader {
         return;
       } else if (here(1) == quote && here(2) == quote) {
         at_ += 3;
-        // One or two quotes directly before the three that close the string belong to it.
+        // One or two quotes directly before the closing three quotes still belong to the string.
         while (here() == quote) ++at_;
         return;
       } else {
@@ -144,7 +144,7 @@ class Reader {
   void entry(Part& table, bool whole_line) {
     const int at_line = line();
     const auto names = key();
-    ++at_;  // the =
+    ++at_;  // skip the equals sign
     skip_spaces();
     auto* parent = &table;
     std::string prefix;
@@ -159,7 +159,7 @@ class Reader {
     part.name = names.names.back(), part.line = at_line;
     part.key = {names.spans.front().begin, names.spans.back().end};
     value(part);
-    // A table that is made by dotted keys reaches to the end of the last of them.
+    // A table that consists of dotted keys extends to the end of the last of these keys.
     auto* above = &table;
     for (std::size_t i = 0; i + 1 < names.names.size(); ++i) {
       above = above->find(names.names[i]);

@@ -40,7 +40,8 @@ class Limits : public Procedure {
     std::optional<double> midpoint;  ///< position on the scale on which the steps are counted
   };
   void set_starts(Direction direction, const SeriesStarts& starts, random::Draws& draws);
-  /// Returns the position, on the scale of the steps, this number of steps from the current series' start.
+  /// Returns the position that is this number of steps away from the start of the current series, on the
+  /// scale on which the steps are counted.
   double position_after(int steps) const;
   bool inside(double position) const;
   void end_series(const std::optional<double>& midpoint);

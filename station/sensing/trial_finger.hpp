@@ -48,7 +48,7 @@ struct TrialForces {
 /// The finger at this moment: what may be shown to a participant.
 struct FingerNow {
   double normal_N = 0;    ///< mean over a tenth of a second
-  double speed_mm_s = 0;  ///< likewise; NaN if it is not known
+  double speed_mm_s = 0;  ///< mean over a tenth of a second; NaN if it is not known
   bool contact = false;
 };
 

@@ -1,4 +1,4 @@
-// Changes of single values in a TOML text leave all other bytes as they are.
+// Tests that changing single values in a TOML text leaves all other bytes as they are.
 #include <algorithm>
 #include <filesystem>
 #include <functional>
@@ -58,7 +58,7 @@ std::vector<Text> texts() {
         try {
           text::parse_toml(text, "");
         } catch (const text::BadInput&) {
-          continue;  // the corpus has files that are not TOML
+          continue;  // some files of the corpus are not valid TOML
         }
         all.push_back({entry.path().string(), text});
         if (std::string(folder) == "/protocols")
@@ -78,7 +78,7 @@ void each_value(const Part& part, Path& path, const std::function<void(const Pat
   }
 }
 
-/// The value at a path, found by the parser of TOML instead of by the code under test.
+/// Returns the value at a path. It is found by the TOML parser, not by the code under test.
 const text::Value* parsed(const text::Value& document, const Path& path) {
   const auto* value = &document;
   for (const auto& name : path) {
@@ -193,8 +193,8 @@ TEST_CASE("a key that is added can be read, and is gone without a trace when it 
         const auto* value = parsed(text::parse_toml(added, ""), at);
         REQUIRE(value != nullptr);
         CHECK(value->integer == 7);
-        // An empty inline table is written with other spaces once it had an entry, and a new table has a
-        // header.
+        // Adding and removing a key does not restore the text in two cases: an empty inline table gets other
+        // spaces, and a new table has a header.
         if (part.kind != Part::Kind::dotted && !part.parts.empty())
           CHECK(Document(added, "").without(at) == source);
       }

@@ -61,8 +61,8 @@ struct Slab {
   Vector<Scalar> offset;
 };
 
-// The unknowns at the right end of the last element, from those at its left end. The far end is held; if the
-// derivatives of the held unknowns are given too, the other unknowns there follow from them.
+// Gives the unknowns at the right end of the last element from those at its left end. The far end is held. If
+// the derivatives of the held unknowns are given too, the other unknowns there follow from them.
 template <class Scalar>
 Matrix<Scalar> at_far_end(const CollocatedEquations& e, const Matrix<Scalar>& by_left,
                           const Matrix<Scalar>& by_right) {

@@ -106,7 +106,7 @@ TEST_CASE("a friction table is precise, and its intervals have the stated covera
 TEST_CASE("strokes at rest between the driven ones remove a drift", "[sensing]") {
   std::mt19937_64 random(8);
   auto order = trial::friction_table_order(levels_m, 20, {1});
-  // the worst order: levels ascending, while friction falls to a third
+  // the order that distorts a table most: ascending levels, while the skin's friction falls to a third
   std::vector<double> driven;
   for (const double level : order)
     if (level > 0) driven.push_back(level);
