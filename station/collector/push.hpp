@@ -17,7 +17,7 @@ struct PushOptions {
   std::string received;
   /// for each protocol, how many free places in its counterbalancing this station should hold afterwards
   std::map<std::string, std::int64_t> places;
-  /// protocols whose leased places are given back; this station then counts alone again
+  /// protocols whose leased places are given back; this station then assigns places by itself again
   std::vector<std::string> return_places;
 };
 

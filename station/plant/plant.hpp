@@ -22,7 +22,7 @@ namespace turnpoint::plant {
 struct Truth {
   std::int64_t frame = -1;             ///< number of the captured frame; -1 before the first
   double normal_N = 0, lateral_N = 0;  ///< forces on the surface, from finger and load together
-  FingerState finger;                  ///< state at the step that began last (a step is an eighth of a ms)
+  FingerState finger;  ///< state at the beginning of the newest step; a step is an eighth of a millisecond
   CellForces reading_N{};   ///< readings with resonance, crosstalk, zero and drift: what the bridges carry
   double drive_um = 0;      ///< displacement of the drive edge at this frame
   double amplitude_um = 0;  ///< amplitude of all tones under the finger, rms over the fingertip

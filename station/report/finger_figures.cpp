@@ -107,7 +107,7 @@ plot::Points markers(const std::vector<AtBoundary>& values, const plot::Axis& al
   return points;
 }
 
-/// Every value, and both ends of its interval.
+/// Returns all values and both ends of their intervals.
 std::vector<double> extent(const std::vector<AtBoundary>& values) {
   std::vector<double> all;
   for (const auto& at : values) {

@@ -33,7 +33,7 @@ struct ProofLimits {
 
 /// What was measured of one tone, in one part of the burst in which nothing changes (a stretch).
 struct ToneProof {
-  int stretch = 0;  ///< 0 before the first change of the burst, and so on
+  int stretch = 0;  ///< number of the stretch, from 0; each change of the burst begins another one
   int tone = 0;     ///< index in the burst's tone set
   int drive_channel = 0;
   double frequency_Hz = 0;

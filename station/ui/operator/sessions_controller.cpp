@@ -37,7 +37,7 @@ std::string joined_lines(const std::vector<std::string>& lines) {
   return text;
 }
 
-/// What a withdrawal deletes, in words.
+/// Describes in words what a withdrawal deletes.
 std::vector<std::string> words_of(const store::Withdrawal& gone, const char* verb) {
   std::vector<std::string> words{fmt::format("{} {}: {} sessions, {} trials, {} events and {} notes.",
                                              gone.participant, verb, gone.sessions.size(), gone.trials,
