@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 #include <utility>
+#include <variant>
 #include <vector>
 
 #include "station/terms/psychometric.hpp"
@@ -76,6 +77,10 @@ struct Spec {
   std::string level;   ///< the factor that the procedure sets
   std::string tracks;  ///< the answer that counts as 1; "" if right answers count as 1
   Scale scale = Scale::linear;
+  /// factors that have these values in all of its trials
+  std::map<std::string, std::variant<double, std::string>> with;
+  /// name of the table from which `for_each` has made this procedure; "" otherwise
+  std::string family;
 
   // The following members are for constant stimuli; `values` are the levels.
   std::vector<double> values;

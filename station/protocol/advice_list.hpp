@@ -29,7 +29,7 @@ constexpr double shortest_deadline_s = 0.2;
 /// The path in KeyPlaces of a procedure's key, such as `procedure.levels.start` for the procedure named
 /// `levels`.
 inline std::string key_of(const procedure::Spec& spec, const std::string& key) {
-  return "procedure." + spec.name + "." + key;
+  return "procedure." + (spec.family.empty() ? spec.name : spec.family) + "." + key;
 }
 
 /// The path in KeyPlaces of a key of a block or sequence: `block.main.trials` or

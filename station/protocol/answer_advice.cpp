@@ -31,7 +31,7 @@ std::vector<Factors> cases_of(const Protocol& protocol, const std::string& level
   Factors needed;
   for (const auto& [id, comparison] : protocol.task.correct_answer)
     for (const auto* side : {&comparison.left, &comparison.right})
-      for (const auto& [name, coefficient] : side->terms) needed[name] = any.at(name);
+      for (const auto& name : factors_in(*side)) needed[name] = any.at(name);
   std::vector<Factors> cases(levels.size(), needed);
   for (std::size_t i = 0; i < levels.size(); ++i) cases[i][level] = levels[i];
   for (const auto& factor : protocol.factors) {

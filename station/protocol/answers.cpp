@@ -42,7 +42,7 @@ std::vector<double> categories(const Protocol& protocol, const std::string& leve
   const auto& task = protocol.task;
   for (const auto& [id, comparison] : task.correct_answer)
     for (const auto* side : {&comparison.left, &comparison.right})
-      for (const auto& [name, coefficient] : side->terms)
+      for (const auto& name : factors_in(*side))
         if (name != level) return {};
   std::vector<double> sums(task.choices.size(), 0.0), counts = sums;
   for (const auto& source : sources_of(protocol)) {

@@ -19,7 +19,7 @@ using text::Findings;
 // reported only once, at its declaration.
 void check_values(const std::vector<Source>& sources, const std::string& name, const Reading& reading) {
   const auto* factor = find_factor(reading.protocol.factors, name);
-  if (factor && !factor->levels.empty()) return;
+  if (factor && (!factor->levels.empty() || factor->draw != FactorDraw::levels)) return;
   const auto sets = [&](const Source& source) { return source.sets.count(name) > 0; };
   const bool set_somewhere = std::any_of(sources.begin(), sources.end(), sets);
   for (const auto& source : sources) {

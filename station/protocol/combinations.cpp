@@ -14,9 +14,12 @@ namespace {
 // value that the block fixes, or otherwise all levels of the factor.
 std::vector<FactorValue> values_of(const Factor& factor, const Source& source) {
   if (factor.name == source.level) return {source.levels.begin(), source.levels.end()};
+  if (source.spec)
+    if (const auto with = source.spec->with.find(factor.name); with != source.spec->with.end())
+      return {with->second};
   const auto fixed = source.block->fixed.find(factor.name);
   if (fixed != source.block->fixed.end()) return {fixed->second};
-  return factor.levels;
+  return drawn_values(factor);
 }
 
 void cross(const Protocol& protocol, const Source& source, const std::string& scene,
@@ -80,7 +83,7 @@ std::map<std::string, std::set<FactorValue>> grid_of(
 std::set<std::string> factors_of(const Scene& scene) {
   std::set<std::string> names;
   for (const auto* expression : expressions_of(scene))
-    for (const auto& [name, coefficient] : expression->terms) names.insert(name);
+    for (const auto& name : factors_in(*expression)) names.insert(name);
   return names;
 }
 

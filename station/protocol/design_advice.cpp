@@ -65,7 +65,8 @@ void check_ramps(AdviceList& advice) {
 }
 
 bool same(const std::optional<Linear>& a, const std::optional<Linear>& b) {
-  return a && b && a->constant == b->constant && a->terms == b->terms && a->absolute == b->absolute;
+  return a && b && a->constant == b->constant && a->terms == b->terms && a->products == b->products &&
+         a->absolute == b->absolute;
 }
 
 void check_scenes(AdviceList& advice) {
@@ -211,7 +212,7 @@ void check_instructions(AdviceList& advice) {
 void check_analysis(AdviceList& advice) {
   const auto& analysis = advice.protocol.analysis;
   const auto moves = [](const auto& term) { return term.second != 0; };
-  if (analysis.difficulty &&
+  if (analysis.difficulty && analysis.difficulty->products.empty() &&
       std::none_of(analysis.difficulty->terms.begin(), analysis.difficulty->terms.end(), moves))
     advice.add("analysis.difficulty", "\"difficulty\" is the same in all trials",
                "write arithmetic that depends on a factor");

@@ -18,6 +18,9 @@ bool depends_on(const Protocol& protocol, const std::string& level) {
       double sum = 0;
       for (const auto& [factor, coefficient] : expression->terms)
         if (factor == level) sum += coefficient;
+      for (const auto& product : expression->products)
+        if (std::find(product.factors.begin(), product.factors.end(), level) != product.factors.end())
+          return true;
       if (sum != 0) return true;
     }
   return false;

@@ -22,16 +22,28 @@ using Localised = std::map<std::string, std::string>;
 using FactorValue = std::variant<double, std::string>;
 using Factors = std::map<std::string, FactorValue>;
 
-/// A linear combination of numeric factors, such as `150 - 0.5 * spread_mm` or `-30`. If `absolute` is set,
-/// its value is the magnitude of the combination, as in `abs(change)`.
+/// A product of different numeric factors and a coefficient, such as `2 * ref * weber`.
+struct FactorProduct {
+  std::vector<std::string> factors;  ///< sorted; two or more
+  double coefficient = 0;
+  bool operator==(const FactorProduct&) const = default;
+};
+
+/// A sum of numeric factors and their products, such as `150 - 0.5 * spread_mm`, `ref * (1 + weber)` or
+/// `-30`. It is linear in each of its factors. If `absolute` is set, its value is the magnitude of the sum,
+/// as in `abs(change)`.
 struct Linear {
   double constant = 0;
   std::vector<std::pair<std::string, double>> terms;  ///< each factor's name with its coefficient
+  std::vector<FactorProduct> products;
   bool absolute = false;
   std::string source;
   Place place;
-  bool is_constant() const { return terms.empty(); }
+  bool is_constant() const { return terms.empty() && products.empty(); }
 };
+
+/// The factors on which the expression depends, each once.
+std::vector<std::string> factors_in(const Linear& expression);
 
 /// Evaluates the expression for these factors. Throws std::invalid_argument naming a factor that has no
 /// number.
@@ -46,8 +58,18 @@ struct Comparison {
 };
 bool holds(const Comparison& comparison, const Factors& factors);
 
+/// How the values of a factor that nothing else sets are drawn.
+enum class FactorDraw {
+  levels,              ///< one of the levels in each trial; a factor with a range is not drawn
+  without_repetition,  ///< the levels in shuffled order; each once before any comes again
+  uniform,             ///< uniform over the range
+  normal               ///< normal; values outside of the range are drawn again
+};
+
 struct Factor {
   std::string name;
+  FactorDraw draw = FactorDraw::levels;
+  double mean = 0, sd = 0;  ///< of a normal distribution
   std::optional<std::pair<double, double>> range;
   std::vector<FactorValue> levels;
   Place place;

@@ -225,7 +225,7 @@ Example read_example(const Value& table, const std::string& path, const Reading&
   const auto scene = reading.protocol.scenes.find(example.scene);
   if (scene != reading.protocol.scenes.end())
     for (const auto* expression : expressions_of(scene->second))
-      for (const auto& [name, coefficient] : expression->terms)
+      for (const auto& name : factors_in(*expression))
         if (!example.with.count(name))
           reader.problem("with", "\"with\" does not set \"" + name + "\", on which the scene depends",
                          "with = { " + name + " = ... }");

@@ -17,8 +17,16 @@ namespace {
 void read_what(TableReader& reader, Block& block, const Reading& reading) {
   if (reader.has("procedures"))
     block.procedures = reader.strings("procedures", "name at least one procedure");
-  std::vector<std::string> known;
+  std::vector<std::string> known, whole;
   for (const auto& spec : reading.protocol.procedures) known.push_back(spec.name);
+  for (const auto& name : block.procedures) {
+    const auto family = reading.families.find(name);
+    if (family == reading.families.end())
+      whole.push_back(name);
+    else
+      whole.insert(whole.end(), family->second.begin(), family->second.end());
+  }
+  block.procedures = std::move(whole);
   std::set<std::string> seen;
   for (const auto& name : block.procedures) {
     // `known` is empty if no procedure could be read. Do not report every name in the list as unknown then.

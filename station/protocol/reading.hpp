@@ -1,4 +1,5 @@
 #pragma once
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -18,6 +19,8 @@ struct Reading {
   const KeyPlaces& places;
   /// names of all scenes in the file, even of those that could not be read
   std::vector<std::string> declared_scenes;
+  /// names of the procedures that `for_each` has made of one table, by the name of the table
+  std::map<std::string, std::vector<std::string>> families = {};
 };
 
 void read_header(text::TableReader& file, Reading& reading);  ///< Reads `format`, [protocol] and [random].

@@ -75,6 +75,10 @@ void TrialCensus::add(const Block& block, const procedure::Spec* spec, const std
   protocol::Factors fixed;
   for (const auto* factor : relevant_)
     if (const auto found = block.fixed.find(factor->name); found != block.fixed.end()) fixed.insert(*found);
+  for (const auto* factor : relevant_)
+    if (spec)
+      if (const auto found = spec->with.find(factor->name); found != spec->with.end())
+        fixed[factor->name] = found->second;
   const auto count = [&](const std::string& name, const std::vector<double>& values, double of_these) {
     const bool matters =
         std::any_of(relevant_.begin(), relevant_.end(), [&](const auto* f) { return f->name == name; });
@@ -103,10 +107,11 @@ void TrialCensus::add(const TrialCensus& other) {
 std::vector<protocol::Factors> TrialCensus::combinations(const protocol::Factors& cell) const {
   std::vector<protocol::Factors> all{cell};
   for (const auto* factor : relevant_) {
-    if (cell.count(factor->name) || factor->levels.empty()) continue;
+    const auto values = protocol::drawn_values(*factor);
+    if (cell.count(factor->name) || values.empty()) continue;
     std::vector<protocol::Factors> next;
     for (const auto& factors : all)
-      for (const auto& level : factor->levels) {
+      for (const auto& level : values) {
         next.push_back(factors);
         next.back()[factor->name] = level;
       }

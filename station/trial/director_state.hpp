@@ -56,6 +56,7 @@ struct Director::State {
   bool timeouts_are_data() const;
   void set_times(TrialSpec& spec) const;
   protocol::Factors drawn_factors() const;
+  protocol::FactorValue drawn_value(const protocol::Factor& factor, int number) const;
   std::optional<int> pick_procedure() const;
   bool catch_due() const;
   TrialSpec blank(terms::TrialType type) const;

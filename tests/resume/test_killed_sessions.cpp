@@ -62,6 +62,14 @@ std::vector<Case> other_tasks() {
             {"n_change = 1", "n_change = 2"},
             {"[22.0, 26.0, 30.0]", "{ uniform = [20.0, 30.0] }"}}},
           {"response-signal.toml", {{"repeats = 84", "repeats = 3"}, {"trials = 28", "trials = 4"}}},
+          {"friction-weber.toml", {{"stop = { trials = 40 }", "stop = { trials = 6 }"}}},
+          {"friction-weber.toml",
+           {{"stop = { trials = 40 }", "stop = { trials = 6 }"},
+            {"draw = \"uniform\"", "draw = { normal = { mean = 185.0, sd = 2.0 } }"}}},
+          {"friction-weber.toml",
+           {{"stop = { trials = 40 }", "stop = { trials = 6 }"},
+            {"range = [180.0, 190.0]\ndraw = \"uniform\"",
+             "levels = [180.0, 183.0, 185.0, 188.0, 190.0]\ndraw = \"without-repetition\""}}},
           {"boundary-adjustment.toml", {{"repeats = 9", "repeats = 4"}}}};
 }
 
