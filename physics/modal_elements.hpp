@@ -28,9 +28,9 @@ struct ModalElement {
   double ln_scale = 0;
   // On a plate, the matrix that gives all other unknowns from those of the left vertex; empty on a membrane.
   Eigen::MatrixXcd transfer;
-  Condensed inner;                                        // gives the bubbles from the unknowns of both ends
-  Eigen::MatrixXcd pull;                                  // right vertex = -pull (left vertex)
-  Eigen::VectorXcd load;                                  // load on all unknowns; empty if there is none
+  Condensed inner;        // matrices that compute the inner unknowns (bubbles) from those of both ends
+  Eigen::MatrixXcd pull;  // the unknowns of the right vertex are -pull times those of the left one
+  Eigen::VectorXcd load;  // load on all unknowns; empty if there is none
   Eigen::VectorXcd bubbles_under_load, right_under_load;  // what the load adds to the unknowns
   Eigen::VectorXcd centre;                                // value of each basis function on the centre line
 };

@@ -20,7 +20,8 @@ struct Reference {
   std::vector<std::string> to;
 };
 
-/// A column that the checksum chain covers, beginning with an encoding of the chain.
+/// A column that the checksum chain covers. `since` is the first encoding of the chain that contains the
+/// column.
 struct Covered {
   std::string name;
   int since = 1;

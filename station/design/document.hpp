@@ -50,7 +50,7 @@ class Document {
   Part root_;
 };
 
-/// Write a text as a TOML string, and a name as a TOML key.
+/// quoted() writes a text as a TOML string, key_of() writes a name as a TOML key.
 std::string quoted(const std::string& text);
 std::string key_of(const std::string& name);
 

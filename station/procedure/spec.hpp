@@ -134,9 +134,9 @@ const char* name(Kind kind);  ///< the kind's name in a protocol: "constant-stim
 std::optional<Kind> parse_kind(const std::string& text);
 std::vector<std::string> kind_names();
 
-/// Returns about how many trials the method of limits takes, if the answers change in the middle between the
-/// ascending and the descending starts (with series of one direction, in the middle of what is left of the
-/// range).
+/// Returns about how many trials the method of limits takes. Assumes that the answers change half-way between
+/// the ascending and the descending starts. If all series have one direction, the limit `min` or `max` stands
+/// for the missing starts.
 double series_trials(const Spec& spec);
 
 /// One problem of a specification: the key, what is wrong, and what is allowed.

@@ -46,8 +46,9 @@ class PlanAhead {
   /// Returns the plans of a trial, and waits for them if necessary. If planning failed, throws its exception.
   const Planned& take(const trial::TrialSpec& trial);
 
-  /// Says that the resonances of the surface have moved by this share. All frequencies are then multiplied by
-  /// 1 + share, so that boundaries stay where they were planned. Plans that were made before are made again.
+  /// Says that the resonance frequencies of the surface have risen by the fraction `share`. All frequencies
+  /// are then multiplied by 1 + share, so that boundaries stay where they were planned. Plans that were made
+  /// before are made again.
   void set_drift(double share);
 
  private:

@@ -39,7 +39,8 @@ sensing::MovementWindow window_of(const protocol::Sensing& sensing);
 /// The friction, relative to the surface at rest, at which the scene's boundary is planned; empty if the
 /// boundary is not an edge of friction.
 std::optional<double> friction_level(const scene::Scene& scene);
-/// What the trial asks about the finger.
+/// Which friction of a trial is to be computed from the signals of the force cells: at which level, and in
+/// which part of the surface.
 struct Asked {
   /// see friction_level(); empty: the felt boundary is where friction is half-way up the step
   std::optional<double> friction_level;

@@ -65,8 +65,8 @@ struct Summary {
   std::optional<double> accuracy;  ///< proportion correct of scored, answered, experimental trials
   double duration_s = 0;           ///< measured on the session's clock
   int xruns = 0;
-  /// trigger codes that were given out, those of them that were captured but not found, and codes that were
-  /// found but not given out
+  /// number of trigger codes that were sent; of codes that were sent but not found in the captured signal;
+  /// and of codes that were found but not sent
   int triggers = 0, triggers_missed = 0, triggers_extra = 0;
   /// time by which pauses between trials were extended to keep the limits on exposure
   double stretched_s = 0;

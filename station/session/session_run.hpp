@@ -136,13 +136,14 @@ class SessionRun {
   std::optional<sensing::DriftTracker> drift_;  ///< empty without pick-ups
   /// the newest drift that was found in the running trial
   std::optional<sensing::PhaseDrift> newest_drift_;
-  double applied_drift_ = 0;  ///< share by which frequencies are corrected
+  /// fraction by which the frequencies of tones are raised, to follow the resonances
+  double applied_drift_ = 0;
   Guide guide_;
   std::int64_t guide_due_ns_ = 0;
 };
 
-/// Returns how far the boundary of a tone moves (in m, towards the narrow edge) if all resonances of the
-/// surface move by this share.
+/// Returns how far the boundary of a tone moves (in m, towards the narrow edge) if all resonance frequencies
+/// of the surface rise by the fraction `share`.
 double boundary_shift_m(const physics::Surface& surface, double frequency_Hz, double share);
 
 }  // namespace turnpoint::session

@@ -108,7 +108,8 @@ class Stage {
   virtual drive::Amplifier* guarded_amplifier() { return nullptr; }
   virtual std::optional<CaptureSetup> capture() const { return std::nullopt; }
 
-  /// Says that the resonances of the surface have moved by this share since the calibration of the pick-ups.
+  /// Says by what fraction the resonance frequencies of the surface have risen since the calibration of the
+  /// pick-ups.
   virtual void set_drift(double) {}
   /// Returns the force and movement of the finger at this moment; empty unless force cells measure them.
   virtual std::optional<sensing::FingerNow> finger_now() { return std::nullopt; }

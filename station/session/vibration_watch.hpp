@@ -42,8 +42,8 @@ class VibrationWatch {
 
   /// Sets the delay that the newest pilot has measured. It applies from the next trial on.
   void set_delay(double frames);
-  /// Sets the share by which the resonances have moved since the calibration. It applies from the next trial
-  /// on.
+  /// Sets the fraction by which the resonance frequencies have risen since the calibration. It applies from
+  /// the next trial on.
   void set_drift(double share);
 
   /// Announces the intervals of a trial, with absolute start frames, in order. They replace those of the

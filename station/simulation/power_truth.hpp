@@ -41,7 +41,7 @@ class GeneratingValues {
   };
   std::map<std::string, Sum> sums() const;
   static GeneratingValues of_sums(const std::map<std::string, Sum>& sums);
-  /// Copies from `other` the questions of the conditions that both objects have.
+  /// Copies from `other` the observer's questions for the conditions that both objects have.
   void take_questions(const GeneratingValues& other);
   bool has_all_of(const GeneratingValues& other) const;  ///< true if this has each of the other's conditions
 
