@@ -77,9 +77,9 @@ struct Spec {
   std::string level;   ///< the factor that the procedure sets
   std::string tracks;  ///< the answer that counts as 1; "" if right answers count as 1
   Scale scale = Scale::linear;
-  /// factors that have these values in all of its trials
+  /// the values that some factors have in all trials of this procedure
   std::map<std::string, std::variant<double, std::string>> with;
-  /// name of the table from which `for_each` has made this procedure; "" otherwise
+  /// name of the table from which `for_each` has made this procedure; "" if it was not made by `for_each`
   std::string family;
 
   // The following members are for constant stimuli; `values` are the levels.

@@ -163,7 +163,8 @@ class Parser {
     }
   }
 
-  // The part of a sum that stands at `factors`; "nothing" is the constant.
+  // The coefficients of a sum. The key of each is the list of factors that it multiplies; the empty list
+  // stands for the constant.
   using Parts = std::map<std::vector<std::string>, double>;
 
   static Parts parts_of(const Linear& sum) {
@@ -303,8 +304,8 @@ std::optional<Linear> linear_from(const text::Value& value, const std::string& k
 
 namespace {
 
-/// The smallest and largest value of the sum, whose sign is kept. It is linear in each factor, so both are at
-/// ends of the factors' ranges.
+/// The smallest and largest value of the expression without abs(). It is linear in each factor, so both are
+/// at ends of the factors' ranges.
 std::pair<double, double> signed_bounds(Linear expression, const std::vector<Factor>& factors) {
   expression.absolute = false;
   std::vector<Factors> corners{{}};

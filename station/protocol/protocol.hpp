@@ -69,7 +69,7 @@ enum class FactorDraw {
 struct Factor {
   std::string name;
   FactorDraw draw = FactorDraw::levels;
-  double mean = 0, sd = 0;  ///< of a normal distribution
+  double mean = 0, sd = 0;  ///< mean and standard deviation for FactorDraw::normal
   std::optional<std::pair<double, double>> range;
   std::vector<FactorValue> levels;
   Place place;

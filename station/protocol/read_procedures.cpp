@@ -163,8 +163,9 @@ std::vector<Spec> family_of(const Value& table, const Spec& spec, const Reading&
   return family;
 }
 
-/// Adds the procedures of one table. Levels whose names differ only in signs that names cannot have would
-/// give two procedures the same name, and a name may already be that of another table.
+/// Adds the procedures that were made from one table. Reports a problem if two would have the same name: the
+/// levels may differ only in characters that are not allowed in names, or another table may already have the
+/// name.
 void add_family(const Value& table, const std::string& name, std::vector<Spec> family, Reading& reading) {
   for (auto& one : family) {
     if (one.family.empty()) {

@@ -19,7 +19,7 @@ struct Reading {
   const KeyPlaces& places;
   /// names of all scenes in the file, even of those that could not be read
   std::vector<std::string> declared_scenes;
-  /// names of the procedures that `for_each` has made of one table, by the name of the table
+  /// for each table with `for_each`, by its name: the names of the procedures that were made from it
   std::map<std::string, std::vector<std::string>> families = {};
 };
 

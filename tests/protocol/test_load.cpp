@@ -166,7 +166,8 @@ TEST_CASE("factors can be multiplied, and the extremes of a product are found at
   CHECK(value("(reference - 1) * (proportion - 1)") == Approx(0.15).epsilon(1e-15));
   CHECK(value("(reference - proportion) * (1 + 0) - 0.01 * reference * proportion * 2 * 0") ==
         Approx(0.55).epsilon(1e-15));
-  // A friction is below 1: 0.85 * (1 + 0.17) is, 0.85 * (1 + 0.18) is not, and only the corner shows it.
+  // Friction must be below 1. The largest product is 0.85 * (1 + 0.17) in the first case, which is allowed,
+  // and 0.85 * (1 + 0.18) in the second, which is not. Only the upper ends of both ranges together show this.
   CHECK_NOTHROW(protocol::parse(source("reference * (1 + 0.37 * proportion)"), "p.toml"));
   CHECK_THROWS_AS(protocol::parse(source("reference * (1 + 0.41 * proportion)"), "p.toml"), text::BadInput);
 }

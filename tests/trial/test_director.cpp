@@ -161,9 +161,9 @@ TEST_CASE("the times of a trial follow its factors", "[session]") {
 TEST_CASE("each of the interleaved procedures presents its own value of the factor", "[session]") {
   const auto protocol = shipped("friction-weber");
   Director director(protocol, 0, 8);
-  director.finish_block();  // the practice
+  director.finish_block();  // leave the practice block
   std::map<std::string, int> trials;
-  std::map<std::string, int> followed;  // how often a procedure followed another
+  std::map<std::string, int> followed;  // how often each procedure was followed by another one
   std::string last;
   while (const auto spec = director.next()) {
     const double reference = std::get<double>(spec->factors.at("reference"));
@@ -171,7 +171,8 @@ TEST_CASE("each of the interleaved procedures presents its own value of the fact
     ++trials[spec->procedure];
     followed[last] += last != spec->procedure;
     last = spec->procedure;
-    // Answers that depend on the reference move the procedures apart if each has its own state.
+    // The answers depend on the reference, so the three procedures reach different levels if each has a state
+    // of its own.
     director.record(answered(*spec, reference > 0.7 || trials[spec->procedure] % 2 == 0));
   }
   CHECK(trials == std::map<std::string, int>{{"weber-0_65", 40}, {"weber-0_75", 40}, {"weber-0_85", 40}});
@@ -216,7 +217,8 @@ TEST_CASE("values are drawn from a range as the protocol says", "[session]") {
 
   factor.draw = protocol::FactorDraw::normal;
   factor.mean = 185, factor.sd = 1;
-  const auto normal = drawn();  // limits at 5 standard deviations
+  // the range, 180 to 190, is 5 standard deviations wide on either side of the mean
+  const auto normal = drawn();
   CHECK(moments(normal).first == Approx(185).margin(0.06));
   CHECK(moments(normal).second == Approx(1).margin(0.042));
   factor.sd = 10;  // values outside of the range are drawn again
@@ -246,5 +248,5 @@ TEST_CASE("without repetition, each level comes once before any comes again", "[
     director.record(answered(*spec, true));
   }
   CHECK(order.empty());
-  CHECK(orders.size() > 10);  // of 24 rounds
+  CHECK(orders.size() > 10);  // the block has 24 rounds
 }
