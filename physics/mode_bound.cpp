@@ -36,9 +36,9 @@ constexpr double layer_shift = 4.8e-3;
 // shift of an edge at any taper, for the plate theories mindlin and elastic
 constexpr double thick_shift = 2.5e-3;
 constexpr double plate_slope_shift = 0.15;  // shift of an edge divided by W'^2
-// shift of an edge caused by a clamped end: just beyond the turning point, divided by W'^2; at the turning
-// point, divided by W'
-constexpr double end_shift = 0.15, close_end_shift = 0.09;
+// shift of an edge caused by a clamped end: just beyond the turning point, divided by W'^2; farther away,
+// divided by W'^2 and by the wave's decay on its way to the end and back; at the turning point, divided by W'
+constexpr double end_shift = 0.15, far_end_shift = 2.5, close_end_shift = 0.09;
 // shift of an edge, divided by the amplitude of higher modes near this edge
 constexpr double shallow = 6;
 constexpr double other_peak =
@@ -83,6 +83,26 @@ double plate_amplification(const Surface& surface, const Taper& taper, double f)
   const auto turning = taper.position_continued_m(plate_second_mode * cut_off_half_width_m(surface, f));
   const double reach = std::clamp(turning.value_or(0), 0.0, taper.length_m());
   return 1 / std::max(std::tanh(0.5 * wavenumber_per_m(surface, f) * reach / surface.quality_factor), 0.01);
+}
+
+// Natural logarithm of how far the n-th symmetric mode decays from one position to another, where the strip
+// is too narrow for it.
+double ln_decay(const Surface& surface, double f, int n, double from_m, double to_m) {
+  const Taper taper(surface);
+  const double k = wavenumber_per_m(surface, f);
+  double ln = 0;
+  constexpr int panels = 24;
+  for (int i = 0; i < panels; ++i) {
+    const double w = taper.half_width_m(from_m + (to_m - from_m) * (i + 0.5) / panels);
+    const double across = (2 * n - 1) * pi / (2 * w);
+    ln += (to_m - from_m) / panels * std::sqrt(std::max(0.0, across * across - k * k));
+  }
+  return ln;
+}
+
+// How far the first mode decays between the turning point and the clamped end, there and back.
+double round_trip_decay(const Surface& surface, double f, double turning_point_m) {
+  return std::exp(-2 * ln_decay(surface, f, 1, turning_point_m, surface.length_m));
 }
 
 double curvature_times_width(const Taper& taper, double x) {
@@ -134,16 +154,7 @@ double plate_shift_of(const Surface& surface, const Dispersion& dispersion, doub
 }  // namespace
 
 double higher_mode_decay(const Surface& surface, double f, double x) {
-  const Taper taper(surface);
-  const double k = wavenumber_per_m(surface, f);
-  double ln = 0;
-  constexpr int panels = 24;
-  for (int i = 0; i < panels; ++i) {
-    const double w = taper.half_width_m(x * (i + 0.5) / panels);
-    const double across = 3 * pi / (2 * w);
-    ln += x / panels * std::sqrt(std::max(0.0, across * across - k * k));
-  }
-  return std::exp(-ln);
+  return std::exp(-ln_decay(surface, f, 2, 0, x));
 }
 
 ModeBound mode_bound(const Surface& surface, double f, double conditioning,
@@ -181,10 +192,9 @@ ModeBound mode_bound(const Surface& surface, double f, double conditioning,
   const double airy_length = airy_length_m(cut, steepest);
   const double near = std::max(0.0, std::min(x0 - 1.1 * airy_length, last_peak_m.value_or(x0)));
   const double polluted = shallow * modes * higher_mode_decay(surface, f, near);
-  // If a straight clamped end is just beyond the turning point, the curved wave fronts do not meet it evenly,
-  // which shifts the edge.
+  // The curved wave fronts do not meet the straight clamped end evenly, which shifts the edge.
   const double end_width = taper.half_width_m(taper.length_m()) / cut;
-  double end = end_width > 0.5 ? end_shift * steepest * steepest : 0;
+  double end = std::min(end_shift, far_end_shift * round_trip_decay(surface, f, x0)) * steepest * steepest;
   end = std::max(end, close_end_shift * steepest * std::clamp((end_width - 0.75) / 0.1, 0.0, 1.0));
   // Higher modes that are strong near the last maximum may replace it by another one.
   const bool same_peak = polluted < other_peak;
