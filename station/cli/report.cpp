@@ -129,7 +129,7 @@ void report_databases(Options options, Context& context) {
   for (auto& database : options.databases) {
     // Do not show the address of a collector: it may contain a password.
     options.names.push_back(collector::is_server(database) ? "collector" : database);
-    database = readable.emplace_back(database).path();
+    database = readable.emplace_back(database, options.filter).path();
   }
   if (options.study)
     report_study(options, context);

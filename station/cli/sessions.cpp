@@ -54,7 +54,7 @@ void print(std::ostream& out, const std::vector<store::SessionRecord>& sessions)
 }
 
 void sessions(const Options& options, Context& context) {
-  const collector::ReadableDatabase database(options.database);
+  const collector::ReadableDatabase database(options.database, options.filter);
   const auto list = store::list_sessions(database.path(), options.filter);
   if (!context.json) return print(context.out, list);
   Json json = Json::array();

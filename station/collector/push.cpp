@@ -12,6 +12,7 @@
 #include "station/collector/tables.hpp"
 #include "station/store/checksum.hpp"
 #include "station/store/open.hpp"
+#include "station/store/people.hpp"
 #include "station/store/places.hpp"
 #include "station/store/read.hpp"
 #include "station/store/schema.hpp"
@@ -304,6 +305,7 @@ PushReport push(const PushOptions& options) {
     store::copy_database(reader, snapshot);
   }
   push_sessions(snapshot, stations, received, server, report);
+  server.query("SELECT turnpoint.store_joins($1::json)", {joins_json(store::list_joins(snapshot))});
   // Lease places after sending the sessions, because the sessions tell the server which places are taken.
   for (const auto& [protocol_id, wanted] : options.places)
     received.places[protocol_id] = lease_places(snapshot, protocol_id, wanted, server, report);

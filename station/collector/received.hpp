@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "station/store/people.hpp"
 #include "station/store/withdraw.hpp"
 
 namespace turnpoint::collector {
@@ -15,8 +16,9 @@ struct Received {
   std::map<std::string, std::vector<std::int64_t>> places;
 };
 
-/// Returns tombstones as a JSON list of rows of table tombstone.
+/// Return a JSON list of rows of table tombstone, or same_person.
 std::string tombstones_json(const std::vector<store::Tombstone>& tombstones);
+std::string joins_json(const std::vector<store::Join>& joins);
 
 /// Applies what the server sent to the station's database. Throws StoreError (busy) while a session is
 /// running.

@@ -12,12 +12,6 @@ namespace turnpoint::collector {
 
 namespace {
 
-std::string literal(const std::string& text) {
-  std::string escaped = "'";
-  for (const char c : text) escaped += c == '\'' ? "''" : std::string(1, c);
-  return escaped + "'";
-}
-
 std::string type_of(const Column& column) {
   if (column.type == "INTEGER") return "bigint";
   if (column.type == "REAL") return "double precision";

@@ -166,4 +166,10 @@ std::string column_list(const CollectedTable& table) {
   return quoted_list(names);
 }
 
+std::string literal(const std::string& text) {
+  std::string escaped = "'";
+  for (const char c : text) escaped += c == '\'' ? "''" : std::string(1, c);
+  return escaped + "'";
+}
+
 }  // namespace turnpoint::collector

@@ -61,4 +61,7 @@ std::string quoted(const std::string& name);
 std::string quoted_list(const std::vector<std::string>& names);
 std::string column_list(const CollectedTable& table);
 
+/// A text as an SQL literal.
+std::string literal(const std::string& text);
+
 }  // namespace turnpoint::collector

@@ -14,7 +14,7 @@ pybind11_add_module(turnpoint_python_physics NO_EXTRAS ${physics_python}/module.
 target_link_libraries(turnpoint_python_physics PRIVATE turnpoint_physics)
 set_target_properties(turnpoint_python_physics PROPERTIES OUTPUT_NAME physics)
 pybind11_add_module(turnpoint_python_store NO_EXTRAS ${station_python}/store_module.cpp ${station_python}/tables.cpp)
-target_link_libraries(turnpoint_python_store PRIVATE turnpoint_store)
+target_link_libraries(turnpoint_python_store PRIVATE turnpoint_collector turnpoint_store)
 set_target_properties(turnpoint_python_store PROPERTIES OUTPUT_NAME _store)
 set(turnpoint_python_modules turnpoint_python_physics turnpoint_python_store)
 set_target_properties(${turnpoint_python_modules} PROPERTIES LIBRARY_OUTPUT_DIRECTORY ${turnpoint_python_folder})

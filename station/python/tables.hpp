@@ -21,7 +21,8 @@ struct ProtocolTables {
 
 /// Reads into memory what store::export_data() would write with the format csv. Texts that are empty count as
 /// missing, as in the files. Unlike in the files, texts that begin with = + - or @ get no apostrophe in
-/// front. Throws StoreError like store::export_data().
+/// front. `database` may be a collector (collector/fetch.hpp). Throws like store::export_data() and
+/// collector::ReadableDatabase.
 std::vector<ProtocolTables> read_tables(const std::string& database, const store::ExportOptions& options);
 
 /// All points of one stream of a session, such as the finger's forces. The vectors have one value per point.

@@ -25,23 +25,71 @@ bool write_all(int to, const char* bytes, std::size_t size) {
   return true;
 }
 
-int connect_to(const std::string& path) {
-  sockaddr_un address{};
-  address.sun_family = AF_UNIX;
-  std::strncpy(address.sun_path, path.c_str(), sizeof address.sun_path - 1);
-  const int server = ::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0);
-  if (::connect(server, reinterpret_cast<sockaddr*>(&address), sizeof address) == 0) return server;
+sockaddr_in loopback(int port) {
+  sockaddr_in address{};
+  address.sin_family = AF_INET;
+  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  address.sin_port = htons(static_cast<std::uint16_t>(port));
+  return address;
+}
+
+int connected(int family, const void* address, std::size_t size) {
+  const int server = ::socket(family, SOCK_STREAM | SOCK_CLOEXEC, 0);
+  if (::connect(server, static_cast<const sockaddr*>(address), static_cast<socklen_t>(size)) == 0)
+    return server;
   ::close(server);
   return -1;
 }
 
+int connect_to(const std::string& where) {
+  if (!where.starts_with('/')) {
+    const auto address = loopback(std::stoi(where));
+    return connected(AF_INET, &address, sizeof address);
+  }
+  sockaddr_un address{};
+  address.sun_family = AF_UNIX;
+  std::strncpy(address.sun_path, where.c_str(), sizeof address.sun_path - 1);
+  return connected(AF_UNIX, &address, sizeof address);
+}
+
+/// Flips a bit of one byte in a stream.
+class Corruption {
+ public:
+  /// `plain` is how many bytes come before the records of TLS; -1 if there are none.
+  Corruption(std::uint64_t at, int plain) : at_(at), plain_(plain), tls_(plain >= 0) {}
+
+  void pass(char* bytes, std::size_t size) {
+    for (std::size_t i = 0; i < size; ++i) {
+      const bool open = !tls_ || is_encrypted(static_cast<unsigned char>(bytes[i]));
+      if (position_++ < at_ || !open || done_) continue;
+      bytes[i] ^= 0x10;
+      done_ = true;
+    }
+  }
+
+ private:
+  /// True if this byte, the next one of the stream, belongs to the content of an encrypted record.
+  bool is_encrypted(unsigned char byte) {
+    constexpr unsigned kEncrypted = 23, kHeaderBytes = 5;
+    if (plain_ > 0) return --plain_, false;
+    if (content_ > 0) return --content_, type_ == kEncrypted;
+    if (header_ == 0) type_ = byte, length_ = 0;
+    if (header_ >= 3) length_ = (length_ << 8U) | byte;
+    if (++header_ == kHeaderBytes) header_ = 0, content_ = length_;
+    return false;
+  }
+
+  std::uint64_t at_, position_ = 0;
+  int plain_;
+  bool tls_, done_ = false;
+  unsigned header_ = 0, type_ = 0, length_ = 0, content_ = 0;
+};
+
 }  // namespace
 
-Proxy::Proxy(std::string socket, std::function<Trouble()> trouble)
-    : socket_(std::move(socket)), trouble_(std::move(trouble)) {
-  sockaddr_in address{};
-  address.sin_family = AF_INET;
-  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+Proxy::Proxy(std::string server, std::function<Trouble()> trouble)
+    : server_(std::move(server)), trouble_(std::move(trouble)) {
+  auto address = loopback(0);
   socklen_t size = sizeof address;
   listener_ = ::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
   if (::bind(listener_, reinterpret_cast<sockaddr*>(&address), size) != 0 || ::listen(listener_, 8) != 0 ||
@@ -70,8 +118,10 @@ void Proxy::serve() {
 }
 
 void Proxy::pass(int client, const Trouble& trouble) {
-  const int server = connect_to(socket_);
+  const int server = connect_to(server_);
   std::uint64_t sent = 0, received = 0;
+  Corruption corrupt_sent(trouble.corrupt_sent, trouble.tls ? 8 : -1),
+      corrupt_received(trouble.corrupt_received, trouble.tls ? 1 : -1);
   char bytes[4096];
   for (bool open = server >= 0; open;) {
     pollfd ready[] = {{client, POLLIN, 0}, {server, POLLIN, 0}, {wake_[0], POLLIN, 0}};
@@ -80,8 +130,7 @@ void Proxy::pass(int client, const Trouble& trouble) {
       const auto size = ::read(client, bytes, sent < trouble.slow_sent ? 1 : sizeof bytes);
       const auto end = sent + static_cast<std::uint64_t>(size > 0 ? size : 0);
       if (size <= 0 || end > trouble.cut_sent) break;
-      if (trouble.corrupt_sent >= sent && trouble.corrupt_sent < end)
-        bytes[trouble.corrupt_sent - sent] ^= 0x10;
+      corrupt_sent.pass(bytes, static_cast<std::size_t>(size));
       open = write_all(server, bytes, static_cast<std::size_t>(size));
       sent = end;
     }
@@ -89,6 +138,7 @@ void Proxy::pass(int client, const Trouble& trouble) {
       const auto size = ::read(server, bytes, sizeof bytes);
       received += static_cast<std::uint64_t>(size > 0 ? size : 0);
       if (size <= 0 || received > trouble.cut_received) break;
+      corrupt_received.pass(bytes, static_cast<std::size_t>(size));
       open = write_all(client, bytes, static_cast<std::size_t>(size));
     }
   }

@@ -74,8 +74,7 @@ TEST_CASE("leased places make one design over two stations, also while the serve
 
   // Whether a place was leased is stored with the session, at the station and on the server.
   CHECK(lease(b, "station_b", 0).complete());
-  const collector::ReadableDatabase fetched("postgresql:///turnpoint?host=" + postgres.folder() +
-                                            "&user=reader");
+  const collector::ReadableDatabase fetched(postgres.address("reader"));
   for (const auto& path : {b, fetched.path()})
     for (const auto& session : store::list_sessions(path)) {
       INFO(session.start.participant);
