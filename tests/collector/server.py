@@ -27,6 +27,14 @@ class Server:
         for station in stations:
             self.sql(f"INSERT INTO turnpoint.station VALUES ('{station}', 's')")
 
+    def processor_s(self):
+        """The processor time of connections that have ended."""
+        with open(os.path.join(self.data, "postmaster.pid"), encoding="ascii") as file:
+            pid = file.readline().strip()
+        with open(f"/proc/{pid}/stat", encoding="ascii") as file:
+            fields = file.read().rsplit(")", 1)[1].split()
+        return (int(fields[13]) + int(fields[14])) / os.sysconf("SC_CLK_TCK")
+
     def stop(self):
         self.run("pg_ctl", "-w", "-D", self.data, "-m", "fast", "stop")
 
