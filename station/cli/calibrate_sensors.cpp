@@ -62,6 +62,8 @@ void print(std::ostream& out, const calibration::PickUp& pick_up) {
 void add_sensor_options(Command& command, SensorOptions& options) {
   command.add_flag("--pickup", options.pick_up,
                    "Sweep each transducer, and fit the response of the pick-ups to what they capture");
+  command.add_flag("--forces", options.forces,
+                   "Calibrate the force cells with dead weights; asks for each weight and waits for Enter");
   command
       .add_option("--sensor", options.sensor,
                   "With --pickup: patch (a piezo patch; its table needs 5 frequencies) | accelerometer (one "

@@ -338,7 +338,15 @@ void check_triggers(const Protocol& protocol, const rig::Rig& rig, Survey& surve
 }
 
 void check_sensing(const Protocol& protocol, const rig::Rig& rig, Survey& survey) {
-  if (!protocol.sensing || (rig.capture && !rig.capture->bridges.empty())) return;
+  if (!protocol.sensing) return;
+  if (rig.capture && !rig.capture->bridges.empty()) {
+    if (rig.capture->uri != "sim:" && !rig.capture->forces)
+      survey.problems.push_back(
+          {protocol.sensing->place,
+           "the rig's force cells are not calibrated, so the finger's movement is not known",
+           "calibrate them with `turnpoint calibrate --forces`, or leave out [sensing]"});
+    return;
+  }
   survey.problems.push_back({protocol.sensing->place,
                              "the rig has no force cells, so the finger's movement is not known",
                              "leave out [sensing], or use a rig with \"bridges\" in [capture]"});

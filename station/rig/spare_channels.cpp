@@ -104,9 +104,6 @@ void read_bridges(TableReader& reader, Capture& capture) {
     check_captured(reader, "bridges", channel, capture);
     capture.bridges.push_back(channel);
   }
-  if (!capture.uri.starts_with("sim:"))
-    reader.problem("bridges", "real force cells cannot be calibrated yet",
-                   "use them with uri = \"sim:\", or leave \"bridges\" out");
 }
 
 void read_marker_channel(TableReader& reader, const Rig& rig, Capture& capture) {

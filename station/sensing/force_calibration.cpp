@@ -140,6 +140,29 @@ WeightFit fit_weights(const std::vector<DeadWeight>& weights, const WeightErrors
   return result;
 }
 
+std::vector<double> deviations(const std::vector<DeadWeight>& weights, const WeightErrors& errors) {
+  std::vector<double> all;
+  for (std::size_t i = 0; i < weights.size(); ++i) {
+    auto others = weights;
+    others.erase(others.begin() + static_cast<std::ptrdiff_t>(i));
+    double largest = 0;
+    try {
+      const auto without = fit_weights(others, errors);
+      const auto at = without.calibration.force(weights[i].readings);
+      const auto stated = load(weights[i]);
+      const auto sd = load_sd({weights[i]}, errors).front();
+      const std::array measured{at.normal_N, at.lateral_N, at.moment_Nmm};
+      for (std::size_t k = 0; k < 3; ++k)
+        largest =
+            std::max(largest, std::abs(measured[k] - stated[k]) / (sd[k] * std::max(1.0, without.misfit[k])));
+    } catch (const terms::UsageError&) {
+      largest = 0;
+    }
+    all.push_back(largest);
+  }
+  return all;
+}
+
 Tare tare(std::span<const BridgePoint> points, Band band, const ForceCalibration& calibration,
           const Readings& before) {
   Tare result;

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "station/drive/recovery.hpp"
+#include "station/sensing/trial_finger.hpp"
 #include "station/session/presented.hpp"
 #include "station/system/clock_watch.hpp"
 #include "station/system/clocks.hpp"
@@ -24,7 +25,8 @@ constexpr std::int64_t kFirstBlocks_ns = 500'000'000;
 constexpr std::int64_t kFirstPosition_ns = 500'000'000;
 // longest wait for the report that an interval was played completely
 constexpr std::int64_t kHeard_ns = 1'000'000'000;
-constexpr std::int64_t kPilot_ns = 1'000'000'000;     // longer than a pilot can take to come back
+constexpr std::int64_t kPilot_ns = 1'000'000'000;               // longer than a pilot can take to come back
+constexpr double kTare_s = sensing::TrialFinger::tare_s + 0.1;  // the filter needs the rest
 constexpr std::int64_t kMeasured_ns = 1'000'000'000;  // longest wait for what was captured of an interval
 // A proof needs captured frames from before the onset, so expect() must be called at least this long before
 // the onset.
@@ -43,6 +45,7 @@ class RealStage : public Stage {
     if (!capture) return;
     pilot_ = capture->pilot;
     reference_ = capture->reference;
+    has_cells_ = capture->setup.finger.has_value();
     feed_ = std::make_unique<CaptureFeed>(devices_.open_capture(capture->device), *capture);
   }
 
@@ -187,11 +190,23 @@ class RealStage : public Stage {
     feed_->listen(stream_->schedule_soon(sensing::pilot_burst(pilot_, 0)).start_frame);
     const auto until_ns = now_ns() + static_cast<std::int64_t>(1e9 * feed_->longest_wait_s()) + kPilot_ns;
     wait_for([&] { return feed_->pilot() != CaptureFeed::Pilot::awaited || now_ns() > until_ns; });
-    if (feed_->aligned()) return std::nullopt;
+    if (feed_->aligned()) {
+      if (has_cells_) await_tare();
+      return std::nullopt;
+    }
     if (!feed_->counters().present) return Fault{FaultKind::capture, "the capture device is disconnected"};
     return Fault{FaultKind::capture,
                  fmt::format("the pilot on output channel {} was not heard on captured channel {}",
                              pilot_.channel, reference_)};
+  }
+
+  /// The force cells are read before each trial, which needs captured frames since the pilot.
+  void await_tare() {
+    const auto rate_Hz = stream_->config().output.rate_Hz;
+    const auto until_ns = now_ns() + static_cast<std::int64_t>(1e9 * feed_->longest_wait_s());
+    const auto wanted = stream_->frame_at(now_ns()).value_or(0) +
+                        static_cast<std::int64_t>(kTare_s * static_cast<double>(rate_Hz));
+    wait_for([&] { return feed_->end_frame() >= wanted || !feed_->aligned() || now_ns() > until_ns; });
   }
 
   /// Reports the intervals whose samples have been captured: first the measurements of an interval, then that
@@ -373,6 +388,7 @@ class RealStage : public Stage {
   Inputs& inputs_;
   std::unique_ptr<drive::Stream> stream_;
   std::optional<Triggers> triggers_;
+  bool has_cells_ = false;
   std::unique_ptr<CaptureFeed> feed_;  ///< null if nothing is captured
   sensing::Pilot pilot_;
   int reference_ = 0;

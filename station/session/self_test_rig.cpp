@@ -183,7 +183,9 @@ class StageRig : public SelfTestRig {
   std::vector<CellReading> read_cells() override {
     CellReading reading;
     if (!parts_.capture || !parts_.capture->finger) {
-      reading.missing = "the rig has no force cells";
+      const auto& rig = *parts_.rig;
+      reading.missing = rig.capture && !rig.capture->bridges.empty() ? "the force cells are not calibrated"
+                                                                     : "the rig has no force cells";
       return {reading};
     }
     std::vector<CellReading> readings;

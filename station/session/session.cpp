@@ -211,10 +211,13 @@ Summary run(const Setup& setup, Display* display, Inputs& inputs, std::unique_pt
 }
 
 Summary run(const Setup& setup, Display* display, Inputs& inputs, Devices devices, Monitor* monitor) {
-  return run_on(setup, display,
-                real_stage(session_stream(setup.rig), std::move(devices), inputs, card_capture_of(setup.rig),
-                           trigger_setup_of(setup.rig)),
-                monitor);
+  auto capture = card_capture_of(setup.rig);
+  if (capture && capture->setup.finger && setup.protocol.sensing)
+    capture->setup.finger->window = window_of(*setup.protocol.sensing);
+  return run_on(
+      setup, display,
+      real_stage(session_stream(setup.rig), std::move(devices), inputs, capture, trigger_setup_of(setup.rig)),
+      monitor);
 }
 
 }  // namespace turnpoint::session

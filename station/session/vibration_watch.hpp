@@ -34,6 +34,9 @@ std::vector<sensing::PickUp> calibrated_pick_ups(const rig::Capture& capture);
 /// Sets the rig's calibration of the force cells in `finger`.
 void use(const rig::ForceCells& cells, sensing::FingerSetup& finger);
 
+/// The force cells of a rig; empty if they are not calibrated.
+std::optional<sensing::FingerSetup> calibrated_finger(const rig::Rig& rig);
+
 /// Judges the intervals of a trial by the signals of the pick-ups, and measures the finger with the force
 /// cells. One thread may push samples while the session thread calls the other functions.
 class VibrationWatch {

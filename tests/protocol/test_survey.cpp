@@ -57,6 +57,20 @@ TEST_CASE("every shipped protocol can be run, without a warning, on a rig like t
   check_shipped(quick_rig());
 }
 
+TEST_CASE("a protocol that watches the finger needs force cells, and real ones need a calibration",
+          "[protocol]") {
+  const auto protocol = protocol::load(root + "/protocols/friction-measured.toml");
+  const auto found = [&](const rig::Rig& rig) { return all_of(protocol::survey(protocol, rig).problems); };
+  auto rig = with_cells(quick_rig());
+  CHECK(found(rig) == "");
+  rig.capture->uri = "alsa:hw:1";
+  CHECK(contains(found(rig), "the rig's force cells are not calibrated"));
+  rig.capture->forces = rig::ForceCells{};
+  CHECK(found(rig) == "");
+  rig.capture->bridges.clear();
+  CHECK(contains(found(rig), "the rig has no force cells"));
+}
+
 TEST_CASE("every shipped protocol can be run on the simulated rig, without a warning", "[protocol]") {
   check_shipped(simulated());
 }

@@ -216,6 +216,12 @@ TEST_CASE("a capture on a card needs a loop: an output channel of its own, wired
   CHECK(rig.capture->reference == 3);
   CHECK(rig.capture->excitation_channel == 4);
   CHECK(rig::channels(rig) == 5);
+  const auto cells =
+      rig::parse(replaced(source(), "[limits]",
+                          "[capture]\nuri = \"alsa:hw:1\"\nchannels = 6\npickups = [1, 2]\nreference = 0\n"
+                          "excitation_channel = 4\nbridges = [3, 4, 5]\n[limits]"),
+                 "r.toml");
+  CHECK(cells.capture.value().bridges == std::vector<int>{3, 4, 5});
   CHECK(contains(with(""), "\"reference\""));
   CHECK(contains(with(""), "\"excitation_channel\""));
   CHECK(contains(with("reference = 4\nexcitation_channel = 2"),
