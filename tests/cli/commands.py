@@ -475,6 +475,59 @@ class Sensors(Folder):
         self.assertEqual(os.listdir(self.folder), ["plate.toml"])
 
 
+class Measured(Folder):
+    """The shipped protocol that measures the finger, with fewer trials, from the session to its exports."""
+    SHORTER = (("strokes = 10\nduration_s = 3.0\npass = { strokes = 8", "strokes = 4\nduration_s = 3.0\npass = { strokes = 2"),
+               ("[0.2, 0.4, 0.6, 0.8, 1.0, 1.3, 1.7, 2.2]\nrepeats = 6", "[0.4, 0.8, 1.6]\nrepeats = 3"), ("trials = 6\n", "trials = 2\n"),
+               ("stop = { trials = 96, threshold_sd = 1.5, rule = \"or\", min_trials = 32 }", "stop = { trials = 6 }"))
+    HALF_um = 0.754          # the displacement that halves the friction in the simulated laboratory, from the model's equations
+
+    def rows(self, path):
+        with open(os.path.join(self.folder, path), encoding="utf-8", newline="") as file:
+            return list(csv.DictReader(file))
+
+    def test_a_session_with_force_cells_from_the_training_to_the_exports(self):
+        with open(os.path.join(SOURCE, "protocols/friction-measured.toml"), encoding="utf-8") as file:
+            protocol = file.read()
+        for text, shorter in self.SHORTER:
+            self.assertIn(text, protocol)
+            protocol = protocol.replace(text, shorter)
+        self.write("short.toml", protocol.encode())
+        for arguments in (["run", "short.toml", "--rig", "simulated-forces", "--participant", "P01", "--observer", "sim", "--seed", "1"],
+                          ["verify"], ["report", "--out", "P01.html"],
+                          *(["export", "--out", kind, "--format", kind] for kind in ("csv", "bids", "signals"))):
+            status, out, err = run([*arguments, "--db", "lab.sqlite"], self.folder)
+            self.assertEqual(status, 0, err)
+            if arguments[0] == "verify":
+                self.assertIn("1 sessions, 0 changed", out)
+        trials = self.rows("csv/friction-measured/trials.csv")
+        self.assertEqual([len([t for t in trials if t["block_name"] == name]) for name in ("finger", "practice", "main")], [19, 2, 7])   # 6 and a catch trial
+        for trial in trials:
+            self.assertEqual(trial["sensing"], "ok")
+            self.assertAlmostEqual(float(trial["normal_n"]), 0.5, delta=0.15)
+        table = self.rows("csv/friction-measured/friction_tables.csv")
+        self.assertEqual([round(float(row["displacement_um"]), 9) for row in table], [0.4, 0.8, 1.6])
+        below, above = ((float(row["displacement_um"]), float(row["relative_friction"])) for row in table[:2])
+        half = below[0] + (below[1] - 0.5) / (below[1] - above[1]) * (above[0] - below[0])
+        self.assertAlmostEqual(half, self.HALF_um, delta=0.06 * self.HALF_um)
+        signals = self.rows("signals/friction-measured/signals.csv")
+        self.assertEqual([int(signal["trial_index"]) for signal in signals], list(range(len(trials))))
+        with gzip.open(os.path.join(self.folder, "signals/friction-measured", signals[0]["file"]), "rt", encoding="utf-8") as file:
+            points = list(csv.DictReader(file))
+        self.assertEqual(len(points), sum(int(signal["points"]) for signal in signals))
+        # every second trial of the table is at rest, with the friction of the simulated finger
+        rest = [t for t in trials if t["block_name"] == "finger"][::2]
+        self.assertAlmostEqual(sum(float(t["mu"]) for t in rest) / len(rest), 0.8, delta=0.05)
+        folder = os.path.join(self.folder, "bids/friction-measured/sub-P01/ses-01/beh/sub-P01_ses-01_task-frictionmeasured_run-01_recording-force_physio.")
+        with open(folder + "json", encoding="utf-8") as file:
+            sidecar = json.load(file)
+        self.assertEqual(sidecar["SamplingFrequency"], 1000)
+        with gzip.open(folder + "tsv.gz", "rt", encoding="utf-8") as file:
+            self.assertEqual({len(line.split("\t")) for line in file}, {len(sidecar["Columns"])})
+        with open(os.path.join(self.folder, "P01.html"), encoding="utf-8") as page:
+            self.assertIn("<h2>The finger</h2>", page.read())
+
+
 STUDY = ["power", "boundary-constant", "--observers", "12", "--intervals", "4"]
 
 
