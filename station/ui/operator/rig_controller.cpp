@@ -34,6 +34,7 @@ std::string measured(const calibration::Calibration& made) {
   add(!made.sound.empty(), "sound level");
   add(made.panel.has_value(), "panel latency");
   add(!made.pick_ups.empty(), "pick-ups");
+  add(made.forces.has_value(), "force cells");
   return text;
 }
 
