@@ -37,32 +37,23 @@ void collect_entries(const Part& part, std::vector<Span>& lines) {
   for (const auto& below : part.parts) collect_entries(below, lines);
 }
 
-const Part* innermost(const Part& part, int line, Path& path, const std::string& text) {
-  const Part* best = nullptr;
-  Path way;
+/// The way from a part to the innermost part whose text contains this offset.
+bool way_to(const Part& part, std::size_t at, Path& way) {
+  const Part* own = nullptr;
   for (const auto& below : part.parts) {
-    Path deeper;
-    const auto* found = innermost(below, line, deeper, text);
-    const auto end = below.value.end > 0 ? below.value.end : below.key.end;
-    const int last =
-        below.line +
-        static_cast<int>(std::count(text.begin() + static_cast<long>(below.key.begin),
-                                    text.begin() + static_cast<long>(std::max(end, below.key.begin)), '\n'));
-    if (found == nullptr && below.line > 0 && below.line <= line && line <= last && !below.name.empty())
-      found = &below;
-    if (found == nullptr) continue;
-    if (best != nullptr && best->line > found->line) continue;
-    best = found;
-    way = {below.name};
-    way.insert(way.end(), deeper.begin(), deeper.end());
+    way.push_back(below.name);
+    if (way_to(below, at, way)) return true;
+    way.pop_back();
+    const bool spans = below.kind != Part::Kind::table_array && below.kind != Part::Kind::dotted;
+    if (spans && below.key.begin <= at && at < below.value.end) own = &below;
   }
-  path = way;
-  return best;
+  if (own != nullptr) way.push_back(own->name);
+  return own != nullptr;
 }
 
 }  // namespace
 
-std::string quoted(const std::string& text) {
+std::string toml_string(const std::string& text) {
   std::string all = "\"";
   for (const char c : text) {
     if (c == '"' || c == '\\') {
@@ -82,7 +73,7 @@ std::string key_of(const std::string& name) {
   const bool bare = !name.empty() && std::all_of(name.begin(), name.end(), [](char c) {
     return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-';
   });
-  return bare ? name : quoted(name);
+  return bare ? name : toml_string(name);
 }
 
 Document::Document(std::string text, std::string file) : text_(std::move(text)), file_(std::move(file)) {
@@ -109,9 +100,16 @@ text::Value Document::value(const Part& part) const {
   return text::parse_toml("v = " + written, file_).entries.front().value;
 }
 
-Path Document::at_line(int line) const {
+Path Document::at(int line, int column) const {
+  std::size_t at = text_.starts_with("\xEF\xBB\xBF") ? 3 : 0;
+  for (int i = 1; i < line && at < text_.size(); ++i)
+    at = std::min(text_.find('\n', at), text_.size() - 1) + 1;
+  if (column <= 0) at = std::min(text_.find_first_not_of(" \t", at), text_.size());
+  for (int i = 1; i < column && at < text_.size(); ++i) do
+      ++at;
+    while (at < text_.size() && (static_cast<unsigned char>(text_[at]) & 0xC0) == 0x80);
   Path path;
-  innermost(root_, line, path, text_);
+  way_to(root_, at, path);
   return path;
 }
 
@@ -251,7 +249,7 @@ std::string Document::with_copy(const Path& path, const std::string& name) const
       own.replace(span.begin - table->value.begin, span.end - span.begin, by);
     };
     if (!of_list) replace(table->header_names[depth], key_of(name));
-    if (of_list && named != nullptr) replace(named->value, quoted(name));
+    if (of_list && named != nullptr) replace(named->value, toml_string(name));
     copy += line_break_ + line_break_ + own;
   }
   auto text = text_;

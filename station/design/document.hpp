@@ -21,6 +21,7 @@ class Document {
   Document(std::string text, std::string file);
 
   const std::string& text() const { return text_; }
+  const std::string& file() const { return file_; }
   const Part& root() const { return root_; }
   /// Returns the part at this path; nullptr if there is none.
   const Part* find(const Path& path) const;
@@ -28,8 +29,9 @@ class Document {
   std::string written(const Path& path) const;
   /// Returns the value of a scalar, array or inline table.
   text::Value value(const Part& part) const;
-  /// Returns the path of the innermost part at this line (from 1); empty if the line belongs to no key.
-  Path at_line(int line) const;
+  /// Returns the path of the innermost part at this place. Lines and columns (characters) count from 1; without a
+  /// column, the beginning of the line counts. Empty if no key is there.
+  Path at(int line, int column = 0) const;
 
   /// Sets the value of a key; `value` is written as TOML. A key that does not exist yet is added after the
   /// other keys of its table, and missing tables are added too.
@@ -50,8 +52,8 @@ class Document {
   Part root_;
 };
 
-/// quoted() writes a text as a TOML string, key_of() writes a name as a TOML key.
-std::string quoted(const std::string& text);
+/// toml_string() writes a text as a TOML string, key_of() writes a name as a TOML key.
+std::string toml_string(const std::string& text);
 std::string key_of(const std::string& name);
 
 }  // namespace turnpoint::design

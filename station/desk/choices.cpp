@@ -1,6 +1,7 @@
 #include "station/desk/choices.hpp"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
@@ -82,6 +83,19 @@ std::vector<ProtocolEntry> list_protocols(const std::string& folder) {
     }
     list.push_back(std::move(entry));
   }
+  return list;
+}
+
+std::string folder_for_studies(const std::string& protocols, const std::string& database) {
+  if (::access(protocols.c_str(), W_OK) == 0) return protocols;
+  return (fs::absolute(database).parent_path() / "protocols").string();
+}
+
+std::vector<ProtocolEntry> list_studies(const std::string& protocols, const std::string& database) {
+  auto list = list_protocols(protocols);
+  const auto own = folder_for_studies(protocols, database);
+  if (own != protocols && fs::is_directory(own))
+    for (auto& entry : list_protocols(own)) list.push_back(std::move(entry));
   return list;
 }
 

@@ -202,7 +202,7 @@ Check check(const std::string& protocol_path, const std::string& rig_path, const
       check.problems.insert(check.problems.end(), bad.problems().begin(), bad.problems().end());
     }
   };
-  gather([&] { protocol = protocol::load(protocol_path); });
+  gather([&] { protocol = options.load_protocol(protocol_path); });
   gather([&] { rig = options.load_rig(rig_path); });
   if (protocol && options.drawable) {
     const auto texts = protocol::undrawable(*protocol, options.drawable);

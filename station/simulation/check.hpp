@@ -76,6 +76,8 @@ struct CheckOptions {
   /// says whether a character can be drawn on this machine (see protocol::undrawable); empty: not checked
   std::function<bool(char32_t character)> drawable = {};
   Steps steps = {};
+  /// reads the protocol file; a caller that has its text applies it here
+  std::function<protocol::Protocol(const std::string& path)> load_protocol = protocol::load;
 };
 
 /// Reads and checks both files as `run` would. Throws std::system_error if one cannot be read, and

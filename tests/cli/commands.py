@@ -27,7 +27,7 @@ with open(os.path.join(HERE, "json_shapes.json"), encoding="utf-8") as file:
 # example may have: the doctor finds fault with most machines.
 COMMANDS = {
     "amplifier-off": {}, "annotate": {"needs": "session"}, "backup": {"needs": "session"},
-    "calibrate": {}, "check": {}, "doctor": {"status": (0, 1)}, "export": {"needs": "session"}, "field": {},
+    "calibrate": {}, "check": {}, "design": {"needs": "screen"}, "doctor": {"status": (0, 1)}, "export": {"needs": "session"}, "field": {},
     "collector-schema": {}, "figures": {}, "join": {"needs": "session"}, "map": {}, "merge": {"needs": "session"}, "new": {},
     "operator-code": {"needs": "code"}, "plan": {}, "power": {}, "preview": {}, "protocols": {},
     "push": {"needs": "server"}, "receive": {"needs": "server"}, "report": {"needs": "session"}, "resume": {"needs": "session"}, "run": {}, "self-test": {"status": (0, 1)},

@@ -254,19 +254,21 @@ TEST_CASE("a value cannot smuggle in a second key, and a broken text is kept as 
 
 TEST_CASE("texts and names are written so that TOML reads them back", "[document]") {
   for (const std::string text : {"plain", "with \"quotes\" and \\", "a\nb\tc", "\x01\x7F", "日本 ü", ""}) {
-    CHECK(text::parse_toml("k = " + design::quoted(text), "").entries[0].value.string == text);
+    CHECK(text::parse_toml("k = " + design::toml_string(text), "").entries[0].value.string == text);
     CHECK(text::parse_toml(design::key_of(text) + " = 1", "").entries[0].key == text);
   }
 }
 
-TEST_CASE("the innermost key at a line is found", "[document]") {
+TEST_CASE("the innermost key at a place is found", "[document]") {
   const Document document(
       "# c\n[t]\nk = 1\n\n[[b]]\nname = 'x'\nl = [\n  1,\n  { a = 2 },\n]\n[b.s]\nv = 1\n", "f.toml");
-  CHECK(document.at_line(1) == Path{});
-  CHECK(document.at_line(2) == Path{"t"});
-  CHECK(document.at_line(3) == Path{"t", "k"});
-  CHECK(document.at_line(6) == Path{"b", "0", "name"});
-  CHECK(document.at_line(7) == Path{"b", "0", "l"});
-  CHECK(document.at_line(9) == Path{"b", "0", "l", "1", "a"});
-  CHECK(document.at_line(12) == Path{"b", "0", "s", "v"});
+  CHECK(document.at(1) == Path{});
+  CHECK(document.at(2) == Path{"t"});
+  CHECK(document.at(3) == Path{"t", "k"});
+  CHECK(document.at(6) == Path{"b", "0", "name"});
+  CHECK(document.at(7) == Path{"b", "0", "l"});
+  CHECK(document.at(9) == Path{"b", "0", "l", "1"});
+  CHECK(document.at(9, 5) == Path{"b", "0", "l", "1", "a"});
+  CHECK(Document("k = { \"ü\" = 1, b = 2 }", "").at(1, 17) == Path{"k", "b"});
+  CHECK(document.at(12) == Path{"b", "0", "s", "v"});
 }

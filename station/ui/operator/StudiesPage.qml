@@ -11,6 +11,8 @@ Rectangle {
     readonly property bool tall: height > width
     readonly property color verdictColor: studies.verdict === "bad" ? look.wrong : studies.verdict === "good" ? look.right : look.ink
     signal runWanted(index: int)
+    signal newWanted()
+    signal changeWanted(path: string)
 
     color: look.paper
     Component.onCompleted: studies.open()
@@ -147,6 +149,22 @@ Rectangle {
                 enabled: root.studies.selected >= 0
                 text: texts.text("operator.check_again")
                 onActivated: root.studies.open()
+            }
+            ActionButton {
+                objectName: "changeStudy"
+                theme: look
+                primary: false
+                enabled: root.studies.selected >= 0
+                text: texts.text("design.change")
+                onActivated: root.changeWanted(root.studies.path(root.studies.selected))
+            }
+            ActionButton {
+                objectName: "newStudy"
+                theme: look
+                primary: false
+                glyph: "plus"
+                text: texts.text("design.new_study")
+                onActivated: root.newWanted()
             }
         }
     }

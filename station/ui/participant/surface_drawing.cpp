@@ -80,6 +80,14 @@ SurfaceDrawing::Layout SurfaceDrawing::layout() const {
   return at;
 }
 
+double SurfaceDrawing::xOf(double mm) const { return length_mm_ > 0 ? layout().x(mm) : 0; }
+
+double SurfaceDrawing::mmAt(double x) const {
+  if (length_mm_ <= 0) return 0;
+  const Layout at = layout();
+  return std::clamp((at.wide_left ? x - at.left : at.right - x) / at.px_per_mm, 0.0, length_mm_);
+}
+
 void SurfaceDrawing::paint(QPainter* painter) {
   if (length_mm_ <= 0 || wide_half_width_mm_ <= 0 || width() <= 0 || height() <= 0) return;
   painter->setRenderHint(QPainter::Antialiasing);

@@ -1,8 +1,12 @@
 #include "station/ui/platform/screens.hpp"
 
 #include <QQmlApplicationEngine>
+#include <filesystem>
 #include <stdexcept>
 
+#include "station/setup/places.hpp"
+#include "station/text/toml.hpp"
+#include "station/ui/operator/design_controller.hpp"
 #include "station/ui/operator/latency_controller.hpp"
 #include "station/ui/operator/operator_controller.hpp"
 #include "station/ui/operator/preview_controller.hpp"
@@ -92,6 +96,22 @@ void show_preview(const desk::PreviewRequest& request) {
   const Application application;
   PreviewController controller(request);
   show_until_closed(application, "PreviewWindow.qml", QVariant::fromValue(&controller));
+}
+
+void show_design(const cli::DesignRequest& request) {
+  const std::filesystem::path file = request.file;
+  const bool exists = !request.file.empty() && std::filesystem::exists(file);
+  if (exists) text::read_text_file(request.file);  // refuses what is no file before a window opens
+  const Application application;
+  DesignController controller({file.parent_path().string(), request.rig, setup::shipped("protocols")});
+  if (exists) {
+    if (!controller.open(QString::fromStdString(request.file)))
+      throw std::runtime_error(controller.trouble().toStdString());
+  } else {
+    controller.startNew();
+    controller.suggest(QString::fromStdString(file.stem().string()));
+  }
+  show_until_closed(application, "DesignWindow.qml", QVariant::fromValue(&controller));
 }
 
 std::optional<calibration::PanelLatency> measure_latency(const maintenance::LatencyRequest& request) {

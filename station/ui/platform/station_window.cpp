@@ -14,6 +14,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "station/setup/places.hpp"
 #include "station/ui/platform/load_page.hpp"
 #include "station/ui/platform/screen.hpp"
 #include "station/ui/shared/operator_screen.hpp"
@@ -71,6 +72,9 @@ StationWindow::StationWindow(const Place& place, const Operator& allowed, const 
     studies_ = std::make_unique<StudiesController>(request);
     sessions_ = std::make_unique<SessionsController>(request, allowed.disks);
     rig_ = std::make_unique<RigController>(request);
+    design_ = std::make_unique<DesignController>(
+        DesignPlace{desk::folder_for_studies(request.protocols, request.database), request.rig,
+                    setup::shipped("protocols")});
     connect(operating_, &OperatorController::chosen, this, &StationWindow::ask);
   }
   window_ = &load_page(engine_, "Main.qml",
@@ -82,6 +86,7 @@ StationWindow::StationWindow(const Place& place, const Operator& allowed, const 
                         {"studies", QVariant::fromValue(studies_.get())},
                         {"sessions", QVariant::fromValue(sessions_.get())},
                         {"rig", QVariant::fromValue(rig_.get())},
+                        {"design", QVariant::fromValue(design_.get())},
                         {"operatorLock", QVariant::fromValue(&lock_)},
                         {"locked", allowed.locked},
                         {"pixelsPerMm", place.pixels_per_mm},

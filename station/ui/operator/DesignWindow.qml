@@ -1,0 +1,21 @@
+import QtQuick
+import QtQuick.Window
+import Turnpoint
+
+Window {
+    id: root
+    required property DesignController controller
+    required property real pixelsPerMm
+
+    width: 1280
+    height: 800
+    visible: true
+    title: "Turnpoint, design"
+
+    DesignPage {
+        anchors.fill: parent
+        design: root.controller
+        pixelsPerMm: root.pixelsPerMm
+        onClosed: root.close()
+    }
+}
