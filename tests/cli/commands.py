@@ -741,7 +741,7 @@ class Screen(Folder):
 
     @unittest.skipIf(os.path.exists("/dev/dri") or os.path.exists("/dev/fb0"), "this machine has a screen")
     def test_without_a_screen_each_command_advises_what_it_accepts(self):
-        for words, advice in ((["station", "--db", "lab.sqlite"], "turnpoint run"), (["preview", "demo"], "--out"),
+        for words, advice in ((["station", "--db", "lab.sqlite"], "turnpoint run"), (["design", "x.toml"], "turnpoint new"), (["preview", "demo"], "--out"),
                               (["run", "demo", "--db", "lab.sqlite", "--participant", "P03"], "--buttons-only"),
                               (["calibrate", "--rig", "simulated", "--panel"], "on its screen only")):
             self.refused_in_one_sentence(words, "no screen: no DISPLAY", advice, QT_QPA_PLATFORM=None)

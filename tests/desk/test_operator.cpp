@@ -286,6 +286,25 @@ TEST_CASE("the report on the screen has the finger's forces and friction, if for
   CHECK(pages.friction);
 }
 
+TEST_CASE("new studies are saved with the protocols or, if that is not possible, beside the database",
+          "[desk]") {
+  const Folder folder;
+  const auto database = (folder.path / "data/lab.sqlite").string();
+  const auto own = (folder.path / "data/protocols").string(), shipped = (folder.path / "shipped").string();
+  CHECK(desk::folder_for_studies(folder.path.string(), database) == folder.path.string());
+  CHECK(desk::folder_for_studies((folder.path / "none").string(), database) == own);
+  std::filesystem::create_directories(own);
+  std::filesystem::create_directories(shipped);
+  std::filesystem::copy_file(TURNPOINT_SOURCE_DIR "/protocols/demo.toml", own + "/mine.toml");
+  CHECK(desk::list_studies(shipped, database).empty());
+  if (::geteuid() == 0) return;  // root may write into every folder
+  ::chmod(shipped.c_str(), 0555);
+  const auto list = desk::list_studies(shipped, database);
+  ::chmod(shipped.c_str(), 0755);
+  REQUIRE(list.size() == 1);
+  CHECK(list[0].path == own + "/mine.toml");
+}
+
 TEST_CASE("the list of protocol files in a folder includes those that cannot be used", "[operator]") {
   const Folder folder;
   fs::copy_file(kSource + "/protocols/demo.toml", folder.path / "a.toml");
