@@ -86,8 +86,11 @@ TEST_CASE("a full disk on the server stops a push with a clear message, and the 
 
   sample::session(db, 400, sample::start("P02"));
   sample::session(db, 2, sample::start("P03"));
-  disk.fill(256U << 10U);
-  for (int i = 0; i < 2; ++i) {
+  // With less than that, a push cannot even begin; with more, the second session does not fit.
+  for (const auto left_KiB : {256U, 2048U}) {
+    INFO(left_KiB);
+    disk.free();
+    disk.fill(std::uintmax_t{left_KiB} << 10U);
     const auto message = failure_of(options);
     CHECK(sample::contains(message, "No space left on device"));
     CHECK(sample::contains(message, "free some on the server, and push again"));
