@@ -10,11 +10,11 @@
 namespace turnpoint::physics {
 namespace {
 
-constexpr double profile_margin = 8, peak_margin = 4;
+constexpr double profile_margin = 8, peak_margin = 4, edge_margin = 5;
 // Two solutions may agree at one place by chance. So the bounds of level and edge come from the largest
 // difference anywhere near the last maximum: the difference is divided by that maximum and multiplied by
 // these factors, for the edge also by the cut-off half-width.
-constexpr double level_share = 2, position_share = 1;
+constexpr double level_share = 2, position_share = 1.25;
 constexpr double near_rad = 3;  // phase on either side of the last maximum that counts as near
 // largest differences that come from rounding and from effects that both solutions neglect
 constexpr double floor = 1e-8;
@@ -85,7 +85,7 @@ std::optional<ModesBound> modes_bound(const Surface& surface, double f, const Ed
   const double cut = cut_off_half_width_m(surface, f);
   bound.position_m = cut * (position_share * near_shape.difference + floor);
   if (at.has_value() != other_at.has_value()) bound.position_m += surface.length_m;
-  if (at && other_at) bound.position_m += peak_margin * std::abs(*at - *other_at);
+  if (at && other_at) bound.position_m += edge_margin * std::abs(*at - *other_at);
   if (edge.kind == Edge::Kind::turning) bound.position_m = 0;
   return bound;
 }

@@ -26,9 +26,10 @@ constexpr double unknown = 2, unknown_dB = 120;
 // sides. The field of a clamped plate's piston jumps at the corners of the drive edge.
 constexpr double membrane_accuracy = 2e-3, plate_accuracy = 1e-3, tense_plate_accuracy = 5e-3,
                  plate_piston_accuracy = 0.15;
-constexpr double modes_resonance = 5e-5;  // how much a higher mode's resonance adds to this error
+// how much a higher mode's resonance adds to this error
+constexpr double membrane_resonance = 5e-5, plate_resonance = 6e-4;
 // shift of an edge relative to the cut-off half-width, divided by this error
-constexpr double edge_share = 0.8;
+constexpr double edge_share = 1.2;
 
 // The profile of one model: logarithms of |v| at the probe points, and the positions of its maximum and edge.
 struct Probe {
@@ -177,7 +178,8 @@ double modes_accuracy(const Surface& surface) {
 RungEstimate modes_estimate(const Surface& surface, const PlanRequest& request, const Reference& reference) {
   RungEstimate e;
   e.cost_s = cost_s(surface, reference.f, Model::modes, request.points);
-  const double accuracy = modes_accuracy(surface) + modes_resonance * (reference.bound.resonance - 1);
+  const double resonance = Dispersion(surface).clamped_bending() ? plate_resonance : membrane_resonance;
+  const double accuracy = modes_accuracy(surface) + resonance * (reference.bound.resonance - 1);
   const bool drive = request.normalise != Normalise::peak;
   e.amplitude_bound = accuracy * (drive ? reference.conditioning : 1);
   e.level_bound_dB = 20 * std::log10(1 + accuracy * reference.conditioning);

@@ -100,7 +100,8 @@ Errors difference(const CollocatedField& one, const CollocatedField& other, cons
   if (const auto edge = line.level_m(0.5))
     e.boundary_m = std::abs(edge_of(one, *edge, 0.5 * peak, 1e-4 / k) -
                             edge_of(other, *edge, 0.5 * other_peak, 1e-4 / k));
-  e.level_dB = 20 / std::log(10.0) * std::abs(std::log(peak / other_peak));
+  const double gain = peak / std::abs(one.value(0)), other_gain = other_peak / std::abs(other.value(0));
+  e.level_dB = 20 / std::log(10.0) * std::abs(std::log(gain / other_gain));
   return e;
 }
 
