@@ -50,14 +50,31 @@ Rectangle {
         last = next
         section = design.section
         tables.model = design.groups
-        Qt.callLater(scrollTo, y)
+        settling.y = y
+        settling.place = null
+        settling.restart()
+    }
+    /// New fields have their places a moment later. The last wish counts.
+    Timer {
+        id: settling
+        property real y
+        /// {group, field} to point at, instead of going to y
+        property var place: null
+        interval: 1
+        onTriggered: {
+            if (place) root.point(place.group, place.field)
+            else root.scrollTo(y)
+        }
     }
     function scrollTo(y: real) { scroll.contentY = Math.max(0, Math.min(y, sheet.height - scroll.height)) }
     Component.onCompleted: follow()
     Connections {
         target: root.design
         function onChanged() { root.follow() }
-        function onReached(group: int, field: int) { Qt.callLater(root.point, group, field) }
+        function onReached(group: int, field: int) {
+            settling.place = { group: group, field: field }
+            settling.restart()
+        }
     }
     Flickable {
         id: scroll

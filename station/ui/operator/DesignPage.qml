@@ -16,6 +16,8 @@ Rectangle {
     signal closed()
 
     color: look.paper
+    LayoutMirroring.enabled: texts.mirrored
+    LayoutMirroring.childrenInherit: true
 
     Theme {
         id: look

@@ -12,6 +12,11 @@ Window {
     visible: true
     title: "Turnpoint, design"
 
+    Binding {
+        target: Catalogue
+        property: "shown"
+        value: OperatorScreen.language
+    }
     DesignPage {
         anchors.fill: parent
         design: root.controller

@@ -10,7 +10,8 @@ Column {
     signal erased()
     property bool full: false
     property bool capitals: false
-    readonly property var rows: ["1234567890", "qwertyuiop", "asdfghjkl-", "zxcvbnm,. "].concat(full ? ["?!'():/+*=_"] : [])
+    readonly property var rows: full ? ["1234567890", "qwertyuiop", "asdfghjkl-", "zxcvbnm,. ", "?!'():/+*=_"]
+        : ["1234567890", "qwertyuiop", "asdfghjkl-", "zxcvbnm,. "]
     spacing: 0.4 * theme.unit
 
     Repeater {
