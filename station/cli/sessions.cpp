@@ -27,6 +27,8 @@ Json to_json(const store::SessionRecord& session) {
           {"protocol_version", start.protocol_version},
           {"session_index", session.session_index},
           {"sequence_index", session.sequence_index},
+          {"planned_session", start.planned_session ? Json(*start.planned_session) : Json(nullptr)},
+          {"group", start.group.empty() ? Json(nullptr) : Json(start.group)},
           {"run_mode", records::name(start.run_mode)},
           {"status", records::name(session.status)},
           {"status_reason", session.status_reason},

@@ -137,7 +137,7 @@ CheckWords words_of(const simulation::Check& check) {
   for (const auto& block : check.blocks)
     words.facts.emplace_back(
         block.practice ? "Practice" : "Block",
-        block.name +
+        (block.visit.empty() ? "" : block.visit + ": ") + block.name +
             (block.instruction.empty() || block.instruction == block.name ? ""
                                                                           : " (" + block.instruction + ")") +
             ", " + range(block.trials, 1) + " trials");

@@ -163,6 +163,8 @@ void add_health(const store::StoredSession& stored, report::SessionData& data) {
                   text::number(stored.session.sequence_index, 6) +
                       (stored.session.leased_place ? ", leased from the collector: unique among its stations"
                                                    : ", given by this station alone")},
+                 {"Planned session", start.planned_session ? std::to_string(*start.planned_session) : "none"},
+                 {"Group", start.group.empty() ? "none" : start.group},
                  {"Checksum of the data", stored.session.checksum.empty()
                                               ? "none, because an earlier release recorded the session"
                                               : stored.session.checksum},

@@ -106,6 +106,24 @@ std::map<std::string, std::vector<Found>> by_person(std::vector<Found> all) {
   return people;
 }
 
+/// Returns the protocol with each group analysed separately.
+protocol::Protocol by_group(protocol::Protocol protocol) {
+  auto& by = protocol.analysis.by;
+  std::vector<std::string> groups;
+  for (const auto& factor : protocol.factors)
+    if (factor.draw == protocol::FactorDraw::per_participant &&
+        std::find(by.begin(), by.end(), factor.name) == by.end())
+      groups.push_back(factor.name);
+  if (groups.empty()) return protocol;
+  // without `by`, instructions are the conditions
+  const auto is_instruction = [](const protocol::Factor& factor) { return factor.name == "instruction"; };
+  if (by.empty() && std::any_of(protocol.factors.begin(), protocol.factors.end(), is_instruction) &&
+      std::find(groups.begin(), groups.end(), "instruction") == groups.end())
+    by.push_back("instruction");
+  by.insert(by.begin(), groups.begin(), groups.end());
+  return protocol;
+}
+
 /// Returns the trials of all sessions of one participant.
 report::SessionData data_of(const std::string& person, const std::vector<Found>& sessions,
                             const protocol::Protocol& protocol) {
@@ -161,7 +179,8 @@ report::Study study_data(const StudyChoice& choice, const StudySink& sink, const
   require_one_study(choice, all);
   auto study = head_of(choice, all, copies);
   const auto first = store::read_session(all.front().database, all.front().session.session_id);
-  const auto protocol = protocol::parse(first.session.start.protocol_text, first.session.start.protocol_path);
+  const auto protocol =
+      by_group(protocol::parse(first.session.start.protocol_text, first.session.start.protocol_path));
   const auto rules = protocol.exclusion.value_or(protocol::Exclusion{});
   study.rules = report::rules_in_words(rules);
   const auto people = by_person(std::move(all));
@@ -180,6 +199,7 @@ report::Study study_data(const StudyChoice& choice, const StudySink& sink, const
     });
     auto result = report::study_person(data, rules, incomplete);
     for (const auto& found : sessions) result.sessions.push_back(found.session.session_id);
+    result.group = sessions.front().session.start.group;
     sink(result, data);
     study.persons.push_back(std::move(result));
     data.trials.clear();

@@ -2,7 +2,9 @@
 #include <cmath>
 
 #include "station/protocol/advice_list.hpp"
+#include "station/protocol/sources.hpp"
 #include "station/protocol/survey.hpp"
+#include "station/protocol/visits.hpp"
 #include "station/text/number.hpp"
 
 namespace turnpoint::protocol {
@@ -104,7 +106,8 @@ void check_unused(AdviceList& advice) {
   const auto sources = sources_of(protocol);
   for (const auto& factor : protocol.factors) {
     const auto sets = [&](const Source& source) { return source.sets.count(factor.name) > 0; };
-    if (!used.count(factor.name) && std::none_of(sources.begin(), sources.end(), sets))
+    // what differs between groups need not be on the surface
+    if (!is_group(factor) && !used.count(factor.name) && std::none_of(sources.begin(), sources.end(), sets))
       advice.add("factor." + factor.name + ".name", "the factor \"" + factor.name + "\" is not used", "");
   }
   auto scenes = scenes_used(protocol);

@@ -17,9 +17,10 @@ bool holds(const AnswerCondition& rule, const Answers& answers);
 bool holds(const std::vector<AnswerCondition>& rules, const Answers& answers);
 
 /// Returns the interludes that come before the block with index `next` of these blocks (from block_order()),
-/// in the order in which they come. With next = blocks.size(), those that come after the last block.
+/// in the order in which they come. With next = blocks.size(), those that come after the last block. Only
+/// those of this visit.
 std::vector<const Interlude*> interludes_before(const Protocol& protocol, const std::vector<Block>& blocks,
-                                                std::size_t next);
+                                                std::size_t next, const Visit& visit);
 
 /// The answer to an item as a value that rules can compare: a number if the item's answer is one.
 FactorValue answer_value(const Item& item, const std::string& answer);

@@ -8,62 +8,23 @@
 #include <vector>
 
 #include "station/procedure/spec.hpp"
+#include "station/protocol/linear.hpp"
+#include "station/protocol/session_plan.hpp"
 #include "station/terms/trial.hpp"
 #include "station/text/problem.hpp"
 
 namespace turnpoint::protocol {
 
-using text::Place;
-
 /// A text in each of the protocol's languages.
 using Localised = std::map<std::string, std::string>;
-
-/// Values of the factors in one trial: a number for a numeric factor, a name for a text factor.
-using FactorValue = std::variant<double, std::string>;
-using Factors = std::map<std::string, FactorValue>;
-
-/// A product of different numeric factors and a coefficient, such as `2 * ref * weber`.
-struct FactorProduct {
-  std::vector<std::string> factors;  ///< sorted; two or more
-  double coefficient = 0;
-  bool operator==(const FactorProduct&) const = default;
-};
-
-/// A sum of numeric factors and their products, such as `150 - 0.5 * spread_mm`, `ref * (1 + weber)` or
-/// `-30`. It is linear in each of its factors. If `absolute` is set, its value is the magnitude of the sum,
-/// as in `abs(change)`.
-struct Linear {
-  double constant = 0;
-  std::vector<std::pair<std::string, double>> terms;  ///< each factor's name with its coefficient
-  std::vector<FactorProduct> products;
-  bool absolute = false;
-  std::string source;
-  Place place;
-  bool is_constant() const { return terms.empty() && products.empty(); }
-};
-
-/// The factors on which the expression depends, each once.
-std::vector<std::string> factors_in(const Linear& expression);
-
-/// Evaluates the expression for these factors. Throws std::invalid_argument naming a factor that has no
-/// number.
-double evaluate(const Linear& expression, const Factors& factors);
-
-enum class Relation { less, less_equal, equal, greater_equal, greater };
-
-/// Two linear expressions and a relation, such as `offset_mm < 0`.
-struct Comparison {
-  Linear left, right;
-  Relation relation = Relation::less;
-};
-bool holds(const Comparison& comparison, const Factors& factors);
 
 /// How the values of a factor that nothing else sets are drawn.
 enum class FactorDraw {
   levels,              ///< one of the levels in each trial; a factor with a range is not drawn
   without_repetition,  ///< the levels in shuffled order; each once before any comes again
   uniform,             ///< uniform over the range
-  normal               ///< normal; values outside of the range are drawn again
+  normal,              ///< normal; values outside of the range are drawn again
+  per_participant      ///< each participant has one of the levels in all sessions: a group
 };
 
 struct Factor {
@@ -275,7 +236,8 @@ struct Block {
   Interleave interleave = Interleave::none;
   std::optional<Catch> catch_trials;
   std::optional<Break> break_after;
-  Factors fixed;  ///< factors that the sequence sets for the whole block, such as instruction = "speed"
+  Audience audience;  ///< the sessions and groups that have this block
+  Factors fixed;      ///< factors that the sequence sets for the whole block, such as instruction = "speed"
   /// index of the part of the plan (a block or a sequence) from which block_order() made the block
   std::size_t part = 0;
   Place place;
@@ -286,6 +248,7 @@ struct Sequence {
   std::string over;  ///< the factor whose level differs between the blocks
   int cycles = 1;
   bool mirror = false;
+  bool one_per_session = false;  ///< each session has one level; the square is that of the sessions
   Block block;
 };
 
@@ -351,6 +314,7 @@ struct Interlude {
   std::string name;
   /// number of parts of the plan (blocks and sequences) that are above the interlude in the file
   std::size_t above = 0;
+  Audience audience;       ///< the sessions and groups that have it
   std::string after_each;  ///< name of a block or sequence: the interlude comes after each of its blocks
   /// items of a questionnaire; a consent has a single item, "consent", with the choices agree and refuse
   std::vector<Item> items;
@@ -438,6 +402,7 @@ struct Protocol {
   Task task;
   Timing timing;
   std::vector<procedure::Spec> procedures;
+  std::optional<SessionPlan> sessions;  ///< empty: the protocol does not say how many sessions there are
   std::vector<std::variant<Block, Sequence>> plan;  ///< blocks and sequences in the order of the file
   std::map<std::string, Instruction> instructions;
   std::vector<Interlude> interludes;  ///< in the order of the file
@@ -456,8 +421,8 @@ Protocol load(const std::string& path);
 /// Like load(), for text that is already in memory (a resumed session). `path` is only used in messages.
 Protocol parse(const std::string& source, const std::string& path);
 
-/// Returns the blocks in the order for the participant with this sequence index (from 0). Applies the
-/// Williams square, cycles and mirror of each sequence.
-std::vector<Block> block_order(const Protocol& protocol, int sequence_index);
+/// Returns the blocks of a session in their order: those of its number and the participant's group, with the
+/// square, cycles and mirror of each sequence.
+std::vector<Block> block_order(const Protocol& protocol, const Visit& visit);
 
 }  // namespace turnpoint::protocol

@@ -74,8 +74,8 @@ void read_draw(TableReader& reader, Factor& factor, bool has_levels, Reading& re
   if (!draw) return;
   const auto is = [&](const char* word) { return draw->kind == Value::Kind::string && draw->string == word; };
   const auto* normal = draw->kind == Value::Kind::table ? draw->find("normal") : nullptr;
-  if (is("without-repetition") && has_levels) {
-    factor.draw = FactorDraw::without_repetition;
+  if ((is("without-repetition") || is("per-participant")) && has_levels) {
+    factor.draw = is("per-participant") ? FactorDraw::per_participant : FactorDraw::without_repetition;
   } else if (is("uniform") && factor.range && !has_levels) {
     factor.draw = FactorDraw::uniform;
   } else if (normal && normal->value.kind == Value::Kind::table && factor.range && !has_levels) {
@@ -88,7 +88,7 @@ void read_draw(TableReader& reader, Factor& factor, bool has_levels, Reading& re
   } else {
     reader.problem("draw", "\"draw\" of \"" + factor.name + "\" is " + describe(*draw),
                    "with a range: \"uniform\" or { normal = { mean = ..., sd = ... } }; with levels: "
-                   "\"without-repetition\"");
+                   "\"without-repetition\" or \"per-participant\"");
   }
 }
 

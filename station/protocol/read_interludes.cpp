@@ -283,6 +283,7 @@ void read_interlude(const Value& table, InterludeKind kind, const char* list, Re
                      suggestion(*after, parts));
     interlude.after_each = *after;
   }
+  read_audience(reader, interlude.audience, reading);
   const auto same = [&](const Interlude& other) { return other.name == interlude.name; };
   const auto& others = reading.protocol.interludes;
   if (!interlude.name.empty() && (std::find(parts.begin(), parts.end(), interlude.name) != parts.end() ||

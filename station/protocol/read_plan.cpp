@@ -128,6 +128,7 @@ Block read_block(const Value& table, const Reading& reading) {
   TableReader reader(table, titled("block", table), reading.findings);
   Block block;
   block.name = read_name(reader, "name", "choose a name, which is stored with the data");
+  read_audience(reader, block.audience, reading);
   const auto kind = reader.word("kind", {"trials", "training", "friction-table"}, "trials");
   if (kind == "trials")
     read_block_keys(reader, block, reading);
@@ -165,12 +166,14 @@ Sequence read_sequence(const Value& table, const Reading& reading) {
   if (factor) check_instruction_levels(*factor, reader, reading);
   sequence.cycles = reader.integer("cycles", 1, 100, 1);
   sequence.mirror = reader.boolean("mirror", "false");
+  sequence.one_per_session = reader.word("each_session", {"all", "one"}, "all") == "one";
   if (const auto* block =
           reader.table("block", "describe what each block presents: { procedures = [\"levels\"] }")) {
     TableReader inner(*block, reader.path("block"), reading.findings);
     read_block_keys(inner, sequence.block, reading);
     inner.finish();
   }
+  read_audience(reader, sequence.block.audience, reading);
   sequence.block.name = sequence.name;
   reader.finish();
   return sequence;

@@ -58,6 +58,12 @@ struct SessionStart {
   std::string started_local;  ///< ISO 8601 with time zone
   std::string consent_version;
   Conditions conditions = {};
+  std::optional<int> planned_session =
+      {};  ///< which of the protocol's sessions it is, from 1; empty: no plan
+  /// The group of the participant; "" if there are no groups. The store takes it from `groups` when the
+  /// participant's place is known: that of place p is number p modulo their count.
+  std::string group = {};
+  std::vector<std::string> groups = {};  ///< names of all groups; not stored
 };
 
 /// One process run of a session, with readings of the clocks at its start. Each resume opens another segment.

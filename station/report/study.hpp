@@ -17,6 +17,7 @@ namespace turnpoint::report {
 struct StudyPerson {
   std::string person;
   std::vector<std::string> sessions;       ///< ids
+  std::string group;                       ///< "" if the protocol has no groups
   bool incomplete = false;                 ///< a session was not completed
   int presented = 0, answered = 0;         ///< experimental trials
   double timeouts = 0, anticipations = 0;  ///< shares of the presented trials

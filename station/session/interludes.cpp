@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "station/random/draws.hpp"
+#include "station/session/planned_session.hpp"
 #include "station/text/number.hpp"
 
 namespace turnpoint::session {
@@ -38,7 +39,8 @@ Interludes::Interludes(const Setup& setup, const Pages& pages, const trial::Dire
       stage_(stage),
       log_(log),
       player_(std::move(player)),
-      blocks_(protocol::block_order(setup.protocol, log.session().sequence_index)) {}
+      visit_(visit_of(log.session())),
+      blocks_(protocol::block_order(setup.protocol, visit_)) {}
 
 void Interludes::restore(const Earlier& earlier) {
   for (const auto* event : records::standing_answers(earlier.events))
@@ -80,7 +82,7 @@ protocol::Answers Interludes::answers() const {
 Flow Interludes::before(int block_index) {
   occasion_ = block_index;
   for (const auto* interlude :
-       protocol::interludes_before(setup_.protocol, blocks_, static_cast<std::size_t>(block_index))) {
+       protocol::interludes_before(setup_.protocol, blocks_, static_cast<std::size_t>(block_index), visit_)) {
     const auto place = records::place_name(interlude->name, occasion_);
     if (done_.count(place) > 0) continue;
     if (run(*interlude) == Flow::stop) return Flow::stop;

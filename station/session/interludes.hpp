@@ -77,6 +77,7 @@ class Interludes {
   Stage& stage_;
   store::SessionLog& log_;
   Player player_;
+  const protocol::Visit visit_;
   const std::vector<protocol::Block> blocks_;
   std::vector<records::AnswerRow> standing_;
   std::map<int, Score> scores_;  ///< scores of the newest attempt at each block, by the block's index

@@ -51,6 +51,10 @@ struct Setup {
   bool self_test = false;
   /// the operator's reason to continue if a check of the self-test fails; with "", the operator is asked
   std::string despite = {};
+  /// the planned session to run; empty: the participant's next one
+  std::optional<int> planned_session = {};
+  /// the operator's reason to begin before the least number of days has passed; "" if there is none
+  std::string early = {};
   /// where the kernel lists its temperature sensors
   std::string thermometers = "/sys/class/hwmon";
 };

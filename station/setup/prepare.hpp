@@ -27,6 +27,8 @@ struct RunRequest {
   std::string calibration;
   bool self_test = false;  ///< run the self-test before the first block
   std::string despite;     ///< reason to continue although a check of the self-test failed; "" asks for it
+  std::optional<int> planned_session;  ///< which planned session; empty: the participant's next one
+  std::string early;  ///< reason to begin before the least number of days has passed; "" if there is none
   records::Conditions conditions;
   std::string cleaned;  ///< whether the surface was cleaned just before: yes or no; "" if not stated
 };

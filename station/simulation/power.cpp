@@ -9,6 +9,7 @@
 #include "station/analysis/proportion.hpp"
 #include "station/analysis/quantile.hpp"
 #include "station/protocol/conditions.hpp"
+#include "station/protocol/visits.hpp"
 #include "station/report/stored_trials.hpp"
 #include "station/simulation/power_session.hpp"
 
@@ -36,7 +37,8 @@ class Truths {
     const observer::Observer observer(options.observer);
     for (const auto& spec : protocol.procedures)
       if (const auto level = settled_level(protocol, spec, observer))
-        add("procedure " + spec.name, "threshold", *level);
+        for (int number = 1; number <= protocol::session_count(protocol); ++number)
+          add("procedure " + spec.name + session_suffix(protocol, number), "threshold", *level);
     for (const auto& spec : protocol.procedures)
       if (spec.kind == procedure::Kind::adjustment)
         for (const auto& condition : with_none(protocol::conditions(protocol)))

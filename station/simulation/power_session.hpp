@@ -51,6 +51,8 @@ void complete(const protocol::Protocol& protocol, const PowerOptions& options,
 
 /// The source of a finding: `what`, or `what` and the condition if there is one.
 std::string source_of(const std::string& what, const std::string& condition);
+/// What is added to the source of a procedure's estimate: ", session 2" if the protocol plans several.
+std::string session_suffix(const protocol::Protocol& protocol, int number);
 /// Returns the parameter name of a d': by this model, at this level (with its unit), or over all levels.
 std::string d_prime_name(analysis::Deciding model, const std::optional<double>& level,
                          const std::string& unit);

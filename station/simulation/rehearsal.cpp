@@ -133,10 +133,10 @@ Doing done_by(const Rehearser& rehearser, const TrialSpec& spec, const protocol:
 
 }  // namespace
 
-Rehearsal rehearse(const protocol::Protocol& protocol, int sequence_index, std::uint64_t seed,
+Rehearsal rehearse(const protocol::Protocol& protocol, const protocol::Visit& visit, std::uint64_t seed,
                    const Rehearser& rehearser) {
   Rehearsal rehearsal;
-  trial::Director director(protocol, sequence_index, seed);
+  trial::Director director(protocol, visit, seed);
   std::int64_t now_ns = 0;
   while (const auto* block = director.block()) {
     auto& record = rehearsal.blocks.emplace_back();

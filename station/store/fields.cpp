@@ -164,6 +164,12 @@ const Table<SessionRecord>& session_table() {
                                               "Moisture of the fingertip, as a moisture meter read it before "
                                               "the session, in the meter's unit"}),
        since(5, field<&R::leased_place>({"leased_place"})),
+       since(5, start<&S::planned_session>(
+                    {"planned_session", "planned_session",
+                     "Which of the sessions that the protocol plans it is, from 1; n/a if it plans none"})),
+       since(5, start<&S::group>(
+                    {"participant_group", "participant_group",
+                     "Group of the participant: a level of the factor that is drawn per participant"})),
        field<&R::status>({"status", "status", "State of the session", "",
                           "running | completed | interrupted | stopped | abandoned"}),
        field<&R::status_reason>({"status_reason", "status_reason", "Why the session has this state"})}};

@@ -97,8 +97,8 @@ int Director::State::block_expected(const Block& b) const {
   return static_cast<int>(std::lround(trials * (1 + (b.catch_trials ? b.catch_trials->rate : 0))));
 }
 
-Director::Director(const protocol::Protocol& protocol, int sequence_index, std::uint64_t seed)
-    : state_(std::make_unique<State>(protocol, sequence_index, seed)) {}
+Director::Director(const protocol::Protocol& protocol, const protocol::Visit& visit, std::uint64_t seed)
+    : state_(std::make_unique<State>(protocol, visit, seed)) {}
 Director::~Director() = default;
 Director::Director(Director&&) noexcept = default;
 

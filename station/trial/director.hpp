@@ -58,11 +58,11 @@ std::string in_words(const ProcedureEstimate& estimate);
 
 /// Decides what comes next: blocks in the participant's order, practice until it is passed, procedures and
 /// their interleaving, catch trials, orders of intervals, roving, and times. Pure: the same protocol,
-/// sequence index, seed and results give the same trials, no matter how many void trials come in between. A
+/// visit, seed and results give the same trials, no matter how many void trials come in between. A
 /// session is resumed by replaying its stored results through a director.
 class Director {
  public:
-  Director(const protocol::Protocol& protocol, int sequence_index, std::uint64_t seed);
+  Director(const protocol::Protocol& protocol, const protocol::Visit& visit, std::uint64_t seed);
   ~Director();
   Director(Director&&) noexcept;
 

@@ -33,8 +33,8 @@ struct Director::State {
   std::optional<TrialSpec> current;
   int current_procedure = no_procedure;
 
-  State(const protocol::Protocol& p, int sequence_index, std::uint64_t s)
-      : protocol(p), seed(s), blocks(protocol::block_order(p, sequence_index)) {
+  State(const protocol::Protocol& p, const protocol::Visit& visit, std::uint64_t s)
+      : protocol(p), seed(s), blocks(protocol::block_order(p, visit)) {
     enter_block();
   }
 

@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cstdlib>
 #include <fstream>
+#include <optional>
 #include <random>
 
 #include "station/setup/prepare.hpp"
@@ -25,6 +26,7 @@ struct Case {
   std::string file;
   std::vector<std::pair<std::string, std::string>> edits = {};
   int kills = 2;
+  std::optional<int> planned_session = {};  ///< of a protocol that plans several
 };
 
 int kills_wanted(const Case& wanted) { return kLong != nullptr ? std::atoi(kLong) : wanted.kills; }
@@ -70,6 +72,11 @@ std::vector<Case> other_tasks() {
            {{"stop = { trials = 40 }", "stop = { trials = 6 }"},
             {"range = [180.0, 190.0]\ndraw = \"uniform\"",
              "levels = [180.0, 183.0, 185.0, 188.0, 190.0]\ndraw = \"without-repetition\""}}},
+          {"friction-training.toml", {{"stop = { trials = 60 }", "stop = { trials = 8 }"}}, 2, 3},
+          {"speed-accuracy.toml",
+           {{"[protocol]", "[sessions]\ncount = 2\n\n[protocol]"}, {"repeats = 14", "repeats = 2"}},
+           2,
+           2},
           {"boundary-adjustment.toml", {{"repeats = 9", "repeats = 4"}}}};
 }
 
@@ -85,7 +92,7 @@ std::string written(const Case& wanted, const TemporaryFolder& folder) {
   return path;
 }
 
-session::Setup setup_for(const std::string& protocol, const std::string& db) {
+session::Setup setup_for(const std::string& protocol, const Case& wanted, const std::string& db) {
   setup::RunRequest request;
   request.protocol = protocol;
   request.rig = std::string(TURNPOINT_SOURCE_DIR) + "/tests/support/thin_plate.toml";
@@ -94,6 +101,7 @@ session::Setup setup_for(const std::string& protocol, const std::string& db) {
   request.observer = "sim";
   request.seed = 42;
   request.headless = true;
+  request.planned_session = wanted.planned_session;
   return setup::prepare(request);
 }
 
@@ -163,7 +171,7 @@ void check_killed(const Case& wanted) {
   INFO(wanted.file << (wanted.edits.empty() ? "" : ", " + wanted.edits.back().second));
   const auto whole = folder / "whole.sqlite";
   const auto start = std::chrono::steady_clock::now();
-  run_to_end(setup_for(protocol, whole));
+  run_to_end(setup_for(protocol, wanted, whole));
   const std::chrono::duration<double, std::micro> whole_us = std::chrono::steady_clock::now() - start;
   const auto expected = trials_of(whole, store::list_sessions(whole).front().session_id);
   REQUIRE(!expected.empty());
@@ -176,7 +184,7 @@ void check_killed(const Case& wanted) {
   // often.
   while (kills < kills_wanted(wanted) || finished == 0 || (resumed == 0 && finished < 100)) {
     const auto db = folder / ("broken" + std::to_string(finished) + ".sqlite");
-    const auto setup = setup_for(protocol, db);
+    const auto setup = setup_for(protocol, wanted, db);
     while (killed_on_the_way(setup, moment(random))) ++kills;
     ++finished;
     auto raw = sample::raw(db);

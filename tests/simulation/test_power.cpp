@@ -187,6 +187,26 @@ TEST_CASE("the method of limits finds the middle between its symmetric series", 
   CHECK(find(power, "procedure series", "threshold ascending - descending").mean < -3);
 }
 
+TEST_CASE("a study of several days analyses all sessions of a participant together", "[power]") {
+  const auto power = simulation::power(shipped("friction-training"), options("sim:threshold=-15,lapse=0", 4));
+  // 6 practice trials, 60 to measure the threshold on two days, 60 of training on each of three days, and
+  // some that were not answered in time
+  CHECK(power.trials >= 306);
+  CHECK(power.trials < 325);
+  for (const auto* source : {"procedure before, session 1", "procedure after, session 3"}) {
+    const auto& threshold = find(power, source, "threshold");
+    CHECK(threshold.estimates.size() == 4);
+    REQUIRE(threshold.truth);
+    CHECK(threshold.mean == Approx(*threshold.truth).margin(4));
+  }
+  CHECK_THROWS(find(power, "procedure before, session 3", "threshold"));
+  // Two of the four participants belong to each group. Each session has draws of its own.
+  for (const auto* source : {"fit feedback, before", "fit none, before", "fit none, after"})
+    CHECK(find(power, source, "threshold").estimates.size() == 2);
+  CHECK(find(power, "procedure training, session 1", "threshold").estimates !=
+        find(power, "procedure training, session 2", "threshold").estimates);
+}
+
 TEST_CASE("options out of range are refused", "[power]") {
   CHECK_THROWS_AS(simulation::power(shipped("demo"), options("sim", 0)), std::invalid_argument);
 }
