@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <functional>
+#include <random>
 #include <set>
 #include <string>
 #include <vector>
@@ -236,6 +237,42 @@ TEST_CASE("a copy of a table stands after it with the new name, with its comment
   const Document scenes("[scene.x]\nv = 1\n[scene.x.zone]\nw = 2", "f.toml");
   CHECK(scenes.with_copy({"scene", "x"}, "a b") ==
         "[scene.x]\nv = 1\n[scene.x.zone]\nw = 2\n\n[scene.\"a b\"]\nv = 1\n\n[scene.\"a b\".zone]\nw = 2");
+}
+
+TEST_CASE("every text that the parser of TOML accepts is read in the same way, also after random damage",
+          "[document]") {
+  std::mt19937 random(20261124);
+  const std::string signs = "\"'[]{}=.,# \n\t\\a1-_+";
+  int accepted = 0;
+  for (int i = 0; i < 6000; ++i) {
+    auto text = awkward;
+    for (int damage = 0; damage < 1 + i % 3; ++damage) {
+      const auto at = random() % text.size();
+      if (i % 2 == 0)
+        text.insert(at, 1, signs[random() % signs.size()]);
+      else
+        text.erase(at, 1 + random() % 3);
+    }
+    INFO(text);
+    try {
+      text::parse_toml(text, "f.toml");
+    } catch (const text::BadInput&) {
+      continue;
+    }
+    ++accepted;
+    const auto truth = text::parse_toml(text, "f.toml");
+    const Document document(text, "f.toml");
+    std::size_t scalars = 0;
+    Path path;
+    each_value(document.root(), path, [&](const Path& at, const Part& part) {
+      scalars += part.kind == Part::Kind::scalar;
+      const auto* expected = parsed(truth, at);
+      REQUIRE(expected != nullptr);
+      REQUIRE(same(document.value(part), *expected));
+    });
+    REQUIRE(scalars == leaves(truth));
+  }
+  CHECK(accepted > 500);
 }
 
 TEST_CASE("a value cannot smuggle in a second key, and a broken text is kept as it is", "[document]") {
