@@ -50,10 +50,12 @@ Item {
             while (inside && inside !== scroll) inside = inside.parent
             if (inside) scroll.contentY = Math.max(0, Math.min(y - 100, scroll.contentHeight - scroll.height))
         }
-        function tap(name, item = appears(name)) {
-            wait(10)
-            reveal(item)
+        function tap(name) {
+            appears(name)
+            wait(40)
+            reveal(appears(name))
             wait(20)
+            const item = appears(name)
             mouseClick(item, item.width / 2, Math.min(item.height / 2, 20))
             ++taps
         }
@@ -68,10 +70,10 @@ Item {
         }
         function designPage() { return appears("designPage") }
         function tapField(key, table = 0) {
-            wait(10)
-            const item = appears(field(key, table))
-            reveal(item)
+            wait(40)
+            reveal(appears(field(key, table)))
             wait(20)
+            const item = appears(field(key, table))
             mouseClick(item, 0.8 * item.width, 15)
             ++taps
         }
@@ -112,9 +114,11 @@ Item {
             erase(2)
             type("64")
             tap("section-timing")
+            compare(appears("timeline").end, 8)
             tapField("deadline_s")
             erase(3)
             type("4")
+            compare(appears("timeline").end, 9)
             tap("section-blocks")
             tapField("trials")
             erase(1)

@@ -87,6 +87,14 @@ Rectangle {
             id: sheet
             width: scroll.width
             spacing: 1.6 * root.theme.unit
+            DesignTimeline {
+                objectName: "timeline"
+                visible: root.design.sections[root.design.section]?.name === "timing" && parts.length > 0
+                width: sheet.width
+                theme: root.theme
+                texts: root.texts
+                design: root.design
+            }
             Repeater {
                 id: tables
                 Column {

@@ -9,10 +9,12 @@
 
 #include "station/design/goals.hpp"
 #include "station/desk/scene_figures.hpp"
+#include "station/desk/trial_timeline.hpp"
 #include "station/setup/prepare.hpp"
 #include "station/system/read_file.hpp"
 #include "station/system/write_file.hpp"
 #include "station/text/toml.hpp"
+#include "station/ui/operator/design_lists.hpp"
 #include "station/ui/operator/figure_view.hpp"
 
 namespace turnpoint::ui {
@@ -123,8 +125,9 @@ void DesignController::read_again() {
   remarks_.clear();
   words_ = {};
   checking_ = false;
+  timeline_.clear();
   try {
-    protocol::parse(draft_->text(), path_);
+    timeline_ = to_list(desk::trial_timeline(protocol::parse(draft_->text(), path_)));
     checking_ = true;
   } catch (const text::BadInput& bad) {
     for (const auto& problem : bad.problems()) remarks_.push_back({Kind::problem, problem});

@@ -57,6 +57,9 @@ class DesignController : public QObject {
   Q_PROPERTY(QString savedAs READ saved_as NOTIFY changed)
   /// outline of the rig's surface: {lengthMm, wideHalfWidthMm, narrowHalfWidthMm, wideEndLeft}
   Q_PROPERTY(QVariantMap surface READ surface NOTIFY changed)
+  /// parts of a typical trial as {kind: pause | interval | gap | answer, from, to} in seconds; empty while
+  /// the study cannot be read
+  Q_PROPERTY(QVariantList timeline READ timeline NOTIFY changed)
   /// profile of displacement and friction of each scene, by name
   Q_PROPERTY(QVariantMap profiles READ profiles NOTIFY profilesChanged)
 
@@ -82,6 +85,7 @@ class DesignController : public QObject {
   QString trouble() const { return trouble_; }
   QString saved_as() const { return saved_as_; }
   QVariantMap surface() const { return surface_; }
+  QVariantList timeline() const { return timeline_; }
   QVariantMap profiles() const { return profiles_; }
 
   /// Asks what the new study is to measure.
@@ -143,6 +147,7 @@ class DesignController : public QObject {
   desk::CheckWords words_;
   QString stage_, trouble_, saved_as_, suggested_;
   QVariantMap surface_, profiles_;
+  QVariantList timeline_;
   int section_ = 0;
   bool checking_ = false;
   // The last members, so that their threads end before the objects that they use are destroyed.

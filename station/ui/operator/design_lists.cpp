@@ -1,5 +1,6 @@
 #include "station/ui/operator/design_lists.hpp"
 
+#include <cstddef>
 #include <string>
 
 #include "station/ui/operator/facts.hpp"
@@ -75,6 +76,15 @@ QVariantMap to_map(desk::CheckWords::Remark::Kind kind, const text::Problem& pro
           {"line", problem.place.line},
           {"what", QString::fromStdString(problem.what)},
           {"hint", QString::fromStdString(problem.allowed)}};
+}
+
+QVariantList to_list(const std::vector<desk::TrialPart>& parts) {
+  static constexpr const char* kinds[] = {"pause", "interval", "gap", "answer"};
+  QVariantList list;
+  for (const auto& part : parts)
+    list += QVariantMap{
+        {"kind", kinds[static_cast<std::size_t>(part.kind)]}, {"from", part.from_s}, {"to", part.to_s}};
+  return list;
 }
 
 QVariantMap group_of(const design::Group& group, const QVariantList& remarks) {
