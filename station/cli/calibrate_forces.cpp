@@ -4,12 +4,9 @@
 #include <algorithm>
 #include <iostream>
 
-#include "station/calibration/apply.hpp"
 #include "station/cli/calibrate_sensors.hpp"
 #include "station/cli/json.hpp"
 #include "station/maintenance/force_weights.hpp"
-#include "station/maintenance/panel_latency.hpp"
-#include "station/system/write_file.hpp"
 #include "station/text/number.hpp"
 
 namespace turnpoint::cli {
@@ -94,11 +91,7 @@ void calibrate_forces(const SensorOptions& options, const rig::Rig& rig, Context
   const auto result = maintenance::weigh(
       rig, *bridges, [&](const auto& step) { return stands(std::cin, context.err, step); },
       [&](const auto& why) { return again(std::cin, context.err, why); });
-  auto made = maintenance::known_calibration(rig);
-  made.forces = result.cells;
-  const auto out =
-      options.out.empty() ? calibration::file_for(options.rig_path, calibration::today()) : options.out;
-  system::write_file(out, calibration::to_toml(made));
+  const auto out = maintenance::write_forces(rig, result.cells, options.out);
   if (context.json) {
     context.out << to_json(result, out).dump(2) << "\n";
     return;

@@ -20,7 +20,7 @@ namespace turnpoint::maintenance {
 
 namespace {
 
-constexpr double kSettle_s = 1, kRead_s = 1, kPatience_s = 5;
+constexpr double kSettle_s = 1, kRead_s = 1, kGlance_s = 0.12, kPatience_s = 5;
 constexpr double kLeastReference = 0.02;  // of full scale
 
 sensing::BridgeOptions bridge_options(const rig::Rig& rig, double reference_amplitude) {
@@ -133,14 +133,18 @@ class SimulatedBridges : public BridgeReader {
     room_.plant().set_load(
         {1e-3 * step.mass_g * gravity_m_s2, 1e-3 * step.pull_g * gravity_m_s2, 1e-3 * step.position_mm});
     pass(kSettle_s);
+    return kept(kRead_s);
+  }
+  BridgeReading glance() override { return kept(kGlance_s); }
+
+ private:
+  BridgeReading kept(double seconds) {
     samples_.clear();
     keep_ = true;
-    pass(kRead_s);
+    pass(seconds);
     keep_ = false;
     return mean_.of(samples_);
   }
-
- private:
   void pass(double seconds) {
     stream_->advance(std::llround(seconds * rig_.output.rate_Hz));
     while (stream_->poll()) {
@@ -166,6 +170,7 @@ class CardBridges : public BridgeReader {
     collect(kSettle_s);
     return mean_.of(collect(kRead_s));
   }
+  BridgeReading glance() override { return mean_.of(collect(kGlance_s)); }
 
  private:
   std::vector<std::int32_t> collect(double seconds) {

@@ -7,6 +7,9 @@
 #include <optional>
 #include <stdexcept>
 
+#include "station/calibration/apply.hpp"
+#include "station/maintenance/panel_latency.hpp"
+#include "station/system/write_file.hpp"
 #include "station/terms/usage_error.hpp"
 #include "station/text/number.hpp"
 
@@ -311,6 +314,14 @@ ForceResult weigh(const rig::Rig& rig, BridgeReader& bridges,
   }
   check(made, tares);
   return made;
+}
+
+std::string write_forces(const rig::Rig& rig, const rig::ForceCells& cells, const std::string& path) {
+  auto made = known_calibration(rig);
+  made.forces = cells;
+  const auto out = path.empty() ? calibration::file_for(rig.path, calibration::today()) : path;
+  system::write_file(out, calibration::to_toml(made));
+  return out;
 }
 
 }  // namespace turnpoint::maintenance

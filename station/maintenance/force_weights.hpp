@@ -44,6 +44,8 @@ class BridgeReader {
   virtual ~BridgeReader() = default;
   /// Throws std::runtime_error that names the wire, if one is off, or the device, if frames were lost.
   virtual BridgeReading read(const WeightStep& step) = 0;
+  /// What the bridges read at this moment, over a tenth of a second. Throws like read().
+  virtual BridgeReading glance() { return {}; }
 };
 
 /// The card of a rig whose cells are read. `pause` is called while nothing has been captured.
@@ -80,5 +82,9 @@ struct ForceResult {
 ForceResult weigh(const rig::Rig& rig, BridgeReader& bridges,
                   const std::function<bool(const WeightStep&)>& ready,
                   const std::function<bool(const std::string&)>& failed);
+
+/// Adds the force cells to the newest valid calibration of the rig, and writes it: to `path`, or beside the
+/// rig file with today's date if `path` is empty. Returns the path.
+std::string write_forces(const rig::Rig& rig, const rig::ForceCells& cells, const std::string& path);
 
 }  // namespace turnpoint::maintenance

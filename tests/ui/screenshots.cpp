@@ -239,6 +239,17 @@ int shoot_places(const QString& out, const QStringList& sizes, const QStringList
     return design.verdict() != "checking" &&
            (design.stage() != "form" || design.verdict() == "bad" || !design.profiles().isEmpty());
   };
+  auto with_cells = request;
+  with_cells.rig = "plate-with-cells.toml";
+  QFile::copy(TURNPOINT_SOURCE_DIR "/deploy/rigs/simulated-forces.toml", "plate-with-cells.toml");
+  ui::RigController weighing(with_cells), weighed(with_cells);
+  weighed.weigh();
+  while (!weighed.busy().isEmpty()) {
+    wait_for([&] { return weighed.busy().isEmpty() || weighed.asked() == "weight"; });
+    weighed.answer("read");
+  }
+  weighing.weigh();
+  wait_for([&] { return weighing.asked() == "weight"; });
   std::vector<std::pair<QString, Look>> looks{{"dark", {"en", true}}, {"large", {"en", false, 200}}};
   for (const auto& language : languages) looks.push_back({language, {language}});
   int count = 0;
@@ -255,6 +266,8 @@ int shoot_places(const QString& out, const QStringList& sizes, const QStringList
                       {"design", QVariant::fromValue(&design)},
                       {"shown", place}},
                      [&] { return !studies.checking() && !operating.checking(); });
+      camera.shoot("RigPage.qml", "weights", {{"rig", QVariant::fromValue(&weighing)}, {"tab", "weights"}});
+      camera.shoot("RigPage.qml", "residuals", {{"rig", QVariant::fromValue(&weighed)}, {"tab", "weights"}});
       const auto shoot_design = [&](const QString& picture, const QString& beside = "") {
         camera.shoot("DesignPage.qml", picture,
                      {{"design", QVariant::fromValue(&design)}, {"beside", beside}}, design_ready);

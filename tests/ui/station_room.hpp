@@ -64,6 +64,8 @@ class StationRoom : public QObject {
   /// Writes a protocol file with two mistakes into the folder of protocols.
   Q_INVOKABLE void addMistaken();
 
+  /// Adds simulated pick-ups and force cells to the rig.
+  Q_INVOKABLE void addCells();
   /// Writes a calibration of the rig (response, friction, sound level), as `turnpoint calibrate` does.
   Q_INVOKABLE void calibrate();
   /// Simulates a press of the reference button this many milliseconds ago. If the operator accepts a latency,

@@ -203,6 +203,38 @@ Item {
             verify(shown("gauge0"))
         }
 
+        function test_the_force_cells_are_calibrated_with_dead_weights() {
+            room.addCells()
+            goTo("rig")
+            tap("weightsTab")
+            tap("weigh")
+            tryVerify(() => says("Take everything off the surface."), 20000)
+            verify(says("thousandths of the excitation"))
+            verify(!find(room.screen, "bar-run").enabled)
+            for (let step = 0; step < 39; ++step) {
+                tryVerify(() => find(room.screen, "weightsRead").enabled, 20000)
+                tap("weightsRead")
+            }
+            tryVerify(() => shown("finding0") && find(room.screen, "bar-run").enabled, 20000)
+            verify(says("Uncertainty"))
+            verify(says("200 g at 210 mm with a pull of 100 g towards the wide edge"))
+            verify(says("force cells"))
+        }
+
+        function test_weighing_can_be_stopped_and_writes_nothing_then() {
+            room.addCells()
+            goTo("rig")
+            tap("weightsTab")
+            tap("weigh")
+            const stop = appears("weightsStop")
+            tryVerify(() => stop.enabled, 20000)
+            mousePress(stop)
+            tryVerify(() => find(room.screen, "bar-run").enabled, 20000)
+            mouseRelease(stop)
+            verify(!shown("finding0"))
+            verify(says("None. Make one"))
+        }
+
         function test_language_theme_and_text_size_are_kept() {
             goTo("rig")
             tap("screen-de")
