@@ -59,7 +59,7 @@ MapBounds map_bounds(const Surface& surface, const MapOptions& options, double f
 bool peak_is_shallow(const Surface& surface, double f, double last_peak_m) {
   if (surface.quality_factor >= strong_loss_below) return false;
   Surface lossier = surface;
-  lossier.quality_factor *= 0.85;
+  lossier.quality_factor *= 0.75;
   const auto moved = make_centre_line(lossier, f, Model::mode)->last_peak_m();
   return !moved || std::abs(*moved - last_peak_m) > 0.5 * cut_off_half_width_m(surface, f);
 }

@@ -38,7 +38,7 @@ constexpr double thick_shift = 2.5e-3;
 constexpr double plate_slope_shift = 0.15;  // shift of an edge divided by W'^2
 // shift of an edge caused by a clamped end: just beyond the turning point, divided by W'^2; farther away,
 // divided by W'^2 and by the wave's decay on its way to the end and back; at the turning point, divided by W'
-constexpr double end_shift = 0.15, far_end_shift = 2.5, close_end_shift = 0.09;
+constexpr double end_shift = 0.15, far_end_shift = 7, close_end_shift = 0.09;
 // shift of an edge, divided by the amplitude of higher modes near this edge
 constexpr double shallow = 6;
 constexpr double other_peak =

@@ -57,7 +57,8 @@ std::optional<ModesBound> modes_bound(const Surface& surface, double f, const Ed
                                       Comparison comparison) {
   ModalResolution other;
   const bool finer = comparison == Comparison::finer;
-  other.degree = finer ? 8 : 6;
+  // `modes` has degree 7, or 5 for a thick plate.
+  other.degree = finer ? 8 : surface.theory == PlateTheory::mindlin ? 4 : 6;
   other.radians = finer ? 2.2 : 2.5;
   other.spare_functions = finer ? 5 : 2;
   const Line a(make_modal_line(surface, f, Losses::kept, {}));

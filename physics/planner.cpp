@@ -25,9 +25,9 @@ constexpr double unknown = 2, unknown_dB = 120;
 // largest errors found on random surfaces. Plates under tension have thin boundary layers along their clamped
 // sides. The field of a clamped plate's piston jumps at the corners of the drive edge.
 constexpr double membrane_accuracy = 2e-3, plate_accuracy = 1e-3, tense_plate_accuracy = 5e-3,
-                 plate_piston_accuracy = 0.15;
+                 thick_plate_accuracy = 4e-3, plate_piston_accuracy = 0.15;
 // how much a higher mode's resonance adds to this error
-constexpr double membrane_resonance = 5e-5, plate_resonance = 6e-4;
+constexpr double membrane_resonance = 5e-4, plate_resonance = 6e-4;
 // shift of an edge relative to the cut-off half-width, divided by this error
 constexpr double edge_share = 1.2;
 
@@ -171,7 +171,8 @@ double placed_elsewhere_m(const PlanRequest& request, const Reference& reference
 double modes_accuracy(const Surface& surface) {
   if (!Dispersion(surface).clamped_bending()) return membrane_accuracy;
   if (surface.drive == DriveShape::piston) return plate_piston_accuracy;
-  return surface.tension_Pa > 0 ? tense_plate_accuracy : plate_accuracy;
+  if (surface.tension_Pa > 0) return tense_plate_accuracy;
+  return surface.theory == PlateTheory::kirchhoff ? plate_accuracy : thick_plate_accuracy;
 }
 
 // Estimates the bounds of `modes` without solving it.
