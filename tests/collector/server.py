@@ -28,12 +28,21 @@ class Server:
             self.sql(f"INSERT INTO turnpoint.station VALUES ('{station}', 's')")
 
     def processor_s(self):
-        """The processor time of connections that have ended."""
+        """The processor time of all processes of the server so far."""
         with open(os.path.join(self.data, "postmaster.pid"), encoding="ascii") as file:
-            pid = file.readline().strip()
-        with open(f"/proc/{pid}/stat", encoding="ascii") as file:
-            fields = file.read().rsplit(")", 1)[1].split()
-        return (int(fields[13]) + int(fields[14])) / os.sysconf("SC_CLK_TCK")
+            server = file.readline().strip()
+        ticks = 0
+        for path in glob.glob("/proc/[0-9]*/stat"):
+            try:
+                with open(path, encoding="utf-8") as file:
+                    fields = file.read().rsplit(")", 1)[1].split()
+            except OSError:
+                continue  # it has ended
+            if path == f"/proc/{server}/stat":
+                ticks += int(fields[13]) + int(fields[14])  # of those that have ended
+            elif fields[1] == server:
+                ticks += int(fields[11]) + int(fields[12])
+        return ticks / os.sysconf("SC_CLK_TCK")
 
     def stop(self):
         self.run("pg_ctl", "-w", "-D", self.data, "-m", "fast", "stop")
