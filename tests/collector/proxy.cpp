@@ -52,37 +52,43 @@ int connect_to(const std::string& where) {
   return connected(AF_UNIX, &address, sizeof address);
 }
 
-/// Flips a bit of one byte in a stream.
+/// Flips a bit of one byte in a stream, but not in the head of a message: after a changed length, both sides
+/// could wait for each other for ever.
 class Corruption {
  public:
-  /// `plain` is how many bytes come before the records of TLS; -1 if there are none.
-  Corruption(std::uint64_t at, int plain) : at_(at), plain_(plain), tls_(plain >= 0) {}
+  /// `before_tls` is how many bytes come before the records of TLS; -1 for the messages of PostgreSQL without
+  /// TLS, of which a client's first one has no type.
+  Corruption(std::uint64_t at, int before_tls)
+      : at_(at), before_tls_(before_tls), tls_(before_tls >= 0), head_(tls_ ? 0 : 1) {}
 
   void pass(char* bytes, std::size_t size) {
     for (std::size_t i = 0; i < size; ++i) {
-      const bool open = !tls_ || is_encrypted(static_cast<unsigned char>(bytes[i]));
-      if (position_++ < at_ || !open || done_) continue;
+      const bool content = is_content(static_cast<unsigned char>(bytes[i]));
+      if (position_++ < at_ || !content || done_) continue;
       bytes[i] ^= 0x10;
       done_ = true;
     }
   }
 
  private:
-  /// True if this byte, the next one of the stream, belongs to the content of an encrypted record.
-  bool is_encrypted(unsigned char byte) {
-    constexpr unsigned kEncrypted = 23, kHeaderBytes = 5;
-    if (plain_ > 0) return --plain_, false;
-    if (content_ > 0) return --content_, type_ == kEncrypted;
-    if (header_ == 0) type_ = byte, length_ = 0;
-    if (header_ >= 3) length_ = (length_ << 8U) | byte;
-    if (++header_ == kHeaderBytes) header_ = 0, content_ = length_;
+  /// True if this byte, the next one of the stream, belongs to the content of a message, which under TLS is
+  /// encrypted.
+  bool is_content(unsigned char byte) {
+    constexpr unsigned kEncrypted = 23, kHeadBytes = 5;
+    if (before_tls_ > 0) return --before_tls_, false;
+    if (content_ > 0) return --content_, !tls_ || type_ == kEncrypted;
+    if (head_ == 0) type_ = byte;
+    if (head_ >= (tls_ ? 3U : 1U)) length_ = (length_ << 8U) | byte;
+    if (++head_ < kHeadBytes) return false;
+    content_ = tls_ ? length_ : length_ - 4;  // PostgreSQL counts the length itself
+    head_ = length_ = 0;
     return false;
   }
 
   std::uint64_t at_, position_ = 0;
-  int plain_;
+  int before_tls_;
   bool tls_, done_ = false;
-  unsigned header_ = 0, type_ = 0, length_ = 0, content_ = 0;
+  unsigned head_, type_ = 0, length_ = 0, content_ = 0;
 };
 
 }  // namespace

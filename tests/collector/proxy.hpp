@@ -11,10 +11,9 @@ struct Trouble {
   static constexpr std::uint64_t kNever = std::numeric_limits<std::uint64_t>::max();
   std::uint64_t cut_sent = kNever;          ///< cut before this byte from the client reaches the server
   std::uint64_t cut_received = kNever;      ///< cut before this byte from the server reaches the client
-  std::uint64_t corrupt_sent = kNever;      ///< flip a bit of this byte from the client
-  std::uint64_t corrupt_received = kNever;  ///< flip a bit of this byte from the server
-  /// The connection begins with a request for TLS. Bits flip only in encrypted content, from the given byte
-  /// on: after a changed length, both sides could wait for each other.
+  std::uint64_t corrupt_sent = kNever;      ///< flip a bit of the first content from this byte on
+  std::uint64_t corrupt_received = kNever;  ///< the same, from the server
+  /// The connection begins with a request for TLS.
   bool tls = false;
   std::uint64_t slow_sent = 0;  ///< pass on the first so many bytes from the client one by one
 };
