@@ -40,10 +40,11 @@ Json to_json(const calibration::PickUp& pick_up) {
 
 void print(std::ostream& out, const calibration::PickUp& pick_up) {
   const auto& points = pick_up.response.points;
-  fmt::print(out, "pick-up on channel {}, output channel {}: {} to {} kHz, uncertainty {} % of the best\n",
-             pick_up.response.channel, pick_up.response.drive_channel,
-             number(1e-3 * points.front().frequency_Hz, 4), number(1e-3 * points.back().frequency_Hz, 4),
-             number(100 * pick_up.response_sd, 2));
+  fmt::print(
+      out,
+      "pick-up on channel {}, output channel {}: {} to {} kHz, uncertainty {} % of the largest response\n",
+      pick_up.response.channel, pick_up.response.drive_channel, number(1e-3 * points.front().frequency_Hz, 4),
+      number(1e-3 * points.back().frequency_Hz, 4), number(100 * pick_up.response_sd, 2));
   for (const auto& r : pick_up.resonances)
     fmt::print(out, "  resonance {} +- {} Hz, quality factor {} +- {}\n", number(r.frequency_Hz, 6),
                number(r.frequency_sd_Hz, 2), number(r.quality_factor, 4), number(r.quality_sd, 2));

@@ -25,8 +25,8 @@ CREATE OR REPLACE FUNCTION turnpoint.coded(v bytea) RETURNS bytea LANGUAGE sql I
   $$ SELECT CASE WHEN v IS NULL THEN 'n0:'::bytea ELSE ('b' || octet_length(v)::text || ':')::bytea || v END $$;
 )sql";
 
-/// Returns an SQL expression of type bytea: the bytes of a row that store/checksum.cpp hashes, without the
-/// end of the line.
+/// Returns an SQL expression of type bytea: the bytes that store/checksum.cpp hashes for a row, without the
+/// newline at their end.
 std::string coded_columns(const CollectedTable& table, const std::vector<Covered>& columns,
                           const std::string& alias) {
   std::string expression = "''::bytea", texts;

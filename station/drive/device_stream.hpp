@@ -13,9 +13,9 @@
 
 namespace turnpoint::drive {
 
-/// A stream on an output that plays in real time, one block per step. The thread that calls step() is the
-/// audio side: open_realtime() uses a thread of its own, a test may use any. Everything else is for one
-/// control thread.
+/// A stream on an output that plays in real time, one block per step. step() belongs to the audio thread,
+/// which open_realtime() starts; a test may call it from any thread. All other functions must be called from
+/// one and the same control thread.
 class DeviceStream : public Stream {
  public:
   /// Throws the same errors as open_output.

@@ -45,7 +45,7 @@ struct Parameters {
   double start_range = 0;
   /// range of the non-decision time (uniform around residual_s); at most twice residual_s
   double residual_range_s = 0;
-  /// spread of judgements; for numbers, the SD of their decimal logarithm
+  /// SD of the judgements; if the answers are numbers (magnitude estimation), of their decimal logarithm
   double scatter = 0.1;
   double anticipation = 0;  ///< fraction of trials answered before anything can be felt
 };

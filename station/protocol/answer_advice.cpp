@@ -183,8 +183,8 @@ void check_catch(AdviceList& advice, const std::variant<Block, Sequence>& part) 
                         "the catch trials of \"" + block_of(part).name + "\" have " +
                             (right.times.empty() ? "no right answer" : "only one right answer"),
                         easy_on_both_sides(protocol, trials->factor));
-    // Catch trials without a signal are easy as well. If the answers are categories, no level is easier than
-    // another.
+    // In two cases there is nothing to advise: catch trials without a signal are easy, and if the answers are
+    // categories, no level is easier than another.
     const auto kind = answer_rule(protocol, trials->factor).kind;
     if (kind == AnswerKind::presence || kind == AnswerKind::category) return;
   }

@@ -183,8 +183,8 @@ Station::Ending Station::give_up(const std::string& why) {
   return Ending::unusable;
 }
 
-/// Runs the session in one process and handles its end. A problem that the station's own checks find is a
-/// violation too.
+/// Runs the session until it, or the process that it runs in, has ended. Problems that the station's own
+/// checks find also count as violations.
 Station::Ending Station::live_and_die(const session::Setup& setup) {
   std::string how = "its end";
   auto ending = Ending::on_the_way;

@@ -243,8 +243,9 @@ TEST_CASE(
 
 TEST_CASE("with several intervals, and in ABX, the observer is as good as its noisy observations are",
           "[observer]") {
-  // An observer who is right in 1 - 2^-(1 + level) of the trials with two intervals has this d'. Check the
-  // proportions that follow from this d' in other tasks by drawing the observations.
+  // `low` becomes the d' of an observer who is right in 1 - 2^-(1 + level) of the trials with two intervals.
+  // Noisy observations with this d' are simulated in the other tasks, and their proportions of right answers
+  // are compared with the observer's.
   std::mt19937_64 random(7);
   std::normal_distribution<> noise;
   constexpr int trials = 200'000;

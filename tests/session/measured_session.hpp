@@ -12,7 +12,7 @@
 #include "station/store/read.hpp"
 #include "tests/support/temporary_folder.hpp"
 
-// Simulated sessions on a rig that captures, with faults in the room.
+// Helpers for tests: simulated sessions on a rig with capture channels, and faults in the simulated room.
 namespace measured {
 
 using namespace turnpoint;

@@ -156,8 +156,8 @@ double best_share(const Session& made, const Number& number) {
   return std::max(right, n - right) / n;
 }
 
-/// An observer at chance exceeds this share of 40 answers in fewer than 1 of 100 sessions (29 of 40, both
-/// sides).
+/// In fewer than 1 of 100 sessions of 40 answers, an observer who guesses gets more than this share right, or
+/// more than this share wrong.
 constexpr double kChance = 0.71;
 
 }  // namespace
