@@ -6,6 +6,7 @@
 #include "station/cli/screens.hpp"
 #include "station/cli/shared_options.hpp"
 #include "station/setup/places.hpp"
+#include "station/setup/prepare.hpp"
 
 namespace turnpoint::cli {
 
@@ -29,6 +30,7 @@ void add_design(CommandLine& app, Context& context) {
   command->callback([request, &context] {
     if (!context.screens) return become_ui(context, without_screen);
     request->rig = setup::rig_or_default(request->rig, context.err);
+    setup::calibrated_rig(request->rig, "", context.err);  // refuses an unreadable rig before a window opens
     with_screen(without_screen, [&] { context.screens->design(*request); });
   });
 }

@@ -42,7 +42,7 @@ JSON_EXAMPLES = {"calibrate": "turnpoint calibrate --rig simulated --boundaries 
 WITH_PROTOCOL = {"check": [], "plan": ["--scene", "edge"], "preview": ["--out", "looks"], "power": ["--observers", "2"],
                  "run": ["--db", "new.sqlite", "--participant", "P01", "--observer", "sim"],
                  "trace": ["--procedure", "levels", "--answers", "1"]}
-WITH_RIG = {"amplifier-off": [], "calibrate": ["--sweep"], "check": ["demo"], "doctor": ["--data", "."],
+WITH_RIG = {"amplifier-off": [], "calibrate": ["--sweep"], "check": ["demo"], "design": [], "doctor": ["--data", "."],
             "field": ["--tone", "30000", "--points", "3"], "map": ["--boundary", "150"],
             "plan": ["demo", "--scene", "edge"], "power": ["demo", "--observers", "2"], "preview": ["demo", "--out", "looks"],
             "run": ["demo", "--db", "new.sqlite", "--participant", "P01", "--observer", "sim"],
