@@ -28,8 +28,9 @@ constexpr double membrane_accuracy = 2e-3, plate_accuracy = 1e-3, tense_plate_ac
                  thick_plate_accuracy = 4e-3, plate_piston_accuracy = 0.15;
 // how much a higher mode's resonance adds to this error
 constexpr double membrane_resonance = 5e-4, plate_resonance = 6e-4;
-// shift of an edge relative to the cut-off half-width, divided by this error
-constexpr double edge_share = 1.2;
+// shift of an edge relative to the cut-off half-width, divided by this error; larger with a quality factor
+// below 30, because the field is then less steep at its edges
+constexpr double edge_share = 0.8, lossy_edge_share = 1.2, lossy_below = 30;
 
 // The profile of one model: logarithms of |v| at the probe points, and the positions of its maximum and edge.
 struct Probe {
@@ -184,8 +185,9 @@ RungEstimate modes_estimate(const Surface& surface, const PlanRequest& request, 
   const bool drive = request.normalise != Normalise::peak;
   e.amplitude_bound = accuracy * (drive ? reference.conditioning : 1);
   e.level_bound_dB = 20 * std::log10(1 + accuracy * reference.conditioning);
-  e.boundary_bound_m = accuracy * edge_share * cut_off_half_width_m(surface, reference.f) +
-                       placed_elsewhere_m(request, reference);
+  const double share = surface.quality_factor < lossy_below ? lossy_edge_share : edge_share;
+  e.boundary_bound_m =
+      accuracy * share * cut_off_half_width_m(surface, reference.f) + placed_elsewhere_m(request, reference);
   e.reason = "two-dimensional field at its default resolution";
   return e;
 }
