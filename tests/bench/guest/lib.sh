@@ -136,5 +136,8 @@ unlock() {
   operator_code
   eventually 10 start_page
 }
+# begins_pilot: begins the session once the protocol's check has finished, until when the button cannot be pressed.
+can_begin() { shows 640 445; }
+begins_pilot() { eventually 60 can_begin; tap 706 445; }
 english() { shows 200 150; }
 goes_on() { eventually 30 continues; sleep 0.7; tap 400 390; }
