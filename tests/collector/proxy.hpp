@@ -15,7 +15,7 @@ struct Trouble {
   std::uint64_t corrupt_received = kNever;  ///< the same, from the server
   /// The connection begins with a request for TLS.
   bool tls = false;
-  std::uint64_t slow_sent = 0;  ///< pass on the first so many bytes from the client one by one
+  std::uint64_t slow_sent = 0;  ///< how many of the first bytes from the client are passed on one by one
 };
 
 /// Listens on a TCP port of the loopback interface, and passes bytes on to a server and back.

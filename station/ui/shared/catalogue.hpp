@@ -15,7 +15,7 @@ class Catalogue : public QObject {
   Q_PROPERTY(QString shown MEMBER shown_ NOTIFY shownChanged)
   /// The font family of all texts on the screen. Chinese, Japanese and Korean share characters that each
   /// language draws in its own way, so each of them needs its own family. For other scripts, the
-  /// application's fonts stand in for one another.
+  /// application's fonts replace one another where a glyph is missing.
   Q_PROPERTY(QString family READ family NOTIFY shownChanged)
 
  public:

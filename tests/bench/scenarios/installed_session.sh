@@ -88,11 +88,13 @@ rm $data/filler $data/filler2
 operator next
 eventually 20 stored 4
 
-say "a second station wants the same database; then the first is killed during a stimulus"
-stimulus
+say "a second station wants the same database, while the session is paused; then the first is killed during a stimulus"
+operator pause; says "^paused"
 fails 1 turnpoint run /usr/share/turnpoint/protocols/demo.toml --rig /usr/share/turnpoint/rigs/simulated.toml --participant P02 \
   --db $db --headless --observer sim
 has refusal.txt "pid $(systemctl show -P MainPID turnpoint)" || fail "the message does not name the process that uses the database"
+operator next
+stimulus
 systemctl kill -s KILL turnpoint
 eventually 1 off
 kill $recorder; wait $recorder || true

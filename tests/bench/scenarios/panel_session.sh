@@ -76,7 +76,9 @@ done
 page_is_clear() { ! shows 60 400; }
 eventually 20 page_is_clear
 sleep 1; screenshot end
-tap 560 390                       # tap "Close"
+# Tap "Close" until the station ends; a new page ignores taps for a moment.
+closed() { tap 560 390; sleep 1; ! readlink -e "/proc/$session/exe" >/dev/null; }
+eventually 30 closed
 status=0; wait $session || status=$?
 cat summary.json session.log
 [ $status = 0 ] && has summary.json '"completed"' || fail "the session was not completed (exit status $status)"
