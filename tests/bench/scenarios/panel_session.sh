@@ -6,6 +6,8 @@ for line in BTN_L BTN_R AMP_EN AMP_FAULT STOP AMP_HB; do pull $line down; done
 loopback
 panel_begin
 screen_begin
+export XDG_CONFIG_HOME=$PWD/config
+echo 2580 | turnpoint operator-code
 export TURNPOINT_DPI=132 QT_LOGGING_RULES=turnpoint.startup=true
 rig_with output=alsa:hw:Loopback,0 amplifier=gpio:enable=AMP_EN,fault=AMP_FAULT,stop=STOP,heartbeat=AMP_HB buttons=gpio:left=BTN_L,right=BTN_R "touch=evdev:$PANEL" \
   <"$SOURCE/deploy/rigs/simulated.toml" >rig.toml
@@ -76,9 +78,7 @@ done
 page_is_clear() { ! shows 60 400; }
 eventually 20 page_is_clear
 sleep 1; screenshot end
-# Tap "Close" until the station ends; a new page ignores taps for a moment.
-closed() { tap 560 390; sleep 1; ! readlink -e "/proc/$session/exe" >/dev/null; }
-eventually 30 closed
+tap 560 390; sleep 0.7; operator_code                                    # tap "Close", which needs the code
 status=0; wait $session || status=$?
 cat summary.json session.log
 [ $status = 0 ] && has summary.json '"completed"' || fail "the session was not completed (exit status $status)"
