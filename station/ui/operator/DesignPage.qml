@@ -65,6 +65,7 @@ Rectangle {
             text: root.design.name
             color: look.ink
             font { pixelSize: look.textTitle; weight: Font.Bold }
+            horizontalAlignment: Text.AlignLeft   // on the right in a mirrored page, though the name is Latin
             verticalAlignment: Text.AlignVCenter
             elide: Text.ElideRight
         }
