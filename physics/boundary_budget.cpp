@@ -69,7 +69,8 @@ double value(const Surface& s, Parameter parameter) {
 }
 
 double cut_off_derivative_m(Surface s, Parameter parameter, double f) {
-  // Fix the choice whether bending is modelled, so that it does not change with the parameter's value.
+  // Decide once whether bending is modelled. Otherwise the decision could change with the parameter's value,
+  // and the derivative would contain a jump.
   if (s.tension_Pa > 0) s.bending = bending_modelled(s) ? Bending::on : Bending::off;
   const double step = 1e-3 * value(s, parameter);
   return (cut_off_half_width_m(changed(s, parameter, step), f) -
@@ -167,9 +168,10 @@ Surface changed(Surface s, Parameter parameter, double by) {
   return s;
 }
 
-// The edge lies where W(x) = ratio Wc(f), with the cut-off half-width Wc. The excess ratio - 1 is
-// proportional to the taper's local slope to the power 2/3, because the edge's distance from the turning
-// point is proportional to the slope to the power -1/3.
+// Returns the derivative of a boundary's position with respect to a parameter. The edge lies where W(x) =
+// ratio Wc(f), with the cut-off half-width Wc. The excess ratio - 1 is proportional to the taper's local
+// slope to the power 2/3, because the edge's distance from the turning point is proportional to the slope to
+// the power -1/3.
 double boundary_derivative(const Surface& s, Parameter parameter, double f, double x) {
   const Taper taper(s);
   const double w = taper.half_width_m(x), slope = taper.slope(x), cut_off_m = cut_off_half_width_m(s, f);
@@ -197,7 +199,7 @@ double boundary_derivative(const Surface& s, Parameter parameter, double f, doub
     }
   };
   if (parameter != Parameter::temperature) return grows(parameter) / fall;
-  // Warmth stretches the surface along x as well.
+  // a warmer surface is also longer
   double rate = s.expansion_per_K * (w + fall * x);
   rate -= 3 * s.expansion_per_K * s.density_kg_m3 * grows(Parameter::density);
   if (bending_modelled(s)) {
@@ -215,7 +217,8 @@ BoundaryBudget boundary_budget(const Surface& surface, double f, double x) {
     const double sd = standard_deviation(surface, parameter);
     if (sd > 0) parts.push_back({parameter, sd, sd * boundary_derivative(surface, parameter, f, x), 0});
   }
-  // How far the boundary moves with one parameter and with all parameters that are correlated with it.
+  // Returns how far the boundary moves if one parameter changes and all parameters that are correlated with
+  // it change accordingly.
   const auto together_m = [&](const Contribution& part) {
     double sum = part.moved_m;
     for (const Correlation& c : surface.correlations) {

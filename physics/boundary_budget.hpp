@@ -40,7 +40,7 @@ Surface changed(Surface surface, Parameter parameter, double by);
 double boundary_derivative(const Surface& surface, Parameter parameter, double frequency_Hz,
                            double boundary_m);
 
-// What one parameter contributes.
+// The part of a boundary's uncertainty that one parameter contributes.
 struct Contribution {
   Parameter parameter;
   double sd = 0;  // standard deviation of the parameter, SI units

@@ -104,7 +104,8 @@ Solution solve(const Problem& problem) {
   return s;
 }
 
-// The boundaries in `named` are outliers. If those in `taken` are left out, no deviation exceeds the limit.
+// A set of outliers. Without the boundaries in `taken`, no deviation exceeds the limit. `named` also contains
+// boundaries that deviate almost as much as these.
 struct Outliers {
   std::vector<bool> named, taken;
 };
@@ -115,7 +116,7 @@ struct Outliers {
 Outliers find_outliers(const Solution& s) {
   constexpr double limit = 3, as_bad = 0.9;
   const Eigen::Index m = s.jacobian.rows(), n = s.jacobian.cols();
-  // The deviations of the boundaries, to first order, if the parameters were not changed.
+  // to first order, the deviations of the boundaries from what the unchanged parameters predict
   const Eigen::VectorXd free = s.misses + s.jacobian * s.u;
   std::vector<bool> named(static_cast<std::size_t>(m)), taken(static_cast<std::size_t>(m));
   for (Eigen::Index round = 0; round < m; ++round) {

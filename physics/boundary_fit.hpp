@@ -29,8 +29,9 @@ struct BoundaryFit {
   // Distance of each boundary from the position that the other boundaries predict, in standard deviations.
   std::vector<double> deviations;
   std::vector<bool> outliers;
-  // Whether the outliers are left out of the fit. They are if the other boundaries agree with one another and
-  // so tell which ones are wrong. Where boundaries contradict each other equally, all of them stay in.
+  // True if the outliers are left out of the fit. That is so if the other boundaries agree with one another,
+  // because only then is it clear which boundaries are wrong. If boundaries contradict each other equally,
+  // all of them are used.
   bool left_out = false;
 };
 

@@ -16,9 +16,10 @@
 
 namespace turnpoint::physics {
 
-// A map works with the ratio of half-widths: at the feature (edge), divided by the cut-off half-width of the
-// feature's frequency. On a linear taper that runs to its apex this ratio is constant, because every feature
-// scales with the distance from the apex. On other tapers a table holds it; it varies slowly.
+// A map stores a ratio of half-widths: that at the edge, divided by the cut-off half-width at the edge's
+// frequency. On a linear taper that runs to its apex this ratio is constant, because every feature of the
+// field scales with the distance from the apex. On other tapers the ratio varies slowly, and a table holds
+// it.
 struct BoundaryMap::State {
   Surface surface;
   MapOptions options;
@@ -134,9 +135,9 @@ std::optional<double> first_mode_frequency_Hz(const Surface& surface, const MapO
   return std::nullopt;
 }
 
-// Takes Newton steps for the two-dimensional field. Their slope comes from the first mode, which is cheap to
-// solve. Each step reduces the error about a hundredfold, so the result of the last step needs no check by
-// another solution.
+// Finds the frequency for the two-dimensional field by Newton steps. Their slope comes from the first mode,
+// which is cheap to solve. Each step reduces the error about a hundredfold, so the result of the last step
+// need not be checked by another solution.
 std::optional<double> field_frequency_Hz(const Surface& surface, const MapOptions& options, double x,
                                          double f) {
   constexpr double last_step_m = 2e-5;

@@ -13,7 +13,7 @@ Eigen::MatrixXd bubbles_first(const Eigen::MatrixXd& from, Eigen::Index left, Ei
   to.block(inner, inner, left, left) = from.topLeftCorner(left, left);
   to.block(inner + left, inner, right, left) = from.bottomLeftCorner(right, left);
   to.bottomRightCorner(right, right) = from.bottomRightCorner(right, right);
-  return to;  // the rest of the upper triangle is not used
+  return to;  // the rest of the upper triangle stays unset, because nothing reads it
 }
 
 }  // namespace

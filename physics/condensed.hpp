@@ -27,7 +27,8 @@ class Condensed {
   // the ends then feel; quadratic() returns load^T matrix^-1 load for a load on the bubbles alone.
   Vector reduce(const Vector& load) const;
   Vector load_on_ends(const Vector& reduced) const { return -(rows_ * reduced); }
-  // The bubbles under that load, with the ends held.
+  // Returns the values of the bubbles under the load that was passed to reduce(), with the unknowns of the
+  // ends held at 0.
   Vector under(const Vector& reduced) const;
   std::complex<double> quadratic(const Vector& reduced) const {
     return reduced.cwiseProduct(reduced).cwiseQuotient(pivots_).sum();
@@ -35,7 +36,7 @@ class Condensed {
 
  private:
   Matrix lower_;   // unit lower triangle L of the bubbles' block L D L^T
-  Matrix rows_;    // the same elimination's rows for the ends
+  Matrix rows_;    // the rows that the same elimination gives for the unknowns of the ends
   Vector pivots_;  // D
   Matrix ends_;
 };

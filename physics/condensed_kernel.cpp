@@ -12,7 +12,7 @@ TURNPOINT_CLONES
 void eliminate_first(double* re, double* im, int size, int count) {
   for (int first = 0; first < count; first += panel) {
     const int last = first + panel < count ? first + panel : count;
-    for (int j = first; j < last; ++j) {  // within the panel
+    for (int j = first; j < last; ++j) {  // eliminate within the panel
       double *const aj = re + j * size, *const bj = im + j * size;
       for (int p = first; p < j; ++p) {
         const double *const ap = re + p * size, *const bp = im + p * size;
@@ -33,7 +33,8 @@ void eliminate_first(double* re, double* im, int size, int count) {
     }
     double fr[panel] = {}, fi[panel] = {};
     const double *a[panel], *b[panel];
-    for (int p = 0; p < panel; ++p) {  // a panel at the end may have fewer columns: those count as zero
+    // the last panel may have fewer columns; treat the missing ones as zero
+    for (int p = 0; p < panel; ++p) {
       const int j = first + p < last ? first + p : first;
       a[p] = re + j * size, b[p] = im + j * size;
     }

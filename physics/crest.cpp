@@ -12,7 +12,8 @@ namespace {
 
 using std::numbers::pi;
 constexpr double longest_period_s = 0.05;
-constexpr std::size_t most_descended = 12;  // with more tones than this, Schroeder's phases are not improved
+// with more tones than this, the improvement would take too long, so Schroeder's phases are kept
+constexpr std::size_t most_descended = 12;
 
 // Period of the envelope: 1 divided by the greatest common divisor of the differences between the
 // frequencies, which are rounded to whole hertz.
@@ -25,7 +26,7 @@ double beat_period_s(std::span<const Tone> tones) {
                       : std::min(longest_period_s, 1.0 / static_cast<double>(divisor));
 }
 
-// The indices of the tones, ordered by frequency.
+// Returns the indices of the tones, ordered by frequency.
 std::vector<std::size_t> by_frequency(std::span<const Tone> tones) {
   std::vector<std::size_t> order(tones.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
@@ -127,7 +128,7 @@ double crest_factor(std::span<const Tone> tones) {
   for (std::size_t i = 1; i + 1 < count; ++i) {
     const double y = std::abs(wave[i]);
     if (y < 0.98 * peak) continue;
-    // The maximum of a parabola through this sample and its two neighbours.
+    // the maximum of the parabola through this sample and its two neighbours
     const double sign = wave[i] < 0 ? -1 : 1;
     const double a = sign * wave[i - 1], c = sign * wave[i + 1];
     const double bend = a - 2 * y + c;

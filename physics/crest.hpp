@@ -17,8 +17,8 @@ void assign_phases(std::span<Tone> tones);
 // its beat period (at most 50 ms), and the peak is interpolated between samples.
 double crest_factor(std::span<const Tone> tones);
 
-// A frequency that nonlinearity produces from two tones (f1 - f2) or from three (f1 + f2 - f3, or 2 f1 - f2
-// from two of them).
+// A frequency that a nonlinear system produces: from two tones (f1 - f2), or at third order from two or three
+// tones (2 f1 - f2, f1 + f2 - f3).
 struct Product {
   double frequency_Hz;
   int order;  // 2: product of two tones; 3: third-order product

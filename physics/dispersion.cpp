@@ -92,7 +92,8 @@ double Dispersion::cut_off_half_width_m(double f) const noexcept {
   const double k = wavenumber_per_m(f);
   if (!clamped_bending()) return pi / (2 * k);
   if (tension_N_per_m == 0) return plate_root / k;
-  // k is known here, so a fast fixed-point iteration can solve tan(k W) = -(k2/k) tanh(k2 W) for k W.
+  // Here k is known, so that tan(k W) = -(k2/k) tanh(k2 W) can be solved for k W by a fast fixed-point
+  // iteration.
   const double ratio = std::sqrt(1 + tension_N_per_m / (stiffness_N_m * k * k));
   double b = 2.4;
   for (int i = 0; i < 60; ++i) {

@@ -63,8 +63,8 @@ std::optional<double> friction_edge_m(double length_m, const CentreLine& line, c
     }
     return sum;
   };
-  // Coming from the tip, friction falls from 1 until the last maximum. Searching from the tip therefore finds
-  // the outermost crossing first.
+  // Search from the tip towards the drive edge. In this direction friction falls from 1 until the last
+  // maximum, so the first crossing found is the outermost one.
   const double step = std::min(context.fingertip_m / 8, length_m / 100) + 1e-9 * length_m;
   // Start one fingertip's width beyond the point where the amplitude is 1e-4 of the maximum. In every
   // friction map, the friction there is close to 1.

@@ -7,7 +7,7 @@
 
 namespace turnpoint::physics {
 
-// The equation for the first transverse mode that a boundary map uses.
+// Which equation for the first transverse mode is solved.
 enum class Wave {
   // on a linear taper the two-dimensional mode of the wedge, J_nu(k r) with nu = pi / (2 atan d); on other
   // tapers the equation of the model `mode`

@@ -15,17 +15,18 @@ namespace {
 
 using Piece = EdgeTable::Piece;
 constexpr std::size_t most_terms = EdgeTable::degree + 1;
-// How often a range of frequencies may be halved. The number is lower where computing a position takes long:
-// for friction edges, and on a taper with many points, where the solution needs a step for every point.
+// Returns how often a range of frequencies may be halved. The number is lower where one position takes long
+// to compute: for friction edges, and on a taper with many points, where the solution needs a step for every
+// point.
 int deepest(const Surface& surface, const MapOptions& options) {
   const auto* table = std::get_if<TabulatedTaper>(&surface.taper);
   if (table != nullptr && table->points.size() > 200) return 3;
   return options.edge.kind == Edge::Kind::friction ? 5 : 9;
 }
 
-// The table is refined until its error is below this tolerance. Finite elements and fingertip integrals are
-// not more accurate, so a finer table would only reproduce their numerical errors. On a tabulated taper the
-// curvature jumps at every point, so that no number of pieces could follow the edge exactly.
+// Returns the error below which the table is not refined further. Finite elements and fingertip integrals are
+// no more accurate than this, so a finer table would only reproduce their numerical errors. And the curvature
+// of a tabulated taper jumps at every point, so no number of pieces could follow the edge exactly.
 double tolerance_m(const Surface& surface, const MapOptions& options) {
   if (options.edge.kind == Edge::Kind::friction) return 2e-6;
   const Dispersion dispersion(surface);
@@ -90,8 +91,8 @@ class Builder {
   // Finds the frequency at which the edge stops existing, between `with` (the edge exists) and `without` (it
   // does not).
   double limit(double with, double without) const {
-    // On plates and tabulated tapers a solution takes long, so a rough limit must do. It is safe, because the
-    // returned frequency is one at which the edge exists.
+    // On plates and tabulated tapers a solution takes long, so a rough limit is enough. The limit is safe,
+    // because the edge exists at the frequency that is returned.
     const bool dear = dispersion_.clamped_bending() || std::holds_alternative<TabulatedTaper>(surface_.taper);
     const double enough = thick() ? 1e-4 : dear ? 1e-9 : 1e-14;
     return bisect(
@@ -151,7 +152,7 @@ class Builder {
       const auto w = taper_.position_continued_m(clenshaw(piece, ln_f) * dispersion_.cut_off_half_width_m(f));
       if (!x || !w) return std::numeric_limits<double>::infinity();
       worst = std::max(worst, std::abs(*x - *w));
-      // this piece will be halved in any case
+      // stop here: with this error, the piece will be halved in any case
       if (worst > 100 * tolerance_m(surface_, options_)) return worst;
     }
     return worst;
@@ -165,8 +166,8 @@ class Builder {
   std::size_t terms_ = most_terms;  // terms of the series for one piece
 };
 
-// True if each edge has a fixed k s (wavenumber times distance from the apex) at all frequencies, whatever
-// the loss. This is so on a linear taper that runs to its apex.
+// True if each edge has the same k s (wavenumber times distance from the apex) at all frequencies, with any
+// loss. This is so on a linear taper that runs to its apex.
 bool scale_free(const Surface& surface, const MapOptions& options) {
   if (options.edge.kind == Edge::Kind::turning) return true;
   if (options.edge.kind == Edge::Kind::friction) return false;

@@ -45,8 +45,9 @@ Solved solve(const Surface& surface, double frequency_Hz, Model model) {
   s.info.turning_point_m = turning_point_m(surface, frequency_Hz);
   s.info.last_peak_m = s.line->last_peak_m();
   if (!s.info.last_peak_m) s.info.no_peak_reason = why_no_peak(surface, frequency_Hz);
-  // The field of `modes` belongs to a drive edge whose centre moves by exactly 1. Its own value there is not
-  // 1 for a piston, because the transverse functions cannot follow the jump to the held sides.
+  // The solution of `modes` is scaled to a drive edge whose centre moves by exactly 1, so use 1. The series
+  // itself is not 1 there for a piston, because the transverse functions cannot follow the jump to the held
+  // sides.
   s.at_drive = model == Model::modes ? Scaled{1, 0} : s.line->value(0);
   s.at_peak = s.info.last_peak_m ? s.line->value(*s.info.last_peak_m) : s.at_drive;
   const double ln_gain = s.at_peak.ln_magnitude() - s.at_drive.ln_magnitude();
@@ -135,9 +136,10 @@ std::string validity_of(const Surface& surface, Model model) {
   return "two-dimensional field";
 }
 
-// Lower limit of the error of `modes` near a resonance. Its resonances, and those of its higher modes, are
-// not where the first mode's conditioning has them, so that the estimate before the solution does not know
-// them. Where modes_bound() compares two solutions, it sees them.
+// A lower limit of the error of `modes` near a resonance. The resonances of the two-dimensional field and of
+// its higher modes are not exactly where the first mode's conditioning predicts them, so the estimate made
+// before solving can miss them. modes_bound(), where it can be used, does not miss them, because it compares
+// two solutions.
 double resonant_error(const Surface& surface, const ToneField& tone, Normalise normalise, double weight) {
   constexpr double shape = 1e-4, largest = 2;
   if (normalise != Normalise::peak) {

@@ -86,8 +86,9 @@ std::vector<double> amplitude_profile(const Surface& surface, std::span<const To
 // Computes position and strength for one frequency (see ToneInfo), but no profile.
 ToneInfo tone_info(const Surface& surface, double frequency_Hz, Model model = Model::mode);
 
-// The amplitude at the drive edge that gives the peak displacement `displacement_m` at the last maximum. With
-// this amplitude, all boundaries have the same level. Throws std::domain_error if there is no last maximum.
+// Returns the amplitude at the drive edge that gives the peak displacement `displacement_m` at the last
+// maximum. If all tones are driven in this way, the last maxima of all of them are equally high, wherever
+// their boundaries are. Throws std::domain_error if there is no last maximum.
 double drive_amplitude_m(const Surface& surface, double frequency_Hz, double displacement_m,
                          Model model = Model::mode);
 

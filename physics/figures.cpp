@@ -15,9 +15,8 @@ namespace {
 constexpr int points = 1201;
 
 // The paper's rubber membrane, which is 50 mm wide on each side of the centre line at the drive edge. In
-// Figure 8 its turning point for 30 Hz is at x = 15 cm. The paper does not give the slope of its taper, so
-// that of the brass membrane is assumed. The tension then follows from the wave speed c = 4 f W(x0), with the
-// turning point x0.
+// Figure 8 its turning point x0 for 30 Hz is at 15 cm. The paper does not give the slope of its taper, so the
+// slope of the brass membrane is assumed. The tension then follows from the wave speed c = 4 f W(x0).
 Surface rubber() {
   Surface s;
   const double w0 = 0.05, slope = 0.1, x0 = 0.15, f = 30;

@@ -34,8 +34,8 @@ std::optional<double> without_floor(double friction, double floor) {
   return std::min(1.0, std::pow(share4, 0.25));
 }
 
-// The displacement at which the skin contacts carry the fraction `share` of the load, in closed form. `share`
-// determines the gap. The rest of the load determines the pressure of the air film, and this pressure
+// Returns the displacement at which the skin contacts carry the fraction `share` of the load, in closed form:
+// `share` determines the gap, the rest of the load determines the pressure of the air film, and this pressure
 // determines the excursion.
 double displacement_for_share(const LoadSharing& m, double share) {
   if (share >= 1) return 0;
@@ -43,9 +43,9 @@ double displacement_for_share(const LoadSharing& m, double share) {
   return gap * excursion(m.pressure_Pa * (1 - share) / m.ambient_Pa);
 }
 
-// The fraction (share) of the load that the skin contacts carry at a displacement. The air film must carry 1
-// - share. The film's overpressure minus the one that it needs for this rises with ln(share), so Newton steps
-// within a bracket find its zero.
+// Returns the fraction (share) of the load that the skin contacts carry at a displacement. The air film must
+// carry 1 - share. The difference between the overpressure that the film has and the one that it needs rises
+// with ln(share), so Newton steps within a bracket find its zero.
 double share_at(const LoadSharing& m, double displacement_m, double ln_guess) {
   const double lowest = std::log(smallest_share);
   const auto tangent = [&](double x) {
@@ -154,7 +154,8 @@ double FrictionMap::highest_displacement_m() const {
 
 namespace {
 
-// The integral of the piecewise linear function from x[0] to `position`, from its cumulative integral.
+// Returns the integral of the piecewise linear function from x[0] to `position`. `running` is the integral up
+// to each point.
 double integral_to(std::span<const double> x, std::span<const double> y, std::span<const double> running,
                    double position) {
   const auto after = std::upper_bound(x.begin(), x.end(), position);

@@ -33,8 +33,8 @@ MapBounds map_bounds(const Surface& surface, const MapOptions& options, double f
   const auto exact = first_mode_edge(surface, options, f);
   bounds.equation_m = exact ? std::abs(*exact - x) : 0.25 * surface.length_m;
   if (bounds.equation_m < 1e-10) bounds.equation_m = 0;
-  // On a wedge the first mode is exact, so its equation adds no error. On every other taper, the best
-  // equation too has an error.
+  // On a wedge the best equation for the first mode is exact, so its error is 0. On every other taper, even
+  // the best equation has an error.
   std::optional<double> drawn_peak_m;
   if (surface.quality_factor < strong_loss_below) {
     MapOptions peak = options;
@@ -59,7 +59,7 @@ MapBounds map_bounds(const Surface& surface, const MapOptions& options, double f
 bool peak_is_shallow(const Surface& surface, double f, double last_peak_m) {
   if (surface.quality_factor >= strong_loss_below) return false;
   Surface lossier = surface;
-  lossier.quality_factor *= 0.85;
+  lossier.quality_factor *= 0.75;
   const auto moved = make_centre_line(lossier, f, Model::mode)->last_peak_m();
   return !moved || std::abs(*moved - last_peak_m) > 0.5 * cut_off_half_width_m(surface, f);
 }

@@ -8,7 +8,8 @@
 namespace turnpoint::physics {
 
 struct MapBounds {
-  double equation_m = 0;     // difference between the model and the best equation of the first mode
+  // difference between the positions by the model and by the best equation of the first mode
+  double equation_m = 0;
   double drive_modes_m = 0;  // shift by higher transverse modes from the drive edge
   std::string reason;
   double error_m() const { return equation_m + drive_modes_m; }
@@ -17,8 +18,8 @@ struct MapBounds {
 MapBounds map_bounds(const Surface& surface, const MapOptions& options, double frequency_Hz,
                      double boundary_m);
 
-// True if slightly more loss would remove the last maximum of the first mode, or move it a long way; then that
-// of the two-dimensional field may lie elsewhere. This happens only with strong loss.
+// True if slightly more loss would make the last maximum of the first mode disappear or move far away. The
+// last maximum of the two-dimensional field may then be somewhere else. This happens only with strong loss.
 bool peak_is_shallow(const Surface& surface, double frequency_Hz, double last_peak_m);
 
 // Explains why an edge has no position at a frequency.

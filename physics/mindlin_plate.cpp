@@ -48,7 +48,7 @@ MindlinPlate::Waves MindlinPlate::waves(double f) const noexcept {
   const double larger = half + std::sqrt(half * half - product);
   Waves waves{};
   waves.bending = larger / (d * s);
-  // computed from the product of the two roots, because computing it as a difference would lose digits
+  // use the product of the two roots, because computing the smaller one as a difference would lose digits
   waves.evanescent = m * (j - s) / larger;
   waves.shear = (j - s) / twist_N_m;
   waves.share_bending = 1 - m / (s * waves.bending);

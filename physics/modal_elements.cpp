@@ -65,7 +65,8 @@ ModalAssembler::Form ModalAssembler::single_form(double w, double r, double curv
   const double across = 1 / (w * w), stretch = 2 * r * r - curve;
   const auto& m = single_bend_;
   const double bending = equation_.bending, tension = equation_.tension;
-  const auto with_value = [&](Eigen::Index row) {  // the terms of lap v that are multiplied by X
+  // the terms of lap v that contain X itself, not its derivatives
+  const auto with_value = [&](Eigen::Index row) {
     return stretch * m(row, 1) + r * r * m(row, 2) + across * m(row, 3);
   };
   Form f;
@@ -130,7 +131,8 @@ Eigen::MatrixXcd ModalAssembler::matrix(const ModalElement& e) const {
   const int n = along_.count();
   const std::vector<Point> list = points(e);
   const auto rows = static_cast<Eigen::Index>(list.size());
-  // Basis functions at the quadrature points, one row per point, and the quadrature's weights.
+  // Values of the basis functions at the quadrature points, one row per point, and the weights of the
+  // quadrature.
   Small value(rows, n), first(rows, n), second(rows, n);
   Column weight(rows), w(rows), w1(rows), curve(rows);
   for (Eigen::Index q = 0; q < rows; ++q) {

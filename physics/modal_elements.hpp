@@ -11,8 +11,8 @@
 
 namespace turnpoint::physics {
 
-// The three factors in the weak form: bending lap v lap w + tension grad v grad w - inertia v w, with w the
-// test function.
+// The three coefficients in the weak form: bending (lap v lap w), tension (grad v grad w) and inertia (-v w),
+// with w the test function.
 struct ModalEquation {
   double bending = 0;
   double tension = 1;
@@ -26,13 +26,13 @@ struct ModalElement {
   double x0 = 0, h = 0;
   int left = 0, right = 0;
   double ln_scale = 0;
-  // On a plate: gives all other unknowns from those of the left vertex. On a membrane: empty.
+  // On a plate, the matrix that gives all other unknowns from those of the left vertex; empty on a membrane.
   Eigen::MatrixXcd transfer;
-  Condensed inner;                                        // gives the bubbles from the unknowns of both ends
-  Eigen::MatrixXcd pull;                                  // right vertex = -pull (left vertex)
-  Eigen::VectorXcd load;                                  // load on all unknowns; empty if there is none
+  Condensed inner;        // matrices that compute the inner unknowns (bubbles) from those of both ends
+  Eigen::MatrixXcd pull;  // the unknowns of the right vertex are -pull times those of the left one
+  Eigen::VectorXcd load;  // load on all unknowns; empty if there is none
   Eigen::VectorXcd bubbles_under_load, right_under_load;  // what the load adds to the unknowns
-  Eigen::VectorXcd centre;  // coefficient of each basis function on the centre line
+  Eigen::VectorXcd centre;                                // value of each basis function on the centre line
 };
 
 // Divides the unknowns by the largest magnitude among them and returns the logarithm of this magnitude.

@@ -73,7 +73,7 @@ void eliminate(const ModalAssembler& assembler, const ElementBasis& along,
   }
 }
 
-// All unknowns of an element but those of its left vertex, from these.
+// Returns all other unknowns of an element, given those of its left vertex.
 Eigen::VectorXcd others(const ModalElement& e, const Eigen::VectorXcd& u) {
   if (e.transfer.size() > 0) return e.transfer * u;
   const Eigen::Index right = e.pull.rows(), bubbles = e.inner.bubbles();
@@ -117,7 +117,7 @@ void substitute(const ModalSetup& s, const ModalAssembler& assembler, const Eige
   }
 }
 
-// Load of the elements in the weak form for a field that is the sum of the elements' part and the lift.
+// Returns the load on an element in the weak form if the field is the sum of the elements' part and the lift.
 Eigen::VectorXcd lift_load(const ModalSetup& s, const PistonLift& lift, const ModalElement& e) {
   const Quadrature along = gauss_legendre(lift_nodes), across = gauss_legendre(lift_nodes + e.left);
   const int bubbles_end = s.along.count() - s.along.per_vertex;
@@ -172,7 +172,7 @@ class ModalLine final : public CentreLine {
   TaylorMarch tail_;
   double length_m_, turning_m_ = 0, match_m_ = 0, spacing_m_;
   std::optional<double> peak_m_;
-  std::optional<PistonLift> lift_;  // set if the elements hold the field without it
+  std::optional<PistonLift> lift_;  // set if the elements solve only for the field minus this lift
 };
 
 ModalLine::ModalLine(const Surface& surface, double f, Losses losses, const ModalResolution& resolution)
@@ -205,8 +205,9 @@ void ModalLine::solve(const Surface& surface, const ModalSetup& s, const ModalRe
   substitute(s, assembler, drive, elements_);
 }
 
-// Represents the jump of a piston's field at the corners by a PistonLift that ends with an element. The
-// elements then solve for the rest of the field, which is zero at the drive edge and has a load.
+// Takes the jump of a piston's field at the corners out of the equations: a PistonLift, which ends at the end
+// of an element, represents the jump. The elements then solve for the rest of the field, which is zero at the
+// drive edge and has a load.
 void ModalLine::lift_piston(const ModalSetup& s) {
   const double reach = lift_widths * s.taper.half_width_m(0);
   auto last = elements_.begin();

@@ -43,7 +43,7 @@ struct Sizes {
 class Chain {
  public:
   Chain(const Strip& strip);
-  // Returns load^T matrix^-1 load for loads on consecutive elements, with the drive edge held.
+  // Returns load^T matrix^-1 load for loads on consecutive elements. The drive edge is held.
   std::complex<double> quadratic(std::size_t first, const std::vector<Vector>& loads) const;
   // Returns the unknowns of each element for a motion of the drive edge.
   std::vector<Vector> driven(const Eigen::VectorXd& drive) const;
@@ -79,7 +79,8 @@ Chain::Chain(const Strip& strip) {
 
 std::complex<double> Chain::quadratic(std::size_t first, const std::vector<Vector>& loads) const {
   std::complex<double> sum = 0;
-  Vector vertex;  // the load that elimination leaves on the left vertex of the next element farther out
+  // the load that elimination has left on the vertex shared with the next element farther out
+  Vector vertex;
   for (std::size_t i = first + loads.size(); i-- > 0;) {
     const Link& link = links_[i];
     Vector left = Vector::Zero(link.left), right = Vector::Zero(link.right);
@@ -175,8 +176,8 @@ std::vector<Strip> make_strips(const Surface& surface, double f, Parity parity) 
     all[0].compliance *= inertia / lossless / (dispersion.bending ? bending : tension);
     return all;
   }
-  // Simply supported sides: D (lap + k^2) (lap - k2^2) v = force. The response is that of a membrane with k^2
-  // minus that of a membrane with -k2^2.
+  // With simply supported sides the equation is D (lap + k^2) (lap - k2^2) v = force. Its response is a
+  // multiple of the difference of two membranes' responses, one with k^2 and one with -k2^2.
   const std::complex<double> evanescent = inertia + tension / bending;
   const std::complex<double> loss = inertia * evanescent / (lossless * (lossless + tension / bending));
   setup.equation.inertia = -evanescent;
@@ -187,13 +188,13 @@ std::vector<Strip> make_strips(const Surface& surface, double f, Parity parity) 
   return all;
 }
 
-// The mean over the disc, expressed as a load on consecutive elements.
+// The weights of a mean over the disc, in the form of loads on consecutive elements.
 struct DiscLoad {
   std::size_t first = 0;
   std::vector<Vector> loads;
 };
 
-// Integrals of the deflection's functions over the width of the disc at one x.
+// Returns the integrals of the deflection's functions over the width of the disc at one x.
 Eigen::VectorXd across_disc(const Strip& strip, int functions, double half_width, double from, double to) {
   const Quadrature rule = gauss_legendre(14);
   Eigen::VectorXd sum = Eigen::VectorXd::Zero(functions);

@@ -17,9 +17,10 @@ constexpr double ln_domain_end = 70;
 constexpr double ln_match = 45;  // the one-mode decay is used where the field has decayed by more than e^-45
 constexpr double widths_per_element = 1.2;
 
-// Number of functions of eta that follow cos(kw eta). Legendre's series of this function decays only beyond
-// the degree kw, so there must be more of them than modes that can propagate, which are kw/pi. A plate's
-// functions have a factor (1 - eta^2)^2, and thus two degrees more than a membrane's.
+// Returns the number of functions of eta that are needed to follow cos(kw eta). Legendre's series of this
+// function decays only beyond the degree kw, so there must be more functions than propagating modes, of which
+// there are kw/pi. A plate's functions have a factor (1 - eta^2)^2, and thus two degrees more than a
+// membrane's.
 int functions_for(double kw, bool plate) {
   const int followed = static_cast<int>(std::ceil(0.5 * kw));
   return plate ? std::max(static_cast<int>(std::ceil(kw / pi)), followed - 1) : followed;
@@ -48,8 +49,8 @@ TransverseBasis make_across(const Surface& surface, double f, const ModalResolut
   return TransverseBasis::polynomials(std::min(functions, 60), plate ? 2 : 1);
 }
 
-// Shortens an element in which a membrane narrows by a large factor, as in the step of a table. The
-// polynomials along x do not follow such a change, and those of a finer solution hardly better.
+// Shortens an element in which a membrane narrows by a large factor, as at a step in a tabulated taper.
+// Polynomials along x follow such a change badly, and those of a finer solution hardly better.
 double gently_narrowing(const Taper& taper, double x, double h) {
   constexpr double least_share = 0.5;
   const double w = taper.half_width_m(x);

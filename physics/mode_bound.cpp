@@ -16,7 +16,7 @@ using std::numbers::pi;
 
 // Constants of the bounds. They were measured on random surfaces, see the header. W, W' and W'' are the
 // half-width and its derivatives. Shifts of an edge are in units of the cut-off half-width.
-constexpr double coupling = 0.15;         // amplitude of higher modes, over |W'| W(0) / (cut-off half-width)
+constexpr double coupling = 0.15;  // amplitude of higher modes, divided by |W'| W(0) / (cut-off half-width)
 constexpr double piston_coupling = 0.55;  // amplitude of higher modes for a piston drive, at any slope
 // unknown phase of a higher mode's standing wave at the drive edge
 constexpr double phase_uncertainty = 0.12;
@@ -29,20 +29,20 @@ constexpr double plate_piston = 0.9;
 // cut-off half-width of the second symmetric mode divided by that of the first
 constexpr double plate_second_mode = 2.3246;
 constexpr double plate_shift = 1.2e-3;  // shift of an edge at any taper
-// The boundary layer along clamped sides under tension has a width of its own, and the shape of `mode` has
-// the layer of the cut-off at every W. Added to plate_shift when the layer is a third of the half-width or
-// thinner.
+// Tension makes a boundary layer along clamped sides, whose width does not follow W. The shape of `mode`,
+// however, has the layer of the cut-off at every W. This value is added to plate_shift if the layer is a
+// third of the half-width or thinner.
 constexpr double layer_shift = 4.8e-3;
 // shift of an edge at any taper, for the plate theories mindlin and elastic
 constexpr double thick_shift = 2.5e-3;
 constexpr double plate_slope_shift = 0.15;  // shift of an edge divided by W'^2
-// shift of an edge divided by W'^2, caused by a clamped end just beyond the turning point; and divided by W',
-// if the end is at the turning point
-constexpr double end_shift = 0.15, close_end_shift = 0.09;
+// shift of an edge caused by a clamped end: just beyond the turning point, divided by W'^2; farther away,
+// divided by W'^2 and by the wave's decay on its way to the end and back; at the turning point, divided by W'
+constexpr double end_shift = 0.15, far_end_shift = 7, close_end_shift = 0.09;
 // shift of an edge, divided by the amplitude of higher modes near this edge
 constexpr double shallow = 6;
 constexpr double other_peak =
-    0.5;                       // the largest such shift, beyond which the last maximum may be another one
+    0.5;  // largest shift by higher modes; beyond it, another maximum may be the last one
 constexpr double largest = 2;  // bounds are limited to this value, because a larger one would say nothing
 
 // The equation of the n-th symmetric transverse mode, n = 1, 2, ... On a wedge the solution is a Bessel
@@ -77,12 +77,32 @@ double amplification(const Surface& surface, double f, int n) {
   return 1 / std::max({standing - phase_uncertainty, loss, 1e-3});
 }
 
-// The ratio of amplification() for a clamped plate. Its higher modes are not solved for, so only loss bounds
-// the ratio.
+// Like amplification(), for a clamped plate. The higher modes of a plate are not solved for, so only loss
+// bounds this ratio.
 double plate_amplification(const Surface& surface, const Taper& taper, double f) {
   const auto turning = taper.position_continued_m(plate_second_mode * cut_off_half_width_m(surface, f));
   const double reach = std::clamp(turning.value_or(0), 0.0, taper.length_m());
   return 1 / std::max(std::tanh(0.5 * wavenumber_per_m(surface, f) * reach / surface.quality_factor), 0.01);
+}
+
+// Natural logarithm of how far the n-th symmetric mode decays from one position to another, where the strip
+// is too narrow for it.
+double ln_decay(const Surface& surface, double f, int n, double from_m, double to_m) {
+  const Taper taper(surface);
+  const double k = wavenumber_per_m(surface, f);
+  double ln = 0;
+  constexpr int panels = 24;
+  for (int i = 0; i < panels; ++i) {
+    const double w = taper.half_width_m(from_m + (to_m - from_m) * (i + 0.5) / panels);
+    const double across = (2 * n - 1) * pi / (2 * w);
+    ln += (to_m - from_m) / panels * std::sqrt(std::max(0.0, across * across - k * k));
+  }
+  return ln;
+}
+
+// How far the first mode decays between the turning point and the clamped end, there and back.
+double round_trip_decay(const Surface& surface, double f, double turning_point_m) {
+  return std::exp(-2 * ln_decay(surface, f, 1, turning_point_m, surface.length_m));
 }
 
 double curvature_times_width(const Taper& taper, double x) {
@@ -96,12 +116,14 @@ double airy_length_m(double cut, double slope) {
   return cut * std::cbrt(2 / (pi * pi * std::max(slope, 1e-6)));
 }
 
-// Steepness and curvature of the taper where they disturb the first mode.
+// How steep and how curved the taper is at the places where this disturbs the first mode.
 struct Steepness {
   double at_turning = 0;  // |W'| near the turning point
-  double before = 0;   // largest |W'| W / (cut-off half-width) between the drive edge and the turning point
-  double bend = 0;     // largest |W''| W near the turning point
-  double reach_m = 0;  // what is near: two cut-off half-widths, or more where the strip is nearly even
+  double before = 0;  // largest |W'| W / (cut-off half-width) between the drive edge and the turning point
+  double bend = 0;    // largest |W''| W near the turning point
+  // distance from the turning point that counts as near: two cut-off half-widths, or more where the strip is
+  // nearly even
+  double reach_m = 0;
 };
 
 Steepness steepness(const Taper& taper, double cut, double x0, double last_peak) {
@@ -121,8 +143,8 @@ Steepness steepness(const Taper& taper, double cut, double x0, double last_peak)
   return s;
 }
 
-// Shift of an edge because `mode` of a clamped plate has one shape across, relative to the cut-off
-// half-width.
+// Shift of an edge relative to the cut-off half-width, caused by the fact that `mode` of a clamped plate has
+// only one shape across.
 double plate_shift_of(const Surface& surface, const Dispersion& dispersion, double cut) {
   if (surface.theory != PlateTheory::kirchhoff) return thick_shift;
   const double layers = cut * std::sqrt(dispersion.tension_N_per_m / dispersion.stiffness_N_m);
@@ -132,16 +154,7 @@ double plate_shift_of(const Surface& surface, const Dispersion& dispersion, doub
 }  // namespace
 
 double higher_mode_decay(const Surface& surface, double f, double x) {
-  const Taper taper(surface);
-  const double k = wavenumber_per_m(surface, f);
-  double ln = 0;
-  constexpr int panels = 24;
-  for (int i = 0; i < panels; ++i) {
-    const double w = taper.half_width_m(x * (i + 0.5) / panels);
-    const double across = 3 * pi / (2 * w);
-    ln += x / panels * std::sqrt(std::max(0.0, across * across - k * k));
-  }
-  return std::exp(-ln);
+  return std::exp(-ln_decay(surface, f, 2, 0, x));
 }
 
 ModeBound mode_bound(const Surface& surface, double f, double conditioning,
@@ -179,9 +192,9 @@ ModeBound mode_bound(const Surface& surface, double f, double conditioning,
   const double airy_length = airy_length_m(cut, steepest);
   const double near = std::max(0.0, std::min(x0 - 1.1 * airy_length, last_peak_m.value_or(x0)));
   const double polluted = shallow * modes * higher_mode_decay(surface, f, near);
-  // A straight clamped end just beyond the turning point intersects the curved wave fronts.
+  // The curved wave fronts do not meet the straight clamped end evenly, which shifts the edge.
   const double end_width = taper.half_width_m(taper.length_m()) / cut;
-  double end = end_width > 0.5 ? end_shift * steepest * steepest : 0;
+  double end = std::min(end_shift, far_end_shift * round_trip_decay(surface, f, x0)) * steepest * steepest;
   end = std::max(end, close_end_shift * steepest * std::clamp((end_width - 0.75) / 0.1, 0.0, 1.0));
   // Higher modes that are strong near the last maximum may replace it by another one.
   const bool same_peak = polluted < other_peak;

@@ -10,12 +10,13 @@
 namespace turnpoint::physics {
 namespace {
 
-constexpr double profile_margin = 8, peak_margin = 4;
-// At one place two solutions may agree by chance, so the largest difference near the last maximum bounds the
-// level and the edge as well. It is divided by that maximum, and times the cut-off half-width.
-constexpr double level_share = 2, position_share = 1;
+constexpr double profile_margin = 8, peak_margin = 4, edge_margin = 5;
+// Two solutions may agree at one place by chance. So the bounds of level and edge come from the largest
+// difference anywhere near the last maximum: the difference is divided by that maximum and multiplied by
+// these factors, for the edge also by the cut-off half-width.
+constexpr double level_share = 2, position_share = 1.25;
 constexpr double near_rad = 3;  // phase on either side of the last maximum that counts as near
-// differences of rounding, and of what both solutions neglect
+// largest differences that come from rounding and from effects that both solutions neglect
 constexpr double floor = 1e-8;
 
 constexpr double points_per_radian = 3;
@@ -31,7 +32,7 @@ struct Line {
   }
 };
 
-// The largest difference of two profiles, and the largest value.
+// The largest difference between two profiles, and their largest value.
 struct Worst {
   double difference = 0, most = 0;
   double relative() const { return difference / most; }
@@ -56,7 +57,8 @@ std::optional<ModesBound> modes_bound(const Surface& surface, double f, const Ed
                                       Comparison comparison) {
   ModalResolution other;
   const bool finer = comparison == Comparison::finer;
-  other.degree = finer ? 8 : 6;
+  // `modes` has degree 7, or 5 for a thick plate.
+  other.degree = finer ? 8 : surface.theory == PlateTheory::mindlin ? 4 : 6;
   other.radians = finer ? 2.2 : 2.5;
   other.spare_functions = finer ? 5 : 2;
   const Line a(make_modal_line(surface, f, Losses::kept, {}));
@@ -84,7 +86,7 @@ std::optional<ModesBound> modes_bound(const Surface& surface, double f, const Ed
   const double cut = cut_off_half_width_m(surface, f);
   bound.position_m = cut * (position_share * near_shape.difference + floor);
   if (at.has_value() != other_at.has_value()) bound.position_m += surface.length_m;
-  if (at && other_at) bound.position_m += peak_margin * std::abs(*at - *other_at);
+  if (at && other_at) bound.position_m += edge_margin * std::abs(*at - *other_at);
   if (edge.kind == Edge::Kind::turning) bound.position_m = 0;
   return bound;
 }

@@ -14,8 +14,9 @@ struct ModesBound {
   double position_m = 0;  // error of the edge's position
 };
 
-// True if the comparison below bounds the error. It does not where the finer solution has much the same
-// error, at the corners of a clamped plate that is driven by a piston, and thick plates would take seconds.
+// True if comparing two solutions can bound the error. It cannot for a clamped plate that is driven by a
+// piston, because both solutions have much the same error at the corners. It is not done for thick plates,
+// because it would take seconds.
 bool modes_bound_applies(const Surface& surface);
 
 // Which solution `modes` is compared with.
@@ -24,9 +25,9 @@ enum class Comparison {
   coarser  // takes one and a half times as long as `modes`; its bound is larger
 };
 
-// Several times the difference between `modes` and another solution. On random surfaces the true error of
-// |v| was at most 3.1 times the difference from a finer one (tests/physics/modes_bound_test.cpp). Empty if
-// only one of the two fields has a last maximum.
+// Returns several times the difference between `modes` and another solution. On random surfaces, the true
+// error of |v| was at most 3.1 times the difference from a finer solution
+// (tests/physics/modes_bound_test.cpp). Empty if only one of the two fields has a last maximum.
 std::optional<ModesBound> modes_bound(const Surface& surface, double frequency_Hz, const Edge& edge,
                                       Comparison comparison = Comparison::finer);
 

@@ -62,8 +62,8 @@ class Solver {
     return best;
   }
 
-  // Solves for the weights of the passive set. While the solution has a negative weight, goes towards it only
-  // until the first weight reaches 0, and removes the columns of weight 0.
+  // Solves for the weights of the passive set. While the solution has a negative weight, moves towards the
+  // solution only until the first weight reaches 0, and takes columns of weight 0 out of the set.
   void descend(std::size_t entered) {
     while (!passive_.empty()) {
       std::vector<double> z = solve_passive();

@@ -11,7 +11,8 @@ struct Jet {
   double value, first, second;
 };
 
-// atan2(x, b(x)), an angle at a corner along a curve whose distance from it is b across and x along.
+// Returns atan2(x, b(x)). This is the angle at a corner of a point whose distance from the corner is x along
+// the strip and b(x) across.
 Jet angle(double x, const Jet& b) {
   const double square = x * x + b.value * b.value;
   const double turn = b.value - x * b.first;
@@ -19,7 +20,8 @@ Jet angle(double x, const Jet& b) {
           (-x * b.second - turn * (2 * x + 2 * b.value * b.first) / square) / square};
 }
 
-// 1 at the drive edge and 0 at t = 1, with two continuous derivatives there and two that vanish at t = 0.
+// Returns a smooth step from 1 at t = 0 (the drive edge) to 0 at t = 1 and beyond. Its first two derivatives
+// are continuous and vanish at both ends.
 Jet cut_off(double t) {
   if (t >= 1) return {0, 0, 0};
   const double t2 = t * t, u = 1 - t;

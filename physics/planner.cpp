@@ -21,13 +21,16 @@ namespace {
 constexpr double probe_margin = 1.9;
 constexpr int probes = 160;
 constexpr double unknown = 2, unknown_dB = 120;
-// What is known of the error of `modes` before it is solved, if no higher mode resonates: more than its
-// largest on random surfaces. Tension makes thin boundary layers along clamped sides. The field of a clamped
-// plate's piston jumps at the corners of the drive edge.
+// Error of `modes` that is assumed before it is solved, if no higher mode resonates. The values are above the
+// largest errors found on random surfaces. Plates under tension have thin boundary layers along their clamped
+// sides. The field of a clamped plate's piston jumps at the corners of the drive edge.
 constexpr double membrane_accuracy = 2e-3, plate_accuracy = 1e-3, tense_plate_accuracy = 5e-3,
-                 plate_piston_accuracy = 0.15;
-constexpr double modes_resonance = 5e-5;  // how much a higher mode's resonance adds to this error
-constexpr double edge_share = 0.8;  // shift of an edge over the cut-off half-width, divided by this error
+                 thick_plate_accuracy = 4e-3, plate_piston_accuracy = 0.15;
+// how much a higher mode's resonance adds to this error
+constexpr double membrane_resonance = 5e-4, plate_resonance = 6e-4;
+// shift of an edge relative to the cut-off half-width, divided by this error; larger with a quality factor
+// below 30, because the field is then less steep at its edges
+constexpr double edge_share = 0.8, lossy_edge_share = 1.2, lossy_below = 30;
 
 // The profile of one model: logarithms of |v| at the probe points, and the positions of its maximum and edge.
 struct Probe {
@@ -113,7 +116,7 @@ double cost_s(const Surface& surface, double f, Model model, int points) {
   return 1e-3 + (plate ? 1e-4 : 6e-5) * kl + 5e-8 * points;
 }
 
-// Error of a solution that is exact but for rounding (see tests/physics/one_mode_test.cpp).
+// Error of a solution that is exact apart from rounding (see tests/physics/one_mode_test.cpp).
 double rounding_error(const Surface& surface, double f) {
   const double steps = 8 * std::numeric_limits<double>::epsilon();
   return std::max(1e-12, steps * wavenumber_per_m(surface, f) * surface.length_m);
@@ -128,13 +131,13 @@ void merge(RungEstimate& all, const RungEstimate& one) {
   if (all.reason.empty()) all.reason = one.reason;
 }
 
-// The solution with which all models are compared. It is computed once per tone.
+// The solution with which all models are compared. It is computed once for each tone.
 struct Reference {
   double f;
   Probe mode;
   double conditioning;
   ModeBound bound;
-  bool shallow_peak;  // slightly more loss would hide the last maximum
+  bool shallow_peak;  // true if slightly more loss would remove the last maximum
 };
 
 Reference reference(const Surface& surface, const PlanRequest& request, double f) {
@@ -159,7 +162,7 @@ RungEstimate edge_estimate(const Surface& surface, const PlanRequest& request, c
   return e;
 }
 
-// The error of boundaries whose frequency another model has computed.
+// Returns the error of the boundaries if another model has computed the tones' frequencies.
 double placed_elsewhere_m(const PlanRequest& request, const Reference& reference) {
   const bool graded = request.edge.kind != Edge::Kind::turning;
   return graded && request.placed_by.value_or(Model::modes) != Model::modes ? reference.bound.position_m()
@@ -169,24 +172,27 @@ double placed_elsewhere_m(const PlanRequest& request, const Reference& reference
 double modes_accuracy(const Surface& surface) {
   if (!Dispersion(surface).clamped_bending()) return membrane_accuracy;
   if (surface.drive == DriveShape::piston) return plate_piston_accuracy;
-  return surface.tension_Pa > 0 ? tense_plate_accuracy : plate_accuracy;
+  if (surface.tension_Pa > 0) return tense_plate_accuracy;
+  return surface.theory == PlateTheory::kirchhoff ? plate_accuracy : thick_plate_accuracy;
 }
 
-// Bounds of `modes` without solving for it.
+// Estimates the bounds of `modes` without solving it.
 RungEstimate modes_estimate(const Surface& surface, const PlanRequest& request, const Reference& reference) {
   RungEstimate e;
   e.cost_s = cost_s(surface, reference.f, Model::modes, request.points);
-  const double accuracy = modes_accuracy(surface) + modes_resonance * (reference.bound.resonance - 1);
+  const double resonance = Dispersion(surface).clamped_bending() ? plate_resonance : membrane_resonance;
+  const double accuracy = modes_accuracy(surface) + resonance * (reference.bound.resonance - 1);
   const bool drive = request.normalise != Normalise::peak;
   e.amplitude_bound = accuracy * (drive ? reference.conditioning : 1);
   e.level_bound_dB = 20 * std::log10(1 + accuracy * reference.conditioning);
-  e.boundary_bound_m = accuracy * edge_share * cut_off_half_width_m(surface, reference.f) +
-                       placed_elsewhere_m(request, reference);
+  const double share = surface.quality_factor < lossy_below ? lossy_edge_share : edge_share;
+  e.boundary_bound_m =
+      accuracy * share * cut_off_half_width_m(surface, reference.f) + placed_elsewhere_m(request, reference);
   e.reason = "two-dimensional field at its default resolution";
   return e;
 }
 
-// Bounds of `modes` from a second solution.
+// Computes the bounds of `modes` by solving a second time.
 RungEstimate compared_modes_estimate(const Surface& surface, const PlanRequest& request,
                                      const Reference& reference, Comparison comparison) {
   RungEstimate e = modes_estimate(surface, request, reference);

@@ -20,9 +20,9 @@ struct Tolerance {
   std::optional<double> level_dB;   // error of the level at the last maximum
 };
 
-// The error bounds of a model for a set of tones, estimated before the model is evaluated (for `modes`,
-// estimate() solves twice). For membranes and simply supported plates the error is the difference from the
-// two-dimensional field; for clamped plates it is the difference from the one-mode equation.
+// The error bounds of a model for a set of tones. They are estimated before the model is evaluated, except
+// that estimate() solves for `modes` twice and compares. For membranes and simply supported plates the errors
+// are differences from the two-dimensional field; for clamped plates, from the one-mode equation.
 struct RungEstimate {
   Model model = Model::mode;
   bool usable = true;           // false if the model cannot be used here at all (`reason` says why)
@@ -49,7 +49,8 @@ RungEstimate estimate(const Surface& surface, const PlanRequest& request, Model 
 struct PlanChoice {
   Model model = Model::mode;
   RungEstimate bound;  // error bounds of the chosen model
-  bool inside = true;  // false if no model meets the tolerance; the chosen model then comes closest
+  // false if no model meets the tolerance; the model with the smallest error is then chosen
+  bool inside = true;
   std::string reason;  // why this model was chosen: one sentence with numbers
   std::vector<RungEstimate> considered;
 };

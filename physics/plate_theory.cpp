@@ -35,7 +35,7 @@ TheoryChoice choose_theory(const Surface& surface, std::span<const double> frequ
     choice.reason = "kirchhoff: shear is modelled for clamped plates without tension only";
     return choice;
   }
-  // largest distance of each theory's boundary from that of the elastic section
+  // largest distance between each theory's boundary and that of the elastic cross-section
   double thin = 0, mindlin = 0;
   Surface s = surface;
   for (const double f : frequencies_Hz) {

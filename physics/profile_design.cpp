@@ -17,8 +17,8 @@ constexpr double reachable_residual = 0.25;
 constexpr double fit_tolerance = 1e-4;
 constexpr int most_candidates = 100000;
 
-// Appends a tone's squared amplitudes at the target's points to `columns`, relative to the tone's last
-// maximum. `drive_gain` is |v(0)| divided by that maximum.
+// Appends a tone's squared amplitudes at the target's points to `columns`. The amplitudes are relative to the
+// tone's last maximum; `drive_gain` becomes |v(0)| divided by that maximum.
 bool shape(const Surface& surface, double f, std::span<const double> x, std::vector<double>& columns,
            double& drive_gain) {
   const auto line = make_centre_line(surface, f, Model::mode);

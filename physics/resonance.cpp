@@ -13,7 +13,7 @@ namespace {
 
 using std::numbers::pi;
 
-// The Pruefer phase of the lossless mode at the drive edge. It rises continuously with frequency, and is a
+// The Pruefer phase of the lossless mode at the drive edge. It rises continuously with the frequency and is a
 // multiple of pi exactly at the resonances.
 class Phase {
  public:
@@ -26,7 +26,7 @@ class Phase {
     // The solution is positive at the tip. Each zero between tip and drive edge adds pi and changes the sign.
     const int zeros = march.zeros();
     const double sign = zeros % 2 == 0 ? 1 : -1;
-    // An arc cosine would lose half of the digits just where they count, at the resonances.
+    // Use an arc tangent: an arc cosine would lose half of the digits near the resonances, where they matter.
     return pi * zeros + std::atan2(std::abs(v), sign * rising);
   }
 
@@ -61,8 +61,8 @@ std::optional<double> resonance(const Phase& phase, int n, double from_Hz, doubl
   return std::nullopt;
 }
 
-// v(0) divided by the last maximum, for the lossless mode of a clamped plate. It changes its sign at a
-// resonance.
+// Returns v(0) divided by the last maximum, for the lossless mode of a clamped plate. It changes its sign at
+// a resonance.
 std::optional<double> plate_response(const Surface& surface, double f) {
   const auto line = make_centre_line(surface, f, Model::mode, Losses::left_out);
   const auto peak = line->last_peak_m();
@@ -72,8 +72,8 @@ std::optional<double> plate_response(const Surface& surface, double f) {
          std::exp(std::min(300.0, drive.ln_scale - top.ln_scale));
 }
 
-// About a fifth of the distance between neighbouring resonances. From one resonance to the next, one more
-// half wave fits between drive edge and turning point.
+// Returns about a fifth of the distance between neighbouring resonances. (From one resonance to the next, one
+// more half wave fits between drive edge and turning point.)
 double plate_step_Hz(const Surface& surface, double f) {
   const double reach = turning_point_m(surface, f).value_or(surface.length_m);
   return 0.5 * f * pi / (wavenumber_per_m(surface, f) * std::max(reach, 0.05 * surface.length_m));
@@ -83,7 +83,8 @@ double plate_step_Hz(const Surface& surface, double f) {
 // response is roughly a cosine of frequency with amplitude 1 and many periods, so the relative error of the
 // frequency is smaller than the magnitude of the response.
 double plate_zero(const Surface& surface, const Chord& chord) {
-  // A thick plate's solution takes long, and a millionth is far less than the width of a resonance.
+  // The solution of a thick plate takes long. A relative error of a millionth is enough, because it is far
+  // less than the width of a resonance.
   const double enough = surface.theory == PlateTheory::kirchhoff ? 1e-9 : 1e-6;
   return false_position(
       chord, [&](double f) { return plate_response(surface, f).value_or(chord.f_left); }, {8, true}, enough,

@@ -71,8 +71,8 @@ struct Chord {
   double meets_0() const { return left + (right - left) * f_left / (f_left - f_right); }
 };
 
-// False position converges slowly if one end never moves. These settings say what the search does against
-// this.
+// False position converges slowly if one end of the interval never moves. These settings choose what is done
+// against this.
 struct Creeping {
   int halve_every;  // n: every n-th step goes to the middle of the interval
   // Illinois method: halves the function value of an end that did not move for two steps

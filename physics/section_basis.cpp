@@ -118,8 +118,8 @@ SectionBasis mindlin_section(const MindlinPlate& plate, int each, Parity parity 
 SectionPencil mindlin_pencil(const SectionBasis& b, double half_width, Eigen::Index each) {
   using B = SectionBasis;
   const Eigen::Index rest = b.count() - each;
-  // In a uniform strip, the strain is f' X + f (Y/W + Z), see SectionBasis. This is the quadratic form of the
-  // part Y/W + Z.
+  // In a uniform strip, the strain is f' X + f (Y/W + Z), see SectionBasis. The following matrix is the
+  // quadratic form of the part Y/W + Z.
   const SectionMatrix still = b.stiff[B::across][B::across] / (half_width * half_width) +
                               (b.stiff[B::across][B::local] + b.stiff[B::local][B::across]) / half_width +
                               b.stiff[B::local][B::local];
@@ -145,8 +145,8 @@ std::array<double, 2> shape_widths(const Surface& surface, double f) {
   return {drive, std::min(Dispersion(surface).cut_off_half_width_m(f), 0.85 * drive)};
 }
 
-// Returns k_x^2 of the first mode's travelling wave at the drive edge, by Mindlin's theory. It is the largest
-// root of the strip's dispersion function; 0 if there is none.
+// Returns k_x^2 of the first mode's travelling wave at the drive edge by Mindlin's theory, which is the
+// largest root of the strip's dispersion function; 0 if there is no root.
 double travelling2(const Surface& surface, double f) {
   const MindlinPlate plate(surface);
   const double w = half_width_m(surface, 0), highest = plate.waves(f).bending;
@@ -281,7 +281,7 @@ SectionBasis elastic_shapes(const Surface& surface, double f) {
     centres.conservativeResize(centres.size() + deflection.size());
     centres.tail(deflection.size()) = deflection;
     lame = section.lame;
-    if (i > 0) continue;  // the points are the same for all half-widths
+    if (i > 0) continue;  // the quadrature points are the same for all half-widths, so one pass is enough
     weight.resize(y.at.size() * z.at.size());
     eta.resize(weight.size());
     for (Eigen::Index j = 0; j < y.at.size(); ++j) {

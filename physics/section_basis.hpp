@@ -20,8 +20,8 @@ struct SectionBasis {
   // integrals of part i (X, R, Y or Z) of function a times part j of function b
   std::array<std::array<Matrix, 4>, 4> stiff;
   Matrix mass;
-  Eigen::VectorXd centre;  // deflection of the centre line in each function
-  // motion of the drive edge: the cut-off shape of its half-width, but without the motion along x
+  Eigen::VectorXd centre;  // deflection of the centre line by each function
+  // motion of the drive edge: the cut-off shape that belongs to its half-width, without the motion along x
   Eigen::VectorXd drive;
   Eigen::Index count() const { return mass.rows(); }
 };

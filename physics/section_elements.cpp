@@ -15,7 +15,7 @@ namespace {
 using Eigen::MatrixXd;
 constexpr Eigen::Index degree_across = 5, degree_through = 11;
 
-// The ends of the elements in y. In a layer along the clamp the elements are finer.
+// Returns the ends of the elements in y. In a layer along the clamp the elements are finer.
 std::vector<double> element_ends(double layer) {
   std::vector<double> ends{0, 0.5 * (1 - layer), 1 - layer};
   for (const double part : {0.4, 0.15, 0.05, 0.015}) ends.push_back(1 - part * layer);
@@ -23,8 +23,8 @@ std::vector<double> element_ends(double layer) {
   return ends;
 }
 
-// Continuous, piecewise polynomial functions on [0, 1] that vanish at 1. The odd functions vanish at 0 as
-// well.
+// Returns continuous, piecewise polynomial functions on [0, 1] that vanish at 1. The odd functions vanish at
+// 0 as well.
 LineFunctions across_functions(double layer) {
   const std::vector<double> ends = element_ends(layer);
   const ElementBasis basis{degree_across, 1};
@@ -57,7 +57,7 @@ LineFunctions across_functions(double layer) {
   return f;
 }
 
-// Legendre polynomials of 2z/h on [0, h/2], even and odd ones separately.
+// Returns Legendre polynomials of 2z/h on [0, h/2], even and odd ones separately.
 LineFunctions through_functions(double thickness) {
   constexpr Eigen::Index n = (degree_through + 1) / 2;
   const Quadrature rule = gauss_legendre(degree_through + 2);
@@ -150,8 +150,8 @@ SectionElements::SectionElements(double thickness, double nu, double layer)
 }
 
 Eigen::VectorXd SectionElements::thickening(const Eigen::VectorXd& along) const {
-  // Use only the displacement c, without its first function of z. That function is the mean of c over the
-  // thickness, which is deflection and not thickening.
+  // Leave out b, and the first function of z in c: it is the mean of c over the thickness, so it describes
+  // deflection and not thickening.
   const Eigen::Index nb = across.odd.rows() * through.odd.rows(), nz = through.even.rows();
   const MatrixXd load =
       lame * tensor(across.even * across.weight.asDiagonal() * across.even.transpose(),

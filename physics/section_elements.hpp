@@ -14,7 +14,8 @@ struct SectionPencil {
   Eigen::MatrixXd shear, along, along_mass, coupling, plane, cross, mass, stretching;
 };
 
-// The lowest cut-off (L = 0) and its motion B, found by inverse iteration.
+// The lowest cut-off frequency of the cross-section, where L = 0, and the motion B at this frequency. Found
+// by inverse iteration.
 struct SectionCutOff {
   double omega;
   Eigen::VectorXd shape;

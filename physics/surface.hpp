@@ -80,8 +80,8 @@ enum class Parameter {
   temperature
 };
 
-// Standard deviations of the surface's parameters; zero means that a parameter is exact. They determine the
-// uncertainty of a boundary, which is kept separate from the error of a model.
+// Standard deviations of the surface's parameters; zero means that a parameter is known exactly. They give
+// the uncertainty of a boundary, which is reported separately from the error of a model.
 struct ParameterSd {
   double density_kg_m3 = 0;
   double tension_Pa = 0;
@@ -95,7 +95,7 @@ struct ParameterSd {
   double temperature_K = 0;
 };
 
-// Correlation between the errors of two parameters that one fit has determined.
+// The correlation between the errors of two parameters that were determined by the same fit.
 struct Correlation {
   Parameter first, second;
   double coefficient = 0;

@@ -91,8 +91,8 @@ bool half_log_square(const double* re, const double* im, std::size_t n, double o
     const double square = re[i] * re[i] + im[i] * im[i];
     any_small |= (std::bit_cast<std::uint64_t>(square) - small) >> 63;
     const std::uint64_t bits = std::bit_cast<std::uint64_t>(square) - sqrt_half;
-    // Converts the exponent to a double by bit operations, because few instruction sets can convert vectors
-    // of integers. The result is e + 2047, a small positive number.
+    // `biased` is the exponent plus 2047, a small positive integer. Bit operations convert it to a double,
+    // because few instruction sets can convert vectors of 64-bit integers.
     const std::uint64_t biased = (bits + 0x7ff0000000000000ULL) >> 52;
     const double e = std::bit_cast<double>(biased | 0x4330000000000000ULL) - (4503599627370496.0 + 2047.0);
     const std::uint64_t mantissa_bits = (bits & 0x000fffffffffffffULL) + sqrt_half;

@@ -118,7 +118,7 @@ double TaylorMarch::State::rise(const Local& g, double x) const {
   return (std::conj(g.g) * g.dg).real() - bend;
 }
 
-// The derivative of rise() by x.
+// The derivative of rise() with respect to x.
 double TaylorMarch::State::bend(const Local& g, double x) const {
   const double w = taper.half_width_m(x), w1 = taper.slope(x), ratio = w1 / w, power = equation.w_power;
   const double square = std::norm(g.g), along = (std::conj(g.g) * g.dg).real();
@@ -170,7 +170,8 @@ std::optional<double> TaylorMarch::State::peak_in(const TaylorStep& step, double
       return Tangent{f, x - f / bend(g, x)};
     };
     const double start = Chord{inner, f_inner, outer, f_outer}.meets_0();
-    // the error of a Newton step is proportional to the square of its length
+    // After a step as short as this, the error is negligible, because it is proportional to the square of the
+    // step's length.
     return newton({inner, outer}, start, tangent,
                   [&](double next, double x) { return std::abs(next - x) <= 1e-12 * step.length; });
   }
@@ -309,7 +310,7 @@ std::size_t run_length(std::span<const double> x, std::size_t first, const Taylo
 
 }  // namespace
 
-// Computes v = g W^-power for consecutive points within one step.
+// Computes v = g W^-power for consecutive points that lie within one step.
 void TaylorMarch::State::run(const TaylorStep& step, std::span<const double> x, double* re,
                              double* im) const {
   if (equation.a.imag() != 0) {
@@ -357,7 +358,8 @@ void TaylorMarch::evaluate(std::span<const double> x, std::complex<double> phase
     const std::complex<double> factor = turn * std::exp(std::min(ln_step, 700.0));
     rotate(re, im, n, factor.real(), factor.imag(), reinterpret_cast<double*>(&v[i]));
     if (!half_log_square(re, im, n, ln_step, &ln_amplitude[i])) {
-      for (std::size_t j = 0; j < n; ++j) {  // v is too small for half_log_square() here
+      // v is too small for half_log_square() here, so compute each logarithm separately
+      for (std::size_t j = 0; j < n; ++j) {
         const double magnitude = std::hypot(re[j], im[j]);
         ln_amplitude[i + j] = magnitude > 0 ? std::log(magnitude) + ln_step : ln_zero;
       }

@@ -23,7 +23,7 @@ constexpr auto inverse_products = [] {
 double exact_length(const TaylorStep& step) {
   const double size =
       std::max({std::abs(step.re[0]), std::abs(step.im[0]), std::abs(step.re[1]), std::abs(step.im[1])});
-  double ln_ratio = std::numbers::ln2 * 2;  // a step is at most four trial scales long
+  double ln_ratio = std::numbers::ln2 * 2;  // lets a step be at most four times as long as the trial scale
   for (int n = taylor_order - 2; n <= taylor_order; ++n) {
     const double term = std::max(std::abs(step.re[n]), std::abs(step.im[n]));
     if (term > 0) ln_ratio = std::min(ln_ratio, (std::log(size / term) + ln_truncation) / n);
@@ -81,7 +81,7 @@ void SeriesMaker::linear(double x, TaylorStep& step) const {
     const double same = e * e * n * (n - 1.0) - strength + ar;
     const double next = 2 * e * (n + 1.0) * n;
     const double factor = -inverse_products[static_cast<std::size_t>(n)];
-    // The term A s^2 g with s^2 = s0^2 (1 + 2 e tau + e^2 tau^2); its n-th coefficient is in `same`.
+    // adds the term A s^2 g with s^2 = s0^2 (1 + 2 e tau + e^2 tau^2); its n-th coefficient is in `same`
     const double before_re = n >= 2 ? 2 * e * re[n - 1] + e * e * re[n - 2] : n == 1 ? 2 * e * re[0] : 0;
     double sum_re = next * re[n + 1] + same * re[n] + ar * before_re;
     if constexpr (lossy) {
@@ -199,8 +199,8 @@ void SeriesMaker::fill(const TaylorState& from, TaylorStep& step) const {
     convolved(from.x, knot, step);
   }
   step.length = step.order < taylor_order ? step.scale : exact_length(step);
-  // End exactly on the knot. Otherwise, if rounding left the step's inner end just short of the knot,
-  // another, tiny step would follow.
+  // End exactly on the knot. If rounding left the step's end just short of it, another, tiny step would
+  // follow.
   if (step.length > (from.x - knot) * (1 - 1e-9)) step.length = from.x - knot;
 }
 

@@ -12,7 +12,7 @@
 namespace turnpoint::physics {
 
 // The solution at a point: g and dg/dx, both to be multiplied by 2^exponent exp(ln_base). The exponent is an
-// integer, so that thousands of steps add no rounding error to it.
+// integer, so that it stays exact over thousands of steps.
 struct TaylorState {
   double x = 0;
   std::complex<double> g;

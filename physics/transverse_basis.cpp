@@ -69,11 +69,12 @@ TransverseBasis TransverseBasis::polynomials(int count, int power, Parity parity
   basis.first_.resize(count, nodes);
   basis.second_.resize(count, nodes);
   basis.centre.resize(count);
-  // The last column is for the centre, eta = 0. It is evaluated with the nodes and separated afterwards.
+  // The last column is not a node but the centre, eta = 0. It is evaluated together with the nodes and
+  // separated afterwards.
   for (Eigen::Index q = 0; q <= nodes; ++q) {
     const double t = q == nodes ? 0 : basis.rule_.x[static_cast<std::size_t>(q)];
-    // b is the factor (1 - t^2)^power and its two derivatives. A recurrence gives the Legendre polynomials
-    // and their two derivatives.
+    // b is the factor (1 - t^2)^power with its two derivatives. The Legendre polynomials and their two
+    // derivatives come from a recurrence.
     const double u = 1 - t * t;
     const double b = power == 1 ? u : u * u;
     const double b1 = power == 1 ? -2 * t : -4 * t * u;

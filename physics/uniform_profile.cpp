@@ -33,8 +33,8 @@ class UniformLine final : public CentreLine {
  public:
   UniformLine(const Surface& surface, double f);
   Scaled value(double x) const override;
-  // Computed as a central difference of the logarithm. The resulting shift of the last maximum is far smaller
-  // than the model's own error.
+  // Uses a central difference of the logarithm. This shifts the last maximum by far less than the model's own
+  // error.
   Scaled slope(double x) const override;
   std::optional<double> last_peak_m() const override {
     return turning_m_ < 0 ? std::nullopt : find_last_peak(*this, std::min(turning_m_, length_m_), 0.25 / k_);

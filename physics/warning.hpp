@@ -1,5 +1,5 @@
 #pragma once
-// Warnings to show with a plan, a map or a field, each only once.
+// Warnings to show with a plan, a map or a field. Each kind is shown only once.
 #include <span>
 #include <string>
 #include <vector>
@@ -24,9 +24,9 @@ std::vector<Warning> surface_warnings(const Surface& surface);
 // A tone below this frequency may be audible: the lower edge of the third-octave band centred on 25 kHz.
 inline constexpr double audible_limit_Hz = 22400;
 
-// Warns about single tones: below 22.4 kHz, turning point outside the surface, strip narrower than a
-// fingertip (14 mm) at the turning point, gain at the last maximum above 10, plate theory kirchhoff where
-// shear moves the boundary by more than 1 mm. Each code appears once, not once per tone.
+// Warns if a tone is below 22.4 kHz, if its turning point is outside the surface, if the strip is narrower
+// than a fingertip (14 mm) there, if the gain at the last maximum is above 10, or if plate theory kirchhoff
+// is used although shear moves the boundary by more than 1 mm. Each code appears once, not once per tone.
 std::vector<Warning> tone_warnings(const Surface& surface, std::span<const Tone> tones);
 
 }  // namespace turnpoint::physics

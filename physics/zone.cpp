@@ -16,7 +16,8 @@ namespace {
 
 [[noreturn]] void unreachable(const std::ostringstream& text) { throw std::domain_error(text.str()); }
 
-// First guess of the highest tone's frequency: its turning point is where the zone must end.
+// Returns a first guess of the highest tone's frequency: the one whose turning point is where the zone must
+// end.
 double first_guess(const Surface& surface, const ZoneRequest& request) {
   return cut_off_frequency_Hz(surface, std::max(1e-6, half_width_m(surface, request.boundary_m)));
 }

@@ -67,8 +67,8 @@ struct ProfileDesign {
 };
 
 // Designs a profile. The squared amplitudes sum a_i^2 |v_i|^2 are fitted to the target by non-negative least
-// squares; candidate frequencies are band.spacing_Hz apart. Roughly speaking, only profiles that fall with x
-// can be produced. `residual` and `reachable` say how close the design comes.
+// squares; candidate frequencies are band.spacing_Hz apart. In general, only profiles that fall with x can be
+// produced. `residual` and `reachable` say how close the design comes to the target.
 ProfileDesign design_profile(const Surface& surface, std::span<const ProfilePoint> target,
                              const ToneBand& band);
 

@@ -18,7 +18,7 @@ namespace {
 constexpr double grid_step_m = 0.5e-3;
 constexpr int candidates_per_spacing = 3;
 constexpr int most_candidate_tones = 40;
-// A tone is added only if it reduces the unevenness of the zone to this fraction or less.
+// A further tone is used only if it reduces the unevenness of the zone to this fraction or less.
 constexpr double worthwhile = 0.97;
 
 double interpolate_crossing(double x0, double x1, double y0, double y1, double level) {
@@ -100,7 +100,8 @@ void ZoneProfile::choose_tones(double highest_Hz) {
       trial.push_back(&candidate);
       double residual = 0;
       const auto weights = fit(trial, residual);
-      // The highest tone determines the boundary, so a set of tones without it would make a different zone.
+      // Accept only a set in which the highest tone has a noticeable weight: this tone determines the
+      // boundary, so without it the zone would be different.
       if (residual < lowest && weights.front() > 0.05 * weights.back()) {
         lowest = residual;
         chosen = &candidate;
@@ -167,9 +168,9 @@ double ZoneProfile::zone_mean(const std::vector<double>& values) const {
   return sum / std::max(1, count);
 }
 
-// Returns the weight of the friction at each point in the zone's mean friction. The mean of the fingertip
-// averages is a linear function of the friction: each average is an integral over straight pieces, and each
-// piece adds to the weights of its two ends.
+// Returns the weight with which the friction at each point enters the zone's mean friction. The mean of the
+// fingertip averages is a linear function of the friction: each average is an integral over straight pieces,
+// and each piece adds to the weights of its two ends.
 std::vector<double> ZoneProfile::mean_weights() const {
   std::vector<double> weight(x_.size(), 0.0);
   const double step = x_[1] - x_[0];

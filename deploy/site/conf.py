@@ -13,5 +13,5 @@ html_title = "Turnpoint"
 html_copy_source = html_use_index = False
 html_permalinks_icon = "#"
 pygments_style = "default"
-# In examples, words that are no Python or TOML are no error.
+# Examples contain words that are neither Python nor TOML; do not report them.
 suppress_warnings = ["misc.highlighting_failure"]

@@ -56,7 +56,7 @@ Value value_in(Names<Value> names, std::string_view text) {
   throw std::invalid_argument("\"" + std::string(text) + "\" is not one of " + allowed);
 }
 
-// How a value is written as a text in Python.
+// Returns how a value is written as text in Python.
 template <class Value>
 struct Text;
 template <>

@@ -29,7 +29,7 @@ py::array_t<double> profile(const Surface& surface, const Tones& tones, const Nu
   return array(std::move(amplitudes));
 }
 
-// The mobility and displacements of finger_load(), one array for each quantity.
+// Returns the mobility and displacements of finger_load(), one array for each quantity.
 py::dict load(const Surface& surface, double frequency_Hz, const Numbers& x_m, const Finger& finger) {
   const auto points = values(x_m);
   std::vector<FingerLoad> loads;

@@ -11,7 +11,7 @@ namespace turnpoint::analysis {
 /// How often each answer was given to one kind of stimulus.
 struct ConfusionRow {
   std::optional<int> stimulus;      ///< the choice that is right; empty if no choice is right
-  std::optional<double> level;      ///< the level, if no choice is right
+  std::optional<double> level;      ///< the presented level; set if no choice is right
   std::vector<int> answers;         ///< number of trials by index of the choice
   int trials = 0;                   ///< sum of `answers`
   std::optional<Proportion> right;  ///< proportion correct; empty if no choice is right

@@ -88,7 +88,7 @@ struct Sample {
   double trial, value;
 };
 
-/// Fits one slope to all groups. From both variables, the mean of the group is subtracted first.
+/// Fits one slope that all groups share, after subtracting from both variables the mean of each group.
 std::optional<Trend> within_groups(const std::vector<Sample>& samples) {
   std::map<std::pair<double, std::string>, std::array<double, 3>> sums;
   for (const auto& sample : samples) {

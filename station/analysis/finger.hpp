@@ -15,8 +15,8 @@ struct FingerTrial {
   bool measured = false;                       ///< false: the forces of this trial are not known
   std::optional<double> normal_N, speed_mm_s;  ///< means over the strokes
   std::optional<double> mu_low, mu_high;  ///< friction on the smooth and the rough side of the felt boundary
-  /// Where the scene presented last was planned to change friction, and where the finger met the change, with
-  /// its standard error.
+  /// For the scene presented last: the planned position of the change of friction, the position at which the
+  /// finger met the change, and the standard error of that position.
   std::optional<double> planned_mm, felt_mm, felt_se_mm;
 };
 
@@ -31,16 +31,17 @@ struct FingerCondition {
   std::optional<Estimate> shift_mm;  ///< felt minus planned boundary
 };
 
-/// A value at one planned boundary. The interval is empty if it is not known.
+/// A value for trials with the same planned boundary, with its interval if that is known.
 struct AtBoundary {
   double planned_mm = 0, value = 0;
   int trials = 1;  ///< number of trials of which `value` is the mean
   std::optional<Interval> interval;
 };
 
-/// The felt step of friction against the planned boundary. At a planned boundary (to 0.1 mm) with 3 or more
-/// trials, a value is their mean with its interval by Student's t. With fewer, each trial has a value of its
-/// own; the interval of a felt boundary is then 1.96 standard errors of the trial to both sides.
+/// The felt boundary and the friction on both sides of it, for each planned boundary. If 3 or more trials
+/// share a planned boundary (to 0.1 mm), their values are averaged, with an interval by Student's t.
+/// Otherwise each trial keeps its own value; the interval of a felt boundary is then 1.96 standard errors of
+/// the trial to both sides.
 struct FeltBoundaries {
   std::vector<AtBoundary> shift_mm, mu_low, mu_high;  ///< in the order of planned boundaries
 };

@@ -3,8 +3,8 @@
 
 namespace turnpoint::analysis {
 
-/// Helpers for fits and their intervals. checked() sorts the counts by level, merges equal levels and removes
-/// levels without trials. It throws std::invalid_argument for impossible counts or options.
+/// Helpers that the fits and their intervals share. checked() sorts the counts by level, merges equal levels
+/// and removes levels without trials. It throws std::invalid_argument for impossible counts or options.
 std::vector<LevelCount> checked(const std::vector<LevelCount>& data, const FitOptions& options);
 /// Returns the reason why checked counts cannot be fitted: no trials, too few, or an answer that becomes
 /// rarer as the level rises. The reason does not depend on how the levels were chosen.

@@ -27,7 +27,7 @@ double largest_of(double d_prime, int intervals) {
   return step * sum;
 }
 
-/// Both of two independent decisions are right, or both are wrong.
+/// Returns the probability that two independent decisions are either both right or both wrong.
 double both_or_neither(double first, double second) {
   return normal_cdf(first) * normal_cdf(second) + normal_cdf(-first) * normal_cdf(-second);
 }

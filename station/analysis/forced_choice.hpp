@@ -11,14 +11,15 @@
 namespace turnpoint::analysis {
 
 /// How an unbiased observer of signal detection theory derives the answer from one observation for each
-/// interval. The observations have normal distributions, one SD wide and d' apart.
+/// interval. The observations have normal distributions with a standard deviation of 1, whose means are d'
+/// apart.
 enum class Deciding {
-  largest,  ///< one of m intervals has the signal: the largest observation (Green & Swets 1966)
+  largest,  ///< one of m intervals has the signal: choose the largest observation (Green & Swets 1966)
   /// ABX and match-to-sample: which of A and B is the larger, and on which side of the criterion X lies,
   /// are decided independently (Macmillan & Creelman 2005, eq. 9.6)
   independent,
-  differencing,  ///< ABX and match-to-sample: X is the one that is nearer (Macmillan & Creelman 2005,
-                 ///< eq. 9.7)
+  differencing,  ///< ABX and match-to-sample: X is taken for the nearer of A and B (Macmillan & Creelman
+                 ///< 2005, eq. 9.7)
 };
 
 /// The name in reports: "largest of m", "independent observations", "differencing".
@@ -27,8 +28,9 @@ const char* name(Deciding deciding);
 /// The proportion correct at this d'. `intervals` is the m of `largest`, at least 2; the others ignore it.
 double proportion_correct(Deciding deciding, double d_prime, int intervals);
 
-/// Returns the d' that gives this proportion correct: for ABX 0 up to 0.5; infinite for 1, and minus infinity
-/// for 0 with `largest`. Throws std::invalid_argument for a proportion outside of 0 to 1.
+/// Returns the d' that gives this proportion correct. For ABX, d' is 0 for all proportions up to 0.5. A
+/// proportion of 1 gives infinity, and 0 with `largest` gives minus infinity. Throws std::invalid_argument
+/// for a proportion outside of 0 to 1.
 double d_prime(Deciding deciding, double proportion, int intervals);
 
 /// The sensitivity in one condition, at one level or over all levels.

@@ -43,12 +43,27 @@ std::vector<Column> samples_of(const std::vector<PersonMeasure>& measures) {
   return samples;
 }
 
+Effect effect_of_groups(const Column& first, const Column& second) {
+  const auto a = first.numbers(), b = second.numbers();
+  Effect effect{first.measure, first.unit, first.condition, second.condition, 0, {}, {}, true};
+  effect.persons = static_cast<int>(a.size() + b.size());
+  effect.difference = student_difference(b, a);
+  if (!effect.difference) return effect;
+  const auto squares = [](const std::vector<double>& values) {
+    return variance(values) * static_cast<double>(values.size() - 1);
+  };
+  const double pooled = std::sqrt((squares(a) + squares(b)) / static_cast<double>(a.size() + b.size() - 2));
+  if (pooled > 0) effect.standardised = effect.difference->value / pooled;
+  return effect;
+}
+
 Effect effect_of(const Column& first, const Column& second) {
   const std::map<std::string, double> before(first.values.begin(), first.values.end());
   std::vector<double> differences;
   for (const auto& [person, value] : second.values)
     if (const auto found = before.find(person); found != before.end())
       differences.push_back(value - found->second);
+  if (differences.empty()) return effect_of_groups(first, second);
   Effect effect{first.measure, first.unit, first.condition, second.condition, 0, {}, {}};
   effect.persons = static_cast<int>(differences.size());
   effect.difference = student_mean(differences);

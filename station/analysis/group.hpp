@@ -23,12 +23,18 @@ struct GroupMean {
 };
 
 /// The effect of a condition on a measure: the mean of the participants' own differences, second minus first.
+/// If no participant has both conditions, they are those of two groups, and the effect is the difference of
+/// the groups' means.
 struct Effect {
   std::string measure, unit, first, second;
-  int persons = 0;                     ///< participants who have the measure in both conditions
-  std::optional<Estimate> difference;  ///< 95 % interval by Student's t for pairs; empty with fewer than 3
-  /// the difference divided by the standard deviation of the differences (Cohen's d_z); empty if that is 0
+  int persons = 0;  ///< participants who have the measure in both conditions; between groups: in either
+  /// 95 % interval by Student's t for pairs, between groups by Welch's t; empty with fewer than 3 pairs, or
+  /// fewer than 3 participants in a group
+  std::optional<Estimate> difference;
+  /// the difference divided by the standard deviation of the differences (Cohen's d_z), between groups by the
+  /// pooled standard deviation in the groups (Cohen's d_s); empty if that is 0
   std::optional<double> standardised;
+  bool between_groups = false;
 };
 
 /// Both return their entries in the order in which measures and conditions first occur. A person must not

@@ -29,7 +29,8 @@ MixedTheta gradient_of(Laplace& laplace, const MixedTheta& theta) {
   return gradient;
 }
 
-/// Differences of gradients would lose half of the digits twice, so this takes a wider step.
+/// The step is ten times that of the gradient, because rounding errors are divided by the square of the step
+/// here.
 Matrix5 hessian_of(Laplace& laplace, const MixedTheta& theta, double centre) {
   Matrix5 hessian;
   const auto at = [&](int i, double di, int j, double dj) {
@@ -129,7 +130,7 @@ MixedMinimum minimise(Laplace& laplace, const MixedTheta& start) {
   auto gradient = gradient_of(laplace, best.theta);
   for (int i = 0; i < kDescents; ++i) {
     MixedTheta direction = -inverse * gradient;
-    if (direction.norm() > 1) direction /= direction.norm();  // a longer step leaves where the model holds
+    if (direction.norm() > 1) direction /= direction.norm();  // the quadratic model fails for longer steps
     const double slope = gradient.dot(direction);
     if (!(slope < -1e-12)) break;
     const auto [moved, value] = descend(laplace, best.theta, best.negative_log, direction, slope);

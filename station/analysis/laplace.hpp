@@ -28,7 +28,8 @@ class Laplace {
   Laplace(Function function, double lapse, const std::vector<PersonAxis>& people)
       : function_(function), lapse_(lapse), people_(people), mode_(people.size(), Eigen::Vector2d::Zero()) {}
 
-  /// Negative logarithm of the marginal likelihood, in nats. Begins at the modes of the previous call.
+  /// Negative logarithm of the marginal likelihood, in nats. The search for each participant's mode begins at
+  /// the mode that the previous call found.
   double negative_log(const MixedTheta& theta);
 
   /// The mode of a participant's standardised random effects at the last theta of negative_log(), and the
@@ -54,8 +55,8 @@ class Laplace {
   std::vector<Eigen::Vector2d> mode_;
 };
 
-/// Minimises by the method of Broyden, Fletcher, Goldfarb and Shanno with central differences, and then by
-/// Newton's method. `hessian` is that of the minimum.
+/// Minimises by the BFGS method (Broyden, Fletcher, Goldfarb, Shanno) with central differences, and then by
+/// Newton's method. `hessian` is the Hessian at the minimum.
 struct MixedMinimum {
   MixedTheta theta;
   double negative_log = 0;

@@ -114,15 +114,16 @@ std::optional<Eigen::Matrix2d> covariance_of(const MixedMinimum& found) {
   return std::nullopt;
 }
 
-/// From the coefficients on the scaled axis to those on the axis: b0 = s0 - s1 centre / width, b1 = s1 /
-/// width.
+/// Returns the matrix that converts coefficients on the scaled axis to coefficients on the original axis: b0
+/// = s0 - s1 centre / width, b1 = s1 / width.
 Eigen::Matrix2d unscaling(const Scaled& data) {
   Eigen::Matrix2d map;
   map << 1, -data.centre / data.width, 0, 1 / data.width;
   return map;
 }
 
-/// The threshold of these coefficients in the unit of the level, with the interval from their covariance.
+/// Returns the threshold that follows from these coefficients, in the unit of the level, with the interval
+/// that follows from their covariance.
 std::optional<Estimate> threshold_of(const Eigen::Vector2d& b, const Eigen::Matrix2d& covariance, double t,
                                      const MixedOptions& options) {
   if (!(b[1] > 0)) return std::nullopt;
@@ -150,7 +151,7 @@ void add_people(const Scaled& data, const MixedMinimum& found, const Eigen::Matr
     const Eigen::Matrix2d inner =
         factor.transpose() * person.information * factor + Eigen::Matrix2d::Identity();
     const Eigen::Matrix2d conditional = factor * inner.inverse() * factor.transpose();
-    // what remains of an error of the group's parameters once the participant's answers are known
+    // the part of an error in the group's parameters that still affects this participant's estimate
     const Eigen::Matrix2d remains = Eigen::Matrix2d::Identity() - conditional * person.information;
     const Eigen::Vector2d b = map * (found.theta.head<2>() + factor * person.mode);
     const Eigen::Matrix2d covariance =

@@ -25,7 +25,7 @@ struct MixedOptions {
   bool tied_to_lapse = false;
 };
 
-/// What partial pooling says of one participant.
+/// The estimates of partial pooling for one participant.
 struct PooledPerson {
   std::string person;
   int trials = 0;

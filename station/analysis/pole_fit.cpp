@@ -17,9 +17,9 @@ using PoleValue = std::complex<double>;
 using PoleMatrix = Eigen::MatrixXcd;
 using PoleVector = Eigen::VectorXcd;
 
-constexpr int kRounds = 12;  // of moving the poles; they settle after about five
+constexpr int kRounds = 12;  // how often all poles are moved; they settle after about five rounds
 constexpr int kSteps = 40;
-constexpr int kBackground = 3;  // coefficients of the parabola
+constexpr int kBackground = 3;  // number of coefficients of the parabola
 
 /// Frequencies are mapped to -1 ... 1, so that the columns have similar sizes.
 struct PoleScale {
@@ -38,8 +38,8 @@ PoleMatrix pole_columns(const Eigen::VectorXd& x, const PoleVector& poles) {
   return columns;
 }
 
-/// One round of vector fitting: fits response * (1 + sum of c / (x - pole)) with the same poles. The zeros of
-/// the bracket are better poles.
+/// One round of vector fitting. With the poles held fixed, fits response * (1 + sum of c / (x - pole)) by a
+/// sum of the same form as the response. The zeros of the bracket are better estimates of the poles.
 PoleVector better_poles(const Eigen::VectorXd& x, const PoleVector& response, const PoleVector& poles) {
   const auto n = poles.size();
   const PoleMatrix columns = pole_columns(x, poles);
@@ -51,7 +51,7 @@ PoleVector better_poles(const Eigen::VectorXd& x, const PoleVector& response, co
   PoleMatrix moved = poles.asDiagonal();
   moved.rowwise() -= solution.tail(n).transpose();
   PoleVector better = Eigen::ComplexEigenSolver<PoleMatrix>(moved, false).eigenvalues();
-  // a vibration that grows is impossible: mirror such poles
+  // A pole on the other side would mean a vibration that grows, which is impossible: mirror it.
   for (auto& pole : better) pole = {pole.real(), std::max(std::abs(pole.imag()), 1e-6)};
   return better;
 }
@@ -77,7 +77,7 @@ PolesTried with_poles(const Eigen::VectorXd& x, const PoleVector& response, int 
   return best;
 }
 
-/// The derivatives of the response by all parameters: weights, background, poles.
+/// Returns the derivatives of the fitted response with respect to all parameters: weights, background, poles.
 PoleMatrix pole_slopes(const Eigen::VectorXd& x, const PolesTried& at) {
   const auto n = at.poles.size();
   PoleMatrix slopes(x.size(), 2 * n + kBackground);
@@ -88,8 +88,9 @@ PoleMatrix pole_slopes(const Eigen::VectorXd& x, const PolesTried& at) {
   return slopes;
 }
 
-/// Moves the poles to the least residual. (Vector fitting minimises a residual that is weighted with the
-/// distance from the poles, so noise shifts them.) Steps are damped as by Levenberg and Marquardt.
+/// Moves the poles to where the residual is smallest. (Vector fitting alone minimises a residual that is
+/// weighted by the distance from the poles, so noise shifts the poles.) Damps the steps as Levenberg and
+/// Marquardt do.
 PolesTried refined(const Eigen::VectorXd& x, const PoleVector& response, PolesTried best) {
   double damping = 1e-3;
   for (int step = 0; step < kSteps && damping < 1e6; ++step) {
@@ -115,13 +116,14 @@ PolesTried refined(const Eigen::VectorXd& x, const PoleVector& response, PolesTr
   return best;
 }
 
-/// Adds the standard errors, from the derivatives of the response by all parameters.
+/// Adds the standard errors, computed from the derivatives with respect to all parameters.
 PoleFit with_errors(const Eigen::VectorXd& x, const PolesTried& best, double noise, const PoleScale& scale) {
   const auto n = best.poles.size();
   const PoleMatrix slopes = pole_slopes(x, best);
   const double points = static_cast<double>(x.size()), free = points - static_cast<double>(slopes.cols());
   const double sd = std::max(noise, best.residual * std::sqrt(points / std::max(free, 1.0)));
-  // poles that share their task have nearly equal columns, so use a decomposition that finds the rank
+  // two poles that describe the same resonance have nearly equal columns, so use a decomposition that
+  // determines the rank
   const PoleMatrix inverse = slopes.completeOrthogonalDecomposition().pseudoInverse();
   PoleFit fit;
   fit.residual = best.residual;
@@ -147,9 +149,10 @@ PoleFit with_errors(const Eigen::VectorXd& x, const PolesTried& best, double noi
   return fit;
 }
 
-/// The fit with the number of poles that the Bayesian information criterion prefers, and the next one. A fit
-/// that merely reaches the noise is not enough: what it leaves out is the same at many neighbouring points,
-/// and shifts the poles by more than their standard errors.
+/// Returns two fits: the one whose number of poles the Bayesian information criterion prefers, and the one
+/// with the next number. It would not do to stop at the first fit whose residual is as small as the noise.
+/// The part of the response that such a fit misses is similar at many neighbouring frequencies, so it shifts
+/// the poles by more than their standard errors.
 std::pair<PolesTried, PolesTried> best_of(const Eigen::VectorXd& x, const PoleVector& response,
                                           int most_poles) {
   const double points = static_cast<double>(x.size());
@@ -166,7 +169,8 @@ std::pair<PolesTried, PolesTried> best_of(const Eigen::VectorXd& x, const PoleVe
   return {tried[best], tried[other]};
 }
 
-/// Adds to the standard errors by how much each pole moves if the number of poles is chosen differently.
+/// Increases the standard errors by the distance that each pole moves if the number of poles is chosen
+/// differently.
 void add_choice(PoleFit& fit, const PoleFit& other) {
   for (auto& pole : fit.poles) {
     const auto nearest = std::min_element(

@@ -5,11 +5,11 @@
 
 namespace turnpoint::analysis {
 
-/// A resonance of a response. In the response to a tone, it is the term weight / (frequency - pole), with the
-/// pole at frequency_Hz (1 + i / (2 quality_factor)).
+/// One resonance. It contributes the term weight / (frequency - pole) to the response to a tone; the pole is
+/// at frequency_Hz (1 + i / (2 quality_factor)).
 struct FittedPole {
   double frequency_Hz = 0, quality_factor = 0;
-  /// Standard errors. They include by how much the pole moves with another number of poles.
+  /// Standard errors. They include the distance that the pole moves if another number of poles is fitted.
   double frequency_sd_Hz = 0, quality_sd = 0;
   std::complex<double> weight;
   double weight_share = 0;  ///< standard error of the weight, relative to its size
@@ -28,9 +28,9 @@ struct PoleFit {
 };
 
 /// Fits poles by vector fitting (B. Gustavsen, A. Semlyen, IEEE Trans. Power Delivery 14 (1999) 1052), with
-/// as many poles as the Bayesian information criterion prefers, at most `most_poles`. `noise` is the least
-/// rms error (complex) of one point from which standard errors are computed. Frequencies ascend. Throws
-/// terms::UsageError for fewer than 20 points.
+/// as many poles as the Bayesian information criterion prefers, at most `most_poles`. Standard errors assume
+/// an rms error of at least `noise` (complex) for each point, even if the residual is smaller. Frequencies
+/// ascend. Throws terms::UsageError for fewer than 20 points.
 PoleFit fit_poles(std::span<const double> frequency_Hz, std::span<const std::complex<double>> response,
                   double noise, int most_poles = 24);
 

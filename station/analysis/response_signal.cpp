@@ -20,13 +20,14 @@ constexpr double kWidest = 0.8;
 
 double log_cdf(double z) { return std::log(std::max(normal_cdf(z), 1e-300)); }
 
-/// Log likelihood of the answers at one lag for a distance between the two stimuli, at the best criterion.
+/// Returns the log likelihood of the answers at one lag for a distance between the two stimuli, with the
+/// criterion at which it is highest.
 double log_likelihood(const YesNoCounts& n, double distance) {
   const auto at = [&](double c) {
     return n.hits * log_cdf(distance / 2 - c) + n.misses * log_cdf(c - distance / 2) +
            n.false_alarms * log_cdf(-distance / 2 - c) + n.correct_rejections * log_cdf(distance / 2 + c);
   };
-  // it is concave in the criterion
+  // As a function of the criterion, the log likelihood is concave, so a ternary search finds its maximum.
   double low = -5, high = 5;
   for (int i = 0; i < 40; ++i) {
     const double left = low + (high - low) / 3, right = high - (high - low) / 3;

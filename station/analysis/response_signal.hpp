@@ -12,7 +12,7 @@ namespace turnpoint::analysis {
 /// Sensitivity at one lag of the response signal.
 struct LagPoint {
   double lag_s = 0;   ///< from response_zero to the signal
-  double time_s = 0;  ///< mean response time, from response_zero: the lag and what people need to answer
+  double time_s = 0;  ///< mean response time, from response_zero (so it includes the lag)
   YesNoCounts counts;
   std::optional<Estimate> d_prime;  ///< as in Detection; empty if one of the two stimuli was never answered
 };

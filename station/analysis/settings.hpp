@@ -8,7 +8,8 @@
 
 namespace turnpoint::analysis {
 
-/// The settings of one side of the starting positions, with intervals as below.
+/// The settings from trials in which the slider started on the same side; the intervals are those of
+/// Settings.
 struct SideSettings {
   int settings = 0;
   std::optional<Estimate> mean, sd;

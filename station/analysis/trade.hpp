@@ -39,7 +39,9 @@ struct InstructionResult {
 struct Difference {
   std::string first, second;
   std::string measure;  ///< "proportion correct", "median response time", ...
-  std::string unit;     ///< "s", "proportion", "s = 0.1" (EZ's scale), "SD" (of BIS over cells)
+  /// "s"; "proportion"; "s = 0.1" for EZ-diffusion, after its scaling parameter; "SD" for BIS, after the
+  /// standard deviation over cells
+  std::string unit;
   std::optional<Estimate> estimate;
 };
 

@@ -10,7 +10,8 @@ namespace turnpoint::analysis {
 using terms::Outcome;
 using terms::TrialType;
 
-/// On which side of the others a slider's starting position was.
+/// The side from which a slider started: one of the protocol's starts below, or one of its starts above;
+/// `none` if the trial has no slider or its start is in neither list.
 enum class StartSide { none, below, above };
 
 /// One presented trial as the analysis sees it; times in seconds. Missing values are std::nullopt: a timeout

@@ -8,7 +8,7 @@
 #include "station/text/number.hpp"
 #include "station/text/reader.hpp"
 
-// What the readers and writers of the tables in a calibration file share.
+// Helpers that both the readers and the writers of the tables in a calibration file use.
 namespace turnpoint::calibration {
 
 std::string quoted(const std::string& plain);

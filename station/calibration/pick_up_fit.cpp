@@ -16,11 +16,12 @@ namespace {
 
 using text::number;
 
-// A scatter of more than 15 % is no noise of an instrument: a wrong unit, place or sensor.
+// A scatter of more than 15 % cannot be noise of the instrument. It means a wrong unit, place or sensor.
 constexpr double kMostScatter = 0.15;
 constexpr std::size_t kLeastForPatch = 5;
-// Bending is proportional to the square of the wave number: exponent 1 in a plate, 2 in a membrane. A
-// patch that is not short against the wave has less. Outside of these limits, something else was measured.
+// Limits of the exponent of a patch. A patch responds to bending, which is proportional to the square of the
+// wave number: exponent 1 in a plate, 2 in a membrane, and less if the patch is not short compared with the
+// wavelength. An exponent outside these limits means that something else was measured.
 constexpr double kLeastExponent = -1, kMostExponent = 4;
 
 double amplitude_at(const rig::PickUpResponse& response, double frequency_Hz) {

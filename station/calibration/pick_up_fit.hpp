@@ -23,8 +23,8 @@ struct PickUpScale {
   double um_per_full_scale = 0;
   double at_Hz = 0;
   double exponent = 0;
-  /// Relative standard deviation within the measured range of frequencies: the fit's and that of the
-  /// instrument.
+  /// Relative standard deviation within the measured range of frequencies: the errors of the fit and of the
+  /// instrument together.
   double sd = 0;
 
   double at(double frequency_Hz) const;
@@ -44,9 +44,9 @@ struct SweptPoint {
   std::complex<double> response;
 };
 
-/// Fits resonances to a sweep. The table then has the fitted values, which contain less noise. If the fit
-/// leaves residuals above twice the noise, the measured values stay. `noise` is the rms of one response's
-/// error (complex).
+/// Fits resonances to a sweep. The table of the result then contains the fitted values, which are less noisy.
+/// If the residuals of the fit are above twice the noise, the table keeps the measured values. `noise` is the
+/// rms error of one response (complex).
 PickUp fit_pick_up(int channel, int drive_channel, const std::vector<SweptPoint>& sweep, double noise);
 
 /// The displacement at one frequency for a drive of full scale, measured at the place of a pick-up.

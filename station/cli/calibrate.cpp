@@ -180,11 +180,14 @@ void calibrate(const Options& options, Context& context) {
   const auto rig = rig::load(options.rig);
   if (options.sweep) return sweep(options, rig, context);
   if (options.panel) return calibrate_panel(options, rig, context);
-  if (options.sensors.pick_up) {
+  if (options.sensors.pick_up && options.sensors.forces)
+    throw UsageError("calibrate: --pickup and --forces are two measurements; give one of them");
+  if (options.sensors.pick_up || options.sensors.forces) {
     auto sensors = options.sensors;
     sensors.full_scale = options.plan.full_scale, sensors.table_full_scale = options.full_scale;
     sensors.arm = options.arm, sensors.rig_path = options.rig, sensors.out = options.out;
-    return calibrate_pick_ups(sensors, rig, context);
+    return sensors.forces ? calibrate_forces(sensors, rig, context)
+                          : calibrate_pick_ups(sensors, rig, context);
   }
   const auto measurements = measurements_of(options);
   auto made = maintenance::calibrate(rig, measurements, options.valid_days, options.note);

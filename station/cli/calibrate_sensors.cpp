@@ -8,6 +8,7 @@
 #include "station/cli/shared_options.hpp"
 #include "station/maintenance/pick_up_sweep.hpp"
 #include "station/session/session.hpp"
+#include "station/session/stage.hpp"
 #include "station/system/write_file.hpp"
 #include "station/text/number.hpp"
 
@@ -39,10 +40,11 @@ Json to_json(const calibration::PickUp& pick_up) {
 
 void print(std::ostream& out, const calibration::PickUp& pick_up) {
   const auto& points = pick_up.response.points;
-  fmt::print(out, "pick-up on channel {}, output channel {}: {} to {} kHz, uncertainty {} % of the best\n",
-             pick_up.response.channel, pick_up.response.drive_channel,
-             number(1e-3 * points.front().frequency_Hz, 4), number(1e-3 * points.back().frequency_Hz, 4),
-             number(100 * pick_up.response_sd, 2));
+  fmt::print(
+      out,
+      "pick-up on channel {}, output channel {}: {} to {} kHz, uncertainty {} % of the largest response\n",
+      pick_up.response.channel, pick_up.response.drive_channel, number(1e-3 * points.front().frequency_Hz, 4),
+      number(1e-3 * points.back().frequency_Hz, 4), number(100 * pick_up.response_sd, 2));
   for (const auto& r : pick_up.resonances)
     fmt::print(out, "  resonance {} +- {} Hz, quality factor {} +- {}\n", number(r.frequency_Hz, 6),
                number(r.frequency_sd_Hz, 2), number(r.quality_factor, 4), number(r.quality_sd, 2));
@@ -61,6 +63,8 @@ void print(std::ostream& out, const calibration::PickUp& pick_up) {
 void add_sensor_options(Command& command, SensorOptions& options) {
   command.add_flag("--pickup", options.pick_up,
                    "Sweep each transducer, and fit the response of the pick-ups to what they capture");
+  command.add_flag("--forces", options.forces,
+                   "Calibrate the force cells with dead weights; asks for each weight and waits for Enter");
   command
       .add_option("--sensor", options.sensor,
                   "With --pickup: patch (a piezo patch; its table needs 5 frequencies) | accelerometer (one "

@@ -9,7 +9,7 @@ namespace turnpoint::cli {
 /// Options of `turnpoint calibrate` for the sensors of a rig. The last five come from the options that all
 /// kinds of calibration share.
 struct SensorOptions {
-  bool pick_up = false;
+  bool pick_up = false, forces = false;
   std::string sensor = "patch", vibrometer, accelerometer;
   double instrument_percent = 5;
   double full_scale = 0.1, table_full_scale = 1;
@@ -21,5 +21,8 @@ void add_sensor_options(Command& command, SensorOptions& options);
 
 /// `calibrate --pickup`: sweeps, fits, and writes the calibration file.
 void calibrate_pick_ups(const SensorOptions& options, const rig::Rig& rig, Context& context);
+
+/// `calibrate --forces`: asks for dead weights on the terminal, and writes the calibration file.
+void calibrate_forces(const SensorOptions& options, const rig::Rig& rig, Context& context);
 
 }  // namespace turnpoint::cli

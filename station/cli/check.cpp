@@ -93,7 +93,8 @@ Json to_json(const simulation::Check& check, const std::string& signal) {
                         {"condition", code.condition.empty() ? Json(nullptr) : Json(code.condition)},
                         {"code", code.code}});
   for (const auto& block : check.blocks)
-    blocks.push_back({{"name", block.name},
+    blocks.push_back({{"visit", block.visit.empty() ? Json(nullptr) : Json(block.visit)},
+                      {"name", block.name},
                       {"instruction", block.instruction.empty() ? Json(nullptr) : Json(block.instruction)},
                       {"practice", block.practice},
                       {"trials", spread_json(block.trials)}});
@@ -189,13 +190,15 @@ void print(std::ostream& out, const simulation::Check& check, const std::string&
   const bool known = check.cues.not_compared.empty() && !check.cues.stopped;
   fmt::print(out, "{} {} on \"{}\": {}\n", path, known ? "is good" : "can run", check.rig_name, check.title);
   for (const auto& block : check.blocks)
-    fmt::print(out, "  {}{}{}: {} trials\n", block.practice ? "practice block " : "block ", block.name,
+    fmt::print(out, "  {}{}{}{}: {} trials\n", block.visit.empty() ? "" : block.visit + ": ",
+               block.practice ? "practice block " : "block ", block.name,
                block.instruction.empty() ? "" : " (" + block.instruction + ")", range(block.trials, 1));
   if (check.simulated_sessions > 0)
     fmt::print(
         out,
-        "Trials: {}. Duration: {} minutes, with the time that a person needs to read, explore and set. "
+        "{}Trials: {}. Duration: {} minutes, with the time that a person needs to read, explore and set. "
         "Medians of {}{} simulated sessions; in brackets the range of nine sessions in ten\n",
+        check.blocks.empty() || check.blocks.front().visit.empty() ? "" : "The longest session: ",
         range(check.trials, 1), range(check.duration_s, 60), check.simulated_sessions,
         check.simulated_sessions < check.wanted_sessions ? fmt::format(" of {}", check.wanted_sessions) : "");
   const auto extremes = extremes_of(check.survey);

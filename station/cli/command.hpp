@@ -64,6 +64,7 @@ void add_protocols(CommandLine& app, Context& context);
 void add_report(CommandLine& app, Context& context);
 void add_figures(CommandLine& app, Context& context);
 void add_power(CommandLine& app, Context& context);
+void add_design(CommandLine& app, Context& context);
 void add_preview(CommandLine& app, Context& context);
 void add_station(CommandLine& app, Context& context);
 void add_push(CommandLine& app, Context& context);

@@ -46,7 +46,8 @@ std::string joined(const std::vector<std::string>& words, const std::string& sep
 std::string suggestion(const std::string& word, const std::vector<std::string>& known,
                        const std::string& advice) {
   auto near = text::nearest(word, known);
-  for (const auto& candidate : known)  // the beginning of a name, such as --lang, may be far from the whole
+  // by edit distance, the beginning of a name (--lang) may be far from the whole name, so look for it first
+  for (const auto& candidate : known)
     if (near.empty() && word.size() > 3 && candidate.starts_with(word)) near = candidate;
   return near.empty() ? "; " + advice : fmt::format("; did you mean {}? {}", near, advice);
 }

@@ -15,7 +15,7 @@ class Option;
 
 namespace turnpoint::cli {
 
-/// A check of an option's value, and the description of allowed values in the help.
+/// A check of an option's value, together with the description of the allowed values for the help.
 struct Check {
   std::string allowed;
   /// given the value, returns what is wrong with it; "" if nothing is
@@ -39,7 +39,7 @@ class Option {
   Option* value(const std::string& kind);
   /// refuses a command line that has both this option and the other
   Option* excludes(const Option* other);
-  /// replaces the value by `change` of it
+  /// replaces the value by the result of `change`
   Option* transform(std::function<std::string(const std::string& value)> change);
 
   bool is(const CLI::Option* option) const { return option == option_; }

@@ -38,6 +38,7 @@ constexpr Add kCommands[] = {add_map,
                              add_amplifier_off,
                              add_calibrate,
                              add_figures,
+                             add_design,
                              add_preview,
                              add_station,
                              add_operator_code,
@@ -48,8 +49,9 @@ constexpr Add kCommands[] = {add_map,
 
 constexpr auto kDescription = "Turnpoint: a psychophysics station for ultrasonic tapered friction displays";
 
-/// `turnpoint help --man FOLDER` and `turnpoint help --complete WORD...`, with which the package is built and
-/// a shell completes words. Returns false for any other command line.
+/// Handles two commands that programs call, not people: `turnpoint help --man FOLDER`, which writes the
+/// manual pages when the package is built, and `turnpoint help --complete WORD...`, by which a shell
+/// completes words. Returns false for any other command line.
 bool help_for_tools(const CommandLine& app, const std::vector<std::string>& words, std::ostream& out) {
   if (words.size() < 3 || words[0] != "help") return false;
   if (words[1] == "--man")

@@ -6,8 +6,9 @@
 
 namespace turnpoint::cli {
 
-/// What a shell may offer for the last of these words, which follow the program's name and may be empty.
-/// Besides words, the list may have ":files" and ":folders", for which the shell offers what exists.
+/// Returns what a shell may offer to complete the last of these words. The words follow the program's name;
+/// the last one may be empty. Besides words, the result may contain ":files" and ":folders": the shell then
+/// offers existing files or folders.
 std::vector<std::string> completions(const std::vector<CommandText>& commands,
                                      std::vector<std::string> words);
 

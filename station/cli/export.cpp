@@ -48,7 +48,8 @@ void export_data(Options options, Context& context) {
   selection.format = format_named(options.format);
   selection.separator = single("--separator", options.separator);
   selection.decimal = single("--decimal", options.decimal);
-  const collector::ReadableDatabase database(options.database);
+  const collector::ReadableDatabase database(
+      options.database, {selection.session_id, selection.participant, selection.protocol_id});
   auto files = store::export_data(database.path(), options.out, selection);
   if (!options.sign.empty()) {
     std::vector<std::string> paths;

@@ -50,7 +50,7 @@ std::optional<double> contrast_dB(const std::optional<double>& base, const std::
   return 20 * std::log10(1 - *friction / *base);
 }
 
-/// How a finger changes a scene and, if there is a base scene, the contrast to it without and with the
+/// How a finger changes a scene; if there is a base scene, also the contrast to it without and with the
 /// finger.
 struct Touched {
   scene::UnderFinger under;

@@ -70,7 +70,8 @@ Json to_json(const std::vector<simulation::CueReport>& cues) {
   return list;
 }
 
-/// What was found, from sessions of this process or from the files of parts.
+/// The result of a power study, either from sessions that this process simulated or from the files of its
+/// parts.
 struct Found {
   simulation::Power power;
   std::vector<simulation::CueReport> cues;

@@ -57,7 +57,7 @@ void print(std::ostream& out, const collector::PushReport& report) {
   for (const auto& path : report.withdrawn.remaining_copies)
     fmt::print(out, "{} still contains withdrawn data or cannot be read; remove it by hand\n", path);
   if (!report.waiting.empty())
-    fmt::print(out, "what the server sent waits for the next push: {}\n", report.waiting);
+    fmt::print(out, "withdrawals or places from the server wait for the next push: {}\n", report.waiting);
 }
 
 struct Options {
@@ -65,7 +65,7 @@ struct Options {
   std::vector<std::string> places;
 };
 
-/// Reads PROTOCOL=N.
+/// Reads the argument of --places: PROTOCOL=N.
 std::pair<std::string, std::int64_t> place_option(const std::string& word) {
   const auto at = word.rfind('=');
   std::int64_t count = 0;
@@ -130,7 +130,8 @@ void add_receive(CommandLine& app, Context& context) {
     std::string database, file, backup_directory;
   };
   auto options = std::make_shared<Options>();
-  auto* command = app.add_subcommand("receive", "Carry out what `push --received` got from the collector");
+  auto* command =
+      app.add_subcommand("receive", "Apply to the database what `push --received` got from the collector");
   add_database(*command, options->database);
   command->add_option("file", options->file, "File that push wrote")->value("FILE")->required();
   command

@@ -127,9 +127,9 @@ void report_study(Options options, Context& context) {
 void report_databases(Options options, Context& context) {
   std::deque<collector::ReadableDatabase> readable;
   for (auto& database : options.databases) {
-    // The address of a collector may contain a password.
+    // Do not show the address of a collector: it may contain a password.
     options.names.push_back(collector::is_server(database) ? "collector" : database);
-    database = readable.emplace_back(database).path();
+    database = readable.emplace_back(database, options.filter).path();
   }
   if (options.study)
     report_study(options, context);
@@ -156,9 +156,9 @@ void add_report(CommandLine& app, Context& context) {
       "--study", options->study,
       "Report all participants of a protocol together, without those whom its [exclusion] leaves "
       "out");
-  command->add_option(
-      "--protocol-version", options->protocol_version,
-      "With --study: only sessions with this version, or with a text whose SHA-256 begins so");
+  command->add_option("--protocol-version", options->protocol_version,
+                      "With --study: only sessions with this version of the protocol, or with a protocol "
+                      "text whose SHA-256 begins with this");
   command->add_option("--mode", options->mode, "With --study: only sessions of this mode")
       ->check(one_of({"live", "pilot", "simulated"}));
   command

@@ -163,6 +163,13 @@ std::shared_ptr<setup::RunRequest> add_run_options(Command& command) {
       .add_option("--calibration", request->calibration,
                   "Calibration file; by default the newest one beside the rig file")
       ->value("FILE");
+  command
+      .add_option("--planned-session", request->planned_session,
+                  "Which of the protocol's planned sessions to run; by default the participant's next one")
+      ->check(range(1, 100));
+  command.add_option("--early", request->early,
+                     "Reason to begin before the least number of days between sessions has passed; it is "
+                     "stored");
   run_command::add_conditions(command, *request);
   return request;
 }

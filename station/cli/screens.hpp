@@ -1,6 +1,7 @@
 #pragma once
 #include <functional>
 #include <optional>
+#include <string>
 
 #include "station/desk/preview.hpp"
 #include "station/maintenance/panel_latency.hpp"
@@ -16,6 +17,12 @@ struct NoScreen : terms::UsageError {
   using UsageError::UsageError;
 };
 
+/// The options of `turnpoint design`.
+struct DesignRequest {
+  std::string file;  ///< the protocol file to change; it need not exist; "" for a new one
+  std::string rig;
+};
+
 /// Functions that need a screen. Only turnpoint-ui provides them; turnpoint starts turnpoint-ui to call them.
 /// Each returns when its window is closed.
 struct Screens {
@@ -26,6 +33,8 @@ struct Screens {
   std::function<void(const setup::StationRequest&)> station;
   /// Shows the scenes of a protocol with sliders for their factors.
   std::function<void(const desk::PreviewRequest&)> preview;
+  /// Shows forms in which a protocol file is made or changed.
+  std::function<void(const DesignRequest&)> design;
   /// Measures the latency of the touch panel against a reference line until the operator accepts the result;
   /// empty if the operator accepts none.
   std::function<std::optional<calibration::PanelLatency>(const maintenance::LatencyRequest&)> latency;

@@ -27,6 +27,8 @@ Json to_json(const store::SessionRecord& session) {
           {"protocol_version", start.protocol_version},
           {"session_index", session.session_index},
           {"sequence_index", session.sequence_index},
+          {"planned_session", start.planned_session ? Json(*start.planned_session) : Json(nullptr)},
+          {"group", start.group.empty() ? Json(nullptr) : Json(start.group)},
           {"run_mode", records::name(start.run_mode)},
           {"status", records::name(session.status)},
           {"status_reason", session.status_reason},
@@ -54,7 +56,7 @@ void print(std::ostream& out, const std::vector<store::SessionRecord>& sessions)
 }
 
 void sessions(const Options& options, Context& context) {
-  const collector::ReadableDatabase database(options.database);
+  const collector::ReadableDatabase database(options.database, options.filter);
   const auto list = store::list_sessions(database.path(), options.filter);
   if (!context.json) return print(context.out, list);
   Json json = Json::array();

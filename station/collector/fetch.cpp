@@ -2,9 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cerrno>
 #include <cstdlib>
 #include <filesystem>
 #include <system_error>
+#include <vector>
 
 #include "station/collector/postgres.hpp"
 #include "station/collector/row_stream.hpp"
@@ -38,22 +41,42 @@ void require_version(Connection& server) {
       "");
 }
 
-/// In a station's file, the newest session has the newest trials. Here, the session whose last trial is
-/// newest.
-std::string order_of(const CollectedTable& table) {
-  if (table.name != "trial") return "ORDER BY " + quoted_list(table.key);
-  return "JOIN (SELECT session_id, max(recorded_realtime_ns) AS newest FROM turnpoint.trial GROUP BY "
-         "session_id) x"
-         " USING (session_id) ORDER BY newest, session_id, trial_index";
+/// True for tables whose rows belong to one session.
+bool is_part_of_session(const CollectedTable& table) {
+  return table.name != "session" && table.name != "tombstone" && table.has("session_id");
 }
 
-void refuse_changed(store::Database& database) {
-  for (const auto& session : store::verify_database(database))
-    if (!session.problems.empty())
-      throw store::StoreError(
-          store::ErrorKind::corrupt,
-          fmt::format("collector: session {} of {}: {}; the rows were changed on the server",
-                      session.session_id, session.participant, session.problems.front()));
+/// Orders trials by the age of their session. In a station's file, readers find the newest session by the row
+/// of its newest trial. So the session whose last trial is the newest is copied last.
+std::string order_of(const CollectedTable& table) {
+  if (table.name != "trial") return "ORDER BY " + quoted_list(table.key);
+  return "ORDER BY newest, session_id, trial_index";
+}
+
+/// `sessions` is the condition that selects sessions; "" for all.
+std::string select(const CollectedTable& table, const std::string& sessions) {
+  std::string sql = fmt::format("SELECT {} FROM turnpoint.{}", column_list(table), table.name);
+  if (table.name == "trial")
+    sql += fmt::format(
+        " JOIN (SELECT session_id, max(recorded_realtime_ns) AS newest FROM turnpoint.trial {} GROUP BY"
+        " session_id) x USING (session_id)",
+        sessions);
+  return fmt::format("COPY ({} {} {}) TO STDOUT (FORMAT binary)", sql, sessions, order_of(table));
+}
+
+std::string condition(const std::vector<store::SessionRecord>& sessions) {
+  std::string list;
+  for (const auto& session : sessions) list += (list.empty() ? "" : ",") + literal(session.session_id);
+  return list.empty() ? "WHERE false" : "WHERE session_id IN (" + list + ")";
+}
+
+void refuse_changed(store::Database& database, const std::string& session_id) {
+  const auto session = store::verify_session(database, session_id);
+  if (!session.problems.empty())
+    throw store::StoreError(
+        store::ErrorKind::corrupt,
+        fmt::format("collector: session {} of {}: {}; the rows were changed on the server",
+                    session.session_id, session.participant, session.problems.front()));
 }
 
 }  // namespace
@@ -62,12 +85,13 @@ bool is_server(const std::string& database) {
   return database.starts_with("postgresql://") || database.starts_with("postgres://");
 }
 
-ReadableDatabase::ReadableDatabase(const std::string& database) : path_(database) {
+ReadableDatabase::ReadableDatabase(const std::string& database, const store::SessionFilter& filter)
+    : path_(database) {
   if (!is_server(database)) return;
   folder_ = make_folder();
   path_ = folder_ + "/collected.sqlite";
   try {
-    fetch(database);
+    fetch(database, filter);
   } catch (...) {
     discard();
     throw;
@@ -81,7 +105,7 @@ void ReadableDatabase::discard() {
   if (!folder_.empty()) fs::remove_all(folder_, ignored);
 }
 
-void ReadableDatabase::fetch(const std::string& address) {
+void ReadableDatabase::fetch(const std::string& address, const store::SessionFilter& filter) {
   Connection server(address);
   require_version(server);
   auto writer = store::open_writer(path_, store::IfMissing::create);
@@ -89,13 +113,17 @@ void ReadableDatabase::fetch(const std::string& address) {
   database.execute("PRAGMA synchronous = OFF");
   const ServerTransaction snapshot(server, "ISOLATION LEVEL REPEATABLE READ READ ONLY");
   store::Transaction transaction(database);
+  const auto copy = [&](const CollectedTable& table, const std::string& sessions) {
+    receive_rows(server, select(table, sessions), table, database);
+  };
   for (const auto& table : collected_tables())
-    receive_rows(server,
-                 fmt::format("COPY (SELECT {0} FROM turnpoint.{1} {2}) TO STDOUT (FORMAT binary)",
-                             column_list(table), table.name, order_of(table)),
-                 table, database);
+    if (!is_part_of_session(table)) copy(table, "");
+  const bool all = filter.session_id.empty() && filter.participant.empty() && filter.protocol_id.empty();
+  const auto chosen = store::list_sessions(database, filter);
+  for (const auto& table : collected_tables())
+    if (is_part_of_session(table)) copy(table, all ? "" : condition(chosen));
   transaction.commit();
-  refuse_changed(database);
+  for (const auto& session : chosen) refuse_changed(database, session.session_id);
 }
 
 }  // namespace turnpoint::collector

@@ -43,7 +43,8 @@ std::int64_t Rows::integer(int row, int column) const {
 void Connection::Finish::operator()(pg_conn* connection) const { PQfinish(connection); }
 
 Connection::Connection(const std::string& to) {
-  // Values in the connection string replace those before it.
+  // libpq takes the last value of a keyword, so values in the connection string replace the defaults before
+  // it.
   const char* const keywords[] = {
       "sslmode",          "connect_timeout", "tcp_user_timeout", "keepalives_idle",
       "application_name", "client_encoding", "dbname",           nullptr};
@@ -59,8 +60,11 @@ void Connection::fail(const pg_result* result) const {
   const char* primary = result != nullptr ? PQresultErrorField(result, PG_DIAG_MESSAGE_PRIMARY) : nullptr;
   const std::string code = state != nullptr ? state : "";
   const std::string message = primary != nullptr ? primary : PQerrorMessage(connection_.get());
+  const bool full = code == "53100";
   throw ServerError(
-      fmt::format("collector: {}", message.empty() ? "the connection was lost" : one_line(message)), code);
+      fmt::format("collector: {}{}", message.empty() ? "the connection was lost" : one_line(message),
+                  full ? "; the server has no room: free some on the server, and push again" : ""),
+      code);
 }
 
 void Connection::require(pg_result* result, int wanted) {
@@ -120,7 +124,7 @@ ServerTransaction::~ServerTransaction() {
   try {
     connection_.query("ROLLBACK");
   } catch (const ServerError&) {
-    // The connection is lost, and with it the transaction.
+    // Ignore the error: the connection is lost, so the server rolls the transaction back.
   }
 }
 

@@ -12,6 +12,7 @@
 #include "station/collector/tables.hpp"
 #include "station/store/checksum.hpp"
 #include "station/store/open.hpp"
+#include "station/store/people.hpp"
 #include "station/store/places.hpp"
 #include "station/store/read.hpp"
 #include "station/store/schema.hpp"
@@ -24,7 +25,7 @@ using store::Database;
 using store::Statement;
 using What = PushedSession::What;
 
-/// What the server has of a session.
+/// What the server already has of a session.
 struct Known {
   store::Link last;
   std::int64_t annotations = 0;
@@ -94,7 +95,7 @@ std::int64_t value_of(const store::Link& link, const std::string& column) {
   return column == "last_trial" ? link.last.trial : link.last.event;
 }
 
-/// Sends the rows of one table that belong to the session ?1 and that the server lacks.
+/// Sends those rows of one table that belong to the session ?1 and that the server does not have.
 std::int64_t send_table(Database& database, const CollectedTable& table, const store::SessionRecord& session,
                         const store::Link& last, Connection& server) {
   std::string where = "session_id = ?1";
@@ -104,7 +105,8 @@ std::int64_t send_table(Database& database, const CollectedTable& table, const s
     where = "(station_id, participant) = (SELECT station_id, participant FROM session WHERE session_id = ?1)";
   for (const auto* key : {"protocol_key", "rig_key", "calibration_id"})
     if (table.key.front() == key) {
-      if (last.index >= 0) return 0;  // the session came with its protocol, rig and calibration
+      // Protocol, rig and calibration were sent with the session's first rows.
+      if (last.index >= 0) return 0;
       where = fmt::format("{0} = (SELECT {0} FROM session WHERE session_id = ?1)", key);
     }
   if (table.name == "link") where += " AND link_index > ?2";
@@ -155,7 +157,7 @@ std::string conflict_of(Database& database, const std::string& id, const store::
   return "";
 }
 
-/// Errors after which other sessions cannot be stored either.
+/// True for errors after which the server cannot store any other session either.
 bool is_fatal(const std::string& state) {
   return state.empty() || state.starts_with("08") || state.starts_with("53") || state.starts_with("57") ||
          state.starts_with("58") || state.starts_with("XX");
@@ -197,9 +199,9 @@ std::vector<std::int64_t> lease_places(Database& database, const std::string& pr
                                        std::int64_t wanted, Connection& server, PushReport& report) {
   const auto used = store::used_places(database, protocol_id);
   std::vector<std::int64_t> leased;
-  // The first answer says what this station has, also if an earlier answer was lost on the way. The server
-  // may lease places that are used here by a participant whom it does not know yet; then a few more are
-  // needed.
+  // The first answer lists the places that this station already has, even if an earlier answer was lost on
+  // the way. The server may lease a place that is in use here, because it does not know that participant yet.
+  // Then ask for a few more.
   for (std::int64_t more = 0, free = 0;; more = wanted - free) {
     const auto rows = server.query("SELECT place FROM turnpoint.lease_places($1, $2) place",
                                    {protocol_id, std::to_string(more)});
@@ -231,7 +233,8 @@ void use(const Received& received, const PushOptions& options, PushReport& repor
   }
 }
 
-/// The station gives up its places before the server may lease them to another.
+/// Gives up the places in this station's database first. Only then may the server lease them to another
+/// station.
 void return_places(const PushOptions& options, Connection& server) {
   for (const auto& protocol_id : options.return_places) {
     std::string list;
@@ -274,7 +277,7 @@ void push_sessions(Database& snapshot, const std::set<std::string>& stations, co
   for (const auto& session : store::list_sessions(snapshot)) {
     const auto& station = session.start.station_id;
     const auto it = known.find(session.session_id);
-    if (withdrawn.count(session.session_id) != 0) continue;  // still to be deleted here
+    if (withdrawn.count(session.session_id) != 0) continue;  // withdrawn, but not deleted here yet
     if (stations.count(station) == 0)
       foreign.insert(station);
     else if (session.status == store::SessionStatus::running)
@@ -302,7 +305,8 @@ PushReport push(const PushOptions& options) {
     store::copy_database(reader, snapshot);
   }
   push_sessions(snapshot, stations, received, server, report);
-  // After the sessions, because they tell the server which places are taken.
+  server.query("SELECT turnpoint.store_joins($1::json)", {joins_json(store::list_joins(snapshot))});
+  // Lease places after sending the sessions, because the sessions tell the server which places are taken.
   for (const auto& [protocol_id, wanted] : options.places)
     received.places[protocol_id] = lease_places(snapshot, protocol_id, wanted, server, report);
   if (!received.places.empty()) use(received, options, report);

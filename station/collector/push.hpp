@@ -12,11 +12,12 @@ struct PushOptions {
   std::string database;
   std::string to;                ///< connection string of libpq
   std::string backup_directory;  ///< as in store::WithdrawOptions, for withdrawals that come from the server
-  /// File for what the server sent (received.hpp); "" carries it out at once on the database.
+  /// File into which to write what the server sent (received.hpp). With "", its withdrawals and places are
+  /// carried out at once on the database.
   std::string received;
-  /// for each protocol, how many free places in its counterbalancing this station is to have in hand
+  /// for each protocol, how many free places in its counterbalancing this station should hold afterwards
   std::map<std::string, std::int64_t> places;
-  /// protocols whose leased places are given back; this station then counts alone again
+  /// protocols whose leased places are given back; this station then assigns places by itself again
   std::vector<std::string> return_places;
 };
 
@@ -24,7 +25,7 @@ struct PushedSession {
   enum class What {
     added,
     extended,   ///< the server had an earlier part of the session
-    unchanged,  ///< the server had it all
+    unchanged,  ///< the server already had the whole session
     refused,    ///< see `problem`; the server stored nothing
   };
   std::string session_id, participant, station_id;
@@ -37,27 +38,29 @@ struct PushedSession {
 const char* name(PushedSession::What what);
 
 struct PushReport {
-  std::vector<PushedSession> sessions;  ///< sessions of the stations for which the server knows this role
+  std::vector<PushedSession> sessions;  ///< sessions of the stations that this role may send
   std::int64_t running = 0;             ///< sessions that have not ended; they are sent later
-  std::map<std::string, std::int64_t> places;  ///< for each protocol asked for, the free places in hand
-  std::vector<std::string> foreign;            ///< stations in the database for which this role may not speak
-  store::Withdrawal withdrawn;                 ///< what was withdrawn here because the server says so
-  /// why what the server sent could not be carried out here, for example because a session is running; "" if
-  /// it was
+  /// for each protocol asked for, the number of free places that this station now holds
+  std::map<std::string, std::int64_t> places;
+  std::vector<std::string> foreign;  ///< stations in the database whose sessions this role may not send
+  store::Withdrawal withdrawn;       ///< what was withdrawn here because the server says so
+  /// why the withdrawals and places from the server could not be carried out here, for example because a
+  /// session is running; "" if they were
   std::string waiting;
 
-  bool complete() const;  ///< false if a session was refused, or what the server sent still waits
+  bool complete() const;  ///< false if a session was refused, or if withdrawals or places from the server
+                          ///< still wait to be carried out
 };
 
 /// Sends the sessions that have ended to a collector, exchanges withdrawals with it, and leases places.
 ///
-/// The sessions are read from a snapshot, so a session may run meanwhile. Each is checked against its
-/// checksum chain before it is sent, and sent in a transaction of its own, in which the server calculates the
-/// chain again from what it has stored. Only what the server lacks is sent. If anything goes wrong at any
-/// time, call it again: a session is on the server completely or not at all.
+/// The sessions are read from a snapshot, so a session may run meanwhile. Each session is checked against its
+/// checksum chain and then sent in a separate transaction, in which the server computes the chain again from
+/// the rows that it has stored. Only rows that the server lacks are sent. After any failure, simply call this
+/// again: a session is either complete on the server or not there at all.
 ///
-/// Throws ServerError if the server cannot be reached or has another schema, store::StoreError if the
-/// database cannot be read. A session that the server refuses does not keep the others back.
+/// Throws ServerError if the server cannot be reached or has another schema, and store::StoreError if the
+/// database cannot be read. If the server refuses a session, the others are still sent.
 PushReport push(const PushOptions& options);
 
 }  // namespace turnpoint::collector

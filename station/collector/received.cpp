@@ -29,6 +29,17 @@ std::string tombstones_json(const std::vector<store::Tombstone>& tombstones) {
   return list.dump();
 }
 
+std::string joins_json(const std::vector<store::Join>& joins) {
+  auto list = nlohmann::json::array();
+  for (const auto& join : joins)
+    list.push_back({{"station_a", join.first.station_id},
+                    {"code_a", join.first.code},
+                    {"station_b", join.second.station_id},
+                    {"code_b", join.second.code},
+                    {"realtime_ns", join.realtime_ns}});
+  return list.dump();
+}
+
 store::Withdrawal carry_out(const Received& received, const std::string& database,
                             const std::string& backup_directory) {
   auto withdrawal = store::follow_tombstones(database, received.tombstones, backup_directory);

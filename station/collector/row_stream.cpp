@@ -39,7 +39,7 @@ void put_value(std::string& bytes, const store::Statement& row, int i, const Col
     put_text(bytes, row.text(i));
 }
 
-/// Takes values from the front of what a server sent.
+/// Reads values one after another from the bytes that a server sent.
 class Reader {
  public:
   void add(const std::string& bytes) {
@@ -95,7 +95,7 @@ std::int64_t send_rows(store::Statement& rows, const CollectedTable& table, Conn
     if (count++ == 0) {
       server.begin_copy_in(copy);
       bytes = kSignature;
-      put(bytes, std::uint64_t{0});  // no flags, no extension of the header
+      put(bytes, std::uint64_t{0});  // no flags, and no header extension
     }
     put(bytes, static_cast<std::uint16_t>(table.columns.size()));
     for (std::size_t i = 0; i < table.columns.size(); ++i)
@@ -119,7 +119,7 @@ std::int64_t receive_rows(Connection& server, const std::string& copy, const Col
   Reader reader;
   std::int64_t count = 0;
   bool header = true;
-  // libpq returns one row in each piece; the header comes with the first.
+  // libpq returns one row at a time; the first piece also contains the header.
   while (const auto piece = server.next_copy_data()) {
     reader.add(*piece);
     if (header) reader.take_bytes(kSignature.size() + 8);

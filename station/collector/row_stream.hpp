@@ -8,8 +8,8 @@
 
 namespace turnpoint::collector {
 
-// Rows on their way between SQLite and PostgreSQL, in the binary format of COPY: numbers keep all their bits.
-// Both functions hold only a few rows in memory, and return the number of rows.
+// Functions that copy rows between SQLite and PostgreSQL in the binary format of COPY, in which numbers keep
+// all their bits. They hold only a few rows in memory, and return the number of rows copied.
 
 /// Sends all rows of a query, whose columns must be those of `table`, with the statement `copy`. Sends
 /// nothing if there are no rows.

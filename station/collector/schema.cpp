@@ -12,19 +12,14 @@ namespace turnpoint::collector {
 
 namespace {
 
-std::string literal(const std::string& text) {
-  std::string escaped = "'";
-  for (const char c : text) escaped += c == '\'' ? "''" : std::string(1, c);
-  return escaped + "'";
-}
-
 std::string type_of(const Column& column) {
   if (column.type == "INTEGER") return "bigint";
   if (column.type == "REAL") return "double precision";
   return column.type == "BLOB" ? "bytea" : "text";
 }
 
-/// Returns the words of "a | b | c", or nothing if the list is incomplete or names the absence of a value.
+/// Returns the words of "a | b | c". Returns nothing if the list is incomplete or contains a word for "no
+/// value".
 std::vector<std::string> words_of(const std::string& values) {
   std::vector<std::string> words;
   for (std::size_t at = 0; at < values.size();) {
@@ -61,7 +56,7 @@ std::string create_table(const CollectedTable& table) {
   return fmt::format("CREATE TABLE IF NOT EXISTS turnpoint.{} (\n{}\n);\n", table.name, lines);
 }
 
-/// Adds the columns that an older version of the collector did not have.
+/// Returns the SQL that adds the columns which an older version of the collector did not have.
 std::string add_columns(const CollectedTable& table) {
   std::string sql;
   for (const auto& column : table.columns)
@@ -81,7 +76,8 @@ std::string comments(const CollectedTable& table) {
   return sql;
 }
 
-/// Nobody but turnpoint_owner, as whom the functions run, gets past row security without a policy.
+/// Returns the SQL that turns on row security. turnpoint_reader may read the rows by a policy. All other
+/// roles need the functions, which run as turnpoint_owner.
 std::string protection(const std::string& table) {
   return fmt::format(
       "ALTER TABLE turnpoint.{0} ENABLE ROW LEVEL SECURITY;\n"
@@ -142,7 +138,7 @@ std::string schema_sql() {
   for (const auto& table : collected_tables())
     sql += create_table(table) + add_columns(table) + comments(table) + protection(table.name);
   for (const auto* own : {"version", "station", "lease"}) sql += protection(own);
-  // An older program must not bring a newer database back.
+  // Refuse to downgrade: an older program must not replace the schema of a newer one.
   sql += fmt::format(
       "DO $do$ BEGIN IF (SELECT schema FROM turnpoint.version) > {0} THEN\n"
       "  RAISE EXCEPTION 'this database has schema %, but this program only knows {0}; update Turnpoint "

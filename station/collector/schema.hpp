@@ -3,8 +3,9 @@
 
 namespace turnpoint::collector {
 
-/// Returns the SQL that makes an empty PostgreSQL database a collector's, or brings an older collector's
-/// database to this version. Run it as a superuser, in that database. Running it again changes nothing.
+/// Returns the SQL that turns an empty PostgreSQL database into a collector's database, or upgrades the
+/// database of an older collector to this version. Run it as a superuser, in that database. Running it again
+/// changes nothing.
 ///
 /// - The tables are those of the station's database (collected_tables()), in the schema turnpoint.
 /// - Stations call functions and have no right to any table. The functions run as turnpoint_owner.

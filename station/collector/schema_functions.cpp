@@ -8,95 +8,7 @@ namespace turnpoint::collector {
 
 namespace {
 
-constexpr const char* kCoded = R"sql(
--- These use immutable functions only; otherwise PostgreSQL would call them for each value instead of inlining them.
-CREATE OR REPLACE FUNCTION turnpoint.coded(v text) RETURNS text LANGUAGE sql IMMUTABLE AS
-  $$ SELECT CASE WHEN v IS NULL THEN 'n0:' ELSE 't' || octet_length(v)::text || ':' || v END $$;
-CREATE OR REPLACE FUNCTION turnpoint.coded(v bigint) RETURNS text LANGUAGE sql IMMUTABLE AS
-  $$ SELECT CASE WHEN v IS NULL THEN 'n0:' ELSE 'i' || length(v::text)::text || ':' || v::text END $$;
-CREATE OR REPLACE FUNCTION turnpoint.bits(v double precision) RETURNS text LANGUAGE sql IMMUTABLE AS
-  $$ SELECT ('x' || encode(float8send(v), 'hex'))::bit(64)::bigint::text $$;
-CREATE OR REPLACE FUNCTION turnpoint.coded(v double precision) RETURNS text LANGUAGE sql IMMUTABLE AS
-  $$ SELECT CASE WHEN v IS NULL THEN 'n0:' ELSE 'r' || length(turnpoint.bits(v))::text || ':' || turnpoint.bits(v) END $$;
-CREATE OR REPLACE FUNCTION turnpoint.coded(v bytea) RETURNS bytea LANGUAGE sql IMMUTABLE AS
-  $$ SELECT CASE WHEN v IS NULL THEN 'n0:'::bytea ELSE ('b' || octet_length(v)::text || ':')::bytea || v END $$;
-)sql";
-
-/// Returns an expression of type bytea: a row as store/checksum.cpp hashes it, without the end of the line.
-std::string coded_columns(const CollectedTable& table, const std::vector<Covered>& columns,
-                          const std::string& alias) {
-  std::string expression = "''::bytea", texts;
-  const auto flush = [&] {
-    if (!texts.empty()) expression += fmt::format("\n    || convert_to({}, 'UTF8')", texts);
-    texts.clear();
-  };
-  for (const auto& covered : columns) {
-    auto value = fmt::format("turnpoint.coded({}.{})", alias, quoted(covered.name));
-    const bool is_bytes = table.column(covered.name).type == "BLOB";
-    if (covered.since > 1)
-      value = fmt::format("CASE WHEN l.encoding >= {} THEN {} ELSE '' END", covered.since, value);
-    if (is_bytes) flush();
-    if (is_bytes)
-      expression += " || " + value;
-    else
-      texts += (texts.empty() ? "" : "\n      || ") + value;
-  }
-  flush();
-  return expression;
-}
-
-std::string qualified_order(const std::string& order, const CollectedTable& table) {
-  std::string list;
-  for (std::size_t at = 0; at < order.size();) {
-    const auto end = std::min(order.find(',', at), order.size());
-    const auto name = order.substr(at, end - at);
-    list += (list.empty() ? "t." : ", t.") + quoted(name);
-    if (table.column(name).type == "TEXT") list += " COLLATE \"C\"";  // the order of the bytes, as in SQLite
-    at = end + 1;
-  }
-  return list;
-}
-
-std::string hash_table(const CollectedTable& table) {
-  const auto& part = *table.chain;
-  return fmt::format(
-      "  IF l.{3} <> p.{3} AND l.encoding >= {6} THEN\n"
-      "    SELECT string_agg({1}\n    || '\\x0a'::bytea, ''::bytea ORDER BY {2}) INTO part\n"
-      "    FROM turnpoint.{0} t WHERE t.session_id = l.session_id AND t.{4} > p.{3} AND t.{4} <= l.{3};\n"
-      "    content := content || convert_to('{0}' || E'\\n', 'UTF8') || coalesce(part, ''::bytea);\n"
-      "  END IF;\n{5}",
-      table.name, coded_columns(table, part.columns, "t"), qualified_order(part.order, table), part.last,
-      quoted(part.counter), "", part.since);
-}
-
-std::string link_function() {
-  const auto provenance = [](const char* table, const char* alias) {
-    const auto& it = collected_table(table);
-    return coded_columns(it, it.provenance, alias);
-  };
-  std::string sql = fmt::format(R"sql(
--- The checksum of link l after link p, over the rows that are stored: the rule of station/store/checksum.hpp.
-CREATE OR REPLACE FUNCTION turnpoint.link_sha256(p turnpoint.link, l turnpoint.link) RETURNS text
-LANGUAGE plpgsql STABLE AS $fn$
-DECLARE content bytea; part bytea;
-BEGIN
-  content := convert_to('turnpoint/' || l.encoding || ' ' || l.link_index || ' ' || p.sha256 || E'\n' || l.status
-    || E'\n' || octet_length(l.status_reason) || ':' || l.status_reason || E'\n', 'UTF8');
-  IF l.link_index = 0 THEN
-    SELECT content || {} || {} || {} || {} || '\x0a'::bytea INTO content
-    FROM turnpoint.session s LEFT JOIN turnpoint.protocol p1 USING (protocol_key)
-      LEFT JOIN turnpoint.rig r USING (rig_key) LEFT JOIN turnpoint.calibration c USING (calibration_id)
-    WHERE s.session_id = l.session_id;
-  END IF;
-)sql",
-                                provenance("session", "s"), provenance("protocol", "p1"),
-                                provenance("rig", "r"), provenance("calibration", "c"));
-  for (const auto& table : collected_tables())
-    if (table.chain) sql += hash_table(table);
-  return sql + "  RETURN encode(sha256(content), 'hex');\nEND $fn$;\n";
-}
-
-/// Checks that the arriving rows lie beyond the last link that is stored, and inserts them.
+/// Returns the SQL that checks that the arriving rows come after the last stored link, and inserts them.
 std::string take_rows(const CollectedTable& table) {
   const auto& part = *table.chain;
   return fmt::format(
@@ -107,7 +19,7 @@ std::string take_rows(const CollectedTable& table) {
       table.name, quoted(part.counter), part.last, column_list(table));
 }
 
-/// Inserts rows that other sessions may have brought before, and checks that these are equal.
+/// Returns the SQL that inserts rows which several sessions share. A row that is already there must be equal.
 std::string take_shared(const CollectedTable& table, const std::string& conflict) {
   std::string same;
   for (const auto& name : table.key)
@@ -132,7 +44,7 @@ SET search_path = pg_catalog, pg_temp SET client_min_messages = warning AS $fn$
 BEGIN
 )sql";
   for (const auto& table : collected_tables()) {
-    if (table.name == "tombstone") continue;
+    if (table.name == "tombstone" || table.name == "same_person") continue;
     sql += fmt::format(
         "  CREATE TEMPORARY TABLE IF NOT EXISTS incoming_{0} (LIKE turnpoint.{0}) ON COMMIT DELETE ROWS;\n"
         "  EXECUTE format('GRANT INSERT ON pg_temp.incoming_{0} TO %I', session_user);\n",
@@ -353,6 +265,38 @@ BEGIN
                       AND e.sequence_index = t.sequence_index);
 END $fn$;
 
+-- Takes the list of codes that a station has declared to be one person (turnpoint join), as a JSON list of rows of
+-- table same_person. It replaces what the server knew about codes of the caller's stations. Other rows are ignored.
+CREATE OR REPLACE FUNCTION turnpoint.store_joins(theirs json) RETURNS void
+LANGUAGE plpgsql SECURITY DEFINER SET search_path = pg_catalog, pg_temp AS $fn$
+BEGIN
+  DELETE FROM turnpoint.same_person s WHERE turnpoint.is_own(s.station_a) AND turnpoint.is_own(s.station_b)
+    AND NOT EXISTS (SELECT FROM json_populate_recordset(NULL::turnpoint.same_person, theirs) t
+      WHERE (t.station_a, t.code_a, t.station_b, t.code_b) = (s.station_a, s.code_a, s.station_b, s.code_b));
+  INSERT INTO turnpoint.same_person (station_a, code_a, station_b, code_b, realtime_ns)
+    SELECT t.station_a, t.code_a, t.station_b, t.code_b, t.realtime_ns
+    FROM json_populate_recordset(NULL::turnpoint.same_person, theirs) t
+    WHERE turnpoint.is_own(t.station_a) AND turnpoint.is_own(t.station_b)
+      AND NOT turnpoint.is_withdrawn('', t.station_a, t.code_a) AND NOT turnpoint.is_withdrawn('', t.station_b, t.code_b)
+    ON CONFLICT DO NOTHING;
+END $fn$;
+
+-- For an administrator: declares two codes of stations with different roles to be one person, who has the first code.
+CREATE OR REPLACE FUNCTION turnpoint.join(station_1 text, code_1 text, station_2 text, code_2 text) RETURNS void
+LANGUAGE plpgsql SET search_path = pg_catalog, pg_temp AS $fn$
+BEGIN
+  IF (SELECT count(DISTINCT t.role) FROM turnpoint.station t WHERE t.station_id IN (station_1, station_2)) <> 2 THEN
+    RAISE EXCEPTION 'stations % and % do not have two roles; codes of one station are joined there', station_1, station_2;
+  END IF;
+  IF NOT EXISTS (SELECT FROM turnpoint.enrolment e WHERE (e.station_id, e.participant) = (station_1, code_1))
+    OR NOT EXISTS (SELECT FROM turnpoint.enrolment e WHERE (e.station_id, e.participant) = (station_2, code_2)) THEN
+    RAISE EXCEPTION 'nobody is known as % at % or as % at %', code_1, station_1, code_2, station_2;
+  END IF;
+  INSERT INTO turnpoint.same_person (station_a, code_a, station_b, code_b, realtime_ns)
+    VALUES (station_1, code_1, station_2, code_2, (extract(epoch FROM now()) * 1000000000)::bigint)
+    ON CONFLICT DO NOTHING;
+END $fn$;
+
 -- For an administrator: withdraws a participant of a station. The stations follow at their next contact.
 CREATE OR REPLACE FUNCTION turnpoint.withdraw(station text, code text) RETURNS bigint LANGUAGE plpgsql
 SET search_path = pg_catalog, pg_temp AS $fn$
@@ -372,14 +316,13 @@ END $fn$;
 constexpr const char* kRights = R"sql(
 REVOKE ALL ON ALL FUNCTIONS IN SCHEMA turnpoint FROM PUBLIC;
 GRANT EXECUTE ON FUNCTION turnpoint.hello(), turnpoint.chains(), turnpoint.prepare(), turnpoint.store_session(text),
-  turnpoint.exchange_tombstones(json), turnpoint.lease_places(text, bigint), turnpoint.return_places(text, json)
+  turnpoint.exchange_tombstones(json), turnpoint.store_joins(json), turnpoint.lease_places(text, bigint),
+  turnpoint.return_places(text, json)
   TO turnpoint_station;
 GRANT EXECUTE ON FUNCTION turnpoint.hello() TO turnpoint_reader;
 )sql";
 
 }  // namespace
-
-std::string checksum_sql() { return kCoded + link_function(); }
 
 std::string functions_sql() { return kFunctions + prepare_function() + store_function() + kRights; }
 

@@ -14,7 +14,8 @@ namespace {
 using store::Database;
 using store::Statement;
 
-/// The rowid of a trial numbers the rows of one file. It means nothing in another database.
+/// The rowid of a trial, which numbers the rows of one file. It is not collected, because it means nothing in
+/// another database.
 constexpr const char* kRowNumber = "trial_id";
 
 void read_columns(Database& database, CollectedTable& table) {
@@ -61,8 +62,8 @@ void read_references(Database& database, CollectedTable& table) {
   for (auto& [id, reference] : references) table.references.push_back(std::move(reference));
 }
 
-/// Adds the texts of the columns, and returns those that the chain covers, in the order in which it hashes
-/// them.
+/// Adds the columns' descriptions, and returns the columns that the chain covers, in the order in which the
+/// chain hashes them.
 template <class Record>
 std::vector<Covered> describe(CollectedTable& table, const store::Table<Record>& described) {
   std::vector<Covered> covered;
@@ -163,6 +164,12 @@ std::string column_list(const CollectedTable& table) {
   std::vector<std::string> names;
   for (const auto& column : table.columns) names.push_back(column.name);
   return quoted_list(names);
+}
+
+std::string literal(const std::string& text) {
+  std::string escaped = "'";
+  for (const char c : text) escaped += c == '\'' ? "''" : std::string(1, c);
+  return escaped + "'";
 }
 
 }  // namespace turnpoint::collector

@@ -5,13 +5,13 @@
 
 namespace turnpoint::collector {
 
-/// One column of a table that is collected, as the station's database has it.
+/// One column of a collected table, as it is in the station's database.
 struct Column {
   std::string name;
   std::string type;  ///< INTEGER, REAL, TEXT or BLOB
   bool nullable = true;
   std::string fallback;                   ///< SQL of the value that older rows get; "" if there is none
-  std::string description, unit, values;  ///< as in store/fields.hpp; "" if nothing is said about the column
+  std::string description, unit, values;  ///< as in store/fields.hpp; "" if the field has none
 };
 
 struct Reference {
@@ -20,14 +20,15 @@ struct Reference {
   std::vector<std::string> to;
 };
 
-/// A column that the checksum chain covers, from this encoding on.
+/// A column that the checksum chain covers. `since` is the first encoding of the chain that contains the
+/// column.
 struct Covered {
   std::string name;
   int since = 1;
 };
 
-/// How the chain covers a table: the rows are hashed in the order of `order`, if their value in the column
-/// `counter` lies beyond the previous link's value of `last` (a column of table link).
+/// How the chain covers a table. A link hashes, in the order of `order`, the rows whose value in the column
+/// `counter` is greater than the value that the previous link stored in its column `last` (of table link).
 struct ChainPart {
   std::vector<Covered> columns;
   std::string counter, order, last;
@@ -48,8 +49,8 @@ struct CollectedTable {
   bool has(const std::string& name) const;
 };
 
-/// Returns the collected tables. Each comes after those to which it refers. They are read from the schema of
-/// an empty station database, and from the descriptions of its columns, so that the server's tables cannot
+/// Returns the collected tables. Each comes after those to which it refers. The list is made from the schema
+/// of an empty station database and from the descriptions of its columns, so that the server's tables cannot
 /// differ from the station's.
 const std::vector<CollectedTable>& collected_tables();
 
@@ -59,5 +60,8 @@ const CollectedTable& collected_table(const std::string& name);
 std::string quoted(const std::string& name);
 std::string quoted_list(const std::vector<std::string>& names);
 std::string column_list(const CollectedTable& table);
+
+/// A text as an SQL literal.
+std::string literal(const std::string& text);
 
 }  // namespace turnpoint::collector

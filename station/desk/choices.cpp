@@ -1,6 +1,7 @@
 #include "station/desk/choices.hpp"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
@@ -85,6 +86,19 @@ std::vector<ProtocolEntry> list_protocols(const std::string& folder) {
   return list;
 }
 
+std::string folder_for_studies(const std::string& protocols, const std::string& database) {
+  if (::access(protocols.c_str(), W_OK) == 0) return protocols;
+  return (fs::absolute(database).parent_path() / "protocols").string();
+}
+
+std::vector<ProtocolEntry> list_studies(const std::string& protocols, const std::string& database) {
+  auto list = list_protocols(protocols);
+  const auto own = folder_for_studies(protocols, database);
+  if (own != protocols && fs::is_directory(own))
+    for (auto& entry : list_protocols(own)) list.push_back(std::move(entry));
+  return list;
+}
+
 std::vector<std::string> known_participants(const std::string& database) {
   if (!fs::exists(database)) return {};
   return store::participants(database);
@@ -123,7 +137,7 @@ CheckWords words_of(const simulation::Check& check) {
   for (const auto& block : check.blocks)
     words.facts.emplace_back(
         block.practice ? "Practice" : "Block",
-        block.name +
+        (block.visit.empty() ? "" : block.visit + ": ") + block.name +
             (block.instruction.empty() || block.instruction == block.name ? ""
                                                                           : " (" + block.instruction + ")") +
             ", " + range(block.trials, 1) + " trials");

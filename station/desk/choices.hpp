@@ -20,6 +20,14 @@ struct ProtocolEntry {
 /// Throws std::system_error if the folder cannot be read.
 std::vector<ProtocolEntry> list_protocols(const std::string& folder);
 
+/// The folder in which the station saves new studies: the folder with the protocols or, if the program may
+/// not write there, the folder `protocols` beside the database.
+std::string folder_for_studies(const std::string& protocols, const std::string& database);
+
+/// Returns the protocols of the station: those in its folder, and then those that it has saved beside the
+/// database because it may not write in its folder.
+std::vector<ProtocolEntry> list_studies(const std::string& protocols, const std::string& database);
+
 /// Participant codes in the database, in alphabetical order; empty if there is no database yet.
 std::vector<std::string> known_participants(const std::string& database);
 

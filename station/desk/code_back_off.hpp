@@ -5,10 +5,10 @@
 
 namespace turnpoint::desk {
 
-/// Decides how long a keypad refuses codes after wrong ones. After each of the first two wrong codes it
-/// accepts another one at once. The third wrong code starts a wait of 5 s, and each further one doubles the
-/// wait, up to 5 min. The right code ends the waiting. Trying all ten thousand codes of four digits therefore
-/// takes over a month. Pure: the caller passes the time (s, monotonic).
+/// Decides how long a keypad refuses codes after wrong ones. After the first and the second wrong code,
+/// another one is accepted at once. The third wrong code starts a wait of 5 s, and each further one doubles
+/// the wait, up to 5 min. The right code ends the wait. Trying all ten thousand codes of four digits
+/// therefore takes over a month. Pure: the caller passes the time (s, monotonic).
 class CodeBackOff {
  public:
   static constexpr int free_tries = 2;

@@ -78,7 +78,7 @@ std::string vibration(const LiveTrial& trial) {
   return records::name(trial.proof) + (measured ? ": " + trial.measured : std::string());
 }
 
-/// The latest estimate of each procedure that keeps one, with its 95 % interval.
+/// Adds the latest estimate of each procedure that has one, with its 95 % interval.
 void add_estimates(const std::vector<LiveTrial>& trials, Facts& facts) {
   std::map<std::string, const LiveTrial*> latest;
   for (const auto& trial : trials)

@@ -23,7 +23,7 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr const char* kStationFolder = "/etc/turnpoint";
-/// The user and the group with which the station's service runs.
+/// The user and the group as which the station's service runs.
 constexpr const char* kStationGroup = "turnpoint";
 
 [[noreturn]] void fail(const std::string& what) {

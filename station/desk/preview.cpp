@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "physics/edge.hpp"
+#include "physics/surface.hpp"
 #include "station/protocol/combinations.hpp"
 #include "station/protocol/resolve.hpp"
 #include "station/terms/usage_error.hpp"
@@ -123,6 +124,13 @@ SceneLook Preview::look(const std::string& scene, const protocol::Factors& facto
     look.problem = error.what();
   }
   return look;
+}
+
+Outline outline_of(const rig::Rig& rig) {
+  const auto shape = scene::surface_of(rig);
+  const double length_m = rig.surface.length_m;
+  return {1e3 * length_m, 1e3 * physics::half_width_m(shape, 0), 1e3 * physics::half_width_m(shape, length_m),
+          rig.surface.wide_end == rig::WideEnd::left};
 }
 
 protocol::Factors factors_for(const protocol::Protocol& protocol, const std::vector<std::string>& set,

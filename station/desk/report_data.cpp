@@ -21,7 +21,7 @@ std::string late_frames(const std::vector<records::EventRow>& events) {
   return frames == 0 ? "none" : std::to_string(frames) + " in " + std::to_string(trials) + " trials";
 }
 
-/// The largest model error and uncertainty of any tone that was presented.
+/// Describes the largest model error and the largest uncertainty of the tones that were presented.
 std::string boundary_errors(const std::vector<store::BlockRecord>& blocks) {
   double bound_mm = 0, uncertainty_mm = 0;
   for (const auto& block : blocks)
@@ -66,7 +66,8 @@ std::string forces(const std::vector<store::BlockRecord>& blocks) {
   return text.empty() ? "none" : text;
 }
 
-/// Says how many trigger codes were given out, read back, missed or found without having been sent.
+/// Says how many trigger codes were sent, how many of them were read back or missed, and how many were
+/// captured without having been sent.
 std::string triggers(const std::vector<records::EventRow>& events) {
   int sent = 0, heard = 0, missed = 0, extra = 0;
   for (const auto& event : events) {
@@ -83,7 +84,7 @@ std::string triggers(const std::vector<records::EventRow>& events) {
          std::to_string(extra) + " that were not sent";
 }
 
-/// The result of the newest self-test, with what failed and how many checks were not possible.
+/// Describes the result of the newest self-test: which checks failed, and how many were not possible.
 std::string self_test(const std::vector<records::EventRow>& events) {
   const records::EventRow* newest = nullptr;
   for (const auto& event : events)
@@ -99,7 +100,7 @@ std::string self_test(const std::vector<records::EventRow>& events) {
          " not possible";
 }
 
-/// What was stated about room, surface and finger.
+/// Lists what was stated about room, surface and finger.
 std::string conditions(const records::Conditions& stated) {
   std::string text;
   const auto add = [&text](const std::string& part) { text += (text.empty() ? "" : ", ") + part; };
@@ -162,6 +163,8 @@ void add_health(const store::StoredSession& stored, report::SessionData& data) {
                   text::number(stored.session.sequence_index, 6) +
                       (stored.session.leased_place ? ", leased from the collector: unique among its stations"
                                                    : ", given by this station alone")},
+                 {"Planned session", start.planned_session ? std::to_string(*start.planned_session) : "none"},
+                 {"Group", start.group.empty() ? "none" : start.group},
                  {"Checksum of the data", stored.session.checksum.empty()
                                               ? "none, because an earlier release recorded the session"
                                               : stored.session.checksum},

@@ -13,7 +13,8 @@ namespace turnpoint::desk {
 /// if this program can no longer read the protocol text.
 report::SessionData report_data(const std::string& database, const std::string& session_id);
 
-/// Friction along the strip as curves of a report, one for each direction with strokes.
+/// Returns the friction along the strip as curves for a report, one for each direction in which there were
+/// strokes.
 std::vector<analysis::FrictionCurve> curves_of(const session::AlongStrip& along);
 
 /// Returns the session to report: the named one or, without a name, the newest session that matches the

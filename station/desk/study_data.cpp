@@ -16,13 +16,14 @@ namespace turnpoint::desk {
 
 namespace {
 
-/// A session and the file that has it.
+/// A session, and the file in which it was found.
 struct Found {
   std::string database;
   store::SessionRecord session;
 };
 
-/// All sessions with trials that the choice allows, each once.
+/// Returns all sessions with trials that the choice allows. A session that several files contain is returned
+/// once.
 std::vector<Found> sessions_of(const StudyChoice& choice, int& copies) {
   std::vector<Found> all;
   std::set<std::string> seen;
@@ -45,7 +46,8 @@ std::vector<Found> sessions_of(const StudyChoice& choice, int& copies) {
   return all;
 }
 
-/// Refuses sessions that differ in something that the study must choose.
+/// Throws if the sessions differ in something, such as the protocol, for which the study must choose one
+/// value.
 void require_one(const std::vector<Found>& all, const std::string& what, const std::string& option,
                  const std::function<std::string(const store::SessionStart&)>& of) {
   std::map<std::string, int> counts;
@@ -72,8 +74,8 @@ void require_one_study(const StudyChoice& choice, const std::vector<Found>& all)
               [](const auto& start) { return std::string(store::name(start.run_mode)); });
 }
 
-/// CODE@STATION for each person of each file. A person without a station in the name is at home where the
-/// first session was made.
+/// Returns the name CODE@STATION for each person of each file. If a name contains no station, it is the
+/// station at which the person's first session was made.
 std::map<std::pair<std::string, std::string>, std::string> full_names(const std::vector<Found>& all) {
   std::map<std::pair<std::string, std::string>, std::string> names;
   for (const auto& found : all) {
@@ -85,8 +87,8 @@ std::map<std::pair<std::string, std::string>, std::string> full_names(const std:
   return names;
 }
 
-/// Sessions by participant: the same code at two stations is two people, unless their file says that they are
-/// one.
+/// Groups sessions by participant. The same code at two stations stands for two people, unless their file
+/// says that they are one person.
 std::map<std::string, std::vector<Found>> by_person(std::vector<Found> all) {
   const auto code_of = [](const std::string& person) { return person.substr(0, person.rfind('@')); };
   const auto names = full_names(all);
@@ -104,7 +106,25 @@ std::map<std::string, std::vector<Found>> by_person(std::vector<Found> all) {
   return people;
 }
 
-/// The trials of all sessions of one participant.
+/// Returns the protocol with each group analysed separately.
+protocol::Protocol by_group(protocol::Protocol protocol) {
+  auto& by = protocol.analysis.by;
+  std::vector<std::string> groups;
+  for (const auto& factor : protocol.factors)
+    if (factor.draw == protocol::FactorDraw::per_participant &&
+        std::find(by.begin(), by.end(), factor.name) == by.end())
+      groups.push_back(factor.name);
+  if (groups.empty()) return protocol;
+  // without `by`, instructions are the conditions
+  const auto is_instruction = [](const protocol::Factor& factor) { return factor.name == "instruction"; };
+  if (by.empty() && std::any_of(protocol.factors.begin(), protocol.factors.end(), is_instruction) &&
+      std::find(groups.begin(), groups.end(), "instruction") == groups.end())
+    by.push_back("instruction");
+  by.insert(by.begin(), groups.begin(), groups.end());
+  return protocol;
+}
+
+/// Returns the trials of all sessions of one participant.
 report::SessionData data_of(const std::string& person, const std::vector<Found>& sessions,
                             const protocol::Protocol& protocol) {
   report::SessionData all;
@@ -125,7 +145,7 @@ report::SessionData data_of(const std::string& person, const std::vector<Found>&
   all.title = protocol.title;
   all.participant = person;
   report::add_trials(blocks, protocol, all);
-  // the procedures' own estimates belong to single sessions, whose seeds and blocks they need
+  // estimates of procedures and forces cannot be combined over sessions, so leave them out
   all.estimates.clear(), all.finger.clear();
   return all;
 }
@@ -159,7 +179,8 @@ report::Study study_data(const StudyChoice& choice, const StudySink& sink, const
   require_one_study(choice, all);
   auto study = head_of(choice, all, copies);
   const auto first = store::read_session(all.front().database, all.front().session.session_id);
-  const auto protocol = protocol::parse(first.session.start.protocol_text, first.session.start.protocol_path);
+  const auto protocol =
+      by_group(protocol::parse(first.session.start.protocol_text, first.session.start.protocol_path));
   const auto rules = protocol.exclusion.value_or(protocol::Exclusion{});
   study.rules = report::rules_in_words(rules);
   const auto people = by_person(std::move(all));
@@ -178,6 +199,7 @@ report::Study study_data(const StudyChoice& choice, const StudySink& sink, const
     });
     auto result = report::study_person(data, rules, incomplete);
     for (const auto& found : sessions) result.sessions.push_back(found.session.session_id);
+    result.group = sessions.front().session.start.group;
     sink(result, data);
     study.persons.push_back(std::move(result));
     data.trials.clear();

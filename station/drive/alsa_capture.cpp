@@ -111,7 +111,8 @@ void DeviceCapture::push(std::int64_t frames) noexcept {
     outgoing_->numbering = numbering_.load();
     outgoing_->count = static_cast<std::int32_t>(some * config_.channels);
     std::copy_n(period_.begin() + at * config_.channels, outgoing_->count, outgoing_->samples.begin());
-    if (!blocks_->push(*outgoing_)) return lose(frames - at);  // blocks were not taken for too long
+    // the ring is full, because nobody has taken blocks for too long
+    if (!blocks_->push(*outgoing_)) return lose(frames - at);
     frames_.store(outgoing_->first_frame + some);
   }
 }
@@ -132,7 +133,8 @@ void DeviceCapture::recover(int error) noexcept {
   if (action == RecoveryAction::go_on) return;
   unknown_gaps_.fetch_add(1);
   numbering_.fetch_add(1);
-  frames_.fetch_add(static_cast<std::int64_t>(device_->alsa.buffer_frames));  // at least these are lost
+  // at least one buffer of frames is lost
+  frames_.fetch_add(static_cast<std::int64_t>(device_->alsa.buffer_frames));
   while (action != RecoveryAction::go_on) {
     int outcome = 0;
     switch (action) {

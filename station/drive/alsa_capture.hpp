@@ -17,9 +17,10 @@ namespace turnpoint::drive {
 /// Some captured frames. The samples are interleaved; full scale is 2^31.
 struct CapturedBlock {
   static constexpr int kSamples = 1024;
-  std::int64_t first_frame = 0;  ///< counted from 0 at the opening; lost frames are counted too
-  /// Changes with each loss of frames. The distance from played to captured frames must then be measured
-  /// again, because not every device reports how many frames were lost.
+  /// number of the first frame, counted from 0 when the device was opened; lost frames are counted too
+  std::int64_t first_frame = 0;
+  /// Changes with each loss of frames. After a change, the delay from played to captured frames must be
+  /// measured again, because not every device reports how many frames were lost.
   std::uint32_t numbering = 0;
   std::int32_t count = 0;  ///< samples in use
   std::array<std::int32_t, kSamples> samples{};
@@ -59,8 +60,8 @@ class DeviceCapture : public Capture {
   explicit DeviceCapture(const OutputConfig& config);
   ~DeviceCapture() override;
 
-  /// Capture side. Waits for the next period and puts it into the ring. Does not allocate or lock, except
-  /// while it tries to open a lost device again.
+  /// Call this on the capture side. Waits for the next period and puts it into the ring. Does not allocate or
+  /// lock, except while it tries to open a lost device again.
   void step() noexcept;
 
   bool take(CapturedBlock& block) noexcept override { return blocks_->pop(block); }

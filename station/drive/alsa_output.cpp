@@ -114,8 +114,8 @@ class AlsaOutput final : public Output {
     return done;
   }
 
-  // Called when the device has run out of samples and plays silence. Moves the write position `late` frames
-  // on, so that the device plays silence there too.
+  // Called when the device has run out of samples and plays silence. Moves the write position forward by
+  // `late` frames, so that the device plays silence for these frames too.
   snd_pcm_sframes_t skip(snd_pcm_sframes_t late, WriteResult& result) noexcept {
     const snd_pcm_sframes_t skipped = snd_pcm_forward(pcm(), static_cast<snd_pcm_uframes_t>(late));
     if (skipped < 0) return skipped;

@@ -54,8 +54,9 @@ class Amplifier {
   virtual void session_alive() noexcept = 0;
   virtual void page_alive(std::int64_t time_ns) noexcept = 0;
 
-  /// For the self-test. Holds the heartbeat line at its present level until resume_heartbeat(), so that the
-  /// external monitor switches the amplifier off although the enable line is high. Everything else goes on.
+  /// For the self-test. Holds the heartbeat line at its present level until resume_heartbeat() is called. The
+  /// external monitor must then switch the amplifier off although the enable line is high. Everything else
+  /// goes on.
   virtual void hold_heartbeat() noexcept {}
   virtual void resume_heartbeat() noexcept {}
   /// The level of the gate behind the external monitor: true while it lets the amplifier be on. It is read at

@@ -111,8 +111,7 @@ void DeviceStream::follow_device() noexcept {
   const auto position = output_->position();
   if (!position) return;
   core_.heard(position->frame);
-  // If nobody reads the clock, the ring fills up and push() drops this position. The older positions in the
-  // ring are good enough.
+  // Ignore a full ring: then nobody reads the clock, and the older positions in the ring are good enough.
   static_cast<void>(positions_->push({relation_.load(), *position}));
   if (!rate_told_) check_rate(*position);
 }

@@ -13,9 +13,9 @@
 
 namespace turnpoint::drive {
 
-/// A stream on an output that plays in real time, one block per step. The thread that calls step() is the
-/// audio side: open_realtime() uses a thread of its own, a test may use any. Everything else is for one
-/// control thread.
+/// A stream on an output that plays in real time, one block per step. step() belongs to the audio thread,
+/// which open_realtime() starts; a test may call it from any thread. All other functions must be called from
+/// one and the same control thread.
 class DeviceStream : public Stream {
  public:
   /// Throws the same errors as open_output.
@@ -55,7 +55,8 @@ class DeviceStream : public Stream {
 
  private:
   /// A position or rate that the audio thread sends to the control thread, with the number of restarts or
-  /// losses at that time. So the control thread can ignore measurements from before the latest restart.
+  /// losses at that time. By this number, the control thread recognises and ignores measurements from before
+  /// the latest restart.
   struct StampedPosition {
     std::uint32_t relation = 0;
     Position position;

@@ -67,8 +67,8 @@ struct Counters {
 /// the same frames; this is enough for simulated sessions.
 enum class Samples : std::int32_t { rendered, passed };
 
-/// A tone that sounds as long as the stream is open, for example to excite the bridges of force sensors. Its
-/// phase is 0 at frame 0 of the stream, whatever happens later.
+/// A tone that is played as long as the stream is open, for example to excite the bridges of force sensors.
+/// Its phase is 0 at frame 0 of the stream, and it never restarts.
 struct Carrier {
   double frequency_Hz = 0;
   double amplitude = 0;

@@ -10,8 +10,8 @@
 namespace turnpoint::drive {
 namespace {
 
-// Sum of squares and sum of magnitudes of the noise filters' impulse response, computed until the response
-// has decayed.
+// Sum of squares and sum of magnitudes of the impulse response of the noise filters. Both sums run until the
+// response has decayed.
 struct Response {
   double energy = 0, magnitude = 0;
 };

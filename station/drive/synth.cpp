@@ -24,7 +24,7 @@ struct Synth::State {
   const Kernels* kernels;
   std::array<Slot, max_voices> slots;
   std::int64_t next_frame = 0;
-  PreparedTone carrier;  ///< amplitude 0: there is none
+  PreparedTone carrier;  ///< an amplitude of 0 means that there is no carrier
   Mix mix;
   Scratch scratch;
   std::array<SynthEvent, 8 * max_voices> events;

@@ -38,8 +38,8 @@ class LineReader {
     std::int64_t due = now + settle_check_ns;
     for (const Watched& line : watched_) due = std::min(due, line.filter.due_ns());
     if (const auto edge = lines_->wait(std::max<std::int64_t>(due - now, 0))) return take(*edge);
-    // Read the clock before the lines: all edges before this time will have arrived when the lines are polled
-    // again.
+    // Read the clock before the lines: every edge from before this time has then arrived when the lines have
+    // been polled.
     const std::int64_t quiet_until = system::monotonic_ns();
     if (const auto edge = lines_->wait(0)) return take(*edge);
     settle(quiet_until);

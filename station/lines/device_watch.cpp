@@ -47,7 +47,7 @@ void DeviceWatch::look_again() {
 
 void DeviceWatch::let_go(const std::string& why) {
   const bool was_there = look_ != nullptr;
-  look_ = nullptr;  // release the device, because its old handle would prevent it from being found again
+  look_ = nullptr;  // release the device: as long as it is open here, it cannot be found again
   {
     const std::lock_guard lock(mutex_);
     missing_ = why;

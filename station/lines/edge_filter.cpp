@@ -42,7 +42,8 @@ std::optional<LineChange> EdgeFilter::level(std::int64_t now_ns, bool active) no
     elsewhere_since_.reset();
     return std::nullopt;
   }
-  // A single reading that differs is not enough, because the report of its edge may still arrive.
+  // A single reading that differs does not prove a lost edge, because the report of the edge may still
+  // arrive.
   if (!elsewhere_since_) elsewhere_since_ = now_ns;
   if (now_ns < *elsewhere_since_ + std::max(rules_.hold_ns, std::int64_t{1})) return std::nullopt;
   elsewhere_since_.reset();

@@ -51,9 +51,9 @@ class EdgeFilter {
   /// glitch if the burst has become too long for a bouncing contact.
   std::optional<LineChange> edge(std::int64_t time_ns, bool active) noexcept;
 
-  /// Takes the level that was read at `now_ns` while no edge was waiting. If this level keeps differing from
-  /// the level after the last edge, edges were lost. The new level is then accepted, but not reported as a
-  /// press, because its time is unknown.
+  /// Takes the level that was read at `now_ns` while no edge was waiting. If this level goes on differing
+  /// from the level after the last edge, edges were lost. The new level is then accepted, but not reported as
+  /// a press, because its time is unknown.
   std::optional<LineChange> level(std::int64_t now_ns, bool active) noexcept;
 
   /// The time at which decide() can judge the current burst; the largest time if there is none.

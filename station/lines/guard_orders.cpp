@@ -13,8 +13,8 @@ std::optional<Guard::Refusal> GuardOrders::ask(Ask what) {
 }
 
 void GuardOrders::post(std::atomic<std::uint32_t>& order, std::uint32_t bits) noexcept {
-  // from here on the guard will carry out the command, in its next beat at the latest, even if this thread
-  // stops
+  // From here on the guard will carry out the command, at its next beat at the latest, even if this thread
+  // stops.
   order.fetch_or(bits);
   scheduler_point();
   const auto ticket = posted_.fetch_add(1) + 1;

@@ -18,7 +18,7 @@ class GuardOrders {
   /// Commands of an operator or the session that may be refused.
   enum class Ask : std::uint32_t { nothing, arm, enable, clear };
 
-  /// The commands that the guard finds when it looks. Commands that switch off take precedence over the
+  /// What the guard finds when it looks for commands. Commands that switch off take precedence over the
   /// others.
   struct Taken {
     std::uint32_t ticket = 0;

@@ -86,7 +86,8 @@ class GuardThread {
     if (const auto at = page_ns.load(); at >= 0) guard_.page_alive(at);
   }
 
-  /// Starts to use freshly opened lines. Outputs are low; stops and faults that are already active are read.
+  /// Starts to use freshly opened lines. The outputs are low. Reads which stops and faults are already
+  /// active.
   void take_up() {
     lines_ = open_();
     driven_high_ = false;
@@ -95,7 +96,8 @@ class GuardThread {
     publish();
   }
 
-  /// Gives up lines that were lost. The heartbeat ends, so the external monitor switches the amplifier off.
+  /// Stops using lines that were lost. The heartbeat ends, so the external monitor switches the amplifier
+  /// off.
   void let_go(const char* why) noexcept {
     guard_.trip(system::monotonic_ns(), FaultKind::lines_gone);
     lines_.reset();
@@ -166,7 +168,8 @@ class GuardThread {
     return refusal;
   }
 
-  /// Every command gets an answer, whatever happens to the lines, because a thread is waiting for it.
+  /// Looks for commands. Every command gets an answer, whatever happens to the lines, because a thread is
+  /// waiting for the answer.
   void look_at_orders() noexcept {
     const auto taken = orders.take();
     if (!taken) return;

@@ -55,8 +55,8 @@ class LineError : public std::system_error {
   using std::system_error::system_error;
 };
 
-/// A function that requests lines. It is called at the start, and after their chip was lost until the lines
-/// are back.
+/// A function that requests lines. It is called at the start. After the chip of the lines was lost, it is
+/// called again and again until the lines are back.
 using OpenLines = std::function<std::unique_ptr<Lines>()>;
 
 /// Requests kernel lines by name (libgpiod 1 or 2, as built). Throws LineError naming the line.

@@ -28,9 +28,9 @@ struct InputDevices {
   std::vector<std::string> refused;
 };
 
-/// Opens each input device in `folder` for reading and writing, and closes it. libinput, which eglfs and
-/// linuxfb use for touches, mice and keyboards, opens devices in this way. If it is not allowed to, touches
-/// never arrive, even if the device can be read.
+/// Opens each input device in `folder` for reading and writing, and closes it. libinput, through which eglfs
+/// and linuxfb get touches, mice and keyboards, opens devices in this way. If it may not, touches never
+/// arrive, even if the device can be read.
 InputDevices try_input_devices(const std::string& folder = "/dev/input");
 
 }  // namespace turnpoint::lines

@@ -7,7 +7,7 @@ namespace {
 
 constexpr std::int64_t monostable_ns = 110'000'000;
 
-/// Gives the guard lines that somebody else keeps.
+/// Lets the guard use lines that somebody else owns and may change.
 class Shared : public Lines {
  public:
   explicit Shared(std::shared_ptr<SimulatedAmplifierLines> lines) : lines_(std::move(lines)) {}

@@ -20,8 +20,8 @@ class SimulatedAmplifierLines : public SimulatedLines {
   bool level(int index) override;
   void drive(int index, int level) override;
 
-  /// Faults of the wiring: the gate stays open while the enable line is high, whatever the heartbeat does;
-  /// the gate never opens.
+  /// Faults of the wiring. bridge_monostable(): the gate stays open while the enable line is high, whatever
+  /// the heartbeat does. break_gate(): the gate never opens.
   void bridge_monostable() noexcept { bridged_ = true; }
   void break_gate() noexcept { broken_ = true; }
 
@@ -31,7 +31,7 @@ class SimulatedAmplifierLines : public SimulatedLines {
   std::atomic<bool> bridged_{false}, broken_{false};
 };
 
-/// An amplifier with the real guard on these lines, which the caller may change at any time.
+/// Makes an amplifier with the real guard on these lines. The caller may change the lines at any time.
 std::unique_ptr<drive::Amplifier> simulated_amplifier(const std::shared_ptr<SimulatedAmplifierLines>& lines);
 
 }  // namespace turnpoint::lines

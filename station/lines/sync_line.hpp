@@ -8,14 +8,15 @@
 
 namespace turnpoint::lines {
 
-/// A line on which another device, such as a scanner, sends pulses. A thread of its own reports each pulse
-/// with the kernel's time; lost edges and a lost chip are faults, as for the buttons.
+/// A line on which another device, such as a scanner, sends pulses. The object has its own thread, which
+/// reports each pulse with the kernel's time. Lost edges and a lost chip are reported as faults, as for the
+/// buttons.
 class SyncLine {
  public:
   /// Called with the time of a pulse's first edge (CLOCK_MONOTONIC), on the thread of the line.
   using Pulse = std::function<void(std::int64_t time_ns)>;
-  /// `low`: a pulse pulls the line low. Of `handlers`, only `fault` and `back` are called. Throws the errors
-  /// of `open`.
+  /// With `low`, a pulse pulls the line low. Of `handlers`, only `fault` and `back` are called. Throws the
+  /// errors of `open`.
   SyncLine(const OpenLines& open, bool low, Pulse pulse, ButtonsHandlers handlers);
 
  private:

@@ -13,7 +13,9 @@ namespace turnpoint::lines {
 namespace {
 
 constexpr std::int64_t kLow_ns = 1'000'000;  // time for which all lines are low between two codes
-constexpr std::int64_t kAhead_ns = 300'000;  // a sleep until a given time is more exact than a condition
+// the condition variable is awaited only until this long before a code is due, because a sleep until a given
+// time is more exact
+constexpr std::int64_t kAhead_ns = 300'000;
 
 std::chrono::steady_clock::time_point point(std::int64_t time_ns) {
   return std::chrono::steady_clock::time_point(std::chrono::nanoseconds(time_ns));

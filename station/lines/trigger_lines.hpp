@@ -22,14 +22,15 @@ struct TriggerPlan {
 /// Throws terms::UsageError for a URI that is not understood.
 TriggerPlan trigger_plan(const std::string& uri);
 
-/// Gives out codes in parallel on GPIO lines, for a device that reads TTL levels. An ordinary thread sets the
-/// lines when a code is due: first the bits together, then the strobe, which falls again before the bits do.
-/// A code that is due while another is still on the lines comes 1 ms after the end of that one.
+/// Sends trigger codes in parallel on GPIO lines, for a device that reads TTL levels. An ordinary thread sets
+/// the lines when a code is due: first all bits together, then the strobe, which falls again before the bits
+/// do. If a code is due while the previous one is still on the lines, it follows 1 ms after the previous one
+/// ends.
 class TriggerLines {
  public:
   TriggerLines(std::unique_ptr<Outputs> outputs, const TriggerPlan& plan);
 
-  /// Gives out a code at this time (CLOCK_MONOTONIC), or at once if it is past.
+  /// Sends a code at this time (CLOCK_MONOTONIC), or at once if the time is past.
   void give(int code, std::int64_t due_ns);
   /// Drops the codes that are due at this time or later.
   void cancel(std::int64_t from_ns);
@@ -37,11 +38,12 @@ class TriggerLines {
   struct Given {
     int code = 0;
     std::int64_t due_ns = 0;
-    std::int64_t time_ns = 0;  ///< when the code was on the lines (with a strobe: when that rose)
+    /// time at which the code was on the lines; with a strobe, the time at which the strobe rose
+    std::int64_t time_ns = 0;
   };
-  /// Removes and returns the codes given out so far, in order.
+  /// Removes and returns the codes sent so far, in order.
   std::vector<Given> take();
-  /// Why the lines cannot be set; "" if they can. Nothing is given out after that.
+  /// Why the lines cannot be set; "" if they can. After a failure nothing more is sent.
   std::string failure() const;
 
  private:

@@ -20,7 +20,7 @@ struct Uri {
   std::string text;  ///< the URI as written in the file
 };
 
-/// Removes the key `active` and returns true if it is `low`, the default being `high`.
+/// Removes the key `active`. Returns true if its value is `low`; without the key, the line is active high.
 bool take_low(Uri& uri);
 /// Removes a key with a time in ms and returns it in ns. Throws terms::UsageError unless it is from 0 to
 /// `highest_ms`.

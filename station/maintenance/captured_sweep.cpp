@@ -36,7 +36,7 @@ void append(const sensing::CaptureBlock& block, std::vector<std::vector<double>>
     channels[k % count].push_back(0x1p-31 * block.samples[k]);
 }
 
-/// Keeps all that a device captures, on a thread of its own.
+/// Records on its own thread everything that a device captures.
 class Recorder {
  public:
   explicit Recorder(const drive::OutputConfig& device)
@@ -137,7 +137,7 @@ Captured capture_armed(const rig::Rig& rig, const std::vector<drive::Burst>& bur
   Captured made;
   made.channels.resize(static_cast<std::size_t>(plan.device.channels));
   append(block, made.channels);
-  const double heard = echo->delay_frames + 64;  // captured frame with the pilot's first frame
+  const double heard = echo->delay_frames + 64;  // captured frame in which the pilot begins
   made.first_frame = -std::llround(heard);
   made.delay_frames = heard + static_cast<double>(made.first_frame);
   return made;

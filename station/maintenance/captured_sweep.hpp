@@ -9,15 +9,15 @@
 
 namespace turnpoint::maintenance {
 
-/// What was captured while bursts were played. Captured frame k was played at frame first_frame + k -
-/// delay_frames of the bursts' numbering.
+/// What was captured while bursts were played. Captured frame k belongs to playback frame first_frame + k -
+/// delay_frames, in the numbering of the bursts.
 struct Captured {
   std::vector<std::vector<double>> channels;  ///< all captured channels; 1 is full scale
   std::int64_t first_frame = 0;
   double delay_frames = 0;
 };
 
-/// The samples that a burst puts on one channel, from its first frame on; 1 is full scale.
+/// Returns the samples that a burst plays on one channel, beginning with its first frame; 1 is full scale.
 std::vector<double> rendered(const rig::Rig& rig, const drive::Burst& burst, int channel);
 
 /// Plays the bursts in the simulated laboratory.

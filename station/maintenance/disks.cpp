@@ -34,7 +34,8 @@ std::string first_line(const fs::path& path) {
   return end == std::string::npos ? "" : line.substr(0, end + 1);
 }
 
-/// The kernel writes spaces and some other characters of a path as \ and three octal digits.
+/// Returns a path without escapes. (The kernel writes spaces and some other characters of a path as \ and
+/// three octal digits.)
 std::string unescaped(const std::string& text) {
   std::string plain;
   for (std::size_t i = 0; i < text.size(); ++i)
@@ -140,7 +141,8 @@ std::vector<Disk> removable_disks(const DiskSources& sources) {
   for (const auto& entry : fs::directory_iterator(sources.blocks)) {
     const auto& block = entry.path();
     const double gigabytes = size_GB(block);
-    if (gigabytes == 0 || !can_be_taken_out(block)) continue;  // a card reader without a card has size 0
+    // skip card readers without a card, whose size is 0
+    if (gigabytes == 0 || !can_be_taken_out(block)) continue;
     const auto model = first_line(block / "device/model");
     const auto name = fmt::format(
         "{}, {} GB", model.empty() ? block.filename().string() : model,

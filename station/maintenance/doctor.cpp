@@ -125,6 +125,12 @@ lines::Finding pick_ups(const rig::Rig& rig) {
           "measure them with `turnpoint calibrate --pickup` (deploy/rigs/README.md, Pick-ups)"};
 }
 
+lines::Finding force_cells(const rig::Rig& rig) {
+  if (rig.capture->forces) return {"force cells", Status::ok, "calibrated", ""};
+  return {"force cells", Status::warning, "not calibrated: sessions measure no forces",
+          "calibrate them with `turnpoint calibrate --forces` (deploy/rigs/README.md, Force cells)"};
+}
+
 // Warns if the touch panel is simulated although the converter is real. A new rig file has a simulated panel,
 // and people forget to replace it.
 lines::Finding touch(const rig::Rig& rig) {
@@ -187,7 +193,7 @@ void input(std::vector<lines::Finding>& checks) {
                       ""});
 }
 
-// A check of the self-test as the doctor reports it; `mend` says what to do if it failed.
+// Converts a check of the self-test to a finding of the doctor. `mend` says what to do if the check failed.
 lines::Finding finding(const records::CheckRow& check, const std::string& mend) {
   if (check.verdict == records::Verdict::failed) return {check.name, Status::failed, check.what, mend};
   return {check.name, Status::ok, check.what, ""};
@@ -256,6 +262,7 @@ std::vector<lines::Finding> examine(const rig::Rig& rig, const std::string& data
   if (const auto plan = session::card_capture_of(rig)) {
     checks.push_back(capture(*plan));
     checks.push_back(pick_ups(rig));
+    if (!rig.capture->bridges.empty()) checks.push_back(force_cells(rig));
   }
   const auto lines = [&checks](const char* device, const std::string& uri) {
     for (auto& check : lines::check_lines(device, uri)) checks.push_back(std::move(check));

@@ -54,8 +54,8 @@ calibration::Calibration with_panel(const rig::Rig& rig, const calibration::Pane
 /// Returns the newest valid calibration beside the rig file; without one, a calibration with nothing in it.
 calibration::Calibration known_calibration(const rig::Rig& rig);
 
-/// Copies what is measured by commands of its own (panel, pick-ups, force cells) from the newest valid
-/// calibration beside the rig file.
+/// Copies the parts of a calibration that separate commands measure (panel, pick-ups, force cells) from the
+/// newest valid calibration beside the rig file.
 void keep_devices(const rig::Rig& rig, calibration::Calibration& made);
 
 }  // namespace turnpoint::maintenance

@@ -12,6 +12,7 @@
 #include "station/rig/csv.hpp"
 #include "station/sensing/sweep.hpp"
 #include "station/session/session.hpp"
+#include "station/session/stage.hpp"
 #include "station/terms/usage_error.hpp"
 
 namespace turnpoint::maintenance {
@@ -22,10 +23,12 @@ using calibration::DisplacementPoint;
 using calibration::PickUp;
 
 constexpr double kFirst_s = 2, kPause_s = 1;
-constexpr double kOverload = 0.98;  // of full scale
-// A response that is less than this many times its noise at its best frequency was not measured.
+constexpr double kOverload = 0.98;  // a sample of this fraction of full scale counts as overload
+// A response must be at least this many times its noise at its best frequency; otherwise the pick-up was not
+// measured.
 constexpr double kLeastOverNoise = 20;
-// Displacements that differ from the rig file's by more than this factor have another unit.
+// If measured displacements differ from those in the rig file by more than this factor, their unit must be
+// wrong.
 constexpr double kMostContrast = 20;
 
 std::vector<sensing::Sweep> sweeps_of(const rig::Rig& rig, const PickUpOptions& options) {
@@ -62,7 +65,7 @@ Captured captured(const rig::Rig& rig, const std::vector<sensing::Sweep>& sweeps
   return capture_armed(rig, bursts);
 }
 
-/// The part of a recording that sensing::sweep_response() needs.
+/// Returns the part of a recording that sensing::sweep_response() needs.
 std::span<const double> part_of(const Captured& recording, int channel, const sensing::Sweep& sweep,
                                 const drive::Burst& burst) {
   const auto quiet = std::llround(sensing::kSweepQuiet_s * sweep.rate_Hz);
@@ -93,7 +96,7 @@ PickUp fitted(int channel, const sensing::Sweep& sweep, const sensing::SweepResp
   return calibration::fit_pick_up(channel, sweep.channel, points, response.noise);
 }
 
-/// The captured channel and the measured displacements of a table.
+/// A table of measured displacements, and the captured channel of the pick-up to which they belong.
 struct ScaleTable {
   int channel = 0;
   std::string file;
@@ -129,7 +132,8 @@ std::optional<ScaleTable> scale_table(const PickUpOptions& options) {
   return table;
 }
 
-/// Refuses a table that is far from the rig file: nanometres, g, or a level in dB.
+/// Throws if the displacements of a table are far from those in the rig file, because they are then probably
+/// in another unit: nanometres, g, or a level in dB.
 void compare(const ScaleTable& table, const rig::Transducer& transducer) {
   double stated_um = 1e6 * transducer.m_per_full_scale.value_or(0), largest_um = 0;
   for (const auto& point : transducer.response) stated_um = std::max(stated_um, 1e6 * point.m_per_full_scale);
@@ -164,7 +168,8 @@ std::vector<PickUp> calibrate_pick_ups(const rig::Rig& rig, const PickUpOptions&
                                          recording.delay_frames)));
   }
   if (!table) return made;
-  // The table was measured with the first transducer. The sensitivity belongs to the sensor.
+  // The table was measured with the first transducer, but the sensitivity found with it is the sensor's own
+  // and holds for all.
   const auto measured = std::find_if(made.begin(), made.end(), [&](const PickUp& pick_up) {
     return pick_up.response.channel == table->channel;
   });

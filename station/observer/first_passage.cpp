@@ -13,10 +13,10 @@ namespace {
 /// exp() from overflowing.
 constexpr double kSurest = 300;
 
-/// Returns the probability with which a time drawn from the inverse Gaussian distribution is accepted. It is
-/// the density of the first passage through -1 or +1 without drift, divided by twice the density of the first
-/// passage through +1 alone (which also counts paths that went below -1 before). The density is a series in
-/// two forms; the form that needs fewer terms at this time is used.
+/// Returns the probability with which a time drawn from the inverse Gaussian distribution is accepted: the
+/// density of the first passage through -1 or +1 without drift, divided by twice the density of the first
+/// passage through +1 alone. (The latter also counts paths that went below -1 before.) The first density is a
+/// series, of which there are two forms; this uses the form that needs fewer terms at this time.
 double kept_share(double time) {
   double sum = 0, term = 1;
   if (time < 0.7) {
@@ -72,7 +72,8 @@ double upper_by(double drift, double bound, double time_s) {
   constexpr double pi = 3.14159265358979323846;
   const double pull = std::clamp(drift * bound, -kSurest, kSurest), time = time_s / (bound * bound);
   if (time <= 0) return 0.5;
-  // P(upper) - pull sum over odd n of exp(-(pull^2 + (n pi / 2)^2) time / 2) / (pull^2 + (n pi / 2)^2)
+  // Computes P(upper) - pull sum over odd n of exp(-(pull^2 + (n pi / 2)^2) time / 2) / (pull^2 + (n pi /
+  // 2)^2).
   double sum = 0;
   for (int n = 1;; n += 2) {
     const double rate = pull * pull + 0.25 * n * n * pi * pi;

@@ -51,8 +51,9 @@ double largest_is_right(double d_prime, int answers) {
   return sum * step * kNormalPeak;
 }
 
-/// Returns the proportion correct in ABX by differencing (Macmillan & Creelman 2005, eq. 9.7). For a negative
-/// d' (the difference is felt the wrong way round), returns the proportion correct with two intervals.
+/// Returns the proportion correct in ABX by differencing (Macmillan & Creelman 2005, eq. 9.7). A negative d'
+/// means that the difference is felt the wrong way round; then the proportion correct with two intervals is
+/// returned.
 double nearest_is_right(double d_prime, double of_two) {
   if (d_prime <= 0) return of_two;
   const double apart = random::normal_cdf(d_prime / kSqrt2), beside = random::normal_cdf(d_prime / kSqrt6);
@@ -91,8 +92,8 @@ double mean_over_drift(double drift, double sd, Function function) {
   return sum / weights;
 }
 
-/// Returns the levels between which a level seems to belong to the category of this answer: halfway to the
-/// neighbouring categories, or to infinity.
+/// Returns the range of felt levels for which the observer gives this answer: from halfway to the lower
+/// neighbour to halfway to the upper one. At the ends the range is infinite.
 std::pair<double, double> ends_of_category(const Question& q, int choice) {
   const double own = q.categories.at(static_cast<std::size_t>(choice));
   double low = -std::numeric_limits<double>::infinity(), high = -low;
@@ -145,12 +146,13 @@ double Observer::centre(const Question& q) const {
   return q.middle == Middle::criterion ? parameters_.criterion : 0;
 }
 
-/// The SD of the level that is felt.
+/// The standard deviation of the level that the observer feels.
 double Observer::category_sd(const Question& q) const {
   return std::fabs(parameters_.threshold.value_or(q.default_threshold)) / (2 * kZ75);
 }
 
-/// The number that the observer gives. A line is as wide as a scale of kLinePoints points.
+/// Returns the number that the observer gives as answer. On a line, it scatters as on a scale of kLinePoints
+/// points.
 double Observer::value(const Question& q, random::Draws& draws) const {
   const auto& v = *q.value;
   double value = 0;
@@ -261,9 +263,9 @@ Reply Observer::answer(const Question& q) const {
                                   : first_passage(pull, bound(q.deadline_s), start, draws);
   Reply reply;
   if (q.decides == Decides::right_answer) {
-    // With three or more answers, and in ABX, fewer answers are right than with two intervals. Some walks
-    // that end at the upper boundary must therefore give a wrong answer, so that the proportion correct
-    // equals share_right().
+    // With three or more answers, and in ABX, fewer answers are right than with two intervals. So some walks
+    // that end at the upper boundary must give a wrong answer; their share is chosen such that the proportion
+    // correct equals share_right().
     const double upper = this->upper(q, pull);
     const bool found = passage.upper && u * upper < share_right(upper, q);
     const int right = q.correct.value_or(any);

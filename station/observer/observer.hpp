@@ -45,7 +45,7 @@ struct Parameters {
   double start_range = 0;
   /// range of the non-decision time (uniform around residual_s); at most twice residual_s
   double residual_range_s = 0;
-  /// spread of judgements; for numbers, the SD of their decimal logarithm
+  /// SD of the judgements; if the answers are numbers (magnitude estimation), of their decimal logarithm
   double scatter = 0.1;
   double anticipation = 0;  ///< fraction of trials answered before anything can be felt
 };
@@ -62,7 +62,7 @@ enum class Decides {
   category,      ///< each answer stands for a level; the nearest one is chosen
 };
 
-/// How the observer finds the right answer.
+/// How the observer finds the right answer. It decides how the proportion correct follows from the level.
 enum class Finding {
   weibull,  ///< Weibull's function, from the guess rate 1 / answers
   largest,  ///< the interval with the largest of independent observations
@@ -71,15 +71,17 @@ enum class Finding {
 
 /// An answer that is a number from `low` to `high`, a multiple of 10^-decimals.
 struct ValueQuestion {
-  /// true: a magnitude, which follows Stevens' power law with the exponent `slope`; false: a place on a line
+  /// true: the answer is a magnitude, which follows Stevens' power law with the exponent `slope`; false: it
+  /// is a place on a line
   bool typed = false;
   double low = 0, high = 1;
   int decimals = 0;
   double modulus = 10;  ///< the magnitude of the threshold
 };
 
-/// The level at the middle of a rating scale. Sensation grows from noise through the criterion (as in yes/no
-/// tasks), with the logarithm of level / threshold, or with the distance of the level from the bias.
+/// The level at which the observer gives the middle of a rating scale. For `criterion`, ratings grow with the
+/// sensation, from noise through the criterion, as in yes/no tasks. For `threshold`, they grow with the
+/// logarithm of level / threshold. For `bias`, they grow with the distance of the level from the bias.
 enum class Middle { criterion, threshold, bias };
 
 /// The question that a trial asks: everything in the trial on which a simulated observer's answer depends.
@@ -101,9 +103,10 @@ struct Question {
   double default_threshold = 1;        ///< the threshold, if the parameters have none
   /// 0: no deadline; if time is short, the observer decides sooner and makes more errors
   double deadline_s = 0;
-  /// If set, a signal asks for the answer at this time. The observer then says what it has found out by then:
-  /// what it has decided, or else the side to which the evidence points. It needs only half of its residual
-  /// time, and the time to move, because the answer is prepared; less if the deadline is sooner.
+  /// If set, a signal asks for the answer at this time. The observer then gives the answer on which it has
+  /// decided or, if it has not decided yet, the answer to which the evidence points so far. Because the
+  /// answer is prepared, the observer then needs only half of its residual time, and the time to move; less
+  /// if the deadline comes sooner.
   std::optional<double> signal_s = {};
   random::Key key;  ///< key of the trial's random draws; the observer sets its stream
 };

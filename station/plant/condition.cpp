@@ -111,8 +111,9 @@ Condition condition_at(const Setup& setup, const std::vector<Fault>& faults, std
         break;
     }
   }
-  // A plate's resonances are proportional to sqrt(E / rho) h / W^2 (modulus, density, thickness, half-width).
-  // With warmth all lengths grow, and the density falls with their cube.
+  // A plate's resonance frequencies are proportional to sqrt(E / rho) h / W^2 (modulus, density, thickness,
+  // half-width). When the plate warms up, all lengths grow, and the density falls with the third power of the
+  // lengths.
   c.resonance *= 1 + 0.5 * (setup.expansion_per_K + setup.modulus_per_K) * c.warmth_K;
   return c;
 }

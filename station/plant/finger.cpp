@@ -47,7 +47,7 @@ void FingerModel::move(std::int64_t frame) {
       std::fmod(static_cast<double>(frame - finger_.touches[touch_].from_frame) / rate_Hz_, period_s);
   const double length_m = finger_.to_m - finger_.from_m;
   const bool back = t >= period_s / 2;
-  // Each half of the period is a pause followed by a stroke.
+  // each half of the movement's period is a pause followed by a stroke
   const double share = ((back ? t - period_s / 2 : t) - finger_.pause_s) / finger_.stroke_s;
   const double out = minimum_jerk(share), speed = minimum_jerk_speed(share) / finger_.stroke_s;
   state_.finger_m = back ? finger_.to_m - length_m * out : finger_.from_m + length_m * out;

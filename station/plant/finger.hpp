@@ -6,8 +6,8 @@
 
 namespace turnpoint::plant {
 
-/// For a movement of minimum jerk (Flash & Hogan 1985), after the fraction `share` of its duration: the
-/// distance covered, from 0 to 1, and the speed relative to the mean speed, at most 1.875.
+/// Distance and speed of a movement of minimum jerk (Flash & Hogan 1985), after the fraction `share` of its
+/// duration. The distance goes from 0 to 1; the speed is relative to the mean speed, and at most 1.875.
 double minimum_jerk(double share);
 double minimum_jerk_speed(double share);
 
@@ -29,9 +29,9 @@ class FingerModel {
 
   /// Replaces all touches by this one. Its frames are those of step().
   void touch(const Touch& touch);
-  /// No touch lasts beyond this frame.
+  /// Ends every touch at this frame at the latest.
   void lift(std::int64_t frame);
-  /// Position at which the finger touches before the next step. step() needs the friction at this position.
+  /// Position at which the finger will touch in the next step. step() needs the friction there.
   double contact_m() const { return state_.contact_m; }
   /// Advances to the step that begins at audio frame `frame`. `relative_friction` is the factor
   /// by which a steady vibration reduces friction at contact_m(); the air film follows it with a lag.

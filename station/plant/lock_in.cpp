@@ -8,7 +8,8 @@ namespace turnpoint::plant {
 using std::numbers::pi;
 
 std::complex<double> phasor(double cycles_per_frame, std::int64_t frame) {
-  // The frame number is split in two, so that whole cycles can be dropped before digits are lost.
+  // Split the frame number in two, so that whole cycles can be dropped from the large part before precision
+  // is lost.
   const std::int64_t high = frame >> 20, low = frame & 0xfffff;
   const double many = std::fmod(std::fmod(cycles_per_frame * 0x1p20, 1.0) * static_cast<double>(high), 1.0);
   const double few = std::fmod(cycles_per_frame * static_cast<double>(low), 1.0);

@@ -34,7 +34,7 @@ std::vector<double> resonances_of(const SurfaceResponse& response) {
       found.push_back(response.frequency_Hz[k] + 0.5 * (a - c) / (a - 2 * b + c) *
                                                      (response.frequency_Hz[1] - response.frequency_Hz[0]));
   }
-  // Resonances just outside of the band also act inside it, so add one at each end, at the same spacing.
+  // A resonance just outside of the band also acts inside the band. Add one at each end, at the same spacing.
   if (found.size() > 1) {
     found.insert(found.begin(), 2 * found[0] - found[1]);
     found.push_back(2 * found.back() - found[found.size() - 2]);
@@ -42,7 +42,7 @@ std::vector<double> resonances_of(const SurfaceResponse& response) {
   return found;
 }
 
-/// The filter's poles for these resonances. `loss` is half the width of a resonance relative to its
+/// Returns the filter's poles for these resonances. `loss` is half the width of a resonance relative to its
 /// frequency.
 std::vector<Complex> poles_of(const std::vector<double>& resonances, double loss, double scale,
                               double rate_Hz) {
@@ -52,8 +52,8 @@ std::vector<Complex> poles_of(const std::vector<double>& resonances, double loss
   return poles;
 }
 
-/// Columns: for each pole, the responses to the real and imaginary part of its weight; then those of the
-/// taps.
+/// Returns the columns of the least-squares fit: for each pole, the responses to the real and imaginary part
+/// of its weight; then those of the taps.
 Eigen::MatrixXcd basis_of(const std::vector<Complex>& poles, std::size_t taps,
                           std::span<const double> frequency_Hz, double rate_Hz) {
   const auto rows = static_cast<Eigen::Index>(frequency_Hz.size());
@@ -72,7 +72,7 @@ Eigen::MatrixXcd basis_of(const std::vector<Complex>& poles, std::size_t taps,
   return basis;
 }
 
-/// Real weights of the columns by least squares. Each column of the result belongs to one pick-up.
+/// Fits real weights of the columns by least squares. Each column of the result belongs to one pick-up.
 Eigen::MatrixXd fitted(const Eigen::MatrixXcd& basis, const Eigen::MatrixXcd& wanted) {
   Eigen::MatrixXd a(2 * basis.rows(), basis.cols()), b(2 * basis.rows(), wanted.cols());
   a << basis.real(), basis.imag();
@@ -86,7 +86,7 @@ SurfaceResponse surface_response(const physics::Surface& surface, std::span<cons
                                  double high_Hz) {
   SurfaceResponse response;
   response.at.resize(x_m.size());
-  // 200 Hz at Q = 60, where a resonance at 30 kHz is at least 500 Hz wide
+  // 200 Hz if Q is 60: a resonance at 30 kHz is then at least 500 Hz wide
   const double spacing_Hz = std::clamp(12000 / surface.quality_factor, 20.0, 400.0);
   for (double f = low_Hz; f <= high_Hz; f += spacing_Hz) {
     const physics::Tone tone{f, 1, 0};

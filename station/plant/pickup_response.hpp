@@ -9,8 +9,9 @@
 
 namespace turnpoint::plant {
 
-/// Displacement at each pick-up per displacement of the drive edge, by the model `mode`, at evenly spaced
-/// frequencies. The surface is solved once per frequency, which takes seconds for a thick plate.
+/// The ratio of the displacement at each pick-up to that of the drive edge, computed with the model `mode` at
+/// evenly spaced frequencies. The surface is solved once per frequency, which takes seconds for a thick
+/// plate.
 struct SurfaceResponse {
   std::vector<double> frequency_Hz;
   std::vector<std::vector<std::complex<double>>> at;  ///< [pick-up][frequency]
@@ -18,8 +19,9 @@ struct SurfaceResponse {
 SurfaceResponse surface_response(const physics::Surface& surface, std::span<const double> x_m, double low_Hz,
                                  double high_Hz);
 
-/// A digital filter that is fitted to a SurfaceResponse: resonators that all pick-ups share, and a few taps
-/// for the remainder. `scale` is a factor on all resonance frequencies.
+/// A digital filter that is fitted to a SurfaceResponse. It consists of resonators that all pick-ups share,
+/// and of a few taps for the remaining part of the response. All resonance frequencies are multiplied by
+/// `scale`.
 class PickupFilter {
  public:
   PickupFilter(const SurfaceResponse& response, double rate_Hz, double scale);

@@ -43,7 +43,7 @@ Plant::Plant(const Setup& setup)
       cells_(setup.cells, setup.rate_Hz),
       finger_(setup.finger, static_cast<double>(step_frames_) / setup.rate_Hz, step_frames_, setup.seed) {
   const double fraction = setup.loop_delay_frames - static_cast<double>(whole_delay_);
-  // The fault drive_late can delay the drive by up to a second.
+  // leave room for the fault drive_late, which can delay the drive by up to a second
   const Delay delay(whole_delay_ + setup.rate_Hz, fraction);
   transducer_delays_.assign(setup.transducers.size(), delay);
   if (setup.wires.carrier_channel) carrier_delay_.push_back(delay);

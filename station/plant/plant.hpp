@@ -22,7 +22,7 @@ namespace turnpoint::plant {
 struct Truth {
   std::int64_t frame = -1;             ///< number of the captured frame; -1 before the first
   double normal_N = 0, lateral_N = 0;  ///< forces on the surface, from finger and load together
-  FingerState finger;                  ///< state at the step that began last (a step is an eighth of a ms)
+  FingerState finger;  ///< state at the beginning of the newest step; a step is an eighth of a millisecond
   CellForces reading_N{};   ///< readings with resonance, crosstalk, zero and drift: what the bridges carry
   double drive_um = 0;      ///< displacement of the drive edge at this frame
   double amplitude_um = 0;  ///< amplitude of all tones under the finger, rms over the fingertip
@@ -53,10 +53,10 @@ class Plant {
   void add(const Fault& fault);
   /// Ends all faults with the next captured frame.
   void repair();
-  /// The finger touches the surface from the next captured frame on, for this many frames, and begins a new
-  /// sequence of strokes. Earlier touches are forgotten.
+  /// The finger touches the surface for this many frames, beginning with the next captured frame, and starts
+  /// a new sequence of strokes. Earlier touches are forgotten.
   void touch(std::int64_t frames);
-  /// The finger leaves the surface this many frames from now, or earlier if touch() says so.
+  /// Makes the finger leave the surface after this many frames, unless its touch ends earlier.
   void lift(std::int64_t frames);
   /// Replaces the load on the surface from the next frame on. An empty load removes it.
   void set_load(const Load& load) { load_ = load; }
@@ -79,12 +79,13 @@ class Plant {
   std::complex<double> pickup_response(std::size_t pickup, double frequency_Hz) const;
   /// Frequency (Hz) and quality factor of each simulated resonance.
   std::vector<std::pair<double, double>> resonances() const { return filters_[filter_].second.resonators(); }
-  /// Largest difference between the simulated response of a pick-up and the surface's model, within the band.
+  /// Largest difference, within the band, between the simulated response of a pick-up and the surface's
+  /// model.
   double pickup_error() const { return filters_.front().second.fit_error(); }
 
  private:
-  /// Squared displacement, and its mean over the fingertip, per squared displacement of the drive edge, at
-  /// positions kGain_m apart.
+  /// The squared displacement and its mean over the fingertip, both relative to the squared displacement of
+  /// the drive edge, at positions kGain_m apart.
   struct Gains {
     std::vector<double> squares, under_fingertip;
   };

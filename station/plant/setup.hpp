@@ -116,7 +116,7 @@ std::string_view name(FaultKind kind);
 /// Empty if no kind has this name.
 std::optional<FaultKind> find_fault(std::string_view name);
 
-/// A fault lasts from from_frame to before to_frame, in captured frames.
+/// A fault and the captured frames during which it lasts: from from_frame to before to_frame.
 struct Fault {
   FaultKind kind = FaultKind::transducer_dead;
   std::int64_t from_frame = 0, to_frame = kNever;

@@ -7,7 +7,7 @@
 
 namespace turnpoint::plant {
 
-/// The value that a converter with this many bits gives: rounded, and limited to full scale.
+/// Returns the value that a converter with this many bits gives: rounded, and limited to full scale.
 double converted(double full_scale, int bits);
 
 /// Computes captured samples of the bridges and the reference from the cells' readings (N) and voltages.
@@ -20,9 +20,9 @@ class WiresModel {
   void step(double excitation_full_scale, double drive_full_scale);
 
   double reference(std::int64_t frame, bool connected) const;
-  /// `cell`: 0 a, 1 b, 2 lateral. An open wire (`connected` false) carries no force signal, but crosstalk,
-  /// noise and the excitation. The excitation reaches it through a capacitance of a few pF, so it is a
-  /// quarter period early.
+  /// Returns the captured sample of a bridge. `cell` is 0 for a, 1 for b, 2 for lateral. If a wire is open
+  /// (`connected` is false), there is no force signal, but still crosstalk, noise and the excitation. The
+  /// excitation gets through a capacitance of a few pF, so it comes a quarter period early.
   double bridge(int cell, double reading_N, std::int64_t frame, bool connected) const;
   /// Voltage (V) at an open wire per rate of change of the excitation (V/s).
   static constexpr double kOpenWire_s = 1.2e-8;

@@ -62,7 +62,7 @@ std::vector<Tick> log_ticks(const Axis& axis, int wanted) {
   const int last = static_cast<int>(std::ceil(std::log10(axis.high)));
   const bool decades_only = 2 * (last - first) > wanted;
   const bool powers = decades_only && (first < -4 || last > 4);
-  // Over many decades, each decade has a tick, but labels stand only at every second, third, ... tick.
+  // Over many decades, each decade gets a tick, but only every second, third, ... tick gets a label.
   const int labelled = (last - first) / std::max(1, 2 * wanted) + 1;
   std::vector<Tick> result;
   for (int decade = first; decade <= last; ++decade)

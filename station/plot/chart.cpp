@@ -86,7 +86,7 @@ struct Draw {
       }
   }
 
-  /// Draws only the line. Its label is drawn after everything else, in a free place.
+  /// Draws only the rule's line. Its label is drawn after everything else, in a free place.
   void operator()(const Rule& rule) const {
     if (!is_shown(rule, frame)) return;
     const bool flat = rule.direction == Rule::Direction::horizontal;

@@ -13,8 +13,8 @@ namespace {
 
 using Levels = std::vector<std::vector<std::size_t>>;
 
-/// Larger numbers of combinations are reduced to this one, to avoid overflow. No design needs that many
-/// repeats of a value.
+/// Largest number of combinations of levels. Larger numbers are reduced to it, to avoid overflow; no design
+/// needs so many repeats of a value.
 constexpr std::size_t kMost = 1'000'000;
 
 /// Returns the number of combinations of these factors' levels, at most kMost.

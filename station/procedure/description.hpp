@@ -14,8 +14,8 @@ enum class Choice {
   /// the level moves up and down in steps that depend on the answers; the report prints the procedure's own
   /// estimate
   track,
-  /// the level runs from a start in one direction until the answer changes, several times; the report prints
-  /// the procedure's own estimates
+  /// the level runs from a starting level in one direction until the answer changes, and this is repeated;
+  /// the report prints the procedure's own estimates
   series,
   /// the answers update a posterior for an assumed psychometric function, and the posterior determines the
   /// levels; the report prints the procedure's own estimate and fits the psychometric function again

@@ -49,8 +49,8 @@ Limits::Limits(const Spec& spec, const random::Key& key) : spec_(spec) {
   set_starts(Direction::down, spec.descending, draws);
 }
 
-/// Uses each listed start equally often, in shuffled order. If the number of series is no multiple of the
-/// number of starts, the starts that are used once more are drawn.
+/// Uses each listed start equally often, in shuffled order. If the number of series is not a multiple of the
+/// number of starts, some starts are used once more; these are drawn at random.
 void Limits::set_starts(Direction direction, const SeriesStarts& starts, random::Draws& draws) {
   std::vector<double> bag;
   for (auto& series : series_) {
@@ -123,7 +123,7 @@ Limits::Mean Limits::mean_of(Direction direction) const {
     if (series_[i].direction != direction) continue;
     ++mean.ended;
     if (!series_[i].midpoint) continue;
-    // Welford's recursion
+    // running mean and variance by Welford's method
     const double off = *series_[i].midpoint - mean.position;
     mean.position += off / ++mean.used;
     squares += off * (*series_[i].midpoint - mean.position);
@@ -161,7 +161,7 @@ std::map<std::string, Estimate> Limits::estimates() const {
   Mean both{0.5 * (up.position + down.position), {}, up.used + down.used, up.ended + down.ended};
   if (up.variance && down.variance) both.variance = 0.25 * (*up.variance + *down.variance);
   all["threshold"] = estimate_of(both, "");
-  auto difference = all["threshold"];  // copied to keep its basis
+  auto difference = all["threshold"];  // copied from "threshold" because the two have the same basis
   const auto& above = all["threshold ascending"];
   const auto& below = all["threshold descending"];
   difference.mean = difference.mode = above.mean - below.mean;

@@ -40,13 +40,14 @@ class Limits : public Procedure {
     std::optional<double> midpoint;  ///< position on the scale on which the steps are counted
   };
   void set_starts(Direction direction, const SeriesStarts& starts, random::Draws& draws);
-  /// Returns the position, on the scale of the steps, this number of steps from the current series' start.
+  /// Returns the position that is this number of steps away from the start of the current series, on the
+  /// scale on which the steps are counted.
   double position_after(int steps) const;
   bool inside(double position) const;
   void end_series(const std::optional<double>& midpoint);
 
-  /// The mean of the midpoints on the scale of the steps; the squared standard error, if there are two or
-  /// more; the numbers of series that have a midpoint, and that have ended.
+  /// The mean of the midpoints on the scale of the steps; its squared standard error, if there are two or
+  /// more midpoints; and how many series have a midpoint, and how many have ended.
   struct Mean {
     double position = 0;
     std::optional<double> variance;
@@ -58,7 +59,7 @@ class Limits : public Procedure {
   Spec spec_;
   std::vector<Series> series_;
   std::size_t current_ = 0;
-  int steps_ = 0;       ///< from the start of the current series
+  int steps_ = 0;       ///< number of steps since the start of the current series
   int changed_ = 0;     ///< number of new answers in a row
   int unanswered_ = 0;  ///< number of unanswered trials in a row
   std::vector<Answer> answers_;

@@ -39,7 +39,7 @@ double binary_entropy(double p) {
   return -p * random::log(p) - (1 - p) * random::log(1 - p);
 }
 
-/// Number of partial sums, computed in parallel, of which a sum of products consists.
+/// A sum of products is made of this many partial sums, which are computed in parallel.
 constexpr std::size_t kLanes = 8;
 
 using Quad = double __attribute__((vector_size(32)));
@@ -88,10 +88,10 @@ void add(Products& first, Products& second, const double* x, const double* y, co
   first.rest = one_rest, second.rest = two_rest;
 }
 
-/// The expected entropies are computed for this many stimuli side by side. Each has its own sums, with the
-/// same order of additions as if it were computed alone.
+/// The expected entropies of this many stimuli are computed side by side. Each stimulus has sums of its own,
+/// in the same order of additions as if it were computed alone.
 constexpr std::size_t kAbreast = 4;
-/// The number of groups whose logarithms are computed together
+/// The logarithms of this many groups are computed together.
 constexpr std::size_t kBatch = 128;
 
 /// Adds to the sums of each point's group the point's weight times its range times the value of the function,

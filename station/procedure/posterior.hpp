@@ -23,9 +23,9 @@ class Posterior {
 
   explicit Posterior(const Spec& spec);
 
-  /// Returns the index of the stimulus that is expected to give most information about the kept parameters:
-  /// the one with the largest mutual information, that is, the smallest expected entropy. If several are
-  /// equal, returns the first.
+  /// Returns the index of the stimulus from whose answer most information about the kept parameters is
+  /// expected: the one with the largest mutual information, that is, the smallest expected entropy. If
+  /// several are equal, returns the first.
   std::size_t best_stimulus() const;
   /// Returns the index of the stimulus that is nearest to a level on this scale; of two equally near, the
   /// first.

@@ -22,7 +22,9 @@ struct Proposal {
 
 /// The answer to a proposal. The procedure learns nothing from a trial without an answer (timeout,
 /// anticipation).
-enum class Answer { one, zero, none };  ///< one: the answer was right, or it was the tracked answer
+/// one: the answer was right, or, if the procedure tracks an answer, it was that answer; zero: any other
+/// answer
+enum class Answer { one, zero, none };
 
 struct Estimate {
   double mode = 0, mean = 0;

@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 #include <utility>
+#include <variant>
 #include <vector>
 
 #include "station/terms/psychometric.hpp"
@@ -58,8 +59,8 @@ struct Stop {
   StopRule rule = StopRule::any;
 };
 
-/// Starting levels of the series of one direction: a list of which each is used equally often, or an interval
-/// from which each series draws one. Without both there are no series of this direction.
+/// Starting levels of the series in one direction. Either a list, of which each is used equally often, or an
+/// interval, from which each series draws one. If both are empty, there are no series in this direction.
 struct SeriesStarts {
   std::vector<double> values;
   std::optional<std::pair<double, double>> uniform;
@@ -76,6 +77,10 @@ struct Spec {
   std::string level;   ///< the factor that the procedure sets
   std::string tracks;  ///< the answer that counts as 1; "" if right answers count as 1
   Scale scale = Scale::linear;
+  /// the values that some factors have in all trials of this procedure
+  std::map<std::string, std::variant<double, std::string>> with;
+  /// name of the table from which `for_each` has made this procedure; "" if it was not made by `for_each`
+  std::string family;
 
   // The following members are for constant stimuli; `values` are the levels.
   std::vector<double> values;
@@ -96,11 +101,11 @@ struct Spec {
   std::optional<int> initial_down;
   int discard_reversals = 0;  ///< number of reversals at the start that the estimate leaves out
 
-  // The first two members are also for adjustments: the starts from below and from above.
-  // The following members are for the method of limits, in addition to `step` (one step), `min` and `max`.
+  // The first two members are also used by adjustments: the starts from below and from above. The rest is for
+  // the method of limits, which also uses `step` (one step), `min` and `max`.
   SeriesStarts ascending, descending;
-  int series = 0;    ///< number of series, of both directions together
-  int n_change = 1;  ///< number of new answers in a row that end a series
+  int series = 0;    ///< number of series in both directions together
+  int n_change = 1;  ///< a series ends when the new answer has come this many times in a row
   Directions directions = Directions::alternate;
 
   // The following members are for procedures with a posterior.
@@ -129,9 +134,9 @@ const char* name(Kind kind);  ///< the kind's name in a protocol: "constant-stim
 std::optional<Kind> parse_kind(const std::string& text);
 std::vector<std::string> kind_names();
 
-/// Returns about how many trials the method of limits takes, if the answers change in the middle between the
-/// ascending and the descending starts (with series of one direction, in the middle of what is left of the
-/// range).
+/// Returns about how many trials the method of limits takes. Assumes that the answers change half-way between
+/// the ascending and the descending starts. If all series have one direction, the limit `min` or `max` stands
+/// for the missing starts.
 double series_trials(const Spec& spec);
 
 /// One problem of a specification: the key, what is wrong, and what is allowed.

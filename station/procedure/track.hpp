@@ -29,7 +29,7 @@ class Track : public Procedure {
   enum class Direction { none, down, up };
   /// Records a reversal if the direction differs from that of the previous step.
   void turn(Direction direction);
-  /// Moves the level by this signed amount, on its scale and within its limits.
+  /// Moves the level by this signed amount on its scale, but not beyond its limits.
   void move(double size);
 
   Spec spec_;

@@ -2,7 +2,9 @@
 #include <cmath>
 
 #include "station/protocol/advice_list.hpp"
+#include "station/protocol/sources.hpp"
 #include "station/protocol/survey.hpp"
+#include "station/protocol/visits.hpp"
 #include "station/text/number.hpp"
 
 namespace turnpoint::protocol {
@@ -59,7 +61,8 @@ void check_fineness(AdviceList& advice, const procedure::Spec& spec) {
   }
 }
 
-// If everybody feels every level, no threshold can be found. Training to a criterion finds none.
+// Reports levels that are all so large that everybody feels them: no threshold can be found then. A procedure
+// that ends at a criterion (stop.right) is for training and looks for no threshold.
 void check_coarseness(AdviceList& advice, const procedure::Spec& spec) {
   if (spec.stop.right) return;
   auto levels = spec.values;
@@ -103,7 +106,8 @@ void check_unused(AdviceList& advice) {
   const auto sources = sources_of(protocol);
   for (const auto& factor : protocol.factors) {
     const auto sets = [&](const Source& source) { return source.sets.count(factor.name) > 0; };
-    if (!used.count(factor.name) && std::none_of(sources.begin(), sources.end(), sets))
+    // what differs between groups need not be on the surface
+    if (!is_group(factor) && !used.count(factor.name) && std::none_of(sources.begin(), sources.end(), sets))
       advice.add("factor." + factor.name + ".name", "the factor \"" + factor.name + "\" is not used", "");
   }
   auto scenes = scenes_used(protocol);

@@ -29,7 +29,7 @@ constexpr double shortest_deadline_s = 0.2;
 /// The path in KeyPlaces of a procedure's key, such as `procedure.levels.start` for the procedure named
 /// `levels`.
 inline std::string key_of(const procedure::Spec& spec, const std::string& key) {
-  return "procedure." + spec.name + "." + key;
+  return "procedure." + (spec.family.empty() ? spec.name : spec.family) + "." + key;
 }
 
 /// The path in KeyPlaces of a key of a block or sequence: `block.main.trials` or
@@ -51,7 +51,7 @@ void advise_on_answers(AdviceList& advice);
 void advise_on_times(AdviceList& advice);
 /// Checks the grids, rates, thresholds and stopping rules of procedures.
 void advise_on_grids(AdviceList& advice);
-/// Checks blocks, instructions, labels and questions, and the analysis.
+/// Checks blocks, instructions, labels, questions, and the analysis.
 void advise_on_plan(AdviceList& advice);
 /// Finds questions that ask for what identifies a person, and answers that look the same.
 void advise_on_interludes(AdviceList& advice);

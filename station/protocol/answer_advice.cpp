@@ -14,15 +14,15 @@ namespace {
 using procedure::Spec;
 using text::number;
 
-/// Counts cases: for each answer, those in which it is right (`times`); those in which some answer is right
-/// (`scored`); and all (`all`).
+/// For each answer, the number of cases in which it is right (`times`); the number of cases in which some
+/// answer is right (`scored`); and the number of all cases (`all`).
 struct Right {
   std::map<std::string, int> times;
   int scored = 0, all = 0;
 };
 
-// A case is one level, combined with one value of each other factor that the comparisons in `correct` use.
-// Designs with more cases than this are not checked.
+// Largest number of cases that are checked. A case is one level, combined with one value of each other factor
+// that the comparisons in `correct` use. Larger designs are not checked.
 constexpr std::size_t most_cases = 20000;
 
 std::vector<Factors> cases_of(const Protocol& protocol, const std::string& level,
@@ -31,7 +31,7 @@ std::vector<Factors> cases_of(const Protocol& protocol, const std::string& level
   Factors needed;
   for (const auto& [id, comparison] : protocol.task.correct_answer)
     for (const auto* side : {&comparison.left, &comparison.right})
-      for (const auto& [name, coefficient] : side->terms) needed[name] = any.at(name);
+      for (const auto& name : factors_in(*side)) needed[name] = any.at(name);
   std::vector<Factors> cases(levels.size(), needed);
   for (std::size_t i = 0; i < levels.size(); ++i) cases[i][level] = levels[i];
   for (const auto& factor : protocol.factors) {
@@ -183,7 +183,8 @@ void check_catch(AdviceList& advice, const std::variant<Block, Sequence>& part) 
                         "the catch trials of \"" + block_of(part).name + "\" have " +
                             (right.times.empty() ? "no right answer" : "only one right answer"),
                         easy_on_both_sides(protocol, trials->factor));
-    // catch trials without a signal are easy as well, and of categories none is easy
+    // In two cases there is nothing to advise: catch trials without a signal are easy, and if the answers are
+    // categories, no level is easier than another.
     const auto kind = answer_rule(protocol, trials->factor).kind;
     if (kind == AnswerKind::presence || kind == AnswerKind::category) return;
   }

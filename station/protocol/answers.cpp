@@ -16,7 +16,7 @@ int index_of(const Task& task, const std::string& id) {
   return -1;
 }
 
-/// Index of the choice that is right at this level; -1 if no choice is right.
+/// Returns the index of the choice that is right at this level; -1 if no choice is right.
 int right_at(const Protocol& protocol, const std::string& level, double value) {
   auto factors = any_factors(protocol);
   factors[level] = value;
@@ -25,8 +25,8 @@ int right_at(const Protocol& protocol, const std::string& level, double value) {
   return -1;
 }
 
-/// The levels of a source of trials. A staircase may reach any level between its limits; a few of them
-/// represent all.
+/// Returns the levels of a source of trials. A staircase may reach any level between its limits; a few levels
+/// in between represent them all.
 std::vector<double> levels_of(const Source& source) {
   if (!source.spec || !source.spec->min || !source.spec->max) return source.levels;
   constexpr int steps = 100;
@@ -42,7 +42,7 @@ std::vector<double> categories(const Protocol& protocol, const std::string& leve
   const auto& task = protocol.task;
   for (const auto& [id, comparison] : task.correct_answer)
     for (const auto* side : {&comparison.left, &comparison.right})
-      for (const auto& [name, coefficient] : side->terms)
+      for (const auto& name : factors_in(*side))
         if (name != level) return {};
   std::vector<double> sums(task.choices.size(), 0.0), counts = sums;
   for (const auto& source : sources_of(protocol)) {
@@ -63,7 +63,8 @@ std::vector<double> categories(const Protocol& protocol, const std::string& leve
   return sums;
 }
 
-/// The rule for two answers; empty if the sign of the level does not decide.
+/// Returns the rule for a task with two answers; empty if the sign of the level does not decide which answer
+/// is right.
 std::optional<AnswerRule> two_answers(const Protocol& protocol, const std::string& level, double low,
                                       double high) {
   const int below = low < 0 ? right_at(protocol, level, low) : -1;

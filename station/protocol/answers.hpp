@@ -36,8 +36,8 @@ bool explored(const Task& task);
 /// True if answers are ratings or numbers, none of which is right or wrong.
 inline bool judges(const Task& task) { return task.rating || task.value; }
 
-/// Rounds an answer to the decimals of the task; empty if it is outside of the range. A typed number with
-/// more decimals is refused too.
+/// Rounds an answer to the decimals of the task. Empty if the answer is out of range, or if a typed number
+/// has more decimals than the task allows.
 std::optional<double> accepted(const ValueAnswer& answer, double given);
 
 /// True if the factor's levels lie on both sides of zero.

@@ -1,7 +1,8 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "station/protocol/protocol.hpp"
+#include "station/protocol/sources.hpp"
+#include "station/protocol/visits.hpp"
 
 namespace turnpoint::protocol {
 
@@ -21,14 +22,26 @@ std::vector<int> williams_row(int n, int row) {
   return order;
 }
 
-void unroll(const Sequence& sequence, const Protocol& protocol, int index, std::size_t part,
+/// Which of its sessions this is for the sequence, from 0. A sequence may be absent from some sessions.
+int number_of(const Sequence& sequence, int session) {
+  const auto& sessions = sequence.block.audience.sessions;
+  const auto earlier = [&](int other) { return other < session; };
+  return sessions.empty() ? session - 1
+                          : static_cast<int>(std::count_if(sessions.begin(), sessions.end(), earlier));
+}
+
+void unroll(const Sequence& sequence, const Protocol& protocol, const Visit& visit, std::size_t part,
             std::vector<Block>& blocks) {
   const auto same = [&](const Factor& factor) { return factor.name == sequence.over; };
   const auto factor = std::find_if(protocol.factors.begin(), protocol.factors.end(), same);
   if (factor == protocol.factors.end() || factor->levels.empty())
     throw std::invalid_argument("sequence " + sequence.name + ": the factor \"" + sequence.over +
                                 "\" has no levels");
-  auto order = williams_row(static_cast<int>(factor->levels.size()), index);
+  // Neighbouring places belong to different groups, so each group goes through all rows of the square.
+  const int row = visit.place / group_count(protocol), number = number_of(sequence, visit.session);
+  const auto levels = static_cast<int>(factor->levels.size());
+  auto order = williams_row(levels, sequence.one_per_session ? row : row + number);
+  if (sequence.one_per_session) order = {order.at(static_cast<std::size_t>(number % levels))};
   for (int cycle = 0; cycle < sequence.cycles; ++cycle) {
     for (const int level : order) {
       auto block = sequence.block;
@@ -42,18 +55,22 @@ void unroll(const Sequence& sequence, const Protocol& protocol, int index, std::
 
 }  // namespace
 
-std::vector<Block> block_order(const Protocol& protocol, int sequence_index) {
-  if (sequence_index < 0)
-    throw std::invalid_argument("sequence index " + std::to_string(sequence_index) + ": from 0");
+std::vector<Block> block_order(const Protocol& protocol, const Visit& visit) {
+  if (visit.place < 0)
+    throw std::invalid_argument("place in the counterbalancing " + std::to_string(visit.place) + ": from 0");
+  if (visit.session < 1) throw std::invalid_argument("session " + std::to_string(visit.session) + ": from 1");
   std::vector<Block> blocks;
   for (std::size_t part = 0; part < protocol.plan.size(); ++part) {
+    if (!is_for(block_of(protocol.plan[part]).audience, protocol, visit)) continue;
     if (const auto* block = std::get_if<Block>(&protocol.plan[part])) {
       blocks.push_back(*block);
       blocks.back().part = part;
     } else {
-      unroll(std::get<Sequence>(protocol.plan[part]), protocol, sequence_index, part, blocks);
+      unroll(std::get<Sequence>(protocol.plan[part]), protocol, visit, part, blocks);
     }
   }
+  const auto group = group_of(protocol, visit.place);
+  for (auto& block : blocks) block.fixed.insert(group.begin(), group.end());
   return blocks;
 }
 

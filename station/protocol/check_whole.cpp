@@ -19,7 +19,7 @@ using text::Findings;
 // reported only once, at its declaration.
 void check_values(const std::vector<Source>& sources, const std::string& name, const Reading& reading) {
   const auto* factor = find_factor(reading.protocol.factors, name);
-  if (factor && !factor->levels.empty()) return;
+  if (factor && (!factor->levels.empty() || factor->draw != FactorDraw::levels)) return;
   const auto sets = [&](const Source& source) { return source.sets.count(name) > 0; };
   const bool set_somewhere = std::any_of(sources.begin(), sources.end(), sets);
   for (const auto& source : sources) {
@@ -71,7 +71,8 @@ void check_scored(text::TableReader& file, const Reading& reading) {
   }
   for (const auto& part : protocol.plan) {
     const auto& block = block_of(part);
-    if (block.kind != BlockKind::trials) continue;  // judges movements
+    // such blocks judge movements, so they need no correct answers
+    if (block.kind != BlockKind::trials) continue;
     for (const auto* key : {"pass", "feedback"})
       if (key == std::string("pass") ? block.pass.has_value() : block.feedback != Feedback::none)
         reading.findings.add(reading.places.of(key_of(part, key)),
@@ -80,7 +81,7 @@ void check_scored(text::TableReader& file, const Reading& reading) {
   }
 }
 
-// The method of limits needs one answer that becomes more frequent as the level rises.
+// Checks the method of limits, which needs one answer that becomes more frequent as the level rises.
 void check_limits(const Reading& reading) {
   const auto& protocol = reading.protocol;
   const auto& task = protocol.task;
@@ -178,8 +179,8 @@ void check_timing(text::TableReader& file, const Reading& reading) {
     if (const auto block = block_without_deadline(protocol))
       findings.add(table->place, "block \"" + *block + "\" has no deadline: [timing] has no \"deadline_s\"",
                    "set \"deadline_s\" here, or in the block's [instructions.NAME]");
-  // If anticipation_s is not shorter than a deadline, one of them is wrong. A deadline shorter than any
-  // person's response is to blame; otherwise anticipation_s is, which is normally about 0.15 s.
+  // Reports anticipation_s if it is not shorter than a deadline. If the deadline is shorter than any person's
+  // response, the deadline is to blame; otherwise it is anticipation_s, which is normally about 0.15 s.
   const double anticipation_s = bounds(timing.anticipation_s, protocol.factors).second;
   const auto check_anticipation = [&](const std::string& key, const Linear& deadline) {
     const double deadline_s = bounds(deadline, protocol.factors).first;

@@ -10,13 +10,16 @@ namespace turnpoint::protocol {
 
 namespace {
 
-// The values of a factor in the trials of a source: the levels that the source sets, or the value that the
-// block fixes, or otherwise all levels of the factor.
+// Returns the values that a factor has in the trials of a source: the levels that the source sets, or the
+// value that the block fixes, or otherwise all levels of the factor.
 std::vector<FactorValue> values_of(const Factor& factor, const Source& source) {
   if (factor.name == source.level) return {source.levels.begin(), source.levels.end()};
+  if (source.spec)
+    if (const auto with = source.spec->with.find(factor.name); with != source.spec->with.end())
+      return {with->second};
   const auto fixed = source.block->fixed.find(factor.name);
   if (fixed != source.block->fixed.end()) return {fixed->second};
-  return factor.levels;
+  return drawn_values(factor);
 }
 
 void cross(const Protocol& protocol, const Source& source, const std::string& scene,
@@ -32,7 +35,7 @@ void cross(const Protocol& protocol, const Source& source, const std::string& sc
         next.push_back(std::move(combination));
       }
     product = std::move(next);
-    // thinned() will keep only some of the combinations, so this part of a large design is enough.
+    // thinned() will keep only some of the combinations, so of a large design these first ones are enough.
     if (product.size() > 20000) product.resize(20000);
   }
   all.insert(all.end(), product.begin(), product.end());
@@ -80,7 +83,7 @@ std::map<std::string, std::set<FactorValue>> grid_of(
 std::set<std::string> factors_of(const Scene& scene) {
   std::set<std::string> names;
   for (const auto* expression : expressions_of(scene))
-    for (const auto& [name, coefficient] : expression->terms) names.insert(name);
+    for (const auto& name : factors_in(*expression)) names.insert(name);
   return names;
 }
 

@@ -12,8 +12,8 @@ struct Combination {
   Factors factors;
 };
 
-/// All different combinations in which scenes of the task can occur: each source's levels, crossed with the
-/// levels of the factors that are drawn at random.
+/// Returns all different combinations of factors with which the task's scenes can be presented: the levels of
+/// each source of trials, crossed with the levels of the factors that are drawn at random.
 std::vector<Combination> combinations_of(const Protocol& protocol);
 
 /// The scene's expression that contains factors, if exactly one expression does; otherwise null.
@@ -23,9 +23,9 @@ const Linear* only_expression(const Scene& scene);
 /// It is not the case in a zone, because the tones of a zone are designed without roving.
 bool edge_moves_with_strength(const Scene& scene);
 
-/// At most `most` combinations of one scene, including the extreme values, so that results for the others can
-/// be interpolated. They are evenly spaced in the value of only_expression(), or in each factor if
-/// only_expression() is null. If there are more than `most` combinations of extremes, returns the first
+/// Chooses at most `most` combinations of one scene, including the extreme values, so that results for the
+/// others can be interpolated. They are evenly spaced in the value of only_expression(), or in each factor if
+/// only_expression() is null. If the extremes alone are more than `most` combinations, returns the first
 /// `most` of them.
 std::vector<Combination> thinned(const Scene& scene, const std::vector<Combination>& of_the_scene,
                                  std::size_t most);

@@ -9,13 +9,6 @@ namespace turnpoint::protocol {
 
 namespace {
 
-std::string word_of(const std::string& factor, const protocol::FactorValue& value) {
-  if (const auto* text = std::get_if<std::string>(&value)) return *text;
-  const auto words = words_of(factor);
-  return words.name + " " + text::number(std::get<double>(value)) +
-         (words.unit.empty() ? "" : " " + words.unit);
-}
-
 /// For factor number `next` in `by` and all factors after it: adds a name for each combination of their
 /// levels.
 void combine(const protocol::Protocol& protocol, std::size_t next, protocol::Factors& factors,
@@ -47,13 +40,20 @@ FactorWords words_of(const std::string& factor) {
   return words;
 }
 
+std::string level_in_words(const std::string& factor, const protocol::FactorValue& value) {
+  if (const auto* text = std::get_if<std::string>(&value)) return *text;
+  const auto words = words_of(factor);
+  return words.name + " " + text::number(std::get<double>(value)) +
+         (words.unit.empty() ? "" : " " + words.unit);
+}
+
 std::string condition_of(const protocol::Protocol& protocol, const protocol::Factors& factors,
                          const std::string& instruction) {
   if (protocol.analysis.by.empty()) return instruction;
   std::string name;
   for (const auto& factor : protocol.analysis.by)
     if (const auto found = factors.find(factor); found != factors.end())
-      name += (name.empty() ? "" : ", ") + word_of(factor, found->second);
+      name += (name.empty() ? "" : ", ") + level_in_words(factor, found->second);
   return name;
 }
 

@@ -17,7 +17,7 @@ using procedure::Kind;
 using text::number;
 using text::Problem;
 
-/// A displacement far too small to be felt, but larger than rounding errors.
+/// A displacement below this is far too small to be felt, but is no mere rounding error.
 constexpr double least_displacement_um = 0.001;
 
 std::string trimmed(const std::string& text) {
@@ -65,7 +65,8 @@ void check_ramps(AdviceList& advice) {
 }
 
 bool same(const std::optional<Linear>& a, const std::optional<Linear>& b) {
-  return a && b && a->constant == b->constant && a->terms == b->terms && a->absolute == b->absolute;
+  return a && b && a->constant == b->constant && a->terms == b->terms && a->products == b->products &&
+         a->absolute == b->absolute;
 }
 
 void check_scenes(AdviceList& advice) {
@@ -109,8 +110,8 @@ void check_task(AdviceList& advice) {
                  "set feedback = \"none\"");
 }
 
-/// The largest number of trials in a block, including catch trials; empty if the answers decide when the
-/// block ends.
+/// Returns the largest number of trials in a block, including catch trials; empty if the answers decide when
+/// the block ends.
 std::optional<double> most_trials(const Protocol& protocol, const Block& block) {
   if (block.trials) return *block.trials;
   double trials = static_cast<double>(block.levels.size());
@@ -211,7 +212,7 @@ void check_instructions(AdviceList& advice) {
 void check_analysis(AdviceList& advice) {
   const auto& analysis = advice.protocol.analysis;
   const auto moves = [](const auto& term) { return term.second != 0; };
-  if (analysis.difficulty &&
+  if (analysis.difficulty && analysis.difficulty->products.empty() &&
       std::none_of(analysis.difficulty->terms.begin(), analysis.difficulty->terms.end(), moves))
     advice.add("analysis.difficulty", "\"difficulty\" is the same in all trials",
                "write arithmetic that depends on a factor");

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <iterator>
+#include <map>
 
 #include "station/text/number.hpp"
 
@@ -15,8 +17,9 @@ struct SyntaxError {
   std::string what, allowed;
 };
 
-// A recursive-descent parser for an expression, or for one side of a comparison. Every intermediate result
-// must be linear in the factors, so at least one operand of a product must be a constant.
+// A recursive-descent parser for an expression, or for one side of a comparison. Every result is linear in
+// each of its factors, so that its extremes are at the ends of their ranges: a factor is never multiplied by
+// itself.
 class Parser {
  public:
   Parser(const std::string& source, std::size_t begin, std::size_t end, const std::vector<Factor>& factors)
@@ -30,13 +33,18 @@ class Parser {
     for (const auto& [name, coefficient] : result.terms)
       if (!std::isfinite(coefficient))
         throw SyntaxError{0, "the coefficient of " + name + " is not finite", form};
+    for (const auto& product : result.products)
+      if (!std::isfinite(product.coefficient)) throw SyntaxError{0, "a coefficient is not finite", form};
+    if (factors_in(result).size() > most_factors)
+      throw SyntaxError{0, "the expression depends on more than 10 factors", form};
     return result;
   }
 
  private:
   static constexpr const char* form =
-      "allowed: linear arithmetic with factors, such as \"150 - 0.5 * spread_mm\", or abs(...) around the "
-      "whole expression";
+      "allowed: sums and products of factors, such as \"150 - 0.5 * spread_mm\" or \"ref * (1 + weber)\", or "
+      "abs(...) around the whole expression";
+  static constexpr std::size_t most_factors = 10;
 
   char peek() {
     while (at_ < end_ && (source_[at_] == ' ' || source_[at_] == '\t')) ++at_;
@@ -59,10 +67,7 @@ class Parser {
     for (;;) {
       const auto at = (peek(), at_);
       if (accept('*')) {
-        auto right = signed_term();
-        if (!right.is_constant()) std::swap(left, right);
-        if (!right.is_constant()) throw SyntaxError{at, "multiplying two factors is not allowed", form};
-        scale(left, right.constant, at);
+        left = multiplied(left, signed_term(), at);
       } else if (accept('/')) {
         const auto right = signed_term();
         if (!right.is_constant()) throw SyntaxError{at, "dividing by a factor is not allowed", form};
@@ -148,12 +153,58 @@ class Parser {
       else
         found->second += sign * coefficient;
     }
+    for (const auto& product : right.products) {
+      const auto same = [&](const auto& other) { return other.factors == product.factors; };
+      const auto found = std::find_if(left.products.begin(), left.products.end(), same);
+      if (found == left.products.end())
+        left.products.push_back({product.factors, sign * product.coefficient});
+      else
+        found->coefficient += sign * product.coefficient;
+    }
+  }
+
+  // The coefficients of a sum. The key of each is the list of factors that it multiplies; the empty list
+  // stands for the constant.
+  using Parts = std::map<std::vector<std::string>, double>;
+
+  static Parts parts_of(const Linear& sum) {
+    Parts parts{{{}, sum.constant}};
+    for (const auto& [name, coefficient] : sum.terms) parts[{name}] += coefficient;
+    for (const auto& product : sum.products) parts[product.factors] += product.coefficient;
+    return parts;
+  }
+
+  static Linear multiplied(const Linear& left, const Linear& right, std::size_t at) {
+    if (left.absolute || right.absolute)
+      throw SyntaxError{at, "abs(...) is not allowed inside a product", form};
+    Linear result = left.is_constant() ? right : left;
+    if (left.is_constant() || right.is_constant()) {
+      scale(result, left.is_constant() ? left.constant : right.constant, at);
+      return result;
+    }
+    Parts parts;
+    for (const auto& [a, x] : parts_of(left))
+      for (const auto& [b, y] : parts_of(right)) {
+        std::vector<std::string> both;
+        std::merge(a.begin(), a.end(), b.begin(), b.end(), std::back_inserter(both));
+        if (std::adjacent_find(both.begin(), both.end()) != both.end())
+          throw SyntaxError{at, "a factor is multiplied by itself", form};
+        if (x * y != 0) parts[both] += x * y;
+      }
+    result = {};
+    for (const auto& [names, coefficient] : parts) {
+      if (names.empty()) result.constant = coefficient;
+      if (names.size() == 1) result.terms.emplace_back(names.front(), coefficient);
+      if (names.size() > 1) result.products.push_back({names, coefficient});
+    }
+    return result;
   }
 
   static void scale(Linear& expression, double by, std::size_t at) {
     if (expression.absolute) throw SyntaxError{at, "abs(...) is not allowed inside a product", form};
     expression.constant *= by;
     for (auto& term : expression.terms) term.second *= by;
+    for (auto& product : expression.products) product.coefficient *= by;
   }
 
   const std::string& source_;
@@ -162,8 +213,8 @@ class Parser {
   int depth_ = 0;
 };
 
-// The place in the file of a character of the text. The text starts one column after its opening quote.
-// Columns count characters, not bytes.
+// Returns the place in the file of one character of an expression's text. The text starts one column after
+// its opening quote. Columns count characters, not bytes.
 text::Place inside(const text::Place& place, const std::string& source, std::size_t at) {
   const auto end = source.begin() + static_cast<std::ptrdiff_t>(std::min(at, source.size()));
   const auto characters = std::count_if(
@@ -236,8 +287,9 @@ std::optional<Linear> linear_from(const text::Value& value, const std::string& k
         "write a number, or a linear expression of factors in quotes, such as \"mark_mm + offset_mm\"");
     return std::nullopt;
   }
-  const auto broken = [&](const auto& term) { return is_broken(*find_factor(factors, term.first)); };
-  if (std::any_of(result->terms.begin(), result->terms.end(), broken)) return result;
+  const auto broken = [&](const std::string& name) { return is_broken(*find_factor(factors, name)); };
+  const auto used = factors_in(*result);
+  if (std::any_of(used.begin(), used.end(), broken)) return result;
   const auto [low, high] = bounds(*result, factors);
   if (text::inside_range(low, range) && inside_range(high, range)) return result;
   if (result->is_constant())
@@ -250,15 +302,34 @@ std::optional<Linear> linear_from(const text::Value& value, const std::string& k
   return std::nullopt;
 }
 
-std::pair<double, double> bounds(const Linear& expression, const std::vector<Factor>& factors) {
-  double low = expression.constant, high = expression.constant;
-  for (const auto& [name, coefficient] : expression.terms) {
+namespace {
+
+/// The smallest and largest value of the expression without abs(). It is linear in each factor, so both are
+/// at ends of the factors' ranges.
+std::pair<double, double> signed_bounds(Linear expression, const std::vector<Factor>& factors) {
+  expression.absolute = false;
+  std::vector<Factors> corners{{}};
+  for (const auto& name : factors_in(expression)) {
     const auto* factor = find_factor(factors, name);
-    const auto values = factor ? span(*factor) : std::nullopt;
-    if (!values) continue;
-    const double a = coefficient * values->first, b = coefficient * values->second;
-    low += std::min(a, b), high += std::max(a, b);
+    const auto ends = (factor ? span(*factor) : std::nullopt).value_or(std::pair(0.0, 0.0));
+    const auto count = corners.size();
+    for (std::size_t i = 0; i < count; ++i) {
+      corners.push_back(corners[i]);
+      corners[i][name] = ends.first, corners.back()[name] = ends.second;
+    }
   }
+  double low = evaluate(expression, corners.front()), high = low;
+  for (const auto& corner : corners) {
+    const double value = evaluate(expression, corner);
+    low = std::min(low, value), high = std::max(high, value);
+  }
+  return {low, high};
+}
+
+}  // namespace
+
+std::pair<double, double> bounds(const Linear& expression, const std::vector<Factor>& factors) {
+  const auto [low, high] = signed_bounds(expression, factors);
   if (!expression.absolute) return {low, high};
   const double furthest = std::max(std::fabs(low), std::fabs(high));
   return {low <= 0 && high >= 0 ? 0 : std::min(std::fabs(low), std::fabs(high)), furthest};

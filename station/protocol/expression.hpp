@@ -9,8 +9,9 @@
 
 namespace turnpoint::protocol {
 
-/// Parses linear arithmetic on numeric factors: numbers, factor names, + - * / and parentheses, and abs()
-/// around the whole expression. Problems give the column inside the text and suggest the nearest factor name.
+/// Parses arithmetic on numeric factors: numbers, factor names, + - * / and parentheses, and abs() around the
+/// whole expression. Only constants divide, and no factor is multiplied by itself. Problems give the column
+/// inside the text and suggest the nearest factor name.
 std::optional<Linear> parse_linear(const std::string& source, const text::Place& place,
                                    const std::vector<Factor>& factors, text::Findings& findings);
 
@@ -23,7 +24,7 @@ std::optional<Comparison> parse_comparison(const std::string& source, const text
 std::optional<Linear> linear_from(const text::Value& value, const std::string& key, const text::Range& range,
                                   const std::vector<Factor>& factors, text::Findings& findings);
 
-/// The smallest and largest value of the expression if each factor varies over its range or levels
+/// Returns the smallest and largest value of the expression if each factor varies over its range or levels
 /// independently of the others.
 std::pair<double, double> bounds(const Linear& expression, const std::vector<Factor>& factors);
 

@@ -8,11 +8,12 @@ namespace turnpoint::protocol {
 
 namespace {
 
-// Fonts for any script also have the Latin letters of Europe, which end at U+024F. Others are looked up.
+// True for characters that need not be looked up: fonts for any script also have the Latin letters of Europe,
+// which end at U+024F.
 bool in_every_font(char32_t c) { return c <= 0x24F; }
 
-// Joiners, marks of direction, word joiners, variation selectors and the byte order mark change how their
-// neighbours are drawn, and have no shape of their own.
+// True for characters without a shape of their own, which only change how their neighbours are drawn:
+// joiners, marks of direction, word joiners, variation selectors and the byte order mark.
 bool has_no_shape(char32_t c) {
   return (c >= 0x200B && c <= 0x200F) || (c >= 0x2028 && c <= 0x202E) || (c >= 0x2060 && c <= 0x206F) ||
          (c >= 0xFE00 && c <= 0xFE0F) || c == 0xFEFF;

@@ -18,6 +18,9 @@ bool depends_on(const Protocol& protocol, const std::string& level) {
       double sum = 0;
       for (const auto& [factor, coefficient] : expression->terms)
         if (factor == level) sum += coefficient;
+      for (const auto& product : expression->products)
+        if (std::find(product.factors.begin(), product.factors.end(), level) != product.factors.end())
+          return true;
       if (sum != 0) return true;
     }
   return false;
@@ -108,8 +111,8 @@ void check_grids(AdviceList& advice, const Spec& spec) {
     advice.add(key_of(spec, "prior.threshold"),
                "the prior's mean of " + number(prior->first) + " is far outside the grid",
                number(*from) + " to " + number(*to));
-  // On a grid, the threshold's standard deviation can hardly fall below that of a uniform distribution
-  // between two neighbouring points, which is their distance / sqrt(12).
+  // On a grid, the standard deviation of the threshold can hardly become smaller than that of a uniform
+  // distribution between two neighbouring points, which is their distance / sqrt(12).
   const double finest = threshold.size() < 2 ? 0 : (*to - *from) / static_cast<double>(threshold.size() - 1);
   const double least_sd = finest / std::sqrt(12.0);
   if (spec.stop.threshold_sd && spec.scale == procedure::Scale::linear && *spec.stop.threshold_sd < least_sd)

@@ -8,8 +8,9 @@ namespace turnpoint::protocol {
 
 namespace {
 
-/// Words in questions that ask for what identifies a person, in the station's languages. Words of the
-/// languages with spaces must stand alone; in the others they may stand anywhere.
+/// For each of the station's languages, words that occur in questions for personal data, such as a name or an
+/// address. In languages that separate words by spaces, the word must stand alone; in the others it may stand
+/// anywhere.
 const std::map<std::string, std::vector<std::string>>& identifying_words() {
   static const std::map<std::string, std::vector<std::string>> words{
       {"en", {"your name", "first name",      "last name",        "full name",      "family name", "surname",
@@ -43,7 +44,7 @@ const std::map<std::string, std::vector<std::string>>& identifying_words() {
   return words;
 }
 
-/// Ids of items under which such answers are usually stored.
+/// Ids that protocols commonly give to items which ask for such data.
 const std::vector<std::string>& identifying_ids() {
   static const std::vector<std::string> ids{
       "name", "first_name", "last_name", "surname", "initials",  "birthday", "birth_date", "date_of_birth",
@@ -67,7 +68,7 @@ bool has_word(const std::string& text, const std::string& word, bool alone) {
   return false;
 }
 
-/// The identifying word in the question; "" if there is none.
+/// Returns the identifying word in the question; "" if there is none.
 std::string identifying_word(const Localised& question) {
   for (const auto& [language, text] : question) {
     const auto found = identifying_words().find(language.substr(0, 2));

@@ -4,6 +4,7 @@
 #include <filesystem>
 
 #include "station/protocol/sources.hpp"
+#include "station/protocol/visits.hpp"
 #include "station/text/number.hpp"
 
 namespace turnpoint::protocol {
@@ -43,17 +44,19 @@ bool holds(const std::vector<AnswerCondition>& rules, const Answers& answers) {
 }
 
 std::vector<const Interlude*> interludes_before(const Protocol& protocol, const std::vector<Block>& blocks,
-                                                std::size_t next) {
+                                                std::size_t next, const Visit& visit) {
   std::vector<const Interlude*> list;
   const bool begun = next > 0, over = next == blocks.size();
   const std::size_t done = begun ? blocks[next - 1].part + 1 : 0;
   const std::size_t coming = over ? protocol.plan.size() : blocks[next].part;
   for (const auto& interlude : protocol.interludes)
     if (begun && !interlude.after_each.empty() &&
-        interlude.after_each == name_of(protocol.plan[blocks[next - 1].part]))
+        interlude.after_each == name_of(protocol.plan[blocks[next - 1].part]) &&
+        is_for(interlude.audience, protocol, visit))
       list.push_back(&interlude);
   for (const auto& interlude : protocol.interludes)
-    if (interlude.after_each.empty() && interlude.above >= done && interlude.above <= coming)
+    if (interlude.after_each.empty() && interlude.above >= done && interlude.above <= coming &&
+        is_for(interlude.audience, protocol, visit))
       list.push_back(&interlude);
   return list;
 }

@@ -8,23 +8,24 @@
 
 namespace turnpoint::protocol {
 
-/// What a participant has answered so far, and the scores: "about-you.age" or "practice.accuracy", with the
-/// value. The newest value counts.
+/// The participant's answers and scores so far, by name: "about-you.age" or "practice.accuracy". If a
+/// question was answered repeatedly, the newest value counts.
 using Answers = std::map<std::string, FactorValue>;
 
-/// False if there is no such answer or score.
+/// True if the rule holds; false if the answer or score that it names does not exist yet.
 bool holds(const AnswerCondition& rule, const Answers& answers);
 bool holds(const std::vector<AnswerCondition>& rules, const Answers& answers);
 
-/// What comes before the block `next` of these blocks (from block_order()), in the order in which it comes.
-/// With next = blocks.size(), what comes after the last block.
+/// Returns the interludes that come before the block with index `next` of these blocks (from block_order()),
+/// in the order in which they come. With next = blocks.size(), those that come after the last block. Only
+/// those of this visit.
 std::vector<const Interlude*> interludes_before(const Protocol& protocol, const std::vector<Block>& blocks,
-                                                std::size_t next);
+                                                std::size_t next, const Visit& visit);
 
 /// The answer to an item as a value that rules can compare: a number if the item's answer is one.
 FactorValue answer_value(const Item& item, const std::string& answer);
 
-/// Names the pictures of all explanations, each with the path under which it is opened.
+/// A picture of an explanation: its name in the protocol, and the path under which it is opened.
 struct Picture {
   std::string path;
   Place place;

@@ -9,7 +9,7 @@ namespace turnpoint::protocol {
 
 namespace {
 
-/// True if the file begins like a PNG or a JPEG file.
+/// True if the first bytes of the file are those of a PNG or JPEG file.
 bool is_picture(const std::string& path) {
   std::string start(4, '\0');
   std::ifstream file(path, std::ios::binary);
@@ -34,6 +34,7 @@ Protocol parse(const std::string& source, const std::string& path) {
   read_task(file, reading);
   read_timing(file, reading);
   read_procedures(file, reading);
+  read_sessions(file, reading);
   read_plan(file, reading);
   read_interludes(file, reading);
   read_analysis(file, reading);
@@ -42,6 +43,7 @@ Protocol parse(const std::string& source, const std::string& path) {
   read_sensing(file, reading);
   read_resume(file, reading);
   check_whole(file, reading);
+  check_visits(reading);
   file.finish();
   findings.throw_if_any();
   protocol.defaults_used = findings.defaults_used;

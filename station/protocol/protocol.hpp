@@ -8,46 +8,29 @@
 #include <vector>
 
 #include "station/procedure/spec.hpp"
+#include "station/protocol/linear.hpp"
+#include "station/protocol/session_plan.hpp"
 #include "station/terms/trial.hpp"
 #include "station/text/problem.hpp"
 
 namespace turnpoint::protocol {
 
-using text::Place;
-
 /// A text in each of the protocol's languages.
 using Localised = std::map<std::string, std::string>;
 
-/// Values of the factors in one trial: a number for a numeric factor, a name for a text factor.
-using FactorValue = std::variant<double, std::string>;
-using Factors = std::map<std::string, FactorValue>;
-
-/// A linear combination of numeric factors, such as `150 - 0.5 * spread_mm` or `-30`. If `absolute` is set,
-/// its value is the magnitude of the combination, as in `abs(change)`.
-struct Linear {
-  double constant = 0;
-  std::vector<std::pair<std::string, double>> terms;  ///< each factor's name with its coefficient
-  bool absolute = false;
-  std::string source;
-  Place place;
-  bool is_constant() const { return terms.empty(); }
+/// How the values of a factor that nothing else sets are drawn.
+enum class FactorDraw {
+  levels,              ///< one of the levels in each trial; a factor with a range is not drawn
+  without_repetition,  ///< the levels in shuffled order; each once before any comes again
+  uniform,             ///< uniform over the range
+  normal,              ///< normal; values outside of the range are drawn again
+  per_participant      ///< each participant has one of the levels in all sessions: a group
 };
-
-/// Evaluates the expression for these factors. Throws std::invalid_argument naming a factor that has no
-/// number.
-double evaluate(const Linear& expression, const Factors& factors);
-
-enum class Relation { less, less_equal, equal, greater_equal, greater };
-
-/// Two linear expressions and a relation, such as `offset_mm < 0`.
-struct Comparison {
-  Linear left, right;
-  Relation relation = Relation::less;
-};
-bool holds(const Comparison& comparison, const Factors& factors);
 
 struct Factor {
   std::string name;
+  FactorDraw draw = FactorDraw::levels;
+  double mean = 0, sd = 0;  ///< mean and standard deviation for FactorDraw::normal
   std::optional<std::pair<double, double>> range;
   std::vector<FactorValue> levels;
   Place place;
@@ -129,7 +112,7 @@ struct Choice {
   Localised label;
 };
 
-/// A text at a value of a rating scale.
+/// The text at one value of a rating scale.
 struct Anchor {
   double at = 0;
   Localised text;
@@ -253,8 +236,10 @@ struct Block {
   Interleave interleave = Interleave::none;
   std::optional<Catch> catch_trials;
   std::optional<Break> break_after;
-  Factors fixed;  ///< factors that the sequence sets for the whole block, such as instruction = "speed"
-  std::size_t part = 0;  ///< set by block_order(): which part of the plan the block belongs to
+  Audience audience;  ///< the sessions and groups that have this block
+  Factors fixed;      ///< factors that the sequence sets for the whole block, such as instruction = "speed"
+  /// index of the part of the plan (a block or a sequence) from which block_order() made the block
+  std::size_t part = 0;
   Place place;
 };
 
@@ -263,6 +248,7 @@ struct Sequence {
   std::string over;  ///< the factor whose level differs between the blocks
   int cycles = 1;
   bool mirror = false;
+  bool one_per_session = false;  ///< each session has one level; the square is that of the sessions
   Block block;
 };
 
@@ -272,8 +258,8 @@ struct Instruction {
   std::optional<std::pair<double, double>> target_accuracy;
 };
 
-/// What a participant can be asked to compare with: an earlier answer ("about-you.age"), or the proportion
-/// correct in a block ("practice.accuracy").
+/// A condition on an earlier answer ("about-you.age") or on the proportion correct in a block
+/// ("practice.accuracy").
 struct AnswerCondition {
   std::string about;
   Relation relation = Relation::equal;
@@ -326,12 +312,16 @@ enum class InterludeKind { questionnaire, consent, explanation, screening };
 struct Interlude {
   InterludeKind kind = InterludeKind::questionnaire;
   std::string name;
-  std::size_t above = 0;    ///< how many parts of the plan stand above it in the file
-  std::string after_each;   ///< name of a block or sequence: it comes after each of its blocks
-  std::vector<Item> items;  ///< of a questionnaire; a consent has one, "consent": agree, refuse
+  /// number of parts of the plan (blocks and sequences) that are above the interlude in the file
+  std::size_t above = 0;
+  Audience audience;       ///< the sessions and groups that have it
+  std::string after_each;  ///< name of a block or sequence: the interlude comes after each of its blocks
+  /// items of a questionnaire; a consent has a single item, "consent", with the choices agree and refuse
+  std::vector<Item> items;
   std::vector<ExplanationPage> pages;
-  std::vector<AnswerCondition> pass;  ///< of a screening: the session goes on if all of them hold
-  /// what a participant reads who has refused, or did not pass the screening
+  /// for a screening: the session continues if all of these conditions hold
+  std::vector<AnswerCondition> pass;
+  /// text for a participant who has refused the consent, or did not pass the screening
   Localised farewell;
   Place place;
 };
@@ -365,18 +355,19 @@ struct Resume {
   std::string restart_unit;  ///< "block" if a resumed session restarts the interrupted block, otherwise ""
 };
 
-/// What the station gives out a trigger code for: a trial begins, an interval begins, an interval changes to
-/// its next scene, the participant answers.
+/// Events for which the station can send a trigger code: a trial begins, an interval begins, an interval
+/// changes to its next scene, the participant answers.
 enum class TriggerEvent { trial, onset, change, response };
 
-/// The code of an event in the trials of one condition.
+/// The trigger code of one event in the trials of one condition.
 struct TriggerCode {
   TriggerEvent event = TriggerEvent::trial;
-  std::string condition;  ///< name as given by conditions(); "" for trials that belong to none
-  int code = 0;           ///< 1 to 255
+  /// the condition's name, as in conditions(); "" for trials that belong to no condition
+  std::string condition;
+  int code = 0;  ///< 1 to 255
 };
 
-/// Which events get a code, and codes that the file states instead of the default ones.
+/// Which events get a trigger code, and the codes that the file gives explicitly instead of the defaults.
 struct Triggers {
   std::vector<TriggerEvent> send{TriggerEvent::trial, TriggerEvent::onset, TriggerEvent::change,
                                  TriggerEvent::response};
@@ -386,11 +377,12 @@ struct Triggers {
 
 /// The movement that the protocol asks for, on rigs that measure the finger.
 struct Sensing {
-  std::optional<std::pair<double, double>> normal_N, speed_mm_s;  ///< empty: any
+  /// range of the normal force and of the speed; empty: any value is accepted
+  std::optional<std::pair<double, double>> normal_N, speed_mm_s;
   double fraction = 0.8;  ///< required fraction of the strokes' time with force and speed in range
   int strokes = 2;        ///< least number of strokes in a trial
-  /// How often a trial whose movement was wrong is presented again. After that, and with 0, the trial counts,
-  /// and its row says what was wrong.
+  /// How often a trial with a wrong movement is presented again. After the last repetition, or with 0 at
+  /// once, the trial counts, and its row says what was wrong.
   int repeats = 0;
   /// Whether pages show bars with normal force and speed, and whether the bars also move during stimuli.
   bool guidance = false, live_guidance = false;
@@ -410,6 +402,7 @@ struct Protocol {
   Task task;
   Timing timing;
   std::vector<procedure::Spec> procedures;
+  std::optional<SessionPlan> sessions;  ///< empty: the protocol does not say how many sessions there are
   std::vector<std::variant<Block, Sequence>> plan;  ///< blocks and sequences in the order of the file
   std::map<std::string, Instruction> instructions;
   std::vector<Interlude> interludes;  ///< in the order of the file
@@ -428,8 +421,8 @@ Protocol load(const std::string& path);
 /// Like load(), for text that is already in memory (a resumed session). `path` is only used in messages.
 Protocol parse(const std::string& source, const std::string& path);
 
-/// Returns the blocks in the order for the participant with this sequence index (from 0). Applies the
-/// Williams square, cycles and mirror of each sequence.
-std::vector<Block> block_order(const Protocol& protocol, int sequence_index);
+/// Returns the blocks of a session in their order: those of its number and the participant's group, with the
+/// square, cycles and mirror of each sequence.
+std::vector<Block> block_order(const Protocol& protocol, const Visit& visit);
 
 }  // namespace turnpoint::protocol

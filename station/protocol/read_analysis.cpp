@@ -46,7 +46,7 @@ void read_by(TableReader& reader, Reading& reading) {
 std::string without_effect(const std::string& word, const Protocol& protocol) {
   const auto& task = protocol.task;
   const auto level = protocol.procedures.empty() ? std::string() : protocol.procedures.front().level;
-  // the reader of [task] reports a task without choices
+  // do not add a second message: the reader of [task] has reported a task without choices
   if (word == "trace" || task.choices.empty()) return "";
   if (task.kind == TaskKind::adjustment) return "an adjustment task has settings instead of answers";
   if (judges(task)) return "ratings and numbers are neither right nor wrong";

@@ -21,7 +21,8 @@ void check_rules(TableReader& reader, const Reading& reading) {
     reader.problem("catch_accuracy_below", "no block has catch trials",
                    "add \"catch\" to a block, or leave this rule out");
   const auto& task = protocol.task;
-  // the reader of [task] reports a task without choices
+  // A task without choices does not count as unscored here: that mistake has been reported by the reader of
+  // [task].
   const bool unscored =
       judges(task) || task.kind == TaskKind::adjustment ||
       (task.kind == TaskKind::single_interval && !task.choices.empty() && task.correct_answer.empty());

@@ -68,6 +68,30 @@ void read_level(const text::Value& item, Factor& factor, text::Findings& finding
     factor.levels.push_back(value);
 }
 
+/// Reads how the values of a factor are drawn.
+void read_draw(TableReader& reader, Factor& factor, bool has_levels, Reading& reading) {
+  const auto* draw = reader.take("draw");
+  if (!draw) return;
+  const auto is = [&](const char* word) { return draw->kind == Value::Kind::string && draw->string == word; };
+  const auto* normal = draw->kind == Value::Kind::table ? draw->find("normal") : nullptr;
+  if ((is("without-repetition") || is("per-participant")) && has_levels) {
+    factor.draw = is("per-participant") ? FactorDraw::per_participant : FactorDraw::without_repetition;
+  } else if (is("uniform") && factor.range && !has_levels) {
+    factor.draw = FactorDraw::uniform;
+  } else if (normal && normal->value.kind == Value::Kind::table && factor.range && !has_levels) {
+    TableReader inner(normal->value, "factor." + factor.name + ".draw.normal", reading.findings);
+    const auto [low, high] = *factor.range;
+    factor.draw = FactorDraw::normal;
+    factor.mean = inner.number("mean", {low, high});
+    factor.sd = inner.number("sd", {0, high - low, Range::Ends::open_low});
+    inner.finish();
+  } else {
+    reader.problem("draw", "\"draw\" of \"" + factor.name + "\" is " + describe(*draw),
+                   "with a range: \"uniform\" or { normal = { mean = ..., sd = ... } }; with levels: "
+                   "\"without-repetition\" or \"per-participant\"");
+  }
+}
+
 Factor read_factor(const text::Value& table, Reading& reading) {
   TableReader reader(table, titled("factor", table), reading.findings);
   Factor factor;
@@ -86,6 +110,7 @@ Factor read_factor(const text::Value& table, Reading& reading) {
         "write a list of numbers or of names");
   else if (levels)
     for (const auto& item : levels->items) read_level(item, factor, reading.findings);
+  read_draw(reader, factor, levels != nullptr, reading);
   reader.finish();
   return factor;
 }

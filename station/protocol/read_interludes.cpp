@@ -24,8 +24,8 @@ const std::string& plan_name(const std::variant<Block, Sequence>& part) {
   return sequence ? sequence->name : block_of(part).name;
 }
 
-/// Finds the item that `name` means: one above it in the same interlude, or QUESTIONNAIRE.ITEM. Sets the full
-/// name.
+/// Finds the item that `name` refers to: either an earlier item of the same interlude, or QUESTIONNAIRE.ITEM.
+/// Replaces `name` by the full name.
 const Item* find_item(std::string& name, const Interlude& here, const Protocol& protocol) {
   for (const auto& item : here.items)
     if (item.id == name) {
@@ -60,7 +60,7 @@ std::string without_spaces(const std::string& text) {
   return from == std::string::npos ? "" : text.substr(from, text.find_last_not_of(" \t") - from + 1);
 }
 
-/// Checks that the rule compares an answer with something that it can be.
+/// Checks that the rule compares an answer with a value that the answer can have.
 void check_value(const AnswerCondition& rule, const Item* item, const std::string& right,
                  text::Findings& findings) {
   const auto* number = std::get_if<double>(&rule.value);
@@ -225,7 +225,7 @@ Example read_example(const Value& table, const std::string& path, const Reading&
   const auto scene = reading.protocol.scenes.find(example.scene);
   if (scene != reading.protocol.scenes.end())
     for (const auto* expression : expressions_of(scene->second))
-      for (const auto& [name, coefficient] : expression->terms)
+      for (const auto& name : factors_in(*expression))
         if (!example.with.count(name))
           reader.problem("with", "\"with\" does not set \"" + name + "\", on which the scene depends",
                          "with = { " + name + " = ... }");
@@ -261,7 +261,7 @@ void read_screening(TableReader& reader, Interlude& interlude, const Reading& re
     reader.problem("pass", "\"pass\" has no rule", "write at least one comparison");
 }
 
-/// Counts the parts of the plan that begin above this line.
+/// Counts the parts of the plan (blocks and sequences) that begin above this line.
 std::size_t parts_above(const Protocol& protocol, const Place& place) {
   const auto above = [&](const auto& part) { return block_of(part).place.line < place.line; };
   return static_cast<std::size_t>(std::count_if(protocol.plan.begin(), protocol.plan.end(), above));
@@ -283,6 +283,7 @@ void read_interlude(const Value& table, InterludeKind kind, const char* list, Re
                      suggestion(*after, parts));
     interlude.after_each = *after;
   }
+  read_audience(reader, interlude.audience, reading);
   const auto same = [&](const Interlude& other) { return other.name == interlude.name; };
   const auto& others = reading.protocol.interludes;
   if (!interlude.name.empty() && (std::find(parts.begin(), parts.end(), interlude.name) != parts.end() ||

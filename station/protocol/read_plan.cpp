@@ -17,11 +17,19 @@ namespace {
 void read_what(TableReader& reader, Block& block, const Reading& reading) {
   if (reader.has("procedures"))
     block.procedures = reader.strings("procedures", "name at least one procedure");
-  std::vector<std::string> known;
+  std::vector<std::string> known, whole;
   for (const auto& spec : reading.protocol.procedures) known.push_back(spec.name);
+  for (const auto& name : block.procedures) {
+    const auto family = reading.families.find(name);
+    if (family == reading.families.end())
+      whole.push_back(name);
+    else
+      whole.insert(whole.end(), family->second.begin(), family->second.end());
+  }
+  block.procedures = std::move(whole);
   std::set<std::string> seen;
   for (const auto& name : block.procedures) {
-    // Without this check, every name in the list would be reported as unknown if no procedure could be read.
+    // `known` is empty if no procedure could be read. Do not report every name in the list as unknown then.
     if (!known.empty() && std::find(known.begin(), known.end(), name) == known.end())
       reader.problem("procedures", "unknown procedure \"" + name + "\"", suggestion(name, known));
     if (!seen.insert(name).second)
@@ -120,6 +128,7 @@ Block read_block(const Value& table, const Reading& reading) {
   TableReader reader(table, titled("block", table), reading.findings);
   Block block;
   block.name = read_name(reader, "name", "choose a name, which is stored with the data");
+  read_audience(reader, block.audience, reading);
   const auto kind = reader.word("kind", {"trials", "training", "friction-table"}, "trials");
   if (kind == "trials")
     read_block_keys(reader, block, reading);
@@ -157,12 +166,14 @@ Sequence read_sequence(const Value& table, const Reading& reading) {
   if (factor) check_instruction_levels(*factor, reader, reading);
   sequence.cycles = reader.integer("cycles", 1, 100, 1);
   sequence.mirror = reader.boolean("mirror", "false");
+  sequence.one_per_session = reader.word("each_session", {"all", "one"}, "all") == "one";
   if (const auto* block =
           reader.table("block", "describe what each block presents: { procedures = [\"levels\"] }")) {
     TableReader inner(*block, reader.path("block"), reading.findings);
     read_block_keys(inner, sequence.block, reading);
     inner.finish();
   }
+  read_audience(reader, sequence.block.audience, reading);
   sequence.block.name = sequence.name;
   reader.finish();
   return sequence;

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cctype>
 #include <map>
 #include <set>
 
@@ -112,6 +113,76 @@ void check_spec(const Value& table, const Spec& spec, text::Findings& findings) 
   }
 }
 
+/// Reads the values that factors have in all trials of the procedure.
+void read_with(TableReader& reader, Spec& spec, const Reading& reading, text::Findings& findings) {
+  const auto& factors = reading.protocol.factors;
+  const auto* with = reader.maybe_table("with");
+  for (const auto& entry : with ? with->entries : std::vector<text::Entry>{}) {
+    const auto* factor = find_factor(factors, entry.key);
+    const bool twice = entry.key == spec.level ||
+                       std::find(spec.balance.begin(), spec.balance.end(), entry.key) != spec.balance.end();
+    if (!factor || twice)
+      findings.add(entry.place,
+                   twice ? "\"" + entry.key + "\" is set twice" : "unknown factor \"" + entry.key + "\"",
+                   twice ? "set factors that the procedure does not set otherwise"
+                         : suggestion(entry.key, names(factors)));
+    else if (const auto value = read_factor_value(entry.value, *factor, findings))
+      spec.with[entry.key] = *value;
+  }
+}
+
+/// Makes one procedure for each level of the factor that `for_each` names.
+std::vector<Spec> family_of(const Value& table, const Spec& spec, const Reading& reading,
+                            text::Findings& findings) {
+  const auto* key = table.find("for_each");
+  if (!key) return {spec};
+  const auto* factor = key->value.kind == Value::Kind::string
+                           ? find_factor(reading.protocol.factors, key->value.string)
+                           : nullptr;
+  const bool twice = factor && (factor->name == spec.level || spec.with.count(factor->name) > 0);
+  if (!factor || factor->levels.empty() || twice) {
+    findings.add(key->value.place,
+                 "\"for_each\" is " + describe(key->value) +
+                     ", which is not a factor with levels that the "
+                     "procedure does not set",
+                 "name a factor with \"levels\"");
+    return {};
+  }
+  std::vector<Spec> family;
+  for (const auto& level : factor->levels) {
+    auto one = spec;
+    const auto* number = std::get_if<double>(&level);
+    auto name = number ? text::exact(*number) : std::get<std::string>(level);
+    for (auto& c : name)
+      if (!std::isalnum(static_cast<unsigned char>(c)) && c != '-' && c != '_') c = '_';
+    one.name = spec.name + "-" + name;
+    one.family = spec.name;
+    one.with[factor->name] = level;
+    family.push_back(std::move(one));
+  }
+  return family;
+}
+
+/// Adds the procedures that were made from one table. Reports a problem if two would have the same name: the
+/// levels may differ only in characters that are not allowed in names, or another table may already have the
+/// name.
+void add_family(const Value& table, const std::string& name, std::vector<Spec> family, Reading& reading) {
+  for (auto& one : family) {
+    if (one.family.empty()) {
+      one.name = name;
+    } else {
+      auto& procedures = reading.protocol.procedures;
+      const auto same = [&](const Spec& other) { return other.name == one.name; };
+      if (std::any_of(procedures.begin(), procedures.end(), same))
+        return reading.findings.add(table.find("for_each")->value.place,
+                                    "\"for_each\" makes a second procedure named \"" + one.name + "\"",
+                                    "choose another name for the table or for the level");
+      reading.families[name].push_back(one.name);
+    }
+    reading.protocol.procedures.push_back(std::move(one));
+  }
+}
+
 Spec read_procedure(const Value& table, const Reading& reading, text::Findings& findings) {
   TableReader reader(table, titled("procedure", table), findings);
   Spec spec;
@@ -124,6 +195,8 @@ Spec read_procedure(const Value& table, const Reading& reading, text::Findings& 
   procedure::description(spec.kind).read(reader, spec);
   check_tracks(reader, spec, reading);
   check_balance(reader, spec, reading);
+  read_with(reader, spec, reading, findings);
+  reader.take("for_each");
   if (factor && !is_broken(*factor)) check_levels(reader, spec, *factor);
   if (findings.problems.empty()) check_spec(table, spec, findings);
   reader.finish();
@@ -161,8 +234,9 @@ void read_procedures(TableReader& file, Reading& reading) {
     const bool broken_copy = !found.problems.empty();
     Spec spec;
     if (!broken_copy) spec = read_procedure(whole, reading, found);
-    // A mistake in a procedure is found again in each procedure that copies it, so only one problem is
-    // reported at each place in the file.
+    auto family = family_of(whole, spec, reading, found);
+    // If a procedure contains a mistake, every procedure that copies it contains the mistake too. So report
+    // only one problem for each place in the file.
     for (auto& problem : found.problems)
       if (places.insert({problem.place.line, problem.place.column}).second)
         reading.findings.problems.push_back(std::move(problem));
@@ -172,7 +246,7 @@ void read_procedures(TableReader& file, Reading& reading) {
       reading.findings.add(table->find("name")->place, "there is already a procedure named \"" + name + "\"",
                            "each procedure needs a different name");
     else if (!name.empty())
-      spec.name = name, reading.protocol.procedures.push_back(std::move(spec));
+      add_family(*table, name, std::move(family), reading);
   }
 }
 

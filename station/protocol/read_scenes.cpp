@@ -89,7 +89,7 @@ Tolerance read_tolerance(const Value& table, const std::string& name, Findings& 
   return tolerance;
 }
 
-// A displacement under a finger needs the position of the finger.
+// Reports a displacement under a finger for which the position of the finger is missing.
 void check_finger(TableReader& reader, const Scene& scene) {
   const bool wanted = reader.has("displacement_under_finger_um");
   if (wanted && !reader.has("finger_mm"))
@@ -104,7 +104,7 @@ void check_finger(TableReader& reader, const Scene& scene) {
                    "use an edge by name, or \"displacement_um\"");
 }
 
-// A scene can be given in three forms. Checks that exactly one is used.
+// Checks that a scene is given in exactly one of the three possible forms.
 void check_form(TableReader& reader, const Scene& scene, Findings& findings) {
   const auto form =
       "use one of three forms: one boundary (\"boundary_mm\", \"edge\" and \"displacement_um\" or "
@@ -266,8 +266,8 @@ class Resolver {
     return nullptr;
   }
 
-  // A mistake in a base scene is found again in every scene that builds on it, so only one problem is
-  // reported at each place in the file.
+  // If a base scene contains a mistake, every scene that builds on it contains the mistake too. So report
+  // only one problem for each place in the file.
   void read(const std::string& name, const Value& table, const Value& own) {
     Findings found;
     auto scene = read_scene(table, name, own, found, reading_);

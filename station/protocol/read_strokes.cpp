@@ -24,14 +24,14 @@ void read_training(TableReader& reader, Block& block, const Reading& reading) {
   inner.finish();
 }
 
-/// The scene is the same in every trial of the block, so it must not contain factors.
+/// Checks that the block's scene contains no factors, because the scene is the same in every trial.
 void check_scene(TableReader& reader, const Block& block, const Reading& reading) {
   const auto& scenes = reading.protocol.scenes;
   const auto found = scenes.find(block.strokes.scene);
   if (found == scenes.end()) {
     std::vector<std::string> known;
     for (const auto& [name, scene] : scenes) known.push_back(name);
-    // A scene that could not be read has its own message.
+    // If the scene could not be read, that has been reported already.
     const auto& declared = reading.declared_scenes;
     if (!block.strokes.scene.empty() &&
         std::find(declared.begin(), declared.end(), block.strokes.scene) == declared.end())

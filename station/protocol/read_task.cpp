@@ -15,7 +15,7 @@ using text::Value;
 
 namespace {
 
-/// The kinds of task and the smallest and largest number of choices of each.
+/// A kind of task, with the smallest and the largest number of choices that it can have.
 struct TaskForm {
   const char* name;
   TaskKind kind;
@@ -364,7 +364,7 @@ void read_task(TableReader& file, Reading& reading) {
   std::vector<std::string> words;
   for (const auto& known : task_forms) words.emplace_back(known.name);
   const auto word = reader.word("kind", words);
-  // An unknown kind is an error already; what follows then reads the keys of the first one.
+  // An unknown kind has been reported. The code below then reads the keys of the first kind.
   const auto* kind = std::find_if(std::begin(task_forms), std::end(task_forms),
                                   [&word](const TaskForm& known) { return known.name == word; });
   if (kind == std::end(task_forms)) kind = std::begin(task_forms);

@@ -61,7 +61,7 @@ std::string described(const TriggerCode& code) {
   return std::string(name(code.event)) + (code.condition.empty() ? "" : " (" + code.condition + ")");
 }
 
-/// Two events with the same code cannot be told apart.
+/// Reports two events with the same code, because a recorder could not tell them apart.
 void check_unique(TableReader& reader, const Reading& reading) {
   std::map<int, TriggerCode> seen;
   for (const auto& code : trigger_codes(reading.protocol)) {

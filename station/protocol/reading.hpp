@@ -1,4 +1,5 @@
 #pragma once
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -18,6 +19,8 @@ struct Reading {
   const KeyPlaces& places;
   /// names of all scenes in the file, even of those that could not be read
   std::vector<std::string> declared_scenes;
+  /// for each table with `for_each`, by its name: the names of the procedures that were made from it
+  std::map<std::string, std::vector<std::string>> families = {};
 };
 
 void read_header(text::TableReader& file, Reading& reading);  ///< Reads `format`, [protocol] and [random].
@@ -27,11 +30,14 @@ void read_instructions(text::TableReader& file, Reading& reading);
 void read_task(text::TableReader& file, Reading& reading);
 void read_timing(text::TableReader& file, Reading& reading);
 void read_procedures(text::TableReader& file, Reading& reading);
+void read_sessions(text::TableReader& file, Reading& reading);
 void read_plan(text::TableReader& file, Reading& reading);
 void read_interludes(text::TableReader& file, Reading& reading);
 /// Reads the keys of a block of strokes (kind "training" or "friction-table").
 void read_strokes(text::TableReader& block_reader, const std::string& kind, Block& block,
                   const Reading& reading);
+/// Reads the keys "sessions" and "groups".
+void read_audience(text::TableReader& reader, Audience& audience, const Reading& reading);
 void read_break(text::TableReader& block_reader, Block& block, const Reading& reading);
 void read_analysis(text::TableReader& file, Reading& reading);
 void read_exclusion(text::TableReader& file, Reading& reading);
@@ -42,6 +48,9 @@ void read_resume(text::TableReader& file, Reading& reading);
 /// Checks what can be checked only when the whole file has been read: values of factors in each trial,
 /// answers, pass criteria, deadlines.
 void check_whole(text::TableReader& file, Reading& reading);
+/// Checks sessions and groups: that each has blocks, and that nothing depends on what a session does not
+/// have.
+void check_visits(const Reading& reading);
 
 /// Reads a text in each declared language. Reports a problem for a missing or an undeclared language.
 Localised read_localised(text::TableReader& reader, const std::string& key, const Reading& reading);

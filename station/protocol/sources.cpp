@@ -9,7 +9,7 @@ namespace turnpoint::protocol {
 namespace {
 
 void add(const Linear& expression, std::set<std::string>& names) {
-  for (const auto& [name, coefficient] : expression.terms) names.insert(name);
+  for (const auto& name : factors_in(expression)) names.insert(name);
 }
 
 void add_steps(double low, double high, int steps, std::vector<double>& levels) {
@@ -41,6 +41,8 @@ void add_block(const Protocol& protocol, const Block& block, const std::string& 
     auto sets = fixed;
     sets.insert(level);
     if (spec) sets.insert(spec->balance.begin(), spec->balance.end());
+    if (spec)
+      for (const auto& [name, value] : spec->with) sets.insert(name);
     sources.push_back({&block, what, level, std::move(levels), std::move(sets), spec});
   };
   for (const auto& name : block.procedures)
@@ -104,6 +106,13 @@ std::set<std::string> factors_used(const Protocol& protocol) {
   for (const auto& [name, instruction] : protocol.instructions)
     if (instruction.deadline_s) add(*instruction.deadline_s, names);
   return names;
+}
+
+std::vector<FactorValue> drawn_values(const Factor& factor) {
+  if (factor.draw != FactorDraw::uniform && factor.draw != FactorDraw::normal) return factor.levels;
+  std::vector<double> values;
+  if (factor.range) add_steps(factor.range->first, factor.range->second, 4, values);
+  return {values.begin(), values.end()};
 }
 
 Factors any_factors(const Protocol& protocol) {

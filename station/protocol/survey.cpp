@@ -30,7 +30,8 @@ namespace {
 // between them can be interpolated. Other zones need a grid of plans.
 constexpr std::size_t most_plans_of_a_scene = 120, most_plans_of_a_zone = 6, most_plans_of_a_zone_grid = 36;
 
-// Returns a text for messages that says where this rig can place a boundary with the scene's edge.
+// Returns a text for messages that says where this rig can place a boundary that is defined as the scene's
+// edge is.
 std::string reach(const scene::Scene& scene, const rig::Rig& rig, const scene::Planner& planner) {
   if (!scene.boundary_m) return "";
   physics::MapOptions options;
@@ -117,7 +118,8 @@ struct Answer {
   Place place;  ///< place of the key that the rig cannot satisfy
 };
 
-// True if the scene could be planned with a thousandth of its strength. The strength is then the problem.
+// True if the scene can be planned with a thousandth of its strength. Then the strength is what prevents
+// planning.
 bool can_plan(const scene::Scene& scene, scene::Planner& planner) {
   try {
     planner.plan(scene);
@@ -141,7 +143,7 @@ Place place_of(const Protocol& protocol, const KeyPlaces& places, const Scene& s
   return places.of("scene." + at->name + "." + key);
 }
 
-// The key that gives the scene's strength.
+// Returns the place of the key that sets the scene's strength.
 Place strength_place(const Scene& scene) {
   if (scene.displacement_um) return scene.displacement_um->place;
   if (scene.displacement_under_finger_um) return scene.displacement_under_finger_um->place;
@@ -154,8 +156,8 @@ Place strength_place(const Scene& scene) {
   return strongest ? strongest->displacement_um.place : scene.place;
 }
 
-// The key to blame if a scene cannot be planned: its strength, one of its tones, the edge or the start of its
-// zone, or else its boundary.
+// Returns the key to blame if a scene cannot be planned: its strength, one of its tones, the edge or the
+// start of its zone, or else its boundary.
 Place blamed_place(const Protocol& protocol, const KeyPlaces& places, const Scene& from,
                    const scene::Scene& scene, scene::Planner& planner) {
   if (is_too_strong(scene, planner)) return strength_place(from);
@@ -199,16 +201,17 @@ void plan_range(const Protocol& protocol, const rig::Rig& rig, const std::vector
       if (explained.insert(combination.scene).second) try {
           answers[i].place = blamed_place(protocol, places, from, scene, planner);
           answers[i].allowed = reach(scene, rig, planner);
-        } catch (const std::domain_error&) {  // this edge exists at no boundary: suggest nothing
+          // no boundary has this edge on this rig, so there is nothing to suggest
+        } catch (const std::domain_error&) {
         }
     }
     planned();
   }
 }
 
-// Neighbouring combinations are similar, and a planner caches its maps. The first combination is therefore
-// planned alone, which fills the cache. Then two threads plan half of the others each, one of them with a
-// copy of the planner.
+// Plans all combinations. A planner caches its maps, and neighbouring combinations need similar ones. So the
+// first combination is planned alone, which fills the cache; then two threads plan half of the others each,
+// one of them with a copy of the planner.
 std::vector<Answer> plan_all(const Protocol& protocol, const rig::Rig& rig,
                              const std::vector<Combination>& combinations, const std::stop_token& stop,
                              const std::function<void(int done, int of)>& progress) {
@@ -263,7 +266,7 @@ void plan_scenes(const Protocol& protocol, const rig::Rig& rig, const std::stop_
   for (const auto& [name, trouble] : inexact)
     survey.warnings.push_back({protocol.scenes.at(name).place, counted(trouble),
                                "no physical model is known to meet the scene's tolerance"});
-  // the weaknesses of a rig that reproduces a historical one are known, so leave out the planner's warnings
+  // this rig reproduces an historical one, whose weaknesses are known, so leave out the planner's warnings
   if (rig.reproduction) return;
   for (const auto& [code, warning] : told) survey.warnings.push_back({{protocol.path, 0, 0}, warning, ""});
 }
@@ -335,7 +338,15 @@ void check_triggers(const Protocol& protocol, const rig::Rig& rig, Survey& surve
 }
 
 void check_sensing(const Protocol& protocol, const rig::Rig& rig, Survey& survey) {
-  if (!protocol.sensing || (rig.capture && !rig.capture->bridges.empty())) return;
+  if (!protocol.sensing) return;
+  if (rig.capture && !rig.capture->bridges.empty()) {
+    if (rig.capture->uri != "sim:" && !rig.capture->forces)
+      survey.problems.push_back(
+          {protocol.sensing->place,
+           "the rig's force cells are not calibrated, so the finger's movement is not known",
+           "calibrate them with `turnpoint calibrate --forces`, or leave out [sensing]"});
+    return;
+  }
   survey.problems.push_back({protocol.sensing->place,
                              "the rig has no force cells, so the finger's movement is not known",
                              "leave out [sensing], or use a rig with \"bridges\" in [capture]"});

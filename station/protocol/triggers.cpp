@@ -8,7 +8,7 @@ namespace turnpoint::protocol {
 
 namespace {
 
-/// The name of the trial's condition; "" if it belongs to none.
+/// Returns the name of the trial's condition; "" if the trial belongs to none.
 std::string trigger_condition(const Protocol& protocol, const Factors& factors) {
   const auto found = factors.find("instruction");
   const auto* instruction = found == factors.end() ? nullptr : std::get_if<std::string>(&found->second);

@@ -2,7 +2,7 @@
 # complete in build/PRESET/python, so that PYTHONPATH can point there.
 set(PYBIND11_FINDPYTHON ON)
 if(NOT SKBUILD)
-  set(Python_EXECUTABLE /usr/bin/python3)   # Debian's own, for which the Debian package is
+  set(Python_EXECUTABLE /usr/bin/python3)  # Debian's own Python, for which the Debian package is built
 endif()
 find_package(pybind11 REQUIRED)
 set(turnpoint_python_folder ${CMAKE_BINARY_DIR}/python/turnpoint)
@@ -14,7 +14,7 @@ pybind11_add_module(turnpoint_python_physics NO_EXTRAS ${physics_python}/module.
 target_link_libraries(turnpoint_python_physics PRIVATE turnpoint_physics)
 set_target_properties(turnpoint_python_physics PROPERTIES OUTPUT_NAME physics)
 pybind11_add_module(turnpoint_python_store NO_EXTRAS ${station_python}/store_module.cpp ${station_python}/tables.cpp)
-target_link_libraries(turnpoint_python_store PRIVATE turnpoint_store)
+target_link_libraries(turnpoint_python_store PRIVATE turnpoint_collector turnpoint_store)
 set_target_properties(turnpoint_python_store PROPERTIES OUTPUT_NAME _store)
 set(turnpoint_python_modules turnpoint_python_physics turnpoint_python_store)
 set_target_properties(${turnpoint_python_modules} PROPERTIES LIBRARY_OUTPUT_DIRECTORY ${turnpoint_python_folder})
@@ -27,7 +27,7 @@ foreach(file IN LISTS turnpoint_python_files)
 endforeach()
 
 if(SKBUILD)
-  set(turnpoint_python_install turnpoint)   # inside the wheel
+  set(turnpoint_python_install turnpoint)  # folder of the package inside the wheel
 else()
   set(turnpoint_python_install lib/python3/dist-packages/turnpoint)
 endif()

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "physics/python/array.hpp"
+#include "station/collector/postgres.hpp"
 #include "station/python/tables.hpp"
 #include "station/store/error.hpp"
 
@@ -40,8 +41,8 @@ py::object python_object(const Cell& cell) {
       cell);
 }
 
-/// A column as a list if it contains a text, else as an array: of integers if none is missing, else of
-/// doubles.
+/// Converts a column: to a list if it contains a text, to an array of integers if no value is missing,
+/// otherwise to an array of doubles.
 py::object column(const Cells& cells) {
   if (std::any_of(cells.begin(), cells.end(), text)) {
     py::list objects;
@@ -115,7 +116,8 @@ py::list signals(const std::string& database, const std::string& session, const 
 
 PYBIND11_MODULE(_store, module) {
   namespace py = pybind11;
-  module.doc() = "Reads databases of the station. Use turnpoint.read() and turnpoint.read_signals().";
+  module.doc() =
+      "Reads databases of stations and collectors. Use turnpoint.read() and turnpoint.read_signals().";
   static const py::exception<turnpoint::store::StoreError> store_error(module, "StoreError",
                                                                        PyExc_RuntimeError);
   py::register_exception_translator([](std::exception_ptr thrown) {
@@ -124,6 +126,8 @@ PYBIND11_MODULE(_store, module) {
     } catch (const turnpoint::store::StoreError& error) {
       const bool missing = error.kind() == turnpoint::store::ErrorKind::missing;
       PyErr_SetString(missing ? PyExc_LookupError : store_error.ptr(), error.what());
+    } catch (const turnpoint::collector::ServerError& error) {
+      PyErr_SetString(store_error.ptr(), error.what());
     }
   });
   const auto define = [&](const char* name, auto function) {

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 
+#include "station/collector/fetch.hpp"
 #include "station/store/export_files.hpp"
 #include "station/store/signal_code.hpp"
 #include "station/store/stored_signals.hpp"
@@ -43,10 +44,16 @@ void add_points(SignalTable& table, const store::StoredSignal& stored,
               table.values[places[c]].begin() + static_cast<std::ptrdiff_t>(before));
 }
 
+collector::ReadableDatabase readable(const std::string& database, const store::ExportOptions& options) {
+  return collector::ReadableDatabase(database,
+                                     {options.session_id, options.participant, options.protocol_id});
+}
+
 }  // namespace
 
-std::vector<ProtocolTables> read_tables(const std::string& path, const store::ExportOptions& options) {
-  auto selected = store::select_for_export(path, "", options);
+std::vector<ProtocolTables> read_tables(const std::string& database, const store::ExportOptions& options) {
+  const auto copy = readable(database, options);
+  auto selected = store::select_for_export(copy.path(), "", options);
   std::vector<ProtocolTables> all;
   for (const auto& selection : selected.protocols) {
     const auto columns = store::csv_columns(selection);
@@ -67,8 +74,9 @@ std::vector<ProtocolTables> read_tables(const std::string& path, const store::Ex
   return all;
 }
 
-std::vector<SignalTable> read_signals(const std::string& path, const store::ExportOptions& options) {
-  auto selected = store::select_for_export(path, "", options);
+std::vector<SignalTable> read_signals(const std::string& database, const store::ExportOptions& options) {
+  const auto copy = readable(database, options);
+  auto selected = store::select_for_export(copy.path(), "", options);
   store::keep_with_signals(selected.database, selected.protocols);
   std::vector<SignalTable> all;
   for (const auto& selection : selected.protocols)

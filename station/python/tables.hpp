@@ -13,14 +13,16 @@ struct MemoryTable {
   std::vector<std::vector<store::Cell>> cells;  ///< cells[column][row]
 };
 
-/// The tables that export_data() writes for one protocol.
+/// The tables that export_data() would write for one protocol.
 struct ProtocolTables {
   std::string protocol_id;
   MemoryTable trials, intervals, events, sessions, self_tests, answers, friction_tables;
 };
 
-/// Reads what store::export_data() would write with the format csv. Texts that are empty count as missing, as
-/// in the files; they have no apostrophe in front of = + - or @. Throws StoreError like store::export_data().
+/// Reads into memory what store::export_data() would write with the format csv. Texts that are empty count as
+/// missing, as in the files. Unlike in the files, texts that begin with = + - or @ get no apostrophe in
+/// front. `database` may be a collector (collector/fetch.hpp). Throws like store::export_data() and
+/// collector::ReadableDatabase.
 std::vector<ProtocolTables> read_tables(const std::string& database, const store::ExportOptions& options);
 
 /// All points of one stream of a session, such as the finger's forces. The vectors have one value per point.

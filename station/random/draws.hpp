@@ -24,6 +24,8 @@ enum class Stream : std::uint32_t {
   adjustment_start = 13,
   masking_noise = 14,
   questionnaire = 15,
+  factor_value = 16,
+  factor_list = 17,
 };
 
 /// Identifies a random draw. The same key always gives the same numbers, whatever else was drawn. Repeating a

@@ -27,7 +27,7 @@ inline constexpr const char* kAbandonedReason = "no trial was made";
 
 const char* name(SessionStatus status);
 
-/// The value of a factor in a trial. Exports have one column per factor.
+/// The value of a factor in a trial: a number or a word.
 using FactorValue = std::variant<double, std::string>;
 
 /// What is known about room, surface and finger before a session. Empty members were not stated.
@@ -58,6 +58,12 @@ struct SessionStart {
   std::string started_local;  ///< ISO 8601 with time zone
   std::string consent_version;
   Conditions conditions = {};
+  std::optional<int> planned_session =
+      {};  ///< which of the protocol's sessions it is, from 1; empty: no plan
+  /// The group of the participant; "" if there are no groups. The store takes it from `groups` when the
+  /// participant's place is known: that of place p is number p modulo their count.
+  std::string group = {};
+  std::vector<std::string> groups = {};  ///< names of all groups; not stored
 };
 
 /// One process run of a session, with readings of the clocks at its start. Each resume opens another segment.
@@ -80,7 +86,8 @@ struct CheckRow {
 /// screening (item "screening").
 struct AnswerRow {
   std::string questionnaire, item;
-  int occasion = 0;    ///< number of blocks before it; tells the occasions of the same questionnaire apart
+  int occasion = 0;    ///< number of blocks before the questionnaire; distinguishes repeated uses of the same
+                       ///< questionnaire
   std::string answer;  ///< id of the choice, or the number
   double response_time_s = 0;  ///< from the appearance of the question
   bool operator==(const AnswerRow&) const = default;
@@ -158,8 +165,8 @@ struct FingerRow {
   std::optional<std::int64_t> strokes;
   std::optional<double> normal_N, normal_sd_N, normal_in_window, speed_mm_s, speed_in_window;
   std::optional<double> mu_low, mu_high, boundary_felt_mm, boundary_se_mm, lag_mm, tare_mN;
-  /// Coefficient of friction over all strokes of the last interval; in a friction table, over its part of the
-  /// surface.
+  /// Coefficient of friction over all strokes of the last interval. In trials that measure a friction table,
+  /// only the part of the surface that the table describes counts.
   std::optional<double> mu;
 };
 
@@ -222,16 +229,16 @@ struct EventRow {
   std::vector<FrictionLevelRow> friction_levels = {};
 };
 
-/// Kinds of events around the trials: an answer; its withdrawal by Back, which names the questionnaire and
-/// the occasion; and the end of a questionnaire, consent, explanation or screening.
+/// Kinds of events around the trials: an answer; the withdrawal of an answer by the Back button, whose value
+/// names questionnaire and occasion; and the end of a questionnaire, consent, explanation or screening.
 inline constexpr const char* kAnswerEvent = "questionnaire";
 inline constexpr const char* kBackEvent = "questionnaire_back";
 inline constexpr const char* kDoneEvent = "around_done";
-/// The value of the last two kinds of events.
+/// Returns the value that events of the last two kinds have.
 std::string place_name(const std::string& name, int occasion);
 
-/// The answers of a session that stand, with their events: those that the participant withdrew by Back are
-/// left out. The pointers point into `events`, which must be in the order of the log.
+/// Returns the valid answers of a session, with their events; answers that the participant withdrew with the
+/// Back button are left out. The pointers point into `events`, which must be in the order of the log.
 std::vector<const EventRow*> standing_answers(const std::vector<EventRow>& events);
 
 }  // namespace turnpoint::records

@@ -327,7 +327,7 @@ std::optional<plot::Figure> trade_figure(const Summary& summary) {
   plot::Chart caf{"Conditional accuracy", {}, {}, {}}, cells{"Within equal difficulty", {}, {}, {}};
   std::vector<double> caf_times, cell_times, accuracies;
   int series = 0;
-  // the level of an identification is no difficulty
+  // in an identification task, the level says which answer is right, not how difficult the trial is
   const bool categories = summary.data.design == Design::categories;
   for (const auto& entry : summary.trade.instructions) {
     plot::Points bins, by_difficulty;

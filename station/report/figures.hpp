@@ -25,18 +25,18 @@ std::optional<plot::Figure> judgement_figure(const Summary& summary);
 std::optional<plot::Figure> vibration_figure(const Summary& summary);
 /// Plots d' against the response time at each lag of the response signal, and the fitted curve.
 std::optional<plot::Figure> signal_figure(const Summary& summary);
+/// Plots the share of each answer by stimulus, in one chart for each condition.
+std::optional<plot::Figure> confusion_figure(const Summary& summary);
 /// Plots accuracy against response time in two panels: the conditional accuracy functions, and one point for
 /// the trials of each difficulty.
-/// One chart for each condition: the share of each answer, by stimulus.
-std::optional<plot::Figure> confusion_figure(const Summary& summary);
 std::optional<plot::Figure> trade_figure(const Summary& summary);
 
 /// Plots the normal force and the speed of the finger over the session, with one series for each condition.
 /// With more than 40 trials, a marker is the mean of several, with a bar from the smallest to the largest.
 std::optional<plot::Figure> finger_figure(const Summary& summary);
-/// Plots what the finger met against the planned boundary, in two panels: felt minus planned boundary, and
-/// the friction on both sides. Open markers are single trials. A third panel has the friction along the
-/// strip.
+/// Plots what the finger met against the planned boundary. The first panel shows the felt minus the planned
+/// boundary, the second the friction on both sides; open markers are single trials. A third panel shows the
+/// friction along the strip.
 std::optional<plot::Figure> friction_figure(const Summary& summary);
 /// Plots friction along the strip beside the planned boundary, with bars of one standard error. Empty without
 /// curves.

@@ -41,8 +41,8 @@ void add_mean(plot::Points& points, std::span<const Reading> group) {
   points.high.push_back(high);
 }
 
-/// Forms groups of `size` readings that follow each other. A new group begins where another block came
-/// between.
+/// Divides the readings into groups of `size` successive readings. A reading from another block always begins
+/// a new group.
 plot::Points grouped(const std::vector<Reading>& list, std::size_t size) {
   plot::Points points;
   std::size_t first = 0;
@@ -78,12 +78,14 @@ plot::Chart over_session(const analysis::Finger& finger, const std::string& labe
   return chart;
 }
 
-// The colours of the conditions are not used for what is pooled over conditions.
+// Series of figures that pool all conditions. They differ from the first two series, which stand for
+// conditions.
 constexpr int kSmoothSeries = 2, kRoughSeries = 3;
-// distance between single trials with the same planned boundary, as a share of the axis
+// distance between the markers of trials with the same planned boundary, as a share of the axis
 constexpr double kBeside = 0.02;
 
-/// Values with the same planned boundary stand side by side, so that their bars do not hide each other.
+/// Returns markers for these values. Values with the same planned boundary stand side by side, so that their
+/// bars do not hide each other.
 plot::Points markers(const std::vector<AtBoundary>& values, const plot::Axis& along, int series,
                      const std::string& name) {
   plot::Points points;
@@ -105,7 +107,7 @@ plot::Points markers(const std::vector<AtBoundary>& values, const plot::Axis& al
   return points;
 }
 
-/// Every value, and both ends of its interval.
+/// Returns all values and both ends of their intervals.
 std::vector<double> extent(const std::vector<AtBoundary>& values) {
   std::vector<double> all;
   for (const auto& at : values) {
@@ -115,7 +117,7 @@ std::vector<double> extent(const std::vector<AtBoundary>& values) {
   return all;
 }
 
-/// What the finger met against the planned boundary.
+/// Plots where the finger met the boundary, and the friction beside it, against the planned boundary.
 std::vector<plot::Chart> boundary_charts(const Summary& summary) {
   const auto& [shift_mm, mu_low, mu_high] = summary.finger->boundaries;
   std::vector<double> planned;

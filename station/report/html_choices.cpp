@@ -21,7 +21,8 @@ std::string stimulus_cell(const analysis::ConfusionRow& row, const SessionData& 
   return row.level ? "<td class=\"n\">" + number(*row.level, 4) + "</td>" : "<td>none</td>";
 }
 
-/// A count, on a background that is darker the larger its share of the row's trials is.
+/// Returns a table cell with a count. The larger the count is in relation to the row's trials, the darker is
+/// its background.
 std::string count_cell(int count, int trials) {
   return fmt::format("<td class=\"n\" style=\"background:rgba(0,114,178,{:.2f})\">{}</td>",
                      0.6 * count / trials, count);

@@ -10,7 +10,7 @@
 
 namespace turnpoint::report {
 
-// Pieces of the page that its sections share.
+// Pieces of HTML that several sections of the report's page use.
 
 /// The page up to the first heading: title and style.
 std::string html_head(const std::string& title);

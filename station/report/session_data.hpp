@@ -34,14 +34,14 @@ inline bool has_noise(Design design) { return design == Design::yes_no || design
 /// True if the answers are ratings or numbers.
 inline bool judges(Design design) { return design == Design::ratings || design == Design::numbers; }
 
-/// What a procedure itself estimates from one block, which `turnpoint run` prints at the end of a session.
+/// A procedure's own estimate from one block, as `turnpoint run` prints it at the end of a session.
 struct ProcedureEstimate {
   std::string block, procedure, parameter;
   double mean = 0;           ///< the estimate; a threshold is in the unit of the level
   std::optional<double> sd;  ///< SD of the posterior or of the averaged reversals, or a standard error
-  std::string basis;         ///< what it was computed from, such as "reversals 5 to 12 of 12"
+  std::string basis;         ///< the data from which it was computed, such as "reversals 5 to 12 of 12"
   procedure::Choice choice = procedure::Choice::track;  ///< how the procedure chose its levels
-  /// the proportion of right (or tracked) answers at the level on which it converges, if that is known
+  /// the proportion of right (or tracked) answers at the level on which the procedure converges, if known
   std::optional<double> settles_at;
 };
 
@@ -95,8 +95,9 @@ struct SessionData {
 };
 
 /// True if the report contains this part: "psychometric", "ez", "bis", "lisas", "ies", "caf", "dprime",
-/// "response-signal" or "trace". If the protocol does not choose, the report contains all parts, but d' only
-/// for yes/no tasks and where `deciding` has a model, and EZ-diffusion only for two answers.
+/// "response-signal" or "trace". If the protocol does not choose the parts, the report contains all of them,
+/// with two exceptions: d' only for yes/no tasks and where `deciding` has a model, and EZ-diffusion only for
+/// two answers.
 bool shows(const SessionData& data, const std::string& part);
 
 }  // namespace turnpoint::report

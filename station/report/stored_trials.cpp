@@ -79,7 +79,8 @@ void add_finger(const records::TrialRow& row, const analysis::TrialRecord& trial
   analysis::FingerTrial added;
   added.trial_index = row.trial_index;
   added.condition = trial.instruction;
-  added.measured = finger.contact_s.has_value();  // `sensing` also says that the finger moved too fast
+  // this cannot be seen from `sensing`, which may also say that the finger moved too fast
+  added.measured = finger.contact_s.has_value();
   added.normal_N = finger.normal_N;
   added.speed_mm_s = finger.speed_mm_s;
   added.mu_low = finger.mu_low;
@@ -90,7 +91,7 @@ void add_finger(const records::TrialRow& row, const analysis::TrialRecord& trial
   data.finger.push_back(std::move(added));
 }
 
-/// True for blocks of strokes.
+/// True for blocks of strokes, in which nothing is asked.
 bool nothing_asked(const protocol::Protocol& protocol, const std::string& block) {
   return std::any_of(protocol.plan.begin(), protocol.plan.end(), [&](const auto& part) {
     return protocol::block_of(part).name == block &&
@@ -98,7 +99,8 @@ bool nothing_asked(const protocol::Protocol& protocol, const std::string& block)
   });
 }
 
-/// True if the trial was presented again because the finger did not move as the protocol asks for.
+/// True if the trial was presented again because the finger did not move in the way that the protocol asks
+/// for.
 bool moved_otherwise(const records::TrialRow& row) {
   const auto& sensing = row.finger.sensing;
   return row.outcome == terms::Outcome::fault &&

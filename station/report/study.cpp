@@ -42,12 +42,13 @@ void count_trials(const SessionData& data, StudyPerson& person) {
 
 std::string percent(double share) { return text::number(100 * share, 3) + " %"; }
 
-/// One rule: its words, and what it says of a participant ("" if the participant keeps to it).
+/// One rule of exclusion: the rule in words, and a function that returns how a participant breaks it ("" for
+/// one who does not).
 struct StudyRule {
   std::string words, broken;
 };
 
-/// A share that must not be below (or above) a limit.
+/// Adds the rule that a share must not be below (or above) a limit.
 void add_share(std::vector<StudyRule>& rules, const std::string& what, const std::optional<double>& limit,
                const char* side, const std::optional<double>& found) {
   if (!limit) return;
@@ -128,7 +129,7 @@ void add_measures(const Summary& summary, StudyPerson& person) {
       measures.add(detection.condition, "d'", "", detection.d_prime);
       measures.add(detection.condition, "criterion c", "", detection.criterion);
     }
-  // a second procedure of the same condition would be a second value of the same measure
+  // With several procedures, name the procedure too: a measure can have only one value in each condition.
   for (const auto& settings : summary.settings) {
     const auto condition = settings.condition.empty() || summary.settings.size() == 1
                                ? (summary.settings.size() == 1 ? settings.condition : settings.procedure)
@@ -140,7 +141,7 @@ void add_measures(const Summary& summary, StudyPerson& person) {
     measures.add(judged.condition, "exponent of Stevens' law", "", judged.exponent);
 }
 
-/// The lower asymptote that the hierarchical fit takes as known.
+/// Returns the lower asymptote, which the hierarchical fit takes as known.
 double known_guess(const NamedFit& named) {
   if (named.fit.options.guess == analysis::Guess::fixed) return named.fit.options.guess_value;
   if (named.fit.options.guess == analysis::Guess::tied_to_lapse) return 0;

@@ -6,21 +6,25 @@
 
 #include "station/analysis/group.hpp"
 #include "station/analysis/mixed_fit.hpp"
+#include "station/plot/chart.hpp"
 #include "station/protocol/protocol.hpp"
 #include "station/report/summary.hpp"
 
 namespace turnpoint::report {
 
-/// What a study needs of one participant: no trials, so that memory does not grow with their number.
+/// What a study needs to know about one participant. It contains no trials, so that memory does not grow with
+/// their number.
 struct StudyPerson {
   std::string person;
   std::vector<std::string> sessions;       ///< ids
+  std::string group;                       ///< "" if the protocol has no groups
   bool incomplete = false;                 ///< a session was not completed
   int presented = 0, answered = 0;         ///< experimental trials
   double timeouts = 0, anticipations = 0;  ///< shares of the presented trials
   std::optional<double> accuracy, catch_accuracy, median_time_s;
-  std::vector<std::string> excluded;  ///< the rules that exclude the participant; empty: takes part
-  std::vector<NamedFit> fits;         ///< one for each condition; without bands
+  /// rules that exclude the participant; empty if the participant is included
+  std::vector<std::string> excluded;
+  std::vector<NamedFit> fits;  ///< one for each condition; without bands
   std::vector<analysis::PersonMeasure> measures;
 };
 
@@ -32,7 +36,7 @@ struct GroupFit {
 };
 
 struct Study {
-  SessionData settings;            ///< how the trials are analysed; without trials
+  SessionData settings;            ///< how the trials are analysed; its list of trials is empty
   std::vector<Fact> facts;         ///< rows for the head of the report
   std::vector<std::string> rules;  ///< the rules of exclusion, as the protocol states them
   std::vector<StudyPerson> persons;
@@ -48,7 +52,7 @@ constexpr int kStudyReplicates = 400;
 /// Analyses the trials of one participant, from all sessions together, and applies the rules.
 StudyPerson study_person(const SessionData& data, const protocol::Exclusion& rules, bool incomplete);
 
-/// The rules as sentences, in the order of the manual.
+/// Returns the rules as sentences, in the order in which the manual lists them.
 std::vector<std::string> rules_in_words(const protocol::Exclusion& rules);
 
 /// Computes group fits, means and effects from the participants who are not excluded.
@@ -62,7 +66,7 @@ std::optional<plot::Figure> group_curve_figure(const Study& study);
 std::optional<plot::Figure> shrinkage_figure(const Study& study);
 std::optional<plot::Figure> group_trade_figure(const Study& study);
 
-/// A table with one header row, as CSV.
+/// A table that becomes a CSV file with one header row.
 struct Table {
   std::string name;  ///< file name
   std::string csv;

@@ -29,13 +29,14 @@ std::string rules_section(const Study& study) {
 
 std::string people_section(const Study& study) {
   std::string html = "<h2>Participants</h2>\n" + rules_section(study) +
-                     "<table><tr><th>Participant</th><th>Sessions</th><th>Trials answered</th>"
+                     "<table><tr><th>Participant</th><th>Group</th><th>Sessions</th><th>Trials answered</th>"
                      "<th>Correct</th><th>Catch trials right</th><th>Timeouts</th><th>Median time (s)</th>"
                      "<th>Excluded</th></tr>";
   for (const auto& person : study.persons) {
     std::string why;
     for (const auto& reason : person.excluded) why += (why.empty() ? "" : "; ") + reason;
-    html += "<tr><td>" + escaped(person.person) + "</td>" +
+    html += "<tr><td>" + escaped(person.person) + "</td><td>" +
+            (person.group.empty() ? "\u2013" : escaped(person.group)) + "</td>" +
             count_cell(static_cast<int>(person.sessions.size())) + "<td class=\"n\">" +
             std::to_string(person.answered) + " of " + std::to_string(person.presented) + "</td>" +
             share_cell(person.accuracy) + share_cell(person.catch_accuracy) + share_cell(person.timeouts) +
@@ -109,17 +110,20 @@ std::string means_section(const Study& study) {
   if (study.effects.empty()) return html;
   html +=
       "<h2>Effects</h2>\n<table><tr><th>Measure</th><th>Difference</th><th>Participants</th><th>Mean "
-      "difference</th><th>In standard deviations (d<sub>z</sub>)</th></tr>";
+      "difference</th><th>In standard deviations</th></tr>";
   for (const auto& effect : study.effects)
     html += "<tr><td>" + with_unit(effect.measure, effect.unit) + "</td><td>" +
-            escaped(name_of(effect.second)) + " \u2212 " + escaped(name_of(effect.first)) + "</td>" +
-            count_cell(effect.persons) + cell(effect.difference) + "<td class=\"n\">" +
+            escaped(name_of(effect.second)) + " \u2212 " + escaped(name_of(effect.first)) +
+            (effect.between_groups ? ", groups" : "") + "</td>" + count_cell(effect.persons) +
+            cell(effect.difference) + "<td class=\"n\">" +
             (effect.standardised ? number(*effect.standardised, 2) : "\u2013") + "</td></tr>";
   return html +
          "</table>\n<p class=\"soft\">Each participant counts once, with estimates from the "
          "participant\u2019s own "
          "trials. 95 % intervals: Student\u2019s t, for effects that of the participants\u2019 own "
-         "differences. They "
+         "differences, in standard deviations of these differences (d<sub>z</sub>). Between groups: "
+         "Welch\u2019s t "
+         "for the difference of the means, in pooled standard deviations (d<sub>s</sub>). They "
          "are not corrected for the number of comparisons.</p>\n";
 }
 

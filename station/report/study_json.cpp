@@ -11,6 +11,7 @@ namespace {
 Json person_json(const StudyPerson& person) {
   Json json{{"participant", person.person},
             {"sessions", person.sessions},
+            {"group", person.group.empty() ? Json(nullptr) : Json(person.group)},
             {"presented", person.presented},
             {"answered", person.answered},
             {"timeouts", value(person.timeouts)},
@@ -96,7 +97,8 @@ std::string to_json(const Study& study) {
                                {"second", effect.second},
                                {"participants", effect.persons},
                                {"difference", value(effect.difference)},
-                               {"standardised", value(effect.standardised)}});
+                               {"standardised", value(effect.standardised)},
+                               {"between_groups", effect.between_groups}});
   json["statements"] = value(study.statements);
   return json.dump(2);
 }

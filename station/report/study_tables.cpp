@@ -59,17 +59,19 @@ std::string measures_table(const Study& study) {
 
 std::string participants_table(const Study& study) {
   std::string csv =
-      "participant,sessions,presented,answered,accuracy,catch_accuracy,timeouts,anticipations,median_time_s,"
+      "participant,group,sessions,presented,answered,accuracy,catch_accuracy,timeouts,anticipations,median_"
+      "time_s,"
       "incomplete,excluded,reasons\n";
   for (const auto& person : study.persons) {
     std::string reasons;
     for (const auto& reason : person.excluded) reasons += (reasons.empty() ? "" : "; ") + reason;
-    csv += csv_field(person.person) + "," + std::to_string(person.sessions.size()) + "," +
-           std::to_string(person.presented) + "," + std::to_string(person.answered) + "," +
-           csv_number(person.accuracy) + "," + csv_number(person.catch_accuracy) + "," +
-           csv_number(person.timeouts) + "," + csv_number(person.anticipations) + "," +
-           csv_number(person.median_time_s) + "," + yes_or_no(person.incomplete) + "," +
-           yes_or_no(!person.excluded.empty()) + "," + csv_field(reasons) + "\n";
+    csv += csv_field(person.person) + "," + csv_field(person.group) + "," +
+           std::to_string(person.sessions.size()) + "," + std::to_string(person.presented) + "," +
+           std::to_string(person.answered) + "," + csv_number(person.accuracy) + "," +
+           csv_number(person.catch_accuracy) + "," + csv_number(person.timeouts) + "," +
+           csv_number(person.anticipations) + "," + csv_number(person.median_time_s) + "," +
+           yes_or_no(person.incomplete) + "," + yes_or_no(!person.excluded.empty()) + "," +
+           csv_field(reasons) + "\n";
   }
   return csv;
 }

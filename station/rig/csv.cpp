@@ -10,8 +10,8 @@ namespace turnpoint::rig {
 
 namespace {
 
-/// The separator of a table: the one that its first line contains. A semicolon comes first, because programs
-/// that write decimal commas use it.
+/// Returns the separator of a table, which is found in the table's first line. A semicolon is looked for
+/// first, because programs that write decimal commas use it.
 char separator_of(const std::string& line) {
   for (const char separator : {';', '\t'})
     if (line.find(separator) != std::string::npos) return separator;
@@ -45,11 +45,12 @@ std::string joined(const std::vector<std::string>& columns) {
 }
 
 struct Line {
-  int number = 0;  ///< in the file, from 1
+  int number = 0;  ///< number of the line in the file, from 1
   std::string text;
 };
 
-/// The lines of a table, without comments and empty lines. A line with separators only counts as empty.
+/// Returns the lines of a table without comments and empty lines. A line that contains only separators is
+/// empty too.
 std::vector<Line> lines_of(const std::string& bytes) {
   std::istringstream in{std::string(text::without_byte_order_mark(bytes))};
   std::vector<Line> lines;

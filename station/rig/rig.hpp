@@ -104,7 +104,8 @@ struct Marker {
   double frequency_Hz = 1000;  ///< frequency, if the marker is a tone
 };
 
-/// Bits that a trigger code takes on the marker channel, with the silence that it needs before the next.
+/// Number of bits that a trigger code occupies on the marker channel, including the silence before the next
+/// code.
 inline constexpr int trigger_code_bits = 15;
 
 /// Where pulses of another device come in, such as those of a scanner.
@@ -131,8 +132,9 @@ struct ForceCells {
   /// Rows: cells a, b, lateral. Columns: normal force (N), lateral force (N), moment (N mm).
   using Matrix = std::array<std::array<double, 3>, 3>;
   Matrix matrix{};
-  std::vector<Matrix> changes;     ///< of the matrix, by one standard deviation of each source of error
-  double carrier_Hz = 0;           ///< it holds for this carrier only
+  /// changes of the matrix if one source of error changes by one standard deviation
+  std::vector<Matrix> changes;
+  double carrier_Hz = 0;           ///< the calibration holds only for this carrier
   double reference_amplitude = 0;  ///< amplitude of the reference during the calibration; 1 is full scale
   std::array<double, 3> rotation_rad{};  ///< phase of each bridge against the reference
   std::array<double, 3> rated_ratio{};   ///< ratio of bridge to reference at the rated load of each cell
@@ -207,7 +209,7 @@ struct Rig {
   Output output;
   std::string amplifier_uri;
   std::optional<std::string> buttons_uri, contact_uri, touch_uri;
-  std::optional<std::string> trigger_lines_uri;  ///< lines that give out trigger codes in parallel
+  std::optional<std::string> trigger_lines_uri;  ///< lines that send trigger codes in parallel
   std::optional<Sync> sync;
   std::optional<Capture> capture;
   std::optional<Thermometers> thermometers;
@@ -219,11 +221,12 @@ struct Rig {
   std::vector<std::string> defaults_used;  ///< `key = value` for each default that was used
 };
 
-/// Names of the transducers whose vibration cannot be proven although the rig captures with a card, because
-/// the calibration has no response of a pick-up to them.
+/// Returns the transducers whose vibration cannot be proven: the rig captures with a card, but the
+/// calibration contains no response of a pick-up to them.
 std::vector<std::string> unproven_transducers(const Rig& rig);
 
-/// The largest trigger code that all of the rig's outputs for codes can give; 0 if it has no such output.
+/// Returns the largest trigger code that every output for codes of this rig can send; 0 if the rig has no
+/// such output.
 int largest_trigger_code(const Rig& rig);
 
 /// Reads and checks a rig file (format "friction-rig/1"). Throws text::BadInput with all problems at once, or

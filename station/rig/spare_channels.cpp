@@ -37,8 +37,8 @@ Marker read_marker(const text::Value& table, const Rig& rig, text::Findings& fin
   marker.kind = kind == "tone"   ? Marker::Kind::tone
                 : kind == "code" ? Marker::Kind::code
                                  : Marker::Kind::pulse;
-  // The code of an answer may come while an interval is played, and the drive adds the largest amplitudes of
-  // both.
+  // The code of an answer may be sent while an interval is played. It can then overlap the interval's code,
+  // and the drive adds the amplitudes of both.
   const double most = kind == "code" ? 0.49 : 1;
   marker.amplitude =
       reader.number("amplitude", {0, most, Range::Ends::open_low}, kind == "code" ? 0.45 : 0.5);
@@ -104,9 +104,6 @@ void read_bridges(TableReader& reader, Capture& capture) {
     check_captured(reader, "bridges", channel, capture);
     capture.bridges.push_back(channel);
   }
-  if (!capture.uri.starts_with("sim:"))
-    reader.problem("bridges", "real force cells cannot be calibrated yet",
-                   "use them with uri = \"sim:\", or leave \"bridges\" out");
 }
 
 void read_marker_channel(TableReader& reader, const Rig& rig, Capture& capture) {

@@ -15,8 +15,8 @@ namespace {
 
 constexpr double kWideEnd_m = 0.030;
 
-/// Mean of the friction (averaged over the fingertip) in the scene's zone, and its rms deviation from that
-/// mean.
+/// The mean of the friction in the scene's zone, and its rms deviation from that mean. Friction is averaged
+/// over the fingertip.
 struct ZoneFriction {
   double mean = 1, rms = 0;
 };

@@ -30,7 +30,7 @@ using text::number;
 
 namespace {
 
-/// The drive edge never moves as far as this.
+/// An upper limit of the drive edge's displacement, far beyond what any transducer reaches.
 constexpr double kMostDrive_m = 1e-3;
 
 constexpr std::size_t kRemembered = 512, kSolutions = 128;
@@ -55,9 +55,10 @@ std::string key_of(const Scene& scene) {
   return key;
 }
 
-/// How the surface moves for a set of tones, per metre of displacement at the drive edge. It is therefore the
-/// same for all roved strengths. `fields` are computed with the chosen model, or with `mode` if the chosen
-/// model is coarser, because the rig's limits must not be checked with a coarser model.
+/// How the surface moves for a set of tones, per metre of displacement at the drive edge. Roving changes only
+/// this displacement, so one solution serves all roved strengths. `fields` are computed with the chosen
+/// model, or with `mode` if the chosen model is coarser than `mode`, because a coarser model is not good
+/// enough for checking the rig's limits.
 struct Solution {
   physics::PlanChoice choice;
   std::vector<double> frequencies_Hz;  ///< computed with the chosen model, rounded to 1 / kGridPerHz
@@ -124,7 +125,7 @@ bool Planner::State::place_by_field(const std::vector<WantedTone>& wanted,
   return true;
 }
 
-/// The boundary of a scene is the one of its furthest tone.
+/// Returns the uncertainty of the scene's boundary, which is the boundary of its furthest tone.
 double boundary_uncertainty_m(const physics::Surface& surface, const Scene& scene,
                               const std::vector<WantedTone>& wanted) {
   if (wanted.empty()) return 0;

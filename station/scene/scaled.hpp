@@ -12,9 +12,9 @@ struct Stretch {
 /// finger). Throws terms::UsageError if the part is not on the surface.
 double mean_displacement_m(Planner& planner, const DrivePlan& plan, const Stretch& stretch);
 
-/// Returns the plan with all amplitudes multiplied by `factor`; a factor of 0 removes the tones. Predicted
-/// friction is that of the new amplitudes only for the whole surface (`lowest_friction`); figures of the zone
-/// and audible products are dropped.
+/// Returns the plan with all amplitudes multiplied by `factor`; a factor of 0 removes the tones. Of the
+/// predicted frictions, only the lowest on the whole surface (`lowest_friction`) is computed again. The
+/// figures of the zone and the audible products are removed, because they would no longer be right.
 DrivePlan scaled(Planner& planner, DrivePlan plan, double factor);
 
 }  // namespace turnpoint::scene

@@ -40,9 +40,9 @@ physics::MapOptions ToneDesigner::edge_options(const physics::Edge& edge, double
 double ToneDesigner::frequency_for(double boundary_m, const physics::Edge& edge, double displacement_m) {
   const auto options = edge_options(edge, displacement_m);
   if (edge.kind == physics::Edge::Kind::friction || surface.theory != physics::PlateTheory::kirchhoff) {
-    // An edge defined by friction depends on the displacement. Roving changes the displacement in every
-    // trial, so each map would be used only once. The map of a thick plate takes as long as twenty of these
-    // solutions.
+    // In two cases, making a map takes longer than solving for this one frequency. An edge defined by
+    // friction depends on the displacement, which roving changes in every trial, so the map would be used
+    // only once. For a thick plate, a map takes as long as twenty solutions.
     if (const auto frequency = physics::solve_frequency_Hz(surface, options, boundary_m)) return *frequency;
   } else if (const auto frequency = map_for(edge).frequency_Hz(boundary_m)) {
     return *frequency;

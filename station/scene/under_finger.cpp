@@ -38,8 +38,8 @@ Loaded solve(const physics::Surface& surface, const physics::Finger& finger, phy
   return all;
 }
 
-/// Returns the friction under a finger at each position along the surface, averaged over the fingertip. The
-/// finger reduces each tone by one factor for its whole contact.
+/// Returns the friction under a finger at each position along the surface, averaged over the fingertip. For
+/// each tone, the finger reduces the displacement by the same factor everywhere under its contact.
 std::vector<double> felt(const Loaded& loaded, const physics::FrictionMap& friction, double fingertip_m,
                          const physics::Finger& finger) {
   std::vector<double> all;

@@ -31,8 +31,8 @@ std::optional<FingerShift> finger_shift(const rig::Rig& rig, double frequency_Hz
 UnderFinger finger_figures(const physics::Surface& surface, const physics::FrictionMap& friction,
                            const rig::Rig& rig, physics::Model field_model, const DrivePlan& plan);
 
-/// The fraction of its displacement that a tone keeps under the rig's finger, measured at the tone's last
-/// maximum: smallest and largest value over the tones.
+/// The fraction of its displacement that a tone keeps under the rig's finger, at the tone's last maximum. The
+/// two values are the smallest and the largest over the tones.
 struct FingerShares {
   double least = 1, most = 0;
 };

@@ -76,7 +76,7 @@ double bridge_rotation_rad(const BridgePoint& without, const BridgePoint& with, 
 
 BridgeDemodulator::BridgeDemodulator(const BridgeOptions& options)
     : options_(checked(options)),
-      // The first stage may let signals alias only to frequencies that the second stage stops.
+      // The first stage may let signals alias, but only to frequencies that the second stage stops.
       first_(low_pass(pass_Hz(options.band), middle_rate_Hz - stop_Hz(options.band), options.rate_Hz,
                       attenuation_dB),
              options.rate_Hz / middle_rate_Hz, drive::phase_increment(options.carrier_Hz, options.rate_Hz),

@@ -21,7 +21,8 @@ struct CarrierChoice {
   double carrier_Hz = carriers_Hz.front();
   double clearance_Hz = 0;
 };
-/// A distance (clearance) that keeps the products of the drive tones far outside the filter of either band.
+/// A clearance (distance from the nearest product of drive tones) that keeps the products far outside the
+/// filter of either band.
 inline constexpr double enough_clearance_Hz = 1500;
 
 /// Chooses the first of carriers_Hz with enough clearance, or else the one with the most clearance. Products
@@ -60,7 +61,7 @@ struct BridgeOptions {
   std::array<double, bridge_count> rotation_rad{};
 };
 
-/// The reason why a point must not be used.
+/// The reason why a point must not be used. `none` means that it may be used.
 enum class WireFault {
   none,
   reference,   ///< amplitude of the reference more than 3 % off; the ratios are then NaN

@@ -10,7 +10,8 @@ namespace turnpoint::sensing {
 
 namespace {
 
-constexpr std::size_t kSpareOutputs = 16;  // the kept frames move to the front once in 16 outputs
+// number of outputs after which the kept frames are moved to the front of their buffer
+constexpr std::size_t kSpareOutputs = 16;
 
 /// Four numbers in one vector register; every 64-bit processor has such registers.
 using Lanes [[gnu::vector_size(CarrierFilter::inputs * sizeof(float))]] = float;
@@ -72,7 +73,7 @@ void CarrierFilter::append(const std::int32_t* frames, std::int64_t count) noexc
 
 void CarrierFilter::finish(std::int64_t centre) noexcept {
   const Quad* middle = kept_.data() + filled_ - 1 - half_;
-  // Two sums for each part, so that an addition need not wait for the previous one.
+  // Each part has two sums, so that an addition need not wait for the previous one.
   Lanes re[2] = {}, im[2] = {};
   const auto add = [&](std::ptrdiff_t n, std::size_t k) {
     const Lanes after = lanes_of(middle[n].value), before = lanes_of(middle[-n].value);

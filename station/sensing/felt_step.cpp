@@ -94,7 +94,7 @@ Step refine(Step step, const std::vector<Bin>& bins, double scale) {
       const double z = step.z(bin.position_mm);
       const double slope =
           step.rise * std::exp(-0.5 * z * z) / (step.width_mm * std::sqrt(2 * std::numbers::pi));
-      // derivatives by place, logarithm of width, `below` and `rise`
+      // derivatives with respect to place, logarithm of width, `below` and `rise`
       const Eigen::Vector4d by(-slope, -slope * (bin.position_mm - step.place_mm), 1, share);
       const double weight = 1 / std::sqrt(1 + std::pow(miss / scale, 2));
       normal += weight * by * by.transpose();
@@ -129,8 +129,8 @@ std::vector<Bin> near(const Step& step, const std::vector<Bin>& bins) {
   return close;
 }
 
-/// The position at which friction is `level` times the friction at larger positions, or half-way up the step
-/// without a level. NaN if friction does not rise through that level.
+/// Returns the position at which friction is `level` times the friction at larger positions, or, without a
+/// level, the position half-way up the step. NaN if friction does not rise through that level.
 double crossing_mm(const Step& step, std::optional<double> level) {
   if (!level) return step.place_mm;
   const double share = (*level * (step.below + step.rise) - step.below) / step.rise;
@@ -146,7 +146,7 @@ std::vector<Bin> usable(const FrictionProfile& profile, int direction) {
   return bins;
 }
 
-/// The step in one direction of movement, and the squared deviations of its jackknife pseudo-values.
+/// The step in one direction of movement, with the sum of squared deviations of its jackknife pseudo-values.
 struct OneWay {
   Step step;
   double felt_mm = 0;

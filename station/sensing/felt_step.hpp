@@ -5,13 +5,15 @@
 
 namespace turnpoint::sensing {
 
-/// Where friction changes along the strip, as measured by the finger. It can be compared with a planned edge
-/// of friction if it was measured at the edge's level; the turning point of a mode is a different place.
+/// The place along the strip at which friction changes under the moving finger. It can be compared with a
+/// planned edge of friction if both are at the same level. (The turning point of a mode is a different
+/// place.)
 struct FeltStep {
   double boundary_mm = 0;       ///< mean of both directions, because the skin lags behind the finger
   double se_mm = 0;             ///< standard error of boundary_mm
   double half_interval_mm = 0;  ///< half-width of the 95 % interval: se_mm times Student's t
-  double lag_mm = 0;            ///< half the difference of the directions; positive if the change comes late
+  /// half the difference between the two directions; positive if the finger meets the change late
+  double lag_mm = 0;
   double friction_below = 0, friction_above = 0;  ///< friction at smaller and at larger positions
 };
 

@@ -53,7 +53,8 @@ std::optional<FingerPoint> FingerTracker::push(const ForcePoint& point) {
   finger.position_mm = finger.speed_mm_s = std::numeric_limits<double>::quiet_NaN();
   double normal = 0;
   bool contact = true;  // true if the finger is in contact at all points of the window
-  // Sums of w N^2 t^i and w N M t^i: weight w, normal force N, moment M, time t.
+  // Sums over the window, for the fit of a line by weighted least squares: w N^2 t^i and w N M t^i, with
+  // weight w, normal force N, moment M and time t.
   double square = 0, square_t = 0, square_tt = 0, product = 0, product_t = 0;
   for (std::int64_t k = -half; k <= half; ++k) {
     const Force& force = at(half - k).point.force;

@@ -7,9 +7,9 @@
 
 namespace turnpoint::sensing {
 
-/// With a smaller normal force, position and speed are not determined (NaN).
+/// Below this normal force, position and speed are too uncertain to be given (they are NaN).
 inline constexpr double least_normal_N = 0.1;
-/// Contact begins with this normal force, if it lasts this long.
+/// Contact begins when the normal force has been above this value for this long.
 inline constexpr double contact_N = 0.05, contact_s = 0.02;
 
 /// The finger at one point in time; `index` is that of the ForcePoint.
@@ -25,9 +25,9 @@ struct FingerPoint {
 
 /// Turns forces into the track of the finger. Around each point, it fits a straight line to the positions
 /// (moment / normal force), which gives position and speed. The weights are Gaussian in time, times the
-/// squared normal force, because a position is more precise if the finger presses harder. The fit acts as a
-/// low-pass filter at 20 Hz (half the amplitude, no ringing) and its derivative. A change of force during the
-/// movement causes no bias.
+/// squared normal force, because a position is more precise if the finger presses harder. For the position,
+/// the fit acts as a low-pass filter without ringing, which halves the amplitude at 20 Hz; for the speed, as
+/// the derivative of that filter. A change of force during the movement causes no bias.
 ///
 /// Contact begins at the first of 20 ms of points above 0.05 N, and ends below 0.03 N. Results come 38 ms
 /// late. Allocates only in the constructor.

@@ -28,7 +28,7 @@ Force product(const Readings& readings, const Matrix& matrix) {
   return {sum[0], sum[1], sum[2]};
 }
 
-/// Normal force, lateral force and moment that a weight exerts.
+/// Returns the normal force, lateral force and moment that a weight exerts.
 std::array<double, 3> load(const DeadWeight& weight) {
   return {weight.normal_N, weight.lateral_N, weight.normal_N * weight.position_mm};
 }
@@ -70,8 +70,8 @@ Fit fit(const std::vector<DeadWeight>& weights, const Loads& loads, const Loads&
   return result;
 }
 
-/// Changes of all loads by one standard deviation of each source of error. The sources are each place, each
-/// direction of the pulley, and the masses as a whole.
+/// Returns the changes of all loads if one source of error changes by one standard deviation, for each
+/// source. The sources are each place, each direction of the pulley, and the masses as a whole.
 std::vector<Loads> load_changes(const std::vector<DeadWeight>& weights, const WeightErrors& errors) {
   std::vector<Loads> all;
   const auto source = [&](auto change) {
@@ -138,6 +138,29 @@ WeightFit fit_weights(const std::vector<DeadWeight>& weights, const WeightErrors
                                 force.moment_Nmm / force.normal_N - weight.position_mm});
   }
   return result;
+}
+
+std::vector<double> deviations(const std::vector<DeadWeight>& weights, const WeightErrors& errors) {
+  std::vector<double> all;
+  for (std::size_t i = 0; i < weights.size(); ++i) {
+    auto others = weights;
+    others.erase(others.begin() + static_cast<std::ptrdiff_t>(i));
+    double largest = 0;
+    try {
+      const auto without = fit_weights(others, errors);
+      const auto at = without.calibration.force(weights[i].readings);
+      const auto stated = load(weights[i]);
+      const auto sd = load_sd({weights[i]}, errors).front();
+      const std::array measured{at.normal_N, at.lateral_N, at.moment_Nmm};
+      for (std::size_t k = 0; k < 3; ++k)
+        largest =
+            std::max(largest, std::abs(measured[k] - stated[k]) / (sd[k] * std::max(1.0, without.misfit[k])));
+    } catch (const terms::UsageError&) {
+      largest = 0;
+    }
+    all.push_back(largest);
+  }
+  return all;
 }
 
 Tare tare(std::span<const BridgePoint> points, Band band, const ForceCalibration& calibration,

@@ -82,6 +82,11 @@ struct WeightFit {
 /// terms::UsageError if the weights do not determine the fit.
 WeightFit fit_weights(const std::vector<DeadWeight>& weights, const WeightErrors& errors = {});
 
+/// How far each weight lies from where the other weights put it: the largest deviation among its normal
+/// force, lateral force and moment, in standard deviations that include the scatter of the others. 0 if the
+/// fit is not determined without this weight.
+std::vector<double> deviations(const std::vector<DeadWeight>& weights, const WeightErrors& errors = {});
+
 enum class TareState {
   ok,
   moved,       ///< changed by more than 5 mN since the previous tare: use it, and report the change
@@ -98,8 +103,8 @@ struct Tare {
   double sd_N = 0;     ///< standard deviation of normal or lateral force, whichever is larger
 };
 
-/// Takes the mean of all points (300 ms or more) as the tare, and compares it with the previous tare
-/// `before`.
+/// Takes the mean of all points (300 ms or more) as the new tare, and compares it with `before`, the previous
+/// tare.
 Tare tare(std::span<const BridgePoint> points, Band band, const ForceCalibration& calibration,
           const Readings& before);
 

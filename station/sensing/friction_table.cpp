@@ -19,8 +19,8 @@ constexpr double least_fall = 1e-6;
 /// For each displacement: ln friction of its strokes, relative to the neighbouring strokes at rest.
 using ByLevel = std::map<double, std::vector<double>>;
 
-/// The sequence that never rises and has the least weighted squared distance from the values: pool adjacent
-/// violators (Ayer et al. 1955).
+/// Returns the sequence that never rises and is closest to the values in weighted least squares: pool
+/// adjacent violators (Ayer et al. 1955).
 std::vector<double> falling(const std::vector<double>& values, const std::vector<double>& weights) {
   struct Pool {
     double value, weight;
@@ -58,8 +58,9 @@ std::optional<double> half_displacement_m(const std::vector<double>& displacemen
   return physics::FrictionMap(std::move(points)).displacement_m(0.5);
 }
 
-/// Bootstrap: draws the strokes of each level with replacement, and returns the means of the levels.
-/// Deviations are enlarged by sqrt(n / (n - 1)), because deviations from the mean of n strokes are too small.
+/// One bootstrap replicate: draws the strokes of each level with replacement, and returns the means of the
+/// levels. Deviations are enlarged by sqrt(n / (n - 1)), because deviations from the mean of the n strokes
+/// themselves are too small.
 std::vector<double> redrawn(const ByLevel& by_level, const std::vector<double>& means, random::Draws& draws) {
   std::vector<double> result;
   for (const auto& [displacement_m, values] : by_level) {
@@ -139,7 +140,7 @@ FrictionTable friction_table(std::span<const TableStroke> strokes, std::uint64_t
                             {std::exp(ends.low), std::min(1.0, std::exp(ends.high))}});
   }
   if (table.half_displacement_m && halves.size() > 1) {
-    // The half displacement depends on the two levels around it, so use the degrees of freedom of two levels.
+    // The half displacement is interpolated between two levels, so use the degrees of freedom of two levels.
     const double scatter_of_two = 2 * (*std::ranges::min_element(counts) - 1);
     table.half_displacement_sd_m = std::sqrt(analysis::variance(halves));
     table.half_displacement_interval =

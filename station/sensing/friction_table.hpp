@@ -31,7 +31,9 @@ struct FrictionTable {
   std::optional<double> half_displacement_m;
   double half_displacement_sd_m = 0;
   analysis::Interval half_displacement_interval;
-  int unused = 0;  ///< driven strokes that do not count, or that lack a valid neighbour at rest
+  /// number of driven strokes that were left out, because they do not count or have no valid neighbour at
+  /// rest
+  int unused = 0;
 
   /// The table in the form that a rig uses. It begins with relative friction 1 at displacement 0.
   std::vector<physics::FrictionPoint> points() const;

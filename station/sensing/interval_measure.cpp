@@ -12,10 +12,10 @@ using terms::ProofCause;
 
 namespace {
 
-constexpr double kLowest_Hz = 5000;    // lowest frequency of a product
-constexpr double kApart_Hz = 20;       // least distance of a product from every tone
-constexpr double kUnseenNoise = 0.05;  // a tone whose relative standard error is not below this is not judged
-constexpr double kVibrates_dB = -10;   // below this level, relative to the plan, there is no onset to measure
+constexpr double kLowest_Hz = 5000;    // products below this frequency are not looked for
+constexpr double kApart_Hz = 20;       // smallest distance of a product from every tone
+constexpr double kUnseenNoise = 0.05;  // a tone with a larger relative standard error is not judged
+constexpr double kVibrates_dB = -10;   // below this level relative to the plan, the onset is not measured
 
 }  // namespace
 
@@ -36,7 +36,7 @@ void IntervalProof::State::measure_tones() {
   vibrates_ = planned > 0 && result_.ratio_dB > kVibrates_dB;
 }
 
-// Adds one entry for each tone of the line, measured by the pick-up with the best response to this line.
+// For each tone of the line, adds what the pick-up with the best response to this line measured.
 void IntervalProof::State::measure_tone(std::size_t stretch, const PlannedLine& line, std::size_t place) {
   ToneProof made;
   made.stretch = static_cast<int>(stretch);
@@ -84,7 +84,8 @@ void IntervalProof::State::measure_residual() {
   if (result_.residual_dB >= plan_.limits.residual_dB.flag - 20) measure_products();
 }
 
-// Looks for the strongest product (harmonic, combination, ...) in the unexplained part of the worst window.
+// Looks for the strongest product of the tones (harmonic, combination, ...) in the residual of the worst
+// window.
 void IntervalProof::State::measure_products() {
   const auto rest = unexplained();
   if (rest.empty()) return;
@@ -103,7 +104,7 @@ void IntervalProof::State::measure_products() {
   }
 }
 
-// The samples of the worst window, minus the fitted tones; empty if that window is not valid.
+// Returns the samples of the worst window minus the fitted tones; empty if that window is not valid.
 std::span<const double> IntervalProof::State::unexplained() {
   if (!worst_ || !windows_[*worst_].valid) return {};
   const Window& window = windows_[*worst_];

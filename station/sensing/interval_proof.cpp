@@ -13,8 +13,10 @@ namespace {
 
 constexpr double kWindow_s = 0.2;     // approximate length of a joint fit
 constexpr double kShortest_s = 0.01;  // a shorter steady stretch is not measured
-constexpr double kSettle_s = 0.005;   // time that the plate needs to follow: 7 time constants at Q 60
-constexpr double kBefore_s = 0.02, kAfter_s = 0.06;  // around the rising ramp, to look for the onset
+// time that the plate needs to follow a change: 7 time constants at Q 60
+constexpr double kSettle_s = 0.005;
+// how far before and after the rising ramp the onset is looked for
+constexpr double kBefore_s = 0.02, kAfter_s = 0.06;
 
 std::vector<int> inputs_of(const IntervalPlan& plan) {
   if (plan.pick_ups.empty()) throw std::logic_error("sensing: a proof needs a pick-up");
@@ -90,8 +92,8 @@ void IntervalProof::State::add_windows(std::size_t stretch) {
   }
 }
 
-// The onset can be measured if the first tones last long enough: the lock-in's window must pass the ramp
-// before they change.
+// Sets up the measurement of the onset. It is possible only if the first tones last so long that the window
+// of the lock-in passes the whole ramp before they change.
 void IntervalProof::State::add_onset() {
   if (windows_.empty() || windows_.front().stretch != 0) return;
   const auto& [plan, lines, sums] = stretches_.front();

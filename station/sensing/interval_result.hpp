@@ -27,12 +27,13 @@ struct ProofLimits {
   double dead_dB = -40;               ///< a tone below this level, relative to the plan, is missing
   /// If all tones of a channel are between these levels, one of its two transducers is dead.
   double half_low_dB = -7.5, half_high_dB = -4.5;
-  double unseen_dB = -26;  ///< a pick-up cannot judge tones at which its response is this far below its best
+  /// a pick-up whose response is this far below its best response cannot judge a tone
+  double unseen_dB = -26;
 };
 
 /// What was measured of one tone, in one part of the burst in which nothing changes (a stretch).
 struct ToneProof {
-  int stretch = 0;  ///< 0 before the first change of the burst, and so on
+  int stretch = 0;  ///< number of the stretch, from 0; each change of the burst begins another one
   int tone = 0;     ///< index in the burst's tone set
   int drive_channel = 0;
   double frequency_Hz = 0;
@@ -60,7 +61,7 @@ struct IntervalResult {
   std::int64_t lost_frames = 0;          ///< lost frames within the interval, rounded up to blocks of 1 ms
 };
 
-/// The verdict on one quantity, and the cause that this quantity points to.
+/// A verdict on one measured quantity, and the cause that the quantity points to.
 struct Finding {
   terms::ProofCause cause = terms::ProofCause::none;
   terms::Proof verdict = terms::Proof::ok;

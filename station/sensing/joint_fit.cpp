@@ -9,7 +9,7 @@ namespace turnpoint::sensing {
 
 namespace {
 
-// Sum of e^(i (phase + n increment)) over n = 0 ... frames - 1.
+// Returns the sum of e^(i (phase + n increment)) over n = 0 ... frames - 1.
 std::complex<double> geometric_sum(std::uint64_t phase, std::uint64_t increment, std::int64_t frames) {
   const double half_turn = M_PI * 0x1p-64 * static_cast<double>(static_cast<std::int64_t>(increment));
   const double s = std::sin(half_turn), count = static_cast<double>(frames);
@@ -47,7 +47,7 @@ bool JointFit::factorise() noexcept {
       for (std::size_t k = 0; k < j; ++k) value -= entry(i, k) * entry(j, k);
       if (j < i)
         entry(i, j) = value / entry(j, j);
-      else if (value > 1e-3 * before)  // below this fraction, noise would grow thirtyfold
+      else if (value > 1e-3 * before)  // with a smaller pivot, noise would grow thirtyfold
         entry(i, i) = std::sqrt(value);
       else
         return false;

@@ -45,7 +45,8 @@ bool HannWindow::take(const AlignedBlock& block, const ToneSums& sums) noexcept 
     for (std::size_t k = 0; k < count_; ++k)
       values_[k] += one[k] - c * one[count_ + k] + s * one[2 * count_ + k];
   }
-  const double scale = 2.0 / window_frames_;  // without the factor 1/2, the weights add up to the window
+  // the factor 1/2 of the Hann weight is left out, so the weights add up to the window's length
+  const double scale = 2.0 / window_frames_;
   for (auto& value : values_) value *= scale;
   centre_ = expected_ - window_frames_ / 2;
   return true;

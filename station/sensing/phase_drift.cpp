@@ -18,7 +18,8 @@ double phase_slope_rad(const PickUp& pick_up, int drive_channel, double frequenc
 }
 
 std::optional<PhaseDrift> DriftTracker::take(std::span<const ToneProof> tones, double applied) {
-  // A phase is not a straight line of frequency, so the step is repeated from where it led.
+  // The phase is not exactly linear in the frequency, so repeat the step, each time from the fraction that
+  // the previous step has found.
   constexpr int steps = 5;
   PhaseDrift drift;
   double more = 0;

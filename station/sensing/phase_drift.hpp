@@ -17,9 +17,9 @@ struct PhaseDrift {
   int tones = 0;
 };
 
-/// Follows the resonances by the phases of tones that are played anyway. If all resonances move by the share
-/// s, a response H(f) becomes H(f / (1 + s)), so the phase at a frequency changes by -s d phase / d ln f. The
-/// slope comes from the calibration.
+/// Follows the resonances by the phases of tones that are played anyway. If all resonance frequencies rise by
+/// the fraction s, a response H(f) becomes H(f / (1 + s)), so the phase at a frequency changes by -s d phase
+/// / d ln f. The slope d phase / d ln f comes from the calibration.
 class DriftTracker {
  public:
   explicit DriftTracker(std::vector<PickUp> pick_ups) : pick_ups_(std::move(pick_ups)) {}
@@ -33,7 +33,7 @@ class DriftTracker {
   std::vector<PickUp> pick_ups_;
 };
 
-/// The responses of pick-ups after all resonances have moved by this share.
+/// The responses of pick-ups after all resonance frequencies have risen by the fraction `share`.
 std::vector<PickUp> scaled(std::vector<PickUp> pick_ups, double share);
 
 /// d phase / d ln f (rad) of the response to an output channel at a frequency; 0 if the calibration does not

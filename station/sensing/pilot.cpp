@@ -12,8 +12,10 @@ namespace {
 using Complex = std::complex<double>;
 
 constexpr double kLeastLikeness = 0.8;
-constexpr double kLargestEcho = 0.5;         // amplitude of a second pilot, relative to the first
-constexpr double kLargestTurn = M_PI / 3;    // largest accepted phase of the carrier against the envelope
+// largest accepted amplitude of a second copy of the pilot, relative to the first
+constexpr double kLargestEcho = 0.5;
+// largest accepted difference between the phase of the carrier and that expected from the envelope
+constexpr double kLargestTurn = M_PI / 3;
 constexpr std::int64_t kMargin_frames = 64;  // extra captured frames on both sides
 
 /// The analytic pilot of amplitude 1 at the time n, in frames from its start; n may have a fraction. Its
@@ -29,8 +31,8 @@ Complex pilot_at(const Pilot& pilot, double n) {
   return std::polar(s * s, 2 * M_PI * (cycles - std::floor(cycles)));
 }
 
-/// A signal mixed down to 0 Hz from the middle of the pilot's band, and summed over groups of `factor`
-/// frames.
+/// A signal that was mixed down to 0 Hz from the middle of the pilot's band and then summed over groups of
+/// `factor` frames, which lowers its rate.
 struct Baseband {
   std::vector<double> re, im;
 
@@ -54,7 +56,7 @@ Baseband baseband(const Pilot& pilot, std::int64_t frames, std::int64_t factor, 
   return made;
 }
 
-/// Squared magnitude of the correlation of signal and pilot, for each lag.
+/// Returns the squared magnitude of the correlation of signal and pilot for each lag.
 std::vector<double> correlation(const Baseband& signal, const Baseband& pilot) {
   const std::size_t lags = signal.re.size() - pilot.re.size() + 1;
   std::vector<double> re(lags), im(lags);
@@ -81,13 +83,13 @@ struct Place {
   double frame = 0, likeness = 0;
 };
 
-/// Subtracts the sinusoid of this frequency that fits best.
+/// Subtracts from the samples the sinusoid of this frequency that fits them best.
 void remove_tone(std::vector<double>& samples, double frequency_Hz, int rate_Hz) {
   const double turn = 2 * M_PI * frequency_Hz / rate_Hz;
   const auto at = [&](std::size_t n) {
     return std::polar(1.0, std::fmod(turn * static_cast<double>(n), 2 * M_PI));
   };
-  // Normal equations of cosine and sine.
+  // Normal equations of the least-squares fit of a cosine and a sine.
   double cc = 0, cs = 0, ss = 0, xc = 0, xs = 0;
   for (std::size_t n = 0; n < samples.size(); ++n) {
     const Complex z = at(n);
@@ -115,7 +117,8 @@ std::optional<Place> coarse_place(const Pilot& pilot, const std::vector<double>&
   if (!(energies > 0)) return std::nullopt;
   const double likeness = std::sqrt(power[best] / energies);
   if (likeness < kLeastLikeness) return std::nullopt;
-  const std::size_t near = 1 + static_cast<std::size_t>(24 / factor);  // width of the main lobe
+  // width of the correlation's main lobe
+  const std::size_t near = 1 + static_cast<std::size_t>(24 / factor);
   for (std::size_t l = 0; l < power.size(); ++l) {
     const bool elsewhere = l + near < best || l > best + near;
     if (elsewhere && power[l] > kLargestEcho * kLargestEcho * power[best]) return std::nullopt;
@@ -134,7 +137,7 @@ Complex correlation_at(const Pilot& pilot, const std::vector<double>& samples, d
   return sum;
 }
 
-/// The start at which the magnitude of the correlation is largest; `coarse` is a first estimate.
+/// Returns the start at which the magnitude of the correlation is largest; `coarse` is a first estimate.
 double envelope_place(const Pilot& pilot, const std::vector<double>& samples, double coarse) {
   constexpr double step = 0.5;
   constexpr int reach = 16;
@@ -200,8 +203,8 @@ std::optional<PilotEcho> PilotListener::find() const {
   const auto coarse = coarse_place(pilot_, samples);
   if (!coarse) return std::nullopt;
   double place = envelope_place(pilot_, samples, coarse->frame);
-  // `turn` is the change of the correlation's phase if the start is wrong by one frame: the pilot's mean
-  // frequency.
+  // `turn` is how much the correlation's phase changes if the start is wrong by one frame. It is given by the
+  // pilot's mean frequency.
   const double turn = M_PI * (pilot_.low_Hz + pilot_.high_Hz) / pilot_.rate_Hz;
   if (std::fabs(carrier_phase(correlation_at(pilot_, samples, place))) > kLargestTurn) return std::nullopt;
   for (int k = 0; k < 4; ++k) place -= carrier_phase(correlation_at(pilot_, samples, place)) / turn;

@@ -8,8 +8,9 @@
 
 namespace turnpoint::sensing {
 
-/// The pilot: a chirp that is played on an output channel and captured on the reference channel. It shows by
-/// how many frames the capture lags behind the playback, which is different each time the devices are opened.
+/// The pilot: a chirp that is played on an output channel and captured on the reference channel. It is used
+/// to measure by how many frames the capture lags behind the playback, which is different each time the
+/// devices are opened.
 struct Pilot {
   int rate_Hz = 192000;
   double low_Hz = 22000;
@@ -17,13 +18,13 @@ struct Pilot {
   std::int64_t frames = 1920;  ///< 10 ms at 192 kHz; an even number
   double amplitude = 0.25;     ///< fraction of full scale
   std::int32_t channel = 0;    ///< output channel
-  double carrier_Hz = 0;       ///< a tone that is on the channel all the time; 0: none
+  double carrier_Hz = 0;       ///< frequency of a tone that is always on this channel; 0: none
 };
 
 /// The pilot as a burst that any stream can play.
 drive::Burst pilot_burst(const Pilot& pilot, std::int64_t start_frame);
 
-/// What was found of a captured pilot.
+/// A pilot that was found in the captured samples.
 struct PilotEcho {
   /// Playback frame n is captured at frame n + delay. The delay's standard deviation is below 0.01 frames
   /// with noise at -40 dB.
@@ -50,8 +51,8 @@ class PilotListener {
   /// True if all frames have been received, or if the capture lost some of them.
   bool complete() const noexcept { return lost_ || samples_.size() == wanted_; }
 
-  /// The pilot; empty if frames are missing, if nothing like the pilot was captured (likeness below 0.8), or
-  /// if it came more than once. Takes about 20 ms.
+  /// Returns the pilot. Empty if frames are missing, if nothing like the pilot was captured (likeness below
+  /// 0.8), or if it was captured more than once. Takes about 20 ms.
   std::optional<PilotEcho> find() const;
 
  private:

@@ -5,8 +5,8 @@
 
 namespace turnpoint::sensing {
 
-/// The frequencies that a nonlinear plate, clamp or amplifier makes of tones: subharmonics (a part that
-/// rattles answers at f/2 or f/3), harmonics and combinations to third order.
+/// New frequencies that arise from the tones in a nonlinear plate, clamp or amplifier: subharmonics (a
+/// rattling part answers at f/2 or f/3), harmonics, and combinations to third order.
 enum class ProductKind {
   half,             ///< f_i / 2
   third,            ///< f_i / 3

@@ -9,8 +9,9 @@ namespace turnpoint::sensing {
 
 /// A movement of the finger in one direction, as a range of points of its track.
 struct Stroke {
-  std::size_t first = 0, end = 0;  ///< without 5 mm at each end, where the skin changes its direction
-  int direction = 0;               ///< 1 towards larger positions, -1 towards smaller positions
+  /// points of the stroke without 5 mm at each end, where the skin's deflection changes direction
+  std::size_t first = 0, end = 0;
+  int direction = 0;  ///< 1 towards larger positions, -1 towards smaller positions
 };
 
 /// Finds the strokes in a track. A stroke is faster than 10 mm/s without interruption, and at least 30 mm

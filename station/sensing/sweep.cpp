@@ -12,8 +12,9 @@ namespace {
 using Amplitude = std::complex<double>;
 
 constexpr double kStep_Hz = 20;
-constexpr double kFlat_s = 0.06, kFall_s = 0.03;  // half of the window: a flat part and a fall
-constexpr std::size_t kNoiseEvery = 16;           // noise is measured at a sixteenth of the frequencies
+// the window is flat over this time on both sides of its centre, and then falls to 0 within this time
+constexpr double kFlat_s = 0.06, kFall_s = 0.03;
+constexpr std::size_t kNoiseEvery = 16;  // noise is measured at a sixteenth of the frequencies
 
 /// Fourier transform at one frequency, in a window around the sample `centre`, with the phase of frame
 /// `origin` as reference.

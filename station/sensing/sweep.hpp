@@ -8,7 +8,7 @@
 
 namespace turnpoint::sensing {
 
-/// Near the ends of a chirp the ratio of two spectra is not the response.
+/// Distance from the ends of a chirp within which the ratio of the two spectra is not the response.
 inline constexpr double kSweepMargin_Hz = 600;
 
 /// A slow chirp on one output channel, from which the responses of the pick-ups are computed. It must be slow

@@ -17,7 +17,7 @@ inline std::complex<double> unit(std::uint64_t phase) noexcept {
   return {drive::sine_of_phase(phase + drive::quarter_cycle), drive::sine_of_phase(phase)};
 }
 
-/// Two numbers in one vector register; every 64-bit processor has such registers.
+/// Two numbers in one vector register. Every 64-bit processor has such registers.
 using Lanes [[gnu::vector_size(2 * sizeof(double))]] = double;
 constexpr std::size_t kLanes = kWidth / 2;
 
@@ -83,8 +83,8 @@ double ToneSums::factor(std::size_t part, double from_middle) const noexcept {
   return part == 0 ? 1 : part == 1 ? std::cos(angle) : std::sin(angle);
 }
 
-// Fills the table's columns of one tone. Columns of parity 0 are even functions about the middle of the
-// block, and columns of parity 1 are odd.
+// Fills the table's columns of one tone. Columns of parity 0 are even functions of the distance from the
+// block's middle; those of parity 1 are odd functions.
 void ToneSums::fill(std::size_t tone) noexcept {
   const auto half = static_cast<std::size_t>(block_frames_ / 2);
   const std::uint64_t increment = tones_[tone].partial.increment;
@@ -93,7 +93,8 @@ void ToneSums::fill(std::size_t tone) noexcept {
     for (std::size_t part = 0; part < kParts; ++part) {
       const double f = factor(part, static_cast<double>(n) + 0.5);
       double* column = table_.data() + (part * 2 * half + n) * columns_ + tone;
-      const bool swaps = part == 2;  // the factor sin is odd, so it swaps even and odd
+      // the factor sin is an odd function, so with it, even columns become odd and odd ones even
+      const bool swaps = part == 2;
       column[0] = f * (swaps ? e.imag() : e.real());
       column[half * columns_] = f * (swaps ? e.real() : e.imag());
     }

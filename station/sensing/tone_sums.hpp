@@ -70,10 +70,11 @@ class ToneSums {
   std::vector<double> table_;  ///< [part: 1, cos, sin][parity: even, odd][frame after the middle][column]
   std::vector<double>
       folded_;  ///< [parity][input][frame after the middle]: sum and difference of mirrored frames
-  std::vector<double> sums_;                  ///< [part: 1, cos, sin][parity: even, odd][input][column]
-  std::vector<std::uint64_t> part_of_frame_;  ///< phase of each tone for the delay's fraction
-  std::vector<std::uint64_t> phase_;          ///< phase of each tone in the middle of the block
-  std::vector<std::complex<double>> turn_;    ///< e^(i phase) of each tone in the middle of the block
+  std::vector<double> sums_;  ///< [part: 1, cos, sin][parity: even, odd][input][column]
+  /// by how much the phase of each tone changes in delay_fraction_ of a frame
+  std::vector<std::uint64_t> part_of_frame_;
+  std::vector<std::uint64_t> phase_;        ///< phase of each tone in the middle of the block
+  std::vector<std::complex<double>> turn_;  ///< e^(i phase) of each tone in the middle of the block
 };
 
 }  // namespace turnpoint::sensing

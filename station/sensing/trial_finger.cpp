@@ -9,11 +9,12 @@
 namespace turnpoint::sensing {
 namespace {
 
-constexpr double filter_s = 0.02;   // time over which a point's filter reaches, in either direction
-constexpr double tracker_s = 0.04;  // time over which the fit of position and speed reaches
+constexpr double filter_s = 0.02;   // a point's filter extends this far to both sides
+constexpr double tracker_s = 0.04;  // the fit of position and speed extends this far to both sides
 constexpr double now_s = 0.1;       // time over which now() averages
-constexpr double idle_s = 1;        // time of capture that is kept while no trial is expected
-constexpr double longest_s = 1200;  // longest capture that is kept; of a longer trial, the beginning is lost
+constexpr double idle_s = 1;  // while no trial is expected, only the newest capture of this length is kept
+// longest capture that is kept; in a longer trial, its beginning is lost
+constexpr double longest_s = 1200;
 
 static_assert(TrialFinger::tail_s >= filter_s + tracker_s);
 
@@ -73,7 +74,7 @@ std::int64_t TrialFinger::known_at() const {
   return intervals_.back().end_frame + static_cast<std::int64_t>(tail_s * setup_.bridges.rate_Hz);
 }
 
-/// The state of the points with indices from `first` to before `end`.
+/// Returns the state of the forces from the points with indices from `first` to before `end`.
 ForcesState TrialFinger::state_of(std::int64_t first, std::int64_t end) const {
   auto next = first;
   for (const auto& point : points_) {
@@ -84,7 +85,7 @@ ForcesState TrialFinger::state_of(std::int64_t first, std::int64_t end) const {
   return next == end ? ForcesState::ok : ForcesState::lost;
 }
 
-/// Computes mean and standard deviation of these readings.
+/// Computes the mean and standard deviation of the readings in these points.
 void TrialFinger::describe(const std::vector<BridgePoint>& quiet) {
   read_.reset(), noise_.reset();
   if (static_cast<std::int64_t>(quiet.size()) < points_in(tare_s) / 2) return;
@@ -113,7 +114,8 @@ void TrialFinger::take_tare() {
   describe(quiet);
   auto taken = tare(quiet, setup_.bridges.band, setup_.calibration, zero_.value_or(Readings{}));
   loaded_ = zero_ && taken.state == TareState::stopped;
-  // Without a usable tare, keep the previous one: a finger waiting on the surface must not stop the session.
+  // Without a usable tare, keep the previous one: a finger that already waits on the surface must not stop
+  // the session.
   if (loaded_ || taken.state == TareState::restless || taken.state == TareState::incomplete) return;
   if (zero_) tare_moved_N_ = taken.moved_N;
   zero_ = taken.readings;
@@ -152,7 +154,7 @@ std::optional<FingerNow> TrialFinger::now() {
   if (first < index_at(quiet_until_)) return std::nullopt;
   take_tare();
   if (!zero_ || loaded_ || state_of(first, newest) != ForcesState::ok) return std::nullopt;
-  // The tracker needs points from after the last one that it returns.
+  // The tracker returns a point only once it has points from after it.
   FingerNow now;
   double speed_sum = 0;
   int points = 0, moving = 0;
@@ -192,7 +194,7 @@ TrialForces TrialFinger::result() {
                                                  }) -
                                 forces.track.begin()));
   const auto strokes = find_strokes(in_trial);
-  // Scenes differ between intervals, so only the last interval gives the profile.
+  // The profile uses only the last interval, because scenes differ between intervals.
   std::vector<Stroke> of_last;
   for (const auto& stroke : strokes)
     if (in_trial[stroke.first].index >= last) of_last.push_back(stroke);

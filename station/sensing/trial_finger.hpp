@@ -48,7 +48,7 @@ struct TrialForces {
 /// The finger at this moment: what may be shown to a participant.
 struct FingerNow {
   double normal_N = 0;    ///< mean over a tenth of a second
-  double speed_mm_s = 0;  ///< likewise; NaN if it is not known
+  double speed_mm_s = 0;  ///< mean over a tenth of a second; NaN if it is not known
   bool contact = false;
 };
 
@@ -70,7 +70,8 @@ class TrialFinger {
   /// The intervals of the next trial. The tare is taken from what was captured before `quiet_until`. Points
   /// that the trial does not need are dropped.
   void expect(std::int64_t quiet_until, std::vector<Range> intervals);
-  /// Playback was cut at this frame: an interval that had begun ends here, and later ones do not take place.
+  /// Call this if playback was cut at this frame. An interval that had begun ends there, and later ones do
+  /// not take place.
   void cut(std::int64_t frame);
   void push(const CaptureBlock& block);
 
@@ -80,7 +81,8 @@ class TrialFinger {
   std::optional<bool> contact(std::size_t interval);
   /// The finger in the newest captured frames. Empty if no trial is expected, or its forces are not known.
   std::optional<FingerNow> now();
-  /// What was measured in the expected trial. Frames that were not captured by now count as lost.
+  /// Returns what was measured in the expected trial. Frames that have not been captured when this is called
+  /// count as lost.
   TrialForces result();
 
  private:

@@ -16,12 +16,12 @@ struct MovementWindow {
   int strokes = 0;        ///< least number of strokes
 };
 
-/// Whether a movement was the requested one. If not, the first of these faults that it had.
+/// Whether a movement was the requested one. If it had several faults, the first in this list is given.
 enum class Movement {
   ok,
   strokes,  ///< too few strokes
   light,    ///< too little normal force
-  hard,     ///< too much
+  hard,     ///< too much normal force
   slow,
   fast,
 };
@@ -37,8 +37,9 @@ struct TrialSummary {
   double normal_N = none, normal_sd_N = none;
   /// fraction of the strokes' time with normal force in the window; NaN if any force is allowed
   double normal_in_window = none;
-  double speed_mm_s = none;       ///< mean absolute speed over all strokes
-  double speed_in_window = none;  ///< likewise
+  double speed_mm_s = none;  ///< mean absolute speed over all strokes
+  /// fraction of the strokes' time with speed in the window; NaN if any speed is allowed
+  double speed_in_window = none;
 };
 
 /// Summarises the track of one trial.

@@ -41,7 +41,7 @@ void TriggerDecoder::push(std::int64_t value) {
   const auto at = static_cast<std::size_t>(next_) & mask;
   sums_[at] = sum_, squares_[at] = square_;
   sum_ += value, square_ += static_cast<std::uint64_t>(value * value);
-  // The sums before frame next_ are stored, so the code and its silent bit end there.
+  // The running sums are known up to frame next_. So this call can find a code whose silent bit ends there.
   const auto frame = next_ - (drive::trigger_half_bits + 2 * drive::trigger_quiet_bits) * half_;
   ++next_;
   if (frame - 2 * drive::trigger_quiet_bits * half_ - 1 < origin_) return;

@@ -14,11 +14,12 @@ struct DecodedTrigger {
   double amplitude = 0;  ///< 1 is full scale
 };
 
-/// Finds the codes of drive/trigger_code.hpp on one captured channel. It knows the form of a code and nothing
-/// else: neither when one is sent nor which, so it also finds codes that should not be there. A code counts
-/// if it is at least `least_amplitude`, correlates by 0.9 with its ideal wave (so its check bits are right),
-/// and the bit before and the bit after it are silent. It may be high-passed, and noise may be 10 dB below
-/// it. Allocates nothing after the constructor, except for the codes that it finds.
+/// Finds the codes of drive/trigger_code.hpp on one captured channel. It knows only the form of a code, not
+/// which codes were sent or when, so it also finds codes that should not be there. A code is accepted if its
+/// amplitude is at least `least_amplitude`, its correlation with its ideal wave is at least 0.9 (its check
+/// bits are then right), and the bits before and after it are silent. This tolerates high-pass filtering, and
+/// noise down to 10 dB below the code. Allocates nothing after the constructor, except for the codes that it
+/// finds.
 class TriggerDecoder {
  public:
   TriggerDecoder(int channel, std::int64_t bit_frames, double least_amplitude = 0.02);
@@ -45,7 +46,8 @@ class TriggerDecoder {
   const int channel_;
   const std::int64_t half_;
   const std::int64_t least_sum_;
-  // Sums of all values, and of their squares, before each frame. Rings; the squares wrap around.
+  // Running sums of all values, and of their squares, up to each frame, in ring buffers. The squares wrap
+  // around.
   std::vector<std::int64_t> sums_;
   std::vector<std::uint64_t> squares_;
   std::int64_t next_ = 0, origin_ = 0;
@@ -56,7 +58,7 @@ class TriggerDecoder {
 };
 
 /// Finds the rising edges of pulses on one captured channel, such as those of a scanner. An edge counts when
-/// the level rises above `high` and has been below half of it since the edge before.
+/// the level rises above `high`, provided that it was below half of `high` since the previous edge.
 class EdgeFinder {
  public:
   EdgeFinder(int channel, double high) : channel_(channel), high_(high) {}

@@ -12,7 +12,7 @@ namespace turnpoint::session {
 
 namespace {
 
-/// Fewer strokes do not give a standard error that means anything.
+/// A standard error from fewer strokes would be meaningless.
 constexpr int kFewest = 3;
 
 /// Frames in which the last interval was presented.

@@ -17,7 +17,7 @@ class AlongStrip {
   struct Curve {
     std::vector<double> from_boundary_mm, friction, se;
   };
-  /// Direction 1: towards the narrow end; -1: towards the wide end.
+  /// The curve of the strokes in one direction. 1: towards the narrow end; -1: towards the wide end.
   Curve curve(int direction) const;
 
  private:

@@ -18,7 +18,8 @@ drive::Burst burst_of(const std::vector<scene::DrivePlan>& scenes, const std::ve
                       double transition_s, double length_s, int rate_Hz);
 
 /// Adds the rig's marker at the onset and at each change of scene. A pulse or tone never lasts longer than
-/// the burst. If the marker carries codes, these are the codes of the onset and of each change; 0 is none.
+/// the burst. If the marker carries trigger codes, `MarkerCodes` holds the codes of the onset and of each
+/// change; 0 stands for no code.
 struct MarkerCodes {
   int onset = 0, change = 0;
 };

@@ -37,6 +37,10 @@ std::optional<CardCapture> card_capture_of(const rig::Rig& rig) {
   plan.setup.channels = rig.capture->channels;
   plan.setup.pick_ups = calibrated_pick_ups(*rig.capture);
   plan.pilot = pilot_of(rig);
+  if (!rig.capture->bridges.empty()) {
+    plan.pilot.carrier_Hz = sensing::carriers_Hz.front();
+    plan.setup.finger = calibrated_finger(rig);
+  }
   plan.reference = rig.capture->reference;
   plan.triggers = trigger_setup_of(rig);
   return plan;
@@ -45,7 +49,8 @@ std::optional<CardCapture> card_capture_of(const rig::Rig& rig) {
 CaptureFeed::CaptureFeed(std::unique_ptr<drive::Capture> capture, const CardCapture& plan)
     : capture_(std::move(capture)),
       plan_(plan),
-      // A pilot is played one buffer length after it is scheduled, and taken up to one buffer length later.
+      // The pilot is played up to one buffer length after it was scheduled, and captured up to one more
+      // buffer length later.
       longest_wait_s_(0.5 + 2.0 * plan.device.periods * plan.device.period_frames / plan.device.rate_Hz),
       watch_(plan.setup),
       triggers_(plan.triggers, 0),
@@ -78,8 +83,9 @@ void CaptureFeed::listen(std::int64_t start_frame) {
                                                            plan_.reference, longest_wait_s_);
   const std::lock_guard lock(mutex_);
   const auto counters = capture_->counters();
-  // A first guess of the numbering. With it, the pilot comes late, because it has not been played yet. The
-  // listener needs some frames from before the pilot, and the next block may begin with the next frame.
+  // A first guess at how captured frames correspond to playback frames. It makes the pilot arrive late,
+  // because the pilot has not been played yet. The listener needs some frames from before the pilot, and the
+  // next block may begin with the next frame.
   shift_ = start_frame - counters.frames - kBefore_frames;
   numbering_ = counters.numbering;
   aligned_ = false;
@@ -108,7 +114,8 @@ bool CaptureFeed::take(const drive::CapturedBlock& captured) {
                                     plan_.device.rate_Hz};
   if (captured.numbering != numbering_) aligned_ = false;
   if (listener_) {
-    // A gap makes the pilot incomplete; frames from before the listening are not needed.
+    // Start listening again: a gap makes the pilot incomplete, and frames from before this block are not
+    // needed.
     listener_->push(block);
     return listener_->complete();
   }
@@ -119,15 +126,16 @@ bool CaptureFeed::take(const drive::CapturedBlock& captured) {
   return false;
 }
 
-// Searches without the lock, because the session thread must not wait: it reports to the amplifier guard.
+// Searches for the pilot without holding the lock. The session thread also takes the lock, and must not wait,
+// because it reports to the amplifier guard.
 void CaptureFeed::conclude() {
   std::unique_lock lock(mutex_);
   const auto listener = std::exchange(listener_, nullptr);
-  if (!listener) return;  // cancelled after it was complete
+  if (!listener) return;  // listening was cancelled after the pilot was complete
   lock.unlock();
   const auto echo = listener->find();
   lock.lock();
-  if (pilot_ != Pilot::awaited || listener_) return;  // cancelled meanwhile
+  if (pilot_ != Pilot::awaited || listener_) return;  // listening was cancelled during the search
   pilot_ = echo ? Pilot::heard : Pilot::missing;
   if (!echo) return;
   const auto whole = std::llround(echo->delay_frames);

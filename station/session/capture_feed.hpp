@@ -25,9 +25,10 @@ struct CardCapture {
 /// Returns nothing unless the rig's [capture] is `alsa:`.
 std::optional<CardCapture> card_capture_of(const rig::Rig& rig);
 
-/// Gives captured samples to a VibrationWatch, numbered like the playback. The numbers are known after a
-/// pilot was heard, until the capture loses frames or the playback is restarted; in between the watch gets
-/// nothing, so an interval that needed these frames is lost. The samples are taken by an ordinary thread.
+/// Passes captured samples to a VibrationWatch, numbered by playback frames. A pilot establishes this
+/// numbering; it is lost when the capture loses frames or the playback is restarted. Until the next pilot the
+/// watch gets no samples, so an interval during that time counts as lost. The samples are processed on an
+/// ordinary thread.
 class CaptureFeed {
  public:
   CaptureFeed(std::unique_ptr<drive::Capture> capture, const CardCapture& plan);
@@ -36,9 +37,9 @@ class CaptureFeed {
   TriggerCapture& triggers() { return triggers_; }
 
   bool aligned() const;
-  /// The playback was restarted, so a pilot is needed.
+  /// Call this after the playback was restarted: the numbering is then unknown until the next pilot.
   void misalign();
-  /// Playback frames before this one have been captured and given to the watch.
+  /// All playback frames before this one have been captured and passed to the watch.
   std::int64_t end_frame() const;
 
   enum class Pilot { awaited, heard, missing };
@@ -63,8 +64,8 @@ class CaptureFeed {
   mutable std::mutex mutex_;
   std::unique_ptr<sensing::PilotListener> listener_;  ///< null: no pilot is awaited
   Pilot pilot_ = Pilot::missing;
-  std::int64_t shift_ = 0;       ///< from captured frames to playback frames; while listening, a first guess
-  std::uint32_t numbering_ = 0;  ///< the capture's `numbering` for which shift_ holds
+  std::int64_t shift_ = 0;       ///< playback frame minus captured frame; while listening, only a first guess
+  std::uint32_t numbering_ = 0;  ///< the value of the capture's `numbering` for which shift_ is right
   bool aligned_ = false;
   std::int64_t end_frame_ = 0;
   // The last member, so that the thread is joined before the objects that it uses are destroyed.

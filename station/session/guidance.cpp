@@ -8,7 +8,8 @@ namespace turnpoint::session {
 
 namespace {
 
-/// The range that the protocol asks for is followed by half its upper end, so that too much is visible too.
+/// A bar ends at one and a half times the upper end of the range that the protocol asks for, so that values
+/// above the range can be seen too.
 double full_scale(const std::pair<double, double>& range) { return 1.5 * range.second; }
 
 std::optional<Guidance::Bar> empty_bar(const std::optional<std::pair<double, double>>& range) {
@@ -19,7 +20,7 @@ std::optional<Guidance::Bar> empty_bar(const std::optional<std::pair<double, dou
 void move_bar(std::optional<Guidance::Bar>& bar, const std::optional<std::pair<double, double>>& range,
               std::optional<double> value) {
   if (!bar) return;
-  // Steps of a percent: finer movements cannot be seen.
+  // Round to one percent: finer movements cannot be seen.
   bar->value = value
                    ? std::optional(std::clamp(std::round(100 * *value / full_scale(*range)) / 100, 0.0, 1.0))
                    : std::nullopt;

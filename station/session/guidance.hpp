@@ -11,7 +11,8 @@ namespace turnpoint::session {
 /// Decides what the bars on the participant's page show, and when they stand still. Pure.
 class Guide {
  public:
-  static constexpr std::int64_t kEvery_ns = 50'000'000;  ///< between two movements of the bars
+  /// shortest time between two movements of the bars
+  static constexpr std::int64_t kEvery_ns = 50'000'000;
 
   /// Without guidance in the protocol, there are no bars.
   explicit Guide(const std::optional<protocol::Sensing>& sensing);
@@ -22,8 +23,8 @@ class Guide {
 
   /// Shows the finger as it is now. Returns true if the bars have changed.
   bool move(const std::optional<sensing::FingerNow>& finger);
-  /// While a stimulus is presented, the bars stand still, unless the protocol asks for live guidance.
-  /// Returns true if this changed.
+  /// Stops the bars during a stimulus, unless the protocol asks for live guidance. Returns true if this
+  /// changed what is shown.
   bool freeze(bool during_stimulus);
 
  private:

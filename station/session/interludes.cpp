@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "station/random/draws.hpp"
+#include "station/session/planned_session.hpp"
 #include "station/text/number.hpp"
 
 namespace turnpoint::session {
@@ -13,7 +14,7 @@ namespace {
 // Time for which a simulated participant reads a question or an explanation.
 constexpr std::int64_t kReads_ns = 1'500'000'000;
 
-/// The answer that an input gives to an item, as it is stored.
+/// Returns the answer to store for an item when this input was given.
 std::string answer_of(const protocol::Item& item, const Input& input) {
   if (input.kind == InputKind::value) return text::exact(input.number);
   return item.choices.at(static_cast<std::size_t>(input.value)).id;
@@ -38,7 +39,8 @@ Interludes::Interludes(const Setup& setup, const Pages& pages, const trial::Dire
       stage_(stage),
       log_(log),
       player_(std::move(player)),
-      blocks_(protocol::block_order(setup.protocol, log.session().sequence_index)) {}
+      visit_(visit_of(log.session())),
+      blocks_(protocol::block_order(setup.protocol, visit_)) {}
 
 void Interludes::restore(const Earlier& earlier) {
   for (const auto* event : records::standing_answers(earlier.events))
@@ -80,7 +82,7 @@ protocol::Answers Interludes::answers() const {
 Flow Interludes::before(int block_index) {
   occasion_ = block_index;
   for (const auto* interlude :
-       protocol::interludes_before(setup_.protocol, blocks_, static_cast<std::size_t>(block_index))) {
+       protocol::interludes_before(setup_.protocol, blocks_, static_cast<std::size_t>(block_index), visit_)) {
     const auto place = records::place_name(interlude->name, occasion_);
     if (done_.count(place) > 0) continue;
     if (run(*interlude) == Flow::stop) return Flow::stop;
@@ -111,7 +113,7 @@ Interludes::Reply Interludes::reply(const Page& page, const std::function<bool(c
   while (!gate_.stop_asked()) {
     auto waited = stage_.wait_until(kForever);
     if (!waited) continue;
-    // a response button answers trials, not questions
+    // the rig's response buttons answer trials, not questions
     const bool button = waited->kind == InputKind::button;
     const auto input = gate_.received(std::move(*waited));
     if (gate_.handle_on_page(page, input) == Flow::stop) return std::nullopt;
@@ -167,7 +169,7 @@ std::vector<std::string> Interludes::given(const protocol::Interlude& interlude)
   return items;
 }
 
-/// Asks one item. Empty if the session stops; an empty reply means Back.
+/// Asks one item. Returns nothing if the session stops, and an empty reply if the participant pressed Back.
 std::optional<Interludes::Reply> Interludes::ask(const protocol::Interlude& interlude, std::size_t index,
                                                  bool back) {
   const auto& item = interlude.items[index];

@@ -15,15 +15,15 @@
 
 namespace turnpoint::session {
 
-/// What the log of a session that is resumed says about interludes and scores.
+/// What the log of a resumed session contains about interludes and scores.
 struct Earlier {
   std::vector<records::EventRow> events;
   std::vector<records::BlockRecord> blocks;
 };
 
-/// Runs what comes before, between and after the blocks: consent, questionnaires, explanations, screenings.
-/// Each answer is durable before the next question appears, so a session that dies continues with the next
-/// question.
+/// Runs the interludes before, between and after the blocks: consents, questionnaires, explanations,
+/// screenings. Each answer is on the disk before the next question appears, so a session whose process died
+/// continues with the next question.
 class Interludes {
  public:
   /// Presents an example while `page` is shown.
@@ -33,14 +33,14 @@ class Interludes {
   Interludes(const Setup& setup, const Pages& pages, const trial::Director& director, OperatorGate& gate,
              Stage& stage, store::SessionLog& log, Player player);
 
-  /// Takes over what was answered and scored before the session was resumed.
+  /// Restores what was answered and scored before the session was resumed.
   void restore(const Earlier& earlier);
 
-  /// Runs what comes before this block; what comes after the last block if there is no such block. Does
-  /// nothing if it is already done.
+  /// Runs the interludes before this block, or those after the last block if there is no such block.
+  /// Interludes that are already done are skipped.
   Flow before(int block_index);
 
-  /// Counts a scored trial.
+  /// Adds one scored trial to the score of its block.
   void score(int block_index, int attempt, const std::string& block, bool correct);
 
   /// Why the session ends before its blocks are done; "" if it does not.
@@ -77,10 +77,11 @@ class Interludes {
   Stage& stage_;
   store::SessionLog& log_;
   Player player_;
+  const protocol::Visit visit_;
   const std::vector<protocol::Block> blocks_;
   std::vector<records::AnswerRow> standing_;
-  std::map<int, Score> scores_;  ///< by block index; of the newest attempt
-  std::set<std::string> done_;   ///< by records::place_name()
+  std::map<int, Score> scores_;  ///< scores of the newest attempt at each block, by the block's index
+  std::set<std::string> done_;   ///< the interludes that are done, named by records::place_name()
   int occasion_ = 0;
   std::string ended_because_;
 };

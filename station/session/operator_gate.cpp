@@ -153,7 +153,7 @@ std::string OperatorGate::reason_to_continue(const Fault& why) {
     if (input.kind == InputKind::note && !input.text.empty()) return input.text;
     note(input);
   }
-  // stop() below gives the reason why the session ends
+  // Clear the request: the caller ends the session with stop() and gives the reason.
   stop_asked_ = false;
   return "";
 }
@@ -208,8 +208,8 @@ Flow OperatorGate::show_and_wait(Page page, double at_least_s) {
     const auto input = received(std::move(*waited));
     if (interrupt(page, input) == Flow::stop) return Flow::stop;
     if (shows_ != shows) {
-      // The operator has now repaired the fault. That also ends an earlier fault or pause page, so do not
-      // show it again.
+      // The operator has now repaired the fault. There may be an earlier fault or pause page below this one;
+      // it ends too, so do not show it again.
       if (holds) return Flow::go_on;
       shown_ns = stage_.now_ns();
       show(page);

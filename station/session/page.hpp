@@ -14,7 +14,7 @@ enum class PageKind {
   /// the text of the block, or of its speed or accuracy instruction, and Continue
   instructions,
   cue,  ///< get ready: shows where to slide the finger, and the mark; no answers
-  /// free exploration, or interval number `interval` of `intervals`; answers can be given if `answers_open`
+  /// free exploration, or interval number `interval` of `intervals`; answers are accepted if `answers_open`
   stimulus,
   pause,     ///< the gap between two intervals, in silence
   response,  ///< the surface is silent; answers can be given
@@ -50,18 +50,18 @@ struct ValueEntry {
   /// along a line: where the texts are (0 to 1), and the texts
   std::vector<double> places;
   std::vector<std::string> texts;
-  std::string first;  ///< on a number pad: the number of the standard, as a sentence; may be ""
+  std::string first;  ///< number pad only: a sentence that gives the number of the standard; may be ""
 };
 
-/// The bars that guide the finger: normal force, and speed. There is no place here for lateral force,
-/// friction or position, because these would answer the question.
+/// The bars that guide the finger: normal force and speed. Lateral force, friction and position are left out
+/// on purpose, because they would reveal the answer.
 struct Guidance {
   struct Bar {
     std::optional<double> value;  ///< from 0 to 1; empty while no finger is on the surface
     double low = 0, high = 1;     ///< the range that the protocol asks for, from 0 to 1
     bool operator==(const Bar&) const = default;
   };
-  std::optional<Bar> force, speed;  ///< empty if the protocol accepts any
+  std::optional<Bar> force, speed;  ///< empty if the protocol accepts any value
   bool frozen = false;              ///< the bars stand still, because a stimulus is being presented
   bool operator==(const Guidance&) const = default;
 };

@@ -22,7 +22,8 @@ class Pages {
   /// Makes the page for one phase of a trial.
   Page of_phase(trial::Phase phase, int interval, const trial::TrialSpec& spec, const protocol::Block& block,
                 const trial::Result& result, const trial::Director& director) const;
-  /// Says what to change after a wrong movement; `word` is the movement's word in the trial's row.
+  /// Returns the text that tells the participant what to change after a wrong movement. `word` is the word
+  /// for this movement in the trial's row.
   std::string movement(const std::string& word) const;
   /// Adds the slider of an adjustment to the page of a phase.
   void add_slider(Page& page, const trial::SliderSpan& span, double setting) const;

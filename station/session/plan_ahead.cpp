@@ -19,7 +19,7 @@ namespace turnpoint::session {
 
 namespace {
 
-/// Returns a text that is equal for two trials exactly if their stimuli are equal.
+/// Returns a text that is the same for two trials if and only if their stimuli are the same.
 std::string key_of(const trial::TrialSpec& trial, double drift) {
   std::string key =
       fmt::format("{}/{}/{}/{}", trial.block_index, trial.attempt, trial.trial_in_block, text::exact(drift));
@@ -129,7 +129,7 @@ PlanAhead::Planned PlanAhead::plan(const trial::TrialSpec& trial, double drift) 
   return planned;
 }
 
-/// The scene of a friction table, made as strong as the trial's level says.
+/// Plans the scene of a friction table with the displacement that is the trial's level.
 scene::DrivePlan PlanAhead::plan_strokes(const trial::TrialSpec& trial) {
   const auto& strokes = *trial.strokes;
   if (*trial.level == 0) {

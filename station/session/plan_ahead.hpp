@@ -35,19 +35,20 @@ class PlanAhead {
   PlanAhead(const rig::Rig& rig, const protocol::Protocol& protocol, std::uint64_t seed);
   ~PlanAhead();
 
-  /// Plans trials from now on with this friction table instead of the rig's.
+  /// Uses this friction table instead of the rig's for all trials planned from now on.
   void use_friction(const sensing::FrictionTable& table);
 
   /// Starts planning a trial. If an earlier trial is still waiting to be planned, it is dropped. Starting the
   /// same trial again has no effect.
   void begin(const trial::TrialSpec& trial);
-  /// True if take() would not have to wait.
+  /// True if take() would return at once.
   bool ready(const trial::TrialSpec& trial);
   /// Returns the plans of a trial, and waits for them if necessary. If planning failed, throws its exception.
   const Planned& take(const trial::TrialSpec& trial);
 
-  /// The resonances of the surface have moved by this share: all frequencies are multiplied by 1 + share, so
-  /// that boundaries stay where they were planned. Plans that were made before are made again.
+  /// Says that the resonance frequencies of the surface have risen by the fraction `share`. All frequencies
+  /// are then multiplied by 1 + share, so that boundaries stay where they were planned. Plans that were made
+  /// before are made again.
   void set_drift(double share);
 
  private:

@@ -61,7 +61,7 @@ inline std::optional<std::int64_t> glide_to(drive::Stream& stream, const std::ve
   const auto& sounding = presented.back();
   const auto frames = static_cast<std::int64_t>(seconds * stream.config().output.rate_Hz);
   const auto at = std::max(stream.earliest_frame(), sounding.start_frame);
-  // Once a burst ramps down at its end, it can no longer change to other tones.
+  // A burst that has begun its final ramp can no longer change to other tones.
   if (at + frames + sounding.ramp.frames >= sounding.end_frame) return std::nullopt;
   stream.change(sounding.burst, {at - sounding.start_frame, frames, to});
   return at;

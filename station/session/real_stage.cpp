@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "station/drive/recovery.hpp"
+#include "station/sensing/trial_finger.hpp"
 #include "station/session/presented.hpp"
 #include "station/system/clock_watch.hpp"
 #include "station/system/clocks.hpp"
@@ -22,10 +23,13 @@ constexpr std::int64_t kSettle_ns = 50'000'000;
 constexpr std::int64_t kFirstBlocks_ns = 500'000'000;
 // longest wait for the first position of a restarted device
 constexpr std::int64_t kFirstPosition_ns = 500'000'000;
-constexpr std::int64_t kHeard_ns = 1'000'000'000;  // longest wait for the report that an interval was played
-constexpr std::int64_t kPilot_ns = 1'000'000'000;  // longer than a pilot can take to come back
+// longest wait for the report that an interval was played completely
+constexpr std::int64_t kHeard_ns = 1'000'000'000;
+constexpr std::int64_t kPilot_ns = 1'000'000'000;               // longer than a pilot can take to come back
+constexpr double kTare_s = sensing::TrialFinger::tare_s + 0.1;  // the filter needs the rest
 constexpr std::int64_t kMeasured_ns = 1'000'000'000;  // longest wait for what was captured of an interval
-// A proof needs captured frames from before the onset, so it must be expected this long before.
+// A proof needs captured frames from before the onset, so expect() must be called at least this long before
+// the onset.
 constexpr std::int64_t kExpected_ns = 50'000'000;
 // time from the end of the last stimulus to switching the amplifier off
 constexpr std::int64_t kTail_ns = 20'000'000;
@@ -41,6 +45,7 @@ class RealStage : public Stage {
     if (!capture) return;
     pilot_ = capture->pilot;
     reference_ = capture->reference;
+    has_cells_ = capture->setup.finger.has_value();
     feed_ = std::make_unique<CaptureFeed>(devices_.open_capture(capture->device), *capture);
   }
 
@@ -177,7 +182,7 @@ class RealStage : public Stage {
  private:
   drive::Amplifier& amplifier_() { return *devices_.amplifier; }
 
-  /// Finds the delay from playback to capture, unless it is known, while the amplifier is off.
+  /// Measures the delay from playback to capture if it is not known. The amplifier is off meanwhile.
   Refusal align() {
     if (!feed_ || feed_->aligned()) return std::nullopt;
     closing_ = true;
@@ -185,14 +190,27 @@ class RealStage : public Stage {
     feed_->listen(stream_->schedule_soon(sensing::pilot_burst(pilot_, 0)).start_frame);
     const auto until_ns = now_ns() + static_cast<std::int64_t>(1e9 * feed_->longest_wait_s()) + kPilot_ns;
     wait_for([&] { return feed_->pilot() != CaptureFeed::Pilot::awaited || now_ns() > until_ns; });
-    if (feed_->aligned()) return std::nullopt;
+    if (feed_->aligned()) {
+      if (has_cells_) await_tare();
+      return std::nullopt;
+    }
     if (!feed_->counters().present) return Fault{FaultKind::capture, "the capture device is disconnected"};
     return Fault{FaultKind::capture,
                  fmt::format("the pilot on output channel {} was not heard on captured channel {}",
                              pilot_.channel, reference_)};
   }
 
-  /// Reports the intervals whose samples have been captured. What was measured of an interval comes first.
+  /// The force cells are read before each trial, which needs captured frames since the pilot.
+  void await_tare() {
+    const auto rate_Hz = stream_->config().output.rate_Hz;
+    const auto until_ns = now_ns() + static_cast<std::int64_t>(1e9 * feed_->longest_wait_s());
+    const auto wanted = stream_->frame_at(now_ns()).value_or(0) +
+                        static_cast<std::int64_t>(kTare_s * static_cast<double>(rate_Hz));
+    wait_for([&] { return feed_->end_frame() >= wanted || !feed_->aligned() || now_ns() > until_ns; });
+  }
+
+  /// Reports the intervals whose samples have been captured: first the measurements of an interval, then that
+  /// the interval was heard.
   void measure(std::int64_t now) {
     while (!unmeasured_.empty()) {
       const auto [interval, limit_ns] = unmeasured_.front();
@@ -211,13 +229,15 @@ class RealStage : public Stage {
     }
   }
 
-  /// Reports to the guard that the session thread is alive, and passes on the page's own latest report.
+  /// Reports to the guard that the session thread is alive, and passes on when the participant's page last
+  /// reported.
   void show_life() {
     amplifier_().session_alive();
     if (const auto page_ns = inputs_.page_alive_ns(); page_ns >= 0) amplifier_().page_alive(page_ns);
   }
 
-  /// Reports to the guard that the session is alive, and processes news from drive, guard and clocks.
+  /// Reports to the guard that the session is alive, and processes what drive, guard and clocks have
+  /// reported.
   void attend() {
     const auto now = now_ns();
     show_life();
@@ -240,7 +260,7 @@ class RealStage : public Stage {
     if (now >= clocks_due_ns_) look_at_clocks(now);
   }
 
-  /// Takes the codes that were read back, and reports the pulses that were captured.
+  /// Collects the trigger codes that were read back, and reports pulses of other devices that were captured.
   void take_captured() {
     const auto news = feed_->triggers().take();
     triggers_->captured(news);
@@ -250,7 +270,7 @@ class RealStage : public Stage {
     }
   }
 
-  /// A pulse that came on a line gets the frame at that time.
+  /// A pulse on a GPIO line has only a time; adds the playback frame at that time.
   Input with_frame(Input input) {
     if (input.kind == InputKind::sync && input.text.empty())
       if (const auto frame = stream_->frame_at(input.time_ns)) input.text = fmt::format("frame {}", *frame);
@@ -275,7 +295,8 @@ class RealStage : public Stage {
     saturated_ = saturated;
   }
 
-  /// Reports gaps of the capture for the log. They make a trial void only if they hit one of its intervals.
+  /// Reports gaps of the capture, which are logged. A gap makes the trial void only if it hits one of the
+  /// trial's intervals.
   void look_at_capture(std::int64_t now) {
     if (!feed_) return;
     const auto counters = feed_->counters();
@@ -367,10 +388,11 @@ class RealStage : public Stage {
   Inputs& inputs_;
   std::unique_ptr<drive::Stream> stream_;
   std::optional<Triggers> triggers_;
-  std::unique_ptr<CaptureFeed> feed_;  ///< null: nothing is captured
+  bool has_cells_ = false;
+  std::unique_ptr<CaptureFeed> feed_;  ///< null if nothing is captured
   sensing::Pilot pilot_;
   int reference_ = 0;
-  /// An interval that was played, and until when to wait for its captured samples.
+  /// An interval that was played, and how long to wait for its captured samples.
   struct Unmeasured {
     int interval = 0;
     std::int64_t limit_ns = 0;
@@ -384,10 +406,10 @@ class RealStage : public Stage {
   drive::UnderrunLimit underruns_;
   system::ClockWatch clocks_;
   std::int64_t clocks_due_ns_ = 0;
-  std::int64_t quiet_ns_ = 0;   ///< time at which the surface will be silent
+  std::int64_t quiet_ns_ = 0;   ///< time from which the surface is silent
   std::int64_t opened_ns_ = 0;  ///< time at which the amplifier was enabled
   bool closing_ = false, fault_told_ = false;
-  std::uint32_t numbering_ = 0;  ///< the capture's `numbering` when its gaps were last reported
+  std::uint32_t numbering_ = 0;  ///< the capture's `numbering` when a gap was last reported
   std::int64_t saturated_ = 0;   ///< number of samples clipped so far
   /// set if the converter runs at the wrong rate, until the device has been reopened
   Refusal wrong_rate_;

@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "station/session/planned_session.hpp"
 #include "station/text/number.hpp"
 #include "station/trial/question.hpp"
 #include "station/trial/rows.hpp"
@@ -91,7 +92,7 @@ void check_observer(const Setup& setup, const store::StoredSession& stored, cons
 }  // namespace
 
 trial::Director replayed(const Setup& setup, const store::StoredSession& stored) {
-  trial::Director director(setup.protocol, stored.session.sequence_index, stored.session.start.seed);
+  trial::Director director(setup.protocol, visit_of(stored.session), stored.session.start.seed);
   for (const auto& block : stored.blocks) {
     enter_stored(director, block.start);
     for (const auto& trial : block.trials)

@@ -24,8 +24,9 @@ void add_tones(records::TrialRow& row, const std::vector<scene::DrivePlan>& scen
 /// amplitude of the trial become those of scene 1.
 void set_scene(records::TrialRow& row, const scene::DrivePlan& scene, std::int64_t frame);
 
-/// Adds what was measured of an interval to the row: to the interval's tones, and to the verdict on the
-/// trial, for which the worst interval counts. `first`: no interval of this trial has been added yet.
+/// Adds the measurements of an interval to the row: to the tones of the interval, and to the verdict on the
+/// trial, which is that of the worst interval. `first` means that no interval of this trial has been added
+/// yet.
 void add_measured(records::TrialRow& row, const sensing::IntervalResult& measured, int interval, bool first);
 
 /// A playback frame and its time from the start of the segment.
@@ -38,13 +39,15 @@ sensing::MovementWindow window_of(const protocol::Sensing& sensing);
 /// The friction, relative to the surface at rest, at which the scene's boundary is planned; empty if the
 /// boundary is not an edge of friction.
 std::optional<double> friction_level(const scene::Scene& scene);
-/// What the trial asks about the finger.
+/// Which friction of a trial is to be computed from the signals of the force cells: at which level, and in
+/// which part of the surface.
 struct Asked {
-  std::optional<double> friction_level;  ///< see friction_level(); empty: half-way up the step
-  sensing::StripPart part;               ///< the part of the surface in which friction is averaged
+  /// see friction_level(); empty: the felt boundary is where friction is half-way up the step
+  std::optional<double> friction_level;
+  sensing::StripPart part;  ///< the part of the surface in which friction is averaged
 };
-/// The part of the surface in which the trial's friction is averaged: that of its friction table, otherwise
-/// all.
+/// The part of the surface in which the trial's friction is averaged: the part that its friction table
+/// describes, or the whole surface.
 sensing::StripPart part_of(const trial::TrialSpec& spec);
 /// Adds what the force cells measured in a trial: the summary, the felt boundary, friction, and the signal of
 /// the finger.

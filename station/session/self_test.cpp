@@ -17,7 +17,7 @@ CheckRow not_possible(std::string name, std::string why) {
 
 Verdict verdict(bool good) { return good ? Verdict::passed : Verdict::failed; }
 
-/// Runs one part of the self-test. If the part throws, that is a check that failed.
+/// Runs one part of the self-test. If the part throws, adds a failed check with its message.
 void run(const std::string& name, std::vector<CheckRow>& checks, const std::function<void()>& part) {
   try {
     part();

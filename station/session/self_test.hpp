@@ -12,9 +12,10 @@ namespace turnpoint::session {
 using records::CheckRow;
 using records::Verdict;
 
-/// What the self-test measures. In each reading, `missing` says why it was not possible; "" if it was.
+/// Readings of the self-test. In each, `missing` says why nothing could be measured; "" if it was measured.
 
-/// The gate behind the external monitor, after the heartbeat was stopped while the enable line was high.
+/// The external monitor must shut the gate of the amplifier if the heartbeat stops. This reading was taken
+/// after the heartbeat was stopped while the enable line was high.
 struct GateReading {
   std::string missing;
   bool opened = false;  ///< the gate was open while the heartbeat ran
@@ -22,7 +23,7 @@ struct GateReading {
       dropped_s;  ///< time from the stop of the heartbeat until the gate was shut; empty: never
 };
 
-/// A stop or response button that somebody was asked to press and to release.
+/// The result of asking somebody to press and release the stop or a response button.
 struct PressReading {
   std::string missing;
   std::string button;  ///< name of the button; "" for the stop
@@ -44,37 +45,37 @@ struct CellReading {
   std::string missing;
   std::string cell;                 ///< "a", "b" or "lateral"
   std::string fault;                ///< why the cell could not be read although it should; "" if it was
-  double zero_N = 0, noise_mN = 0;  ///< mean, and standard deviation in the band of the force
+  double zero_N = 0, noise_mN = 0;  ///< mean force, and the standard deviation of the force signal
 };
 
-/// The wall clock, and by how much somebody set it during the self-test.
+/// The wall clock, and by how much it was set (by a person or a time service) during the self-test.
 struct ClockReading {
   system::WallClock clock;
   std::optional<double> jump_s;
 };
 
-/// Limits of the self-test.
-/// The monostable of deploy/README.md lasts 100 to 120 ms; other logic families up to 220 ms.
+/// Limits of the self-test. The monostable in deploy/README.md shuts the gate after 100 to 120 ms; with other
+/// logic families, after up to 220 ms.
 inline constexpr double kGateLimit_s = 0.25;
-inline constexpr double kZeroLimit_N = 1;      ///< a tenth of a cell's rated load
-inline constexpr double kNoiseLimit_mN = 2;    ///< as for the tare before a trial
-inline constexpr double kToneLimit_dB = 1;     ///< as for a stimulus that is refused
-inline constexpr double kHottest_C = 80;       ///< from here on, boards reduce their clock frequency
-inline constexpr double kLeastDisk_MiB = 200;  ///< what a session needs
+inline constexpr double kZeroLimit_N = 1;    ///< a tenth of a cell's rated load
+inline constexpr double kNoiseLimit_mN = 2;  ///< the same limit as for the tare before a trial
+inline constexpr double kToneLimit_dB = 1;   ///< the same deviation at which a stimulus is refused
+inline constexpr double kHottest_C = 80;     ///< above this temperature, boards reduce their clock frequency
+inline constexpr double kLeastDisk_MiB = 200;  ///< space that a session needs
 inline constexpr double kLongestPress_s = 20;  ///< how long the self-test waits for a press or a release
 
 /// Each of these functions judges one reading. They are pure.
 CheckRow judged(const GateReading& reading);
 CheckRow judged(const PressReading& reading);
 CheckRow judged(const ToneReading& reading);
-/// Two checks: the zero and the noise of the cell.
+/// Returns two checks: one of the cell's zero and one of its noise.
 std::vector<CheckRow> judged(const CellReading& reading);
 CheckRow judged_temperature(std::optional<double> hottest_C);
 CheckRow judged(const ClockReading& reading);
 CheckRow judged(const system::Disk& disk);
 
-/// The rig under test. Each function measures one part; it may take seconds, and throws std::exception if the
-/// part does not work at all.
+/// The rig under test. Each function measures one part and may take seconds. If the part does not work at
+/// all, the function throws std::exception.
 class SelfTestRig {
  public:
   virtual ~SelfTestRig() = default;

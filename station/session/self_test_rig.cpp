@@ -14,7 +14,7 @@ namespace turnpoint::session {
 namespace {
 
 constexpr std::int64_t kGate_ns = 500'000'000;
-constexpr std::int64_t kQuiet_ns = 700'000'000;  // the cells are read for 0.4 s before a tone
+constexpr std::int64_t kQuiet_ns = 700'000'000;  // The cells are read for the last 0.4 s of this silence.
 constexpr std::int64_t kResult_ns = 5'000'000'000;
 constexpr double kTone_s = 0.6, kRamp_s = 0.05;
 constexpr double kAmplitude = 0.1, kShareOfLimit = 0.25;
@@ -25,7 +25,7 @@ void require(const std::optional<Fault>& refusal, const char* what) {
   if (refusal) throw std::runtime_error(std::string(what) + ": " + terms::describe(*refusal));
 }
 
-/// Lets the heartbeat run again and switches the amplifier off, whatever happens.
+/// Its destructor starts the heartbeat again and switches the amplifier off, even after an exception.
 class GateOpened {
  public:
   explicit GateOpened(drive::Amplifier& amplifier) : amplifier_(amplifier) {
@@ -42,13 +42,14 @@ class GateOpened {
   drive::Amplifier& amplifier_;
 };
 
-/// A tone that the pick-ups see well.
+/// A tone for the self-test, at a frequency to which the pick-ups respond well.
 struct Choice {
   double frequency_Hz = 0, response = 0;
 };
 
-/// Returns the frequency in the transducer's band at which the pick-ups respond best: there, a small shift of
-/// the resonances changes the level least. Frequency 0: no pick-up is calibrated for the transducer.
+/// Returns the frequency in the transducer's band at which the pick-ups respond best. Near this peak, a small
+/// shift of the resonances hardly changes the level. Returns frequency 0 if no pick-up is calibrated for the
+/// transducer.
 Choice best_tone(const rig::Transducer& transducer, const std::vector<sensing::PickUp>& pick_ups) {
   Choice best;
   const auto low_Hz = std::min(std::max(transducer.low_Hz, kInaudible_Hz), transducer.high_Hz);
@@ -63,7 +64,7 @@ Choice best_tone(const rig::Transducer& transducer, const std::vector<sensing::P
   return best;
 }
 
-/// Amplitude relative to full scale: small, and far below the rig's limit.
+/// Returns an amplitude relative to full scale that is small, and far below the rig's limit.
 double quiet_amplitude(const rig::Rig& rig, const rig::Transducer& transducer) {
   double m_per_full_scale = transducer.m_per_full_scale.value_or(0);
   for (const auto& point : transducer.response)
@@ -107,7 +108,7 @@ class StageRig : public SelfTestRig {
       return reading;
     }
     require(parts_.stage->arm(), "the amplifier cannot be armed");
-    // A busy machine can only lengthen the time, so the shortest of three counts.
+    // Measure up to three times and keep the shortest time, because a busy machine can only lengthen it.
     for (int attempt = 0; attempt < 3 && reading.dropped_s.value_or(1) > kGateLimit_s; ++attempt) {
       const GateOpened opened(amplifier);
       reading.opened = until([&] { return amplifier.gate() == true; }, kGate_ns);
@@ -115,7 +116,8 @@ class StageRig : public SelfTestRig {
       amplifier.hold_heartbeat();
       const auto held_ns = system::monotonic_ns();
       if (!until([&] { return amplifier.gate() == false; }, kGate_ns)) return reading;
-      // The gate must have been shut by the monitor. The guard would shut it too, for a fault.
+      // The external monitor must have shut the gate. After a fault the guard shuts it too, and the reading
+      // would say nothing about the monitor.
       if (amplifier.state() == drive::AmplifierState::faulted)
         throw std::runtime_error("the amplifier was switched off for another reason: " +
                                  terms::describe(amplifier.fault()));
@@ -181,7 +183,9 @@ class StageRig : public SelfTestRig {
   std::vector<CellReading> read_cells() override {
     CellReading reading;
     if (!parts_.capture || !parts_.capture->finger) {
-      reading.missing = "the rig has no force cells";
+      const auto& rig = *parts_.rig;
+      reading.missing = rig.capture && !rig.capture->bridges.empty() ? "the force cells are not calibrated"
+                                                                     : "the rig has no force cells";
       return {reading};
     }
     std::vector<CellReading> readings;
@@ -264,7 +268,7 @@ class StageRig : public SelfTestRig {
   SelfTestParts parts_;
   const std::int64_t press_ns_ = static_cast<std::int64_t>(1e9 * parts_.longest_press_s);
   system::ClockWatch watch_;
-  std::shared_ptr<const sensing::TrialForces> forces_;  ///< with the newest tone
+  std::shared_ptr<const sensing::TrialForces> forces_;  ///< forces measured during the newest tone
 };
 
 }  // namespace

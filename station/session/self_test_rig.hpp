@@ -12,7 +12,7 @@
 
 namespace turnpoint::session {
 
-/// What somebody is asked to do during the self-test.
+/// A button that somebody is asked to press and release during the self-test.
 struct Request {
   enum class Kind { press_stop, release_stop, press_button };
   Kind kind = Kind::press_stop;
@@ -22,26 +22,27 @@ struct Request {
 /// Puts a request to the operator. The self-test then waits until it is fulfilled.
 using AskOperator = std::function<void(const Request&)>;
 
-/// The parts on which a self-test runs. All pointers must outlive it.
+/// The parts of the station that the self-test uses. All pointers must outlive the rig.
 struct SelfTestParts {
   const rig::Rig* rig = nullptr;
   Stage* stage = nullptr;                 ///< runs in real time
   drive::Amplifier* amplifier = nullptr;  ///< the amplifier of the stage; null if the stage simulates it
-  /// Where tones are played: the stage, or a stage in a simulated room; null if the rig captures nothing.
+  /// The stage on which tones are played: `stage` itself, or a stage in a simulated room; null if the rig
+  /// captures nothing.
   Stage* room = nullptr;
   std::optional<CaptureSetup> capture;  ///< how the room captures; empty if the rig captures nothing
-  AskOperator ask;                      ///< empty: nobody is there, so no button is tested
+  AskOperator ask;                      ///< empty if nobody is there; then no button is tested
   std::string data_folder;
   std::function<system::Clocks()> clocks = system::read_clocks;
   std::string sensors = "/sys/class/hwmon";
   double longest_press_s = kLongestPress_s;
-  /// Gets inputs that the self-test does not use, such as a request to stop the session; may be empty.
+  /// Receives inputs that the self-test does not use, such as a request to stop the session; may be empty.
   std::function<void(Input)> other = {};
 };
 
-/// A rig whose parts are reached through a stage. The amplifier must be armed, or may be armed: call this
-/// only if an operator has asked for it. The surface moves quietly; nobody should touch it meanwhile.
-/// Afterwards the amplifier is off, and armed unless somebody has disarmed it.
+/// Makes a SelfTestRig that uses these parts. The amplifier is armed if it is not yet, so call this only if
+/// an operator has asked for the self-test. The surface vibrates quietly; nobody should touch it meanwhile.
+/// Afterwards the amplifier is off, and still armed unless somebody has disarmed it.
 std::unique_ptr<SelfTestRig> self_test_rig(SelfTestParts parts);
 
 /// Opens the rig's devices, runs the self-test on them and closes them. Without an `ask`, no button is
@@ -59,8 +60,8 @@ struct SimulatedFaults {
   double longest_press_s = kLongestPress_s;
 };
 
-/// The self-test of a rig whose amplifier is simulated. The buttons are pressed by a script. Real devices of
-/// the rig are not opened.
+/// Runs the self-test on a rig with a simulated amplifier. A script presses the buttons. Real devices of the
+/// rig are not opened.
 std::vector<CheckRow> simulated_self_test(const rig::Rig& rig, const std::string& data_folder,
                                           const SimulatedFaults& faults = {});
 

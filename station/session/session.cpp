@@ -3,8 +3,6 @@
 #include <fmt/format.h>
 #include <sys/random.h>
 #include <sys/utsname.h>
-#include <time.h>
-#include <unistd.h>
 
 #include <cerrno>
 #include <cmath>
@@ -14,12 +12,15 @@
 #include <utility>
 
 #include "station/limits/finger_account.hpp"
+#include "station/protocol/visits.hpp"
+#include "station/session/planned_session.hpp"
 #include "station/session/replay.hpp"
 #include "station/session/rows.hpp"
 #include "station/session/session_run.hpp"
 #include "station/session/simulated_room.hpp"
 #include "station/session/stage.hpp"
 #include "station/system/clocks.hpp"
+#include "station/terms/usage_error.hpp"
 #include "station/text/canonical.hpp"
 
 namespace turnpoint::session {
@@ -30,21 +31,6 @@ std::string boot_id() {
   std::string id;
   std::ifstream("/proc/sys/kernel/random/boot_id") >> id;
   return id;
-}
-
-std::string local_time() {
-  const auto now = ::time(nullptr);
-  tm parts{};
-  ::localtime_r(&now, &parts);
-  char text[40];
-  const auto n = ::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%S%z", &parts);
-  return {text, n};
-}
-
-std::string host_name() {
-  char name[256] = {};
-  ::gethostname(name, sizeof name - 1);
-  return name;
 }
 
 std::string kernel() {
@@ -69,7 +55,8 @@ std::string level_unit(const protocol::Protocol& protocol) {
   return underscore == std::string::npos ? "1" : level.substr(underscore + 1);
 }
 
-records::SessionStart start_of(const Setup& setup, std::uint64_t seed, const std::string& rights) {
+records::SessionStart start_of(const Setup& setup, std::uint64_t seed, const std::string& rights,
+                               const std::optional<int>& planned_session) {
   records::SessionStart start;
   start.participant = setup.participant;
   start.run_mode = setup.run_mode;
@@ -91,18 +78,20 @@ records::SessionStart start_of(const Setup& setup, std::uint64_t seed, const std
   start.software_version = TURNPOINT_VERSION;
   start.columns_version = "1";
   start.kernel = kernel();
-  start.station_id = host_name();
+  start.station_id = station_id();
   start.realtime_rights = rights;
   start.started_local = local_time();
   start.consent_version = setup.consent_version;
   start.conditions = setup.conditions;
+  start.planned_session = planned_session;
+  start.groups = protocol::group_names(setup.protocol);
   if (!setup.calibration_id.empty()) start.calibration_id = setup.calibration_id;
   start.calibration_text = setup.calibration_text;
   return start;
 }
 
-/// The start of a run of the session. `now_ns` is read from the clock of the stage, which is virtual in a
-/// simulated session.
+/// Describes a new segment of the session. `now_ns` is read from the clock of the stage, which is virtual in
+/// a simulated session.
 records::SegmentStart segment(const std::string& reason, std::int64_t now_ns) {
   const auto clocks = system::read_clocks();
   return {boot_id(), reason, now_ns, clocks.boottime_ns, clocks.realtime_ns};
@@ -138,7 +127,7 @@ drive::StreamConfig simulated_stream(const rig::Rig& rig) {
   config.virtual_lead_frames = std::int64_t{config.output.periods} * config.output.period_frames;
   const bool hardware = config.output.uri.starts_with("alsa:") && config.output.allow_plugin.empty();
   if (hardware) config.output.uri = "null:";
-  // Do not compute samples that are discarded: half an hour has 300 million frames.
+  // Without a reader, skip the computation of samples: half an hour has 300 million frames.
   if (config.output.uri == "null:" && !simulates_capture(rig)) config.samples = drive::Samples::passed;
   return config;
 }
@@ -164,10 +153,19 @@ struct Begun {
 };
 
 Begun begin(const Setup& setup, Stage& stage) {
-  const auto seed = setup.seed ? *setup.seed : setup.protocol.seed.value_or(fresh_seed());
-  auto log = store::SessionLog::begin(setup.database, start_of(setup, seed, stage.realtime_rights()),
-                                      segment("start", stage.now_ns()));
-  trial::Director director(setup.protocol, log.session().sequence_index, seed);
+  const auto next = next_session(setup);
+  if (!next.problem.empty()) throw terms::UsageError(next.problem + "; " + next.allowed);
+  // With one seed for all participants, the planned sessions still have different orders.
+  const auto stated =
+      setup.protocol.seed
+          ? std::optional(*setup.protocol.seed + static_cast<std::uint64_t>(next.number.value_or(1)) - 1)
+          : std::nullopt;
+  const auto seed = setup.seed ? *setup.seed : stated ? *stated : fresh_seed();
+  auto log =
+      store::SessionLog::begin(setup.database, start_of(setup, seed, stage.realtime_rights(), next.number),
+                               segment("start", stage.now_ns()));
+  if (!next.overruled.empty()) log.annotate("begun early (" + setup.early + "): " + next.overruled);
+  trial::Director director(setup.protocol, visit_of(log.session()), seed);
   return {std::move(log), std::move(director), {}};
 }
 
@@ -211,10 +209,13 @@ Summary run(const Setup& setup, Display* display, Inputs& inputs, std::unique_pt
 }
 
 Summary run(const Setup& setup, Display* display, Inputs& inputs, Devices devices, Monitor* monitor) {
-  return run_on(setup, display,
-                real_stage(session_stream(setup.rig), std::move(devices), inputs, card_capture_of(setup.rig),
-                           trigger_setup_of(setup.rig)),
-                monitor);
+  auto capture = card_capture_of(setup.rig);
+  if (capture && capture->setup.finger && setup.protocol.sensing)
+    capture->setup.finger->window = window_of(*setup.protocol.sensing);
+  return run_on(
+      setup, display,
+      real_stage(session_stream(setup.rig), std::move(devices), inputs, capture, trigger_setup_of(setup.rig)),
+      monitor);
 }
 
 }  // namespace turnpoint::session

@@ -49,8 +49,12 @@ struct Setup {
   /// run the self-test before the first block; without a simulated observer, the operator has then armed the
   /// amplifier
   bool self_test = false;
-  /// the operator's reason to continue although a check of the self-test failed; "" asks for it
+  /// the operator's reason to continue if a check of the self-test fails; with "", the operator is asked
   std::string despite = {};
+  /// the planned session to run; empty: the participant's next one
+  std::optional<int> planned_session = {};
+  /// the operator's reason to begin before the least number of days has passed; "" if there is none
+  std::string early = {};
   /// where the kernel lists its temperature sensors
   std::string thermometers = "/sys/class/hwmon";
 };
@@ -65,8 +69,8 @@ struct Summary {
   std::optional<double> accuracy;  ///< proportion correct of scored, answered, experimental trials
   double duration_s = 0;           ///< measured on the session's clock
   int xruns = 0;
-  /// trigger codes that were given out, those of them that were captured but not found, and codes that were
-  /// found but not given out
+  /// number of trigger codes that were sent; of codes that were sent but not found in the captured signal;
+  /// and of codes that were found but not sent
   int triggers = 0, triggers_missed = 0, triggers_extra = 0;
   /// time by which pauses between trials were extended to keep the limits on exposure
   double stretched_s = 0;
@@ -88,7 +92,8 @@ Summary run(const Setup& setup, Display* display, Inputs& inputs, Monitor* monit
 
 class SimulatedRoom;
 
-/// Runs a simulated session in this room, which may have faults; null if nothing is captured.
+/// Runs a simulated session with this simulated room, to which a test may have given faults. A null room
+/// means that nothing is captured.
 Summary run(const Setup& setup, Display* display, Inputs& inputs, std::unique_ptr<SimulatedRoom> room,
             Monitor* monitor = nullptr);
 

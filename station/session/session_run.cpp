@@ -43,7 +43,7 @@ Summary SessionRun::run() {
     // if arming is refused, until_armed() below shows a page
     static_cast<void>(stage_->arm());
   if (gate_.until_armed({FaultKind::disarmed, ""}) == Flow::go_on && pass_self_test() == Flow::go_on)
-    static_cast<void>(run_parts());  // what follows finds out why it ended
+    static_cast<void>(run_parts());  // the code below finds out why the session ended
   if (!interludes_.ended_because().empty())
     finish(records::SessionStatus::stopped, interludes_.ended_because());
   else if (gate_.stop_asked())
@@ -57,10 +57,10 @@ Summary SessionRun::run() {
   return summary_;
 }
 
-/// Runs all blocks, and what comes before, between and after them.
+/// Runs all blocks and all interludes.
 Flow SessionRun::run_parts() {
   while (director_.block() != nullptr) {
-    // a session that was resumed after the last trial of a block has only to leave the block
+    // after a block's last trial, a resumed session only has to leave the block
     const bool resumed_at_end = !director_.next();
     if (!resumed_at_end && interludes_.before(director_.block_index()) == Flow::stop) return Flow::stop;
     if (run_block() == Flow::stop) return Flow::stop;

@@ -22,8 +22,8 @@
 namespace turnpoint::session {
 
 /// Runs the blocks and trials of a session. It connects director, planner, trial machine, stage and store,
-/// and holds the operator's gate. Everything happens on the thread that calls run(), except planning of the
-/// next trial.
+/// and owns the operator's gate. Everything happens on the thread that calls run(), except the planning of
+/// the next trial.
 class SessionRun {
  public:
   /// `director` must be in the state that corresponds to the log, and to `earlier`, which is empty for a new
@@ -35,7 +35,7 @@ class SessionRun {
   Summary run();
 
  private:
-  /// The state of the running trial.
+  /// The state of the trial that is running.
   struct Running {
     trial::TrialSpec spec;
     trial::Machine machine;
@@ -44,9 +44,9 @@ class SessionRun {
     std::optional<double> value;          ///< the answer, if it is a number
     std::vector<Onset> onsets;            ///< onsets of all intervals; set once the intervals are scheduled
     std::size_t begun = 0;                ///< number of intervals whose presentation has begun
-    std::size_t measured = 0;             ///< number of intervals that pick-ups have measured
+    std::size_t measured = 0;  ///< number of intervals for which pick-ups have reported a measurement
     bool decided = false;
-    bool outside = false;                       ///< the finger did not move as the protocol asks for
+    bool outside = false;  ///< the finger did not move in the way that the protocol asks for
     std::optional<double> friction_level = {};  ///< relative friction at which the last boundary is planned
     /// true if the answer came from a button, so that the touch panel's latency does not apply
     bool by_button = false;
@@ -56,7 +56,7 @@ class SessionRun {
     std::int64_t on_ns = 0, off_ns = 0;
   };
 
-  // These functions run blocks and show pages (session_run.cpp).
+  // Blocks and pages (session_run.cpp).
   Flow run_parts();
   Flow run_block();
   Flow leave_block();
@@ -66,7 +66,7 @@ class SessionRun {
   int trial_index() const { return log_.session().trials; }
   void finish(records::SessionStatus status, const std::string& reason);
 
-  // These functions run one trial (session_run_trial.cpp).
+  // One trial (session_run_trial.cpp).
   Flow run_trial(const trial::TrialSpec& spec);
   Flow prepare_trial(const trial::TrialSpec& spec);
   Flow keep_limits(const trial::TrialSpec& spec);
@@ -84,30 +84,30 @@ class SessionRun {
   void leave_surface();
   void count(const trial::TrialSpec& spec, const records::TrialRow& row);
 
-  // These functions follow temperature and resonances (session_run_drift.cpp).
+  // Temperature and drift of resonances (session_run_drift.cpp).
   void begin_drift();
   void log_temperature();
   void follow_drift(const sensing::IntervalResult& measured);
   void correct_drift();
 
-  // These functions send trigger codes (session_run_triggers.cpp).
+  // Trigger codes (session_run_triggers.cpp).
   void trigger(protocol::TriggerEvent event, const Running& trial);
   void trigger_intervals(const Running& trial);
   void log_triggers();
   void finish_triggers();
 
-  // These functions guide the finger (session_run_guidance.cpp).
+  // Bars that guide the finger (session_run_guidance.cpp).
   void move_bars();
   void hold_bars(trial::Phase phase, const Running& trial);
 
-  // These functions are for blocks of strokes (session_run_strokes.cpp).
+  // Blocks of strokes (session_run_strokes.cpp).
   bool is_training() const;
   void judge_strokes(const Input& input, Running& trial);
   Flow finish_friction_table();
   void use_measured_friction();
   sensing::FrictionTable measured_friction(int block_index) const;
 
-  // These functions are for adjustments (session_run_adjustment.cpp).
+  // Adjustments (session_run_adjustment.cpp).
   void show_phase(trial::Phase phase, const Running& trial);
   std::optional<trial::Event> event_in_trial(const Input& input, Running& trial, bool by_button);
   void glide(Running& trial);
@@ -129,18 +129,21 @@ class SessionRun {
   int voids_in_a_row_ = 0, refused_in_a_row_ = 0, repeats_in_a_row_ = 0;
   std::int64_t started_ns_ = 0;
   std::vector<OnSurface> surface_;
-  std::vector<std::string> thermometers_;  ///< files of plate and frame; empty if the rig has none
+  /// files of the two thermometers, on plate and frame; empty if the rig has none
+  std::vector<std::string> thermometers_;
   std::array<std::optional<double>, 2> first_C_;
   std::array<bool, 2> warm_{};
-  std::optional<sensing::DriftTracker> drift_;       ///< empty without pick-ups
-  std::optional<sensing::PhaseDrift> newest_drift_;  ///< found in the running trial
-  double applied_drift_ = 0;                         ///< share by which frequencies are corrected
+  std::optional<sensing::DriftTracker> drift_;  ///< empty without pick-ups
+  /// the newest drift that was found in the running trial
+  std::optional<sensing::PhaseDrift> newest_drift_;
+  /// fraction by which the frequencies of tones are raised, to follow the resonances
+  double applied_drift_ = 0;
   Guide guide_;
   std::int64_t guide_due_ns_ = 0;
 };
 
-/// How far the boundary of a tone moves (m, towards the narrow edge) if all resonances of the surface move by
-/// this share.
+/// Returns how far the boundary of a tone moves (in m, towards the narrow edge) if all resonance frequencies
+/// of the surface rise by the fraction `share`.
 double boundary_shift_m(const physics::Surface& surface, double frequency_Hz, double share);
 
 }  // namespace turnpoint::session

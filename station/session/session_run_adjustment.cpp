@@ -6,7 +6,7 @@
 
 namespace turnpoint::session {
 
-// This file has the part of SessionRun for adjustments, in which the surface follows a slider.
+// The part of SessionRun that runs adjustments, in which the surface follows a slider.
 
 void SessionRun::show_phase(trial::Phase phase, const Running& trial) {
   auto page = pages_.of_phase(phase, trial.machine.interval(), trial.spec, *director_.block(),
@@ -33,7 +33,8 @@ std::optional<trial::Event> SessionRun::event_in_trial(const Input& input, Runni
     if (!trial.machine.result().response) trial.value = value;
     return trial::Event{input.time_ns, trial::EventKind::answer, 0};
   }
-  // Neither a button nor a touch beside the number pad can give a number; a button cannot give a confidence.
+  // If a number is expected, a button or a touch beside the number pad is no answer. A button cannot give a
+  // confidence either.
   if (input.kind == InputKind::answer && (confiding ? by_button : answer.has_value())) return touch;
   if (trial.spec.strokes) {
     const auto event = event_of(input);

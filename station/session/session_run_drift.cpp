@@ -14,7 +14,8 @@ namespace {
 
 constexpr double kFlag_K = 3;
 constexpr double kCorrect_m = 0.2e-3;
-// A share of 1 % would be 40 K: that is damage and no temperature, and the proof must see it.
+// A drift of 1 % would need a temperature change of 40 K. More than that means damage, which must not be
+// corrected: the proof has to report it.
 constexpr double kMostDrift = 0.01;
 
 }  // namespace
@@ -25,7 +26,8 @@ double boundary_shift_m(const physics::Surface& surface, double frequency_Hz, do
   return then && now ? *now - *then : 0;
 }
 
-/// Reads the thermometers at the begin of the session; later temperatures are compared with these.
+/// Reads the thermometers at the beginning of the session. Later temperatures are compared with these
+/// readings.
 void SessionRun::begin_drift() {
   auto capture = stage_->capture();
   if (!capture)
@@ -36,8 +38,8 @@ void SessionRun::begin_drift() {
                    system::find_thermometer(setup_.rig.thermometers->frame_uri, setup_.thermometers)};
 }
 
-/// Logs the temperatures before a trial. A change of 3 K since the first reading is flagged once; a return
-/// is not.
+/// Logs the temperatures before a trial. The first time that one differs by 3 K from its first reading, the
+/// change is flagged; later changes are not.
 void SessionRun::log_temperature() {
   if (thermometers_.empty()) return;
   const auto plate = system::read_thermometer_C(thermometers_[0]);
@@ -61,7 +63,7 @@ void SessionRun::log_temperature() {
   }
 }
 
-/// Follows the resonances of the surface by the phases of an interval's tones.
+/// Updates the drift of the surface's resonances from the measured phases of an interval's tones.
 void SessionRun::follow_drift(const sensing::IntervalResult& measured) {
   using terms::Proof;
   if (!drift_ || (measured.verdict != Proof::ok && measured.verdict != Proof::flagged)) return;

@@ -7,7 +7,8 @@ namespace turnpoint::session {
 
 namespace {
 
-// Time from the press of the button to the stimulus, in which the finger gets to the surface.
+// Time between pressing the example's button and the stimulus: the participant needs it to move the finger to
+// the surface.
 constexpr std::int64_t kToSurface_ns = 800'000'000;
 
 }  // namespace

@@ -7,7 +7,7 @@
 namespace turnpoint::session {
 namespace {
 
-/// Names the checks that failed, with what they found.
+/// Returns the names of the failed checks, with what they found.
 std::string failures(const std::vector<CheckRow>& checks) {
   std::string text;
   for (const auto& check : checks)

@@ -9,8 +9,7 @@
 
 namespace turnpoint::session {
 
-// This file has the part of SessionRun for blocks in which the finger strokes the surface and nothing is
-// asked.
+// The part of SessionRun for blocks in which the finger strokes the surface and nothing is asked.
 
 namespace {
 
@@ -27,7 +26,8 @@ std::string in_words(const sensing::FrictionTable& table, bool used) {
 
 bool SessionRun::is_training() const { return director_.block()->kind == protocol::BlockKind::training; }
 
-/// Ends a trial in which nothing is asked, once its movement is known. Without known forces it is void.
+/// Ends a trial in which nothing is asked, once its movement is known. The trial is void if the forces are
+/// unknown.
 void SessionRun::judge_strokes(const Input& input, Running& trial) {
   const bool known = input.forces->state == sensing::ForcesState::ok;
   const int movement = input.forces->movement == sensing::Movement::ok ? 0 : 1;
@@ -37,7 +37,8 @@ void SessionRun::judge_strokes(const Input& input, Running& trial) {
           trial);
 }
 
-/// Throws terms::UsageError if too few trials of a level count.
+/// Computes the friction table from the trials of a block. Throws terms::UsageError if too few trials of a
+/// level count.
 sensing::FrictionTable SessionRun::measured_friction(int block_index) const {
   std::vector<sensing::TableStroke> strokes;
   for (const auto& stroke : director_.strokes(block_index))
@@ -71,7 +72,8 @@ Flow SessionRun::finish_friction_table() {
   return Flow::go_on;
 }
 
-/// In a resumed session: trials are planned with the newest table of an earlier block, as before.
+/// In a resumed session, plans trials with the newest table of an earlier block, as the session did before it
+/// was interrupted.
 void SessionRun::use_measured_friction() {
   for (int i = director_.block_index() - 1; i >= 0; --i) {
     const auto& block = director_.all_blocks()[static_cast<std::size_t>(i)];

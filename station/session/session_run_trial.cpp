@@ -123,7 +123,7 @@ Flow SessionRun::after_trial(const Running& trial) {
   const bool repeated = trial.outside && row.outcome == terms::Outcome::fault;
   repeats_in_a_row_ = repeated ? repeats_in_a_row_ + 1 : 0;
   const bool is_void = row.outcome == terms::Outcome::fault && !repeated;
-  // One refused stimulus can be a coincidence and is presented again; two in a row are not.
+  // A single refused stimulus can be a coincidence, so it is presented again. Two in a row stop the session.
   const bool refused = row.proof == terms::Proof::refused || row.proof == terms::Proof::stopped;
   refused_in_a_row_ = refused ? refused_in_a_row_ + 1 : 0;
   if ((row.proof == terms::Proof::stopped || refused_in_a_row_ >= kRefusedBeforePage) && !gate_.fault())

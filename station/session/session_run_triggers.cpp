@@ -7,7 +7,7 @@ namespace turnpoint::session {
 
 using protocol::TriggerEvent;
 
-/// Gives out the code of an event that happens now.
+/// Sends the trigger code of an event that happens now.
 void SessionRun::trigger(TriggerEvent event, const Running& trial) {
   if (!stage_->triggers().active()) return;
   Trigger trigger;
@@ -17,8 +17,8 @@ void SessionRun::trigger(TriggerEvent event, const Running& trial) {
   if (trigger.code > 0) stage_->triggers().send(std::move(trigger), stage_->now_ns());
 }
 
-/// The codes of the scheduled intervals and of their changes. On the marker channel they are part of the
-/// bursts.
+/// Records the codes of the scheduled intervals and of their changes of scene. On the marker channel these
+/// codes are part of the bursts.
 void SessionRun::trigger_intervals(const Running& trial) {
   if (!stage_->triggers().active()) return;
   const auto add = [&](TriggerEvent event, const Onset& onset, std::int64_t frames) {
@@ -38,7 +38,7 @@ void SessionRun::trigger_intervals(const Running& trial) {
   }
 }
 
-/// Logs the codes about which everything is known by now.
+/// Logs each code once its read-back and its lines are known.
 void SessionRun::log_triggers() {
   if (!stage_->triggers().active()) return;
   const auto now = stage_->now_ns();
@@ -58,7 +58,7 @@ void SessionRun::log_triggers() {
   log_.event(std::move(row));
 }
 
-/// Waits until the last codes have been given out and read back.
+/// Waits until the last codes have been sent and read back.
 void SessionRun::finish_triggers() {
   const auto until = stage_->now_ns() + 500'000'000;
   log_triggers();

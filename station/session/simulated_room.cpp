@@ -11,9 +11,11 @@ namespace turnpoint::session {
 
 namespace {
 
-// A workshop glues the first patch 3 mm from the drive edge, and each further one 6 mm beyond.
+// Positions of the simulated pick-ups: the first patch is 3 mm from the drive edge, and each further one 6 mm
+// beyond.
 constexpr double kFirst_m = 3e-3, kNext_m = 6e-3;
-// The simulated participant strokes this part of the surface, at this mean speed.
+// The simulated participant strokes the surface between these fractions of its length, at this mean speed,
+// with this pause between strokes.
 constexpr double kStrokeFrom = 0.25, kStrokeTo = 0.75, kStroke_m_s = 0.09, kPause_s = 0.05;
 constexpr double kStep_Hz = 20;  // between two points of a pick-up's response
 
@@ -57,13 +59,13 @@ plant::Setup room_of(const rig::Rig& rig) {
   return room;
 }
 
-/// The ratio of bridge to reference for a force on a cell.
+/// Returns the ratio of bridge signal to reference signal for a force of 1 N on a cell.
 double ratio_per_N(const plant::Setup& room) {
   const auto& wires = room.wires;
   return room.cells.volt_per_volt_N * wires.gain * wires.reference_V_at_full_scale / wires.full_scale_V;
 }
 
-/// The calibration that exact weights would give.
+/// Returns the calibration that would be measured with exact weights.
 sensing::ForceCalibration calibrated(const plant::Setup& room) {
   std::vector<sensing::DeadWeight> weights;
   for (const double share : {0.2, 0.5, 0.8})

@@ -17,10 +17,10 @@ class SimulatedRoom {
   /// Throws std::logic_error if the rig captures nothing. A test may `change` the laboratory.
   explicit SimulatedRoom(const rig::Rig& rig, const std::function<void(plant::Setup&)>& change = {});
 
-  /// Names the frequencies that these bursts contain. Call this before they are played.
+  /// Announces the frequencies that these bursts contain. Call this before the bursts are played.
   void expect(std::span<const drive::PreparedBurst> bursts);
-  /// Takes what is played from `first_frame` on (interleaved, full scale 2^31) and returns what is captured
-  /// meanwhile. Frames may be left out while nothing is played.
+  /// Passes played samples, beginning with `first_frame` (interleaved, full scale 2^31), to the simulated
+  /// surface. Returns what is captured meanwhile. Frames may be left out while nothing is played.
   sensing::CaptureBlock advance(std::int64_t first_frame, std::span<const std::int32_t> played);
 
   /// The simulated participant touches the surface from now on for this many frames, and strokes it. Without
@@ -28,10 +28,10 @@ class SimulatedRoom {
   void touch(std::int64_t frames);
   void lift(std::int64_t frames) { plant_.lift(frames); }  ///< Lifts the finger after this many frames.
 
-  /// The movement that the protocol asks for.
+  /// Sets the movement that the participant is asked to make.
   void ask_for(const sensing::MovementWindow& window) { window_ = window; }
-  /// How the station judges what it captures here: with the rig's calibration of pick-ups and cells, or with
-  /// an exact one if the rig has none.
+  /// Returns how the station should judge the captured samples: with the rig's calibration of pick-ups and
+  /// cells, or with an exact calibration if the rig has none.
   CaptureSetup capture() const;
   plant::Plant& plant() { return plant_; }
   /// While the wire from the marker's output is broken, its captured channel is silent.

@@ -27,8 +27,7 @@ struct Onset {
   std::int64_t time_ns = 0;
 };
 
-/// Slope and residual of the line that the drive has fitted to pairs of frame and time, and with which it
-/// predicts onsets.
+/// Slope and residual of the regression line of time over frames, with which the drive predicts onsets.
 struct ClockFit {
   double slope_ns_per_frame = 0;
   double residual_ns = 0;
@@ -52,15 +51,14 @@ class Stage {
   /// Removes all waiting inputs before a new trial, and returns them for the log.
   virtual std::vector<Input> drain() = 0;
 
-  /// Waits until another thread has made `ready` return true. Reports to the amplifier guard meanwhile. The
-  /// virtual clock stands still during the wait.
+  /// Waits until `ready` returns true, which another thread brings about. Reports to the amplifier guard
+  /// meanwhile. The virtual clock stands still during the wait.
   virtual void wait_for(const std::function<bool()>& ready) = 0;
 
   /// Schedules the intervals of a trial. The first interval begins at the earliest safe frame that is not
-  /// before `earliest_ns`. The distances of the others from it are exactly those of their start frames.
-  /// Returns the onsets. If scheduling fails, returns nothing and pushes a fault to the inputs. Later, the
-  /// inputs report lost frames (InputKind::xrun), and each interval that was played completely
-  /// (InputKind::heard).
+  /// before `earliest_ns`; the distances between intervals are exactly those of their start frames. Returns
+  /// the onsets. If scheduling fails, returns nothing and pushes a fault to the inputs. Later, the inputs
+  /// report lost frames (InputKind::xrun), and each interval that was played completely (InputKind::heard).
   virtual std::vector<Onset> present(std::span<const drive::PreparedBurst> intervals,
                                      std::int64_t earliest_ns) = 0;
 
@@ -76,7 +74,7 @@ class Stage {
 
   /// Why the amplifier refused a command; empty if it did not.
   using Refusal = std::optional<Fault>;
-  /// These commands of the operator arm, disarm and clear the amplifier.
+  /// Commands of the operator.
   [[nodiscard]] virtual Refusal arm() = 0;
   virtual void disarm() = 0;
   [[nodiscard]] virtual Refusal clear() = 0;
@@ -98,20 +96,22 @@ class Stage {
   /// nothing.
   virtual void question(const observer::Question& question, std::int64_t zero_ns) = 0;
 
-  /// Asks a simulated observer to set this slider and press Done. Times count from `zero_ns`.
+  /// Asks a simulated observer to set this slider and press Done. Times count from `zero_ns`. A real stage
+  /// does nothing.
   virtual void adjustment(const observer::Adjustment& adjustment, std::int64_t zero_ns) = 0;
 
   /// Makes a simulated participant give this input at its time. A real stage does nothing.
   virtual void simulate(Input input) = 0;
 
-  /// For the self-test: the amplifier and its guard, null in a simulated session; and how a simulated room
-  /// captures, empty without one.
+  /// For the self-test. guarded_amplifier() is null in a simulated session; the capture is that of the
+  /// simulated room, and empty without a room.
   virtual drive::Amplifier* guarded_amplifier() { return nullptr; }
   virtual std::optional<CaptureSetup> capture() const { return std::nullopt; }
 
-  /// The resonances of the surface have moved by this share since the calibration of its pick-ups.
+  /// Says by what fraction the resonance frequencies of the surface have risen since the calibration of the
+  /// pick-ups.
   virtual void set_drift(double) {}
-  /// The finger at this moment, if force cells measure it.
+  /// Returns the force and movement of the finger at this moment; empty unless force cells measure them.
   virtual std::optional<sensing::FingerNow> finger_now() { return std::nullopt; }
 
   virtual std::optional<ClockFit> clock_fit() = 0;

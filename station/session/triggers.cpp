@@ -14,8 +14,10 @@ static_assert(rig::trigger_code_bits == drive::trigger_bits + drive::trigger_qui
 
 namespace {
 
-constexpr double kPulse = 0.25;  // level at which a captured pulse begins, as a fraction of full scale
-constexpr std::int64_t kWait_ns = 2'000'000'000;  // longest wait for a code's read-back, or for the lines
+// a captured pulse begins where the signal exceeds this fraction of full scale
+constexpr double kPulse = 0.25;
+// longest wait for reading back a code, or for the lines to be set
+constexpr std::int64_t kWait_ns = 2'000'000'000;
 
 }  // namespace
 
@@ -223,7 +225,7 @@ std::vector<records::EventRow> rows_of(const Trigger& trigger) {
   if (trigger.cut) value += "; cut short";
   if (!trigger.refused.empty()) value += "; not on the marker channel: " + trigger.refused;
   if (trigger.read_back == Trigger::ReadBack::right)
-    // adding 0 turns -0 into 0
+    // Adding 0 turns -0 into 0, which would be printed as "-0.00".
     value += fmt::format("; read back {:+.2f} frames", std::round(100 * trigger.error_frames) / 100 + 0.0);
   if (trigger.read_back == Trigger::ReadBack::lost) value += "; not captured";
   std::vector<records::EventRow> rows{row("trigger", value)};

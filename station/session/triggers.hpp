@@ -16,43 +16,44 @@
 
 namespace turnpoint::session {
 
-/// How a rig gives out trigger codes and takes the pulses of other devices.
+/// How a rig sends trigger codes and receives the pulses of other devices.
 struct TriggerSetup {
   std::optional<rig::Marker> marker;                ///< set if the marker carries codes
   std::int64_t bit_frames = 0;                      ///< length of one bit on the marker channel
   bool lines = false;                               ///< codes go to lines as well
   std::optional<int> marker_channel, sync_channel;  ///< captured channels
-  bool simulated_sync = false;                      ///< a simulated session gets a pulse each second
+  bool simulated_sync = false;                      ///< a simulated session receives a pulse each second
 
   bool active() const { return marker.has_value() || lines; }
 };
 TriggerSetup trigger_setup_of(const rig::Rig& rig);
 
-/// A code that is given out, and what became of it.
+/// A trigger code that the session sends, and what became of it.
 struct Trigger {
   protocol::TriggerEvent event = protocol::TriggerEvent::trial;
   int code = 0;
   int trial_index = 0;
   std::int64_t frame = 0;                ///< first frame of the code on the marker channel
   std::int64_t time_ns = 0;              ///< time at which that frame leaves the converter
-  bool cut = false;                      ///< true if the code broke off before its end on the marker channel
+  bool cut = false;                      ///< the code was cut off before its end on the marker channel
   std::string refused;                   ///< why the code was not sent; "" if it was
-  std::optional<std::int64_t> lines_ns;  ///< time at which it was on the lines
+  std::optional<std::int64_t> lines_ns;  ///< time at which the code was set on the lines
   enum class ReadBack { none, pending, right, missed, lost };
-  ReadBack read_back = ReadBack::none;  ///< lost: what was captured then is incomplete
+  ReadBack read_back = ReadBack::none;  ///< `lost` means that the capture around the code is incomplete
   double error_frames = 0;              ///< read-back minus sent frame
 };
 
-/// What the captured channels of markers and pulses contain. One thread pushes blocks, another takes.
+/// Finds codes and pulses in the captured marker and sync channels. One thread pushes blocks, another takes
+/// the results.
 class TriggerCapture {
  public:
-  /// `delay_frames`: from a played to a captured frame.
+  /// `delay_frames`: from a played frame to the same frame in the capture.
   TriggerCapture(const TriggerSetup& setup, double delay_frames);
   void push(const sensing::CaptureBlock& block);
 
   struct News {
-    std::vector<sensing::DecodedTrigger> heard;                   ///< by playback frames
-    std::vector<std::int64_t> edges;                              ///< playback frames of pulses
+    std::vector<sensing::DecodedTrigger> heard;  ///< codes that were found, with their playback frames
+    std::vector<std::int64_t> edges;             ///< playback frames of pulses
     std::vector<std::pair<std::int64_t, std::int64_t>> captured;  ///< ranges of playback frames, in order
   };
   News take();
@@ -65,25 +66,25 @@ class TriggerCapture {
   News news_;
 };
 
-/// Gives out the codes of a run, and compares what was captured with what was sent. Belongs to the session
-/// thread.
+/// Sends the codes of a run, and compares them with the captured codes. Belongs to the session thread.
 class Triggers {
  public:
-  /// `lines` may be null: with `setup.lines`, codes are then on lines exactly when they are due (virtual
-  /// clock). `stream` and `lines` must outlive this object.
+  /// `lines` may be null. Then, with `setup.lines`, each code counts as set on the lines exactly when it was
+  /// due (virtual clock). `stream` and `lines` must outlive this object.
   Triggers(const TriggerSetup& setup, drive::Stream& stream, lines::TriggerLines* lines);
 
   bool active() const { return setup_.active(); }
-  /// A code that is part of a scheduled burst; `frame` and `time_ns` are set.
+  /// Registers a code that is part of a scheduled burst. `frame` and `time_ns` must be set.
   void scheduled(Trigger trigger);
-  /// Gives out a code as soon as possible, but after all codes so far.
+  /// Sends a code as soon as the marker channel is free, after all codes sent so far.
   void send(Trigger trigger, std::int64_t now_ns);
-  /// The frame from which on the marker channel is free for the next code.
+  /// The first frame at which the marker channel is free for another code.
   std::int64_t free_from() const { return free_from_; }
-  /// Bursts that begin at `from_frame` or later are cancelled, and the others are silent from `silent_frame`.
+  /// Records that bursts beginning at `from_frame` or later are cancelled, and that the others are silent
+  /// from `silent_frame` on. The codes in them are cut or not sent.
   void cut(std::int64_t from_frame, std::int64_t silent_frame, std::int64_t now_ns);
   bool owns(std::uint32_t burst) const;
-  /// The burst of a code came too late and is not played.
+  /// Records that the burst of a code came too late and was not played.
   void missed(std::uint32_t burst);
 
   /// True if captured frames of this range may contain a code that was sent.
@@ -92,8 +93,8 @@ class Triggers {
 
   struct Done {
     std::vector<Trigger> triggers;
-    std::vector<sensing::DecodedTrigger> extra;  ///< codes that were captured and not sent
-    std::string failure;                         ///< why the lines cannot be set, once
+    std::vector<sensing::DecodedTrigger> extra;  ///< codes that were captured although they were not sent
+    std::string failure;                         ///< why the lines cannot be set; reported only once
   };
   /// Removes and returns all codes about which everything is known by now.
   Done take(std::int64_t now_ns);
@@ -118,7 +119,8 @@ class Triggers {
   bool failure_told_ = false;
 };
 
-/// The rows of a code: that it was sent, and, if so, that it was not read back.
+/// Returns the rows of events for a code: one that it was sent, and, if it was not read back, one that says
+/// so.
 std::vector<records::EventRow> rows_of(const Trigger& trigger);
 records::EventRow row_of_extra(const sensing::DecodedTrigger& extra, std::int64_t time_ns, int trial_index);
 

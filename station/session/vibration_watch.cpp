@@ -35,6 +35,19 @@ void use(const rig::ForceCells& cells, sensing::FingerSetup& finger) {
   finger.bridges.full_scale = cells.rated_ratio;
 }
 
+std::optional<sensing::FingerSetup> calibrated_finger(const rig::Rig& rig) {
+  const auto& capture = rig.capture.value();
+  if (capture.bridges.size() != sensing::bridge_count || !capture.forces) return std::nullopt;
+  sensing::FingerSetup finger;
+  finger.bridges.rate_Hz = rig.output.rate_Hz;
+  finger.bridges.channels = capture.channels;
+  finger.bridges.reference = capture.reference;
+  std::copy(capture.bridges.begin(), capture.bridges.end(), finger.bridges.bridges.begin());
+  use(*capture.forces, finger);
+  finger.length_mm = 1e3 * rig.surface.length_m;
+  return finger;
+}
+
 VibrationWatch::VibrationWatch(CaptureSetup setup) : setup_(std::move(setup)), calibrated_(setup_.pick_ups) {
   if (setup_.finger) finger_.emplace(*setup_.finger);
 }

@@ -12,17 +12,17 @@
 
 namespace turnpoint::session {
 
-/// Amplitude of the carrier that excites the bridges of force cells; 1 is full scale.
+/// Amplitude of the carrier that excites the bridges of the force cells, relative to full scale.
 constexpr double kCarrier = 0.5;
-/// Load at which a force cell is at full scale.
+/// The load for which a force cell is rated.
 constexpr double kRated_N = 10;
 
-/// What the pick-ups of a rig capture, and how it is judged.
+/// What a rig captures, and what is needed to judge it.
 struct CaptureSetup {
   int rate_Hz = 192000;
   int channels = 1;                       ///< captured channels
   std::vector<sensing::PickUp> pick_ups;  ///< the pick-ups with their calibration; at least one
-  double delay_frames = 0;                ///< from a played to a captured frame
+  double delay_frames = 0;                ///< frames from playback to capture
   std::optional<bool> in_contact;         ///< whether a finger was on the surface, if that is known
   sensing::ProofLimits limits;
   std::optional<sensing::FingerSetup> finger;  ///< the force cells, if there are any
@@ -31,38 +31,44 @@ struct CaptureSetup {
 /// The pick-ups of a rig, with the responses of its calibration.
 std::vector<sensing::PickUp> calibrated_pick_ups(const rig::Capture& capture);
 
-/// Lets `finger` use the rig's calibration of the force cells.
+/// Sets the rig's calibration of the force cells in `finger`.
 void use(const rig::ForceCells& cells, sensing::FingerSetup& finger);
 
-/// Proves the intervals of a trial from what the pick-ups capture, and measures the finger with the force
+/// The force cells of a rig; empty if they are not calibrated.
+std::optional<sensing::FingerSetup> calibrated_finger(const rig::Rig& rig);
+
+/// Judges the intervals of a trial by the signals of the pick-ups, and measures the finger with the force
 /// cells. One thread may push samples while the session thread calls the other functions.
 class VibrationWatch {
  public:
   explicit VibrationWatch(CaptureSetup setup);
 
-  /// The delay that the newest pilot has measured; it applies from the next trial on.
+  /// Sets the delay that the newest pilot has measured. It applies from the next trial on.
   void set_delay(double frames);
-  /// The resonances have moved by this share since the calibration; it applies from the next trial on.
+  /// Sets the fraction by which the resonance frequencies have risen since the calibration. It applies from
+  /// the next trial on.
   void set_drift(double share);
 
-  /// The intervals of a trial, with absolute start frames, in order. Replaces those of the previous trial.
-  /// Until playback frame `quiet_until` the participant has not been asked to touch the surface.
+  /// Announces the intervals of a trial, with absolute start frames, in order. They replace those of the
+  /// previous trial. Until playback frame `quiet_until`, nobody has been asked to touch the surface.
   void expect(std::span<const drive::PreparedBurst> intervals, std::int64_t quiet_until);
-  /// All bursts ramp down from this playback frame on. Intervals that have not begun by then are dropped.
+  /// Says that all bursts ramp down from this playback frame on. Intervals that have not begun by then are
+  /// dropped.
   void cut(std::int64_t from_frame);
-  /// The interval glides to other tones, which is not measured: it stays unproven.
+  /// Says that this interval glides to other tones. A glide is not measured, so the interval stays unproven.
   void changed(std::size_t interval);
 
   /// True if one of the expected intervals needs captured frames from this range.
   bool needs(std::int64_t first_frame, std::int64_t end_frame) const;
   void push(const sensing::CaptureBlock& block);
 
-  /// The captured frame before which the result of an interval is not known.
+  /// Returns the captured frame after which the result of an interval is known.
   std::int64_t known_at(std::size_t interval) const;
   /// The result of an interval. Frames that were not captured by now count as lost. Null if the interval is
   /// not expected.
   std::shared_ptr<const sensing::IntervalResult> result(std::size_t interval);
-  /// The finger at this moment. Empty if it is not known, and without force cells.
+  /// Returns force and movement of the finger at this moment. Empty if they are not known, and without force
+  /// cells.
   std::optional<sensing::FingerNow> finger_now();
   /// What the force cells say about the trial, once its last interval is known. Null for the other intervals,
   /// and without force cells.
@@ -72,7 +78,8 @@ class VibrationWatch {
   CaptureSetup setup_;
   const std::vector<sensing::PickUp> calibrated_;
   mutable std::mutex mutex_;
-  std::vector<std::unique_ptr<sensing::IntervalProof>> proofs_;  ///< null: will not be proven
+  /// null for an interval that will not be proven
+  std::vector<std::unique_ptr<sensing::IntervalProof>> proofs_;
   std::optional<sensing::TrialFinger> finger_;
 };
 

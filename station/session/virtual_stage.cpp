@@ -40,7 +40,7 @@ class VirtualStage : public Stage {
 
   std::optional<Input> wait_until(std::int64_t deadline_ns) override {
     if (!simulated_sync_) return wait_for_input(deadline_ns);
-    // Pulses are not urgent: they are reported with the next input.
+    // A pulse may be late: it is reported with the next input.
     if (sync_due_ns_ <= now_ns_) return pulse();
     return wait_for_input(deadline_ns);
   }
@@ -85,7 +85,8 @@ class VirtualStage : public Stage {
   }
 
   void wait_for(const std::function<bool()>&) override {
-  }  // nothing to do: the caller's next call waits for the result itself, and no virtual time passes
+    // Nothing to do: the caller's next call waits for the planner, and virtual time stands still meanwhile.
+  }
 
   std::vector<Onset> present(std::span<const drive::PreparedBurst> intervals,
                              std::int64_t earliest_ns) override {
@@ -130,7 +131,7 @@ class VirtualStage : public Stage {
   Refusal clear() override { return refusal(guard_.clear()); }
   drive::AmplifierState amplifier() const override { return guard_.state(); }
   Refusal open_amplifier() override {
-    // The force cells are read without a finger before each trial, which takes a moment.
+    // Before each trial the force cells are read without a finger, which takes a moment.
     if (room_ && room_->capture().finger) {
       touchable_ = true;
       advance_to(now_ns_ + kQuiet_ns);
@@ -253,7 +254,7 @@ class VirtualStage : public Stage {
   }
 
   /// Returns the rules of the amplifier guard, which work here without GPIO lines. All threads are reported
-  /// as alive, because none can hang on the virtual clock.
+  /// as alive, because on the virtual clock none of them can hang.
   lines::Guard& alive() {
     guard_.audio_alive(now_ns_);
     guard_.session_alive(now_ns_);
@@ -276,11 +277,13 @@ class VirtualStage : public Stage {
   std::int64_t quiet_ns_ = 0;  ///< time at which the surface will be silent
   std::deque<Input> script_;   ///< what the simulated observer will do, in order of time
   std::vector<Presented> presented_, unheard_;
-  // The plate moves for this long after the drive, so it is simulated from a little earlier than is measured.
+  // The plate goes on moving for some time after the drive stops, so simulate it from this many frames before
+  // the measurement.
   static constexpr std::int64_t kLead_frames = 9600;
   std::unique_ptr<SimulatedRoom> room_;  ///< null: nothing is captured
   std::optional<VibrationWatch> watch_;
-  /// The simulated participant touches the surface, or may soon: all frames are needed.
+  /// true while the simulated participant touches the surface or may soon touch it; no frame may be left out
+  /// then
   bool touchable_ = false;
   bool measured_ = false;  ///< the first of unheard_ has been reported as measured
 };

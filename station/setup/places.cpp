@@ -55,8 +55,8 @@ std::string rig_or_default(const std::string& named, std::ostream& messages) {
 }
 
 std::string screen_card(const std::string& drm) {
-  // cards with a screen come first; among these, and among the others, the card with the shorter and then the
-  // lower number
+  // Sorted in this order: cards with a screen first; then by the length of the name and by the name, so that
+  // the lower number comes first.
   std::vector<std::tuple<bool, std::size_t, std::string>> cards;
   std::error_code ignored;
   for (const auto& entry : fs::directory_iterator(drm, ignored)) {

@@ -11,6 +11,7 @@
 #include "station/protocol/sources.hpp"
 #include "station/protocol/survey.hpp"
 #include "station/scene/sound.hpp"
+#include "station/session/planned_session.hpp"
 #include "station/terms/usage_error.hpp"
 #include "station/text/number.hpp"
 #include "station/text/toml.hpp"
@@ -174,11 +175,11 @@ session::Setup prepare(const RunRequest& request, const std::stop_token& stop) {
   problems.insert(problems.end(), survey.problems.begin(), survey.problems.end());
   if (request.observer.empty() && request.mode == "live") check_live(setup, survey, problems);
   if (request.observer.empty() && request.buttons_only) check_buttons_only(setup, problems);
-  if (!problems.empty()) throw text::BadInput(problems);
-
   setup.participant = request.participant;
   setup.database = request.database;
   setup.observer = request.observer;
+  setup.planned_session = request.planned_session;
+  setup.early = request.early;
   setup.seed = request.seed;
   setup.consent_version = request.consent_version;
   setup.conditions = request.conditions;
@@ -188,6 +189,10 @@ session::Setup prepare(const RunRequest& request, const std::stop_token& stop) {
   setup.run_mode = !request.observer.empty() ? terms::RunMode::simulated
                    : request.mode == "live"  ? terms::RunMode::live
                                              : terms::RunMode::pilot;
+  if (request.participant != kCodeToCome)
+    if (const auto next = session::next_session(setup); !next.problem.empty())
+      problems.push_back({{}, next.problem, next.allowed});
+  if (!problems.empty()) throw text::BadInput(problems);
   return setup;
 }
 

@@ -9,7 +9,8 @@
 
 namespace turnpoint::setup {
 
-/// Placeholder for the participant's code while it is not typed yet. All other settings are checked before.
+/// Placeholder for a participant's code that will be typed later. With it, all other settings can be checked
+/// before.
 inline constexpr const char* kCodeToCome = "keypad";
 
 /// The options of `turnpoint run`, as typed.
@@ -26,6 +27,8 @@ struct RunRequest {
   std::string calibration;
   bool self_test = false;  ///< run the self-test before the first block
   std::string despite;     ///< reason to continue although a check of the self-test failed; "" asks for it
+  std::optional<int> planned_session;  ///< which planned session; empty: the participant's next one
+  std::string early;  ///< reason to begin before the least number of days has passed; "" if there is none
   records::Conditions conditions;
   std::string cleaned;  ///< whether the surface was cleaned just before: yes or no; "" if not stated
 };
@@ -37,8 +40,8 @@ struct RunRequest {
 /// is requested.
 session::Setup prepare(const RunRequest& request, const std::stop_token& stop = {});
 
-/// Why the session of this request, a live one, cannot run; empty if it can. Names no option of the command
-/// line. Throws like prepare(), except text::BadInput.
+/// Returns the reasons why the live session of this request cannot run; empty if it can. The reasons name no
+/// option of the command line, so a page can show them. Throws like prepare(), except text::BadInput.
 std::vector<std::string> live_problems(const RunRequest& request, const std::stop_token& stop = {});
 
 /// Applies the text of a calibration file to the rig, to the sound levels, and to the values that are stored

@@ -10,6 +10,7 @@
 #include "station/protocol/design_advice.hpp"
 #include "station/protocol/glyphs.hpp"
 #include "station/protocol/triggers.hpp"
+#include "station/protocol/visits.hpp"
 #include "station/simulation/parallel.hpp"
 #include "station/simulation/rehearsal.hpp"
 #include "station/texts/texts.hpp"
@@ -38,8 +39,8 @@ double longest_s(const Protocol& protocol) {
   return protocol.task.duration_s.value_or(protocol.timing.explore_s.value_or(0));
 }
 
-/// The observer of `run --observer sim`, with one difference: setting a slider takes as long as it takes a
-/// person.
+/// Returns the observer of `run --observer sim`, except that setting a slider takes as long as it would take
+/// a person.
 Rehearser person(const Protocol& protocol) {
   auto person = rehearser(observer::Observer{observer::Parameters{}});
   person.adjust = [adjust = person.adjust, done_s = std::min(setting_s, longest_s(protocol))](
@@ -68,16 +69,16 @@ double breaks_s(const protocol::Block& block, std::size_t trials) {
   return static_cast<double>((trials - 1) / every) * block.break_after->min_s;
 }
 
-Estimate simulate(const Protocol& protocol, std::uint64_t seed) {
-  // Use sequence index 0: every other index has these blocks too, in another order.
-  const auto order = protocol::block_order(protocol, 0);
-  const auto rehearsal = rehearse(protocol, 0, seed, person(protocol));
+Estimate simulate(const Protocol& protocol, const protocol::Visit& visit, std::uint64_t seed) {
+  const auto order = protocol::block_order(protocol, visit);
+  const auto rehearsal = rehearse(protocol, visit, seed, person(protocol));
   Estimate estimate;
   estimate.duration_s = rehearsal.duration_s + rehearsal.trials * exploring_s(protocol);
   for (const auto& [start, trials] : rehearsal.blocks) {
     // Repeated practice is listed as one block. Its number of trials is the sum over all attempts.
     if (start.attempt == 0) {
-      estimate.blocks.push_back({start.name, start.instruction, start.practice, {}});
+      estimate.blocks.push_back(
+          {protocol::in_words(protocol, visit), start.name, start.instruction, start.practice, {}});
       estimate.trials.push_back(0);
     }
     estimate.trials.back() += static_cast<double>(trials.size());
@@ -87,30 +88,49 @@ Estimate simulate(const Protocol& protocol, std::uint64_t seed) {
   return estimate;
 }
 
-void estimate(const Protocol& protocol, int sessions, const std::stop_token& stop, const Steps& steps,
-              Check& check) {
+/// Adds the blocks of a visit, and takes its trials and duration if they are the longest so far.
+void add_visit(const std::vector<Estimate>& estimates, Check& check) {
+  if (estimates.empty()) return;
   std::vector<double> durations, trials;
-  std::vector<Estimate> estimates(static_cast<std::size_t>(sessions));
-  const int done = in_parallel(
-      sessions, processors(), steps.counted("simulated sessions"),
-      [&](int i) {
-        if (stop.stop_requested()) throw protocol::Abandoned();
-        estimates[static_cast<std::size_t>(i)] = simulate(protocol, static_cast<std::uint64_t>(i));
-      },
-      steps.finish);
-  estimates.resize(static_cast<std::size_t>(done));
-  if (!estimates.empty()) check.blocks = estimates.front().blocks;
-  std::vector<std::vector<double>> by_block(check.blocks.size());
+  auto blocks = estimates.front().blocks;
+  std::vector<std::vector<double>> by_block(blocks.size());
   for (const auto& estimate : estimates) {
     for (std::size_t b = 0; b < std::min(by_block.size(), estimate.trials.size()); ++b)
       by_block[b].push_back(estimate.trials[b]);
     durations.push_back(estimate.duration_s);
     trials.push_back(estimate.sum());
   }
-  for (std::size_t b = 0; b < check.blocks.size(); ++b) check.blocks[b].trials = spread_of(by_block[b]);
+  for (std::size_t b = 0; b < blocks.size(); ++b) {
+    blocks[b].trials = spread_of(by_block[b]);
+    check.blocks.push_back(std::move(blocks[b]));
+  }
+  const auto duration_s = spread_of(durations);
+  if (duration_s.median <= check.duration_s.median) return;
+  check.duration_s = duration_s;
   check.trials = spread_of(trials);
-  check.duration_s = spread_of(durations);
-  check.simulated_sessions = done, check.wanted_sessions = sessions;
+}
+
+/// Simulates this number of sessions, divided among the visits.
+void estimate(const Protocol& protocol, int sessions, const std::stop_token& stop, const Steps& steps,
+              Check& check) {
+  const auto visits = protocol::different_visits(protocol);
+  const int count = static_cast<int>(visits.size());
+  const int each = sessions == 0 ? 0 : std::max(1, sessions / count);
+  std::vector<Estimate> estimates(static_cast<std::size_t>(each * count));
+  const int done = in_parallel(
+      each * count, processors(), steps.counted("simulated sessions"),
+      [&](int i) {
+        if (stop.stop_requested()) throw protocol::Abandoned();
+        estimates[static_cast<std::size_t>(i)] = simulate(
+            protocol, visits[static_cast<std::size_t>(i % count)], static_cast<std::uint64_t>(i / count));
+      },
+      steps.finish);
+  for (int v = 0; v < count; ++v) {
+    std::vector<Estimate> mine;
+    for (int i = v; i < done; i += count) mine.push_back(std::move(estimates[static_cast<std::size_t>(i)]));
+    add_visit(mine, check);
+  }
+  check.simulated_sessions = done, check.wanted_sessions = each * count;
 }
 
 std::optional<scene::SoundBound> loudest(const protocol::Survey& survey, const rig::Rig& rig,
@@ -164,7 +184,7 @@ std::vector<text::Problem> language_notes(const Protocol& protocol) {
 Spread spread_of(std::vector<double> values) {
   if (values.empty()) return {};
   std::sort(values.begin(), values.end());
-  // Of n sorted values, the share k / (n + 1) of all sessions is expected below the k-th.
+  // Of n sorted values, the k-th is an estimate of the quantile k / (n + 1).
   const auto last = static_cast<long>(values.size()) - 1;
   const auto at = [&](double share) {
     const auto k = std::lround(share * static_cast<double>(last + 2)) - 1;
@@ -174,7 +194,7 @@ Spread spread_of(std::vector<double> values) {
 }
 
 SessionLength session_length(const Protocol& protocol, std::uint64_t seed) {
-  const auto estimate = simulate(protocol, seed);
+  const auto estimate = simulate(protocol, {}, seed);
   return {estimate.sum(), estimate.duration_s};
 }
 
@@ -202,7 +222,7 @@ Check check(const std::string& protocol_path, const std::string& rig_path, const
       check.problems.insert(check.problems.end(), bad.problems().begin(), bad.problems().end());
     }
   };
-  gather([&] { protocol = protocol::load(protocol_path); });
+  gather([&] { protocol = options.load_protocol(protocol_path); });
   gather([&] { rig = options.load_rig(rig_path); });
   if (protocol && options.drawable) {
     const auto texts = protocol::undrawable(*protocol, options.drawable);
@@ -227,7 +247,8 @@ Check check(const std::string& protocol_path, const std::string& rig_path, const
     if (check.problems.empty()) {
       if (options.finger) check.finger = shares(check.survey, *rig);
       if (options.sound) check.sound = loudest(check.survey, *rig, stop, options.steps);
-      if (finish.stop_requested()) check.sound.reset();  // it may be the limit of some scenes only
+      // the limit may not cover all scenes, because the work was stopped early
+      if (finish.stop_requested()) check.sound.reset();
       check.cues = cue_guard(*protocol, *rig, check.survey, stop, options.steps);
     }
     check.stopped = finish.stop_requested();

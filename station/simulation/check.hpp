@@ -33,6 +33,7 @@ int usual_sessions(const protocol::Protocol& protocol);
 
 /// A block as a participant will run it.
 struct CheckedBlock {
+  std::string visit;  ///< such as "session 2, group trained"; "" if there is only one session and no group
   std::string name, instruction;
   bool practice = false;
   Spread trials;
@@ -46,6 +47,7 @@ struct Check {
   std::vector<text::Problem> notes;  ///< remarks of little importance, which do not count as warnings
   std::string id, title, rig_name;
   std::vector<CheckedBlock> blocks;
+  /// of one session; if sessions or groups differ, of the longest
   Spread trials, duration_s;
   int simulated_sessions = 0, wanted_sessions = 0;
   protocol::Survey survey;
@@ -76,6 +78,8 @@ struct CheckOptions {
   /// says whether a character can be drawn on this machine (see protocol::undrawable); empty: not checked
   std::function<bool(char32_t character)> drawable = {};
   Steps steps = {};
+  /// reads the protocol file; a caller that has its text applies it here
+  std::function<protocol::Protocol(const std::string& path)> load_protocol = protocol::load;
 };
 
 /// Reads and checks both files as `run` would. Throws std::system_error if one cannot be read, and

@@ -49,8 +49,8 @@ constexpr CueKind cue_kinds[] = {
 
 constexpr double smallest_difference = 1e-3, smallest_difference_dB = 0.01;
 
-// The accuracy of an observer in simulated sessions shall have this precision (three standard errors). The
-// first sessions give an estimate of the number of sessions that this takes, at most `most_sessions`.
+// Wanted precision (three standard errors) of an observer's accuracy in simulated sessions. From the first
+// sessions we estimate how many sessions this takes; there are at most `most_sessions`.
 constexpr double precision = 0.01;
 constexpr int first_sessions = 30, most_sessions = 1000;
 
@@ -59,7 +59,7 @@ struct NotPlanned : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// Thrown if the work is to end before all cues are compared.
+/// Thrown if the work has to stop before all cues are compared.
 struct Finished {};
 
 /// The cues of one interval's first and last scene, for any strength that roving draws.
@@ -82,8 +82,8 @@ using Cells = std::vector<std::pair<const std::vector<Presentation>*, double>>;
 /// Which value of the cue the observer uses in an interval that changes from one scene to another.
 enum class Feature { last, change, first };
 
-/// Each trial has two equally large sets of drawn strengths. The first set chooses the rule and the second
-/// measures its accuracy, because any rule looks too good on the draws for which it was chosen.
+/// Strengths are drawn in two equally large sets for each trial. The first set chooses the rule and the
+/// second measures its accuracy, because any rule looks too good on the draws for which it was chosen.
 enum class Draws { to_choose, to_judge };
 
 struct Strategy {

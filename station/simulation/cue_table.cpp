@@ -21,8 +21,8 @@ bool same(double a, double b) {
   return std::fabs(a - b) <= 1e-9 * std::max({1.0, std::fabs(a), std::fabs(b)});
 }
 
-// Silence has neither pitch nor loudness, so these two cues cannot be interpolated between silence and a
-// tone. Take them from the nearer scene.
+// Mixes the cues of two scenes. Silence has neither pitch nor loudness, so between silence and a tone these
+// two cues cannot be interpolated; they are taken from the nearer scene.
 Cues mixed(const Cues& a, const Cues& b, double share_of_b) {
   Cues cues;
   for (const auto cue : all_cues) cues.*cue = (1 - share_of_b) * a.*cue + share_of_b * b.*cue;

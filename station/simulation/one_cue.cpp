@@ -36,7 +36,7 @@ struct Comparison {
     return std::fabs(a - b) <= none ? 0.0 : a - b;
   }
 
-  // Scores an answer; the observer chooses the answer with the highest score.
+  // Returns the score of answer `i`; the observer chooses the answer with the highest score.
   double score(std::size_t i) const {
     const std::size_t intervals = asked.intervals;
     if (rule.statistic == Statistic::nearest || rule.statistic == Statistic::farthest) {

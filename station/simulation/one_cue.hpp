@@ -66,10 +66,10 @@ struct Rule {
 /// observer guesses.
 Shares shares(const Rule& rule, const Asked& asked, const CueValues& x);
 
-/// The proportion correct over these looks; 0 if there are none.
+/// The proportion correct of an observer with this rule in these trials; 0 if there are none.
 double accuracy(const Rule& rule, const Asked& asked, const std::vector<Look>& looks);
 
-/// The rule with the highest proportion correct over these looks.
+/// The rule with the highest proportion correct in these trials.
 Rule best_rule(const Asked& asked, const std::vector<Look>& looks, const Grain& grain);
 
 }  // namespace turnpoint::simulation

@@ -9,6 +9,7 @@
 #include "station/analysis/proportion.hpp"
 #include "station/analysis/quantile.hpp"
 #include "station/protocol/conditions.hpp"
+#include "station/protocol/visits.hpp"
 #include "station/report/stored_trials.hpp"
 #include "station/simulation/power_session.hpp"
 
@@ -36,7 +37,8 @@ class Truths {
     const observer::Observer observer(options.observer);
     for (const auto& spec : protocol.procedures)
       if (const auto level = settled_level(protocol, spec, observer))
-        add("procedure " + spec.name, "threshold", *level);
+        for (int number = 1; number <= protocol::session_count(protocol); ++number)
+          add("procedure " + spec.name + session_suffix(protocol, number), "threshold", *level);
     for (const auto& spec : protocol.procedures)
       if (spec.kind == procedure::Kind::adjustment)
         for (const auto& condition : with_none(protocol::conditions(protocol)))
@@ -70,7 +72,7 @@ class Truths {
     return names;
   }
 
-  /// The true d' is the one at which the model has the observer's own proportion correct.
+  /// Adds the true d' of each model: the d' at which the model has the observer's own proportion correct.
   void add_d_primes(const protocol::Protocol& protocol, const GeneratingValues& generating,
                     const observer::Observer& observer) {
     std::set<double> levels;
@@ -116,7 +118,8 @@ class Truths {
         };
         add_gap("proportion correct", generating.share_correct(names[a]), generating.share_correct(names[b]));
         add_gap("boundary", generating.boundary(names[a], observer), generating.boundary(names[b], observer));
-        // the time that a simulated observer needs outside the decision is equal in all conditions
+        // the time that a simulated observer needs outside the decision is the same in all conditions, so the
+        // true difference is 0
         add(source, "time outside the decision", 0);
       }
   }
@@ -143,7 +146,7 @@ void finish(Recovery& entry, const std::vector<analysis::Interval>& intervals) {
     if (entry.truth && interval.low <= *entry.truth && *entry.truth <= interval.high) ++hold;
   }
   const auto count = static_cast<int>(intervals.size());
-  // d' has no upper end if all answers are right
+  // if all answers are right, the interval of d' has no upper end
   const double width = analysis::quantile(std::move(widths), 0.5);
   if (std::isfinite(width)) entry.interval_width = width;
   if (entry.truth)

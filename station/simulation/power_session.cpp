@@ -5,6 +5,7 @@
 
 #include "station/analysis/trade.hpp"
 #include "station/protocol/answers.hpp"
+#include "station/protocol/visits.hpp"
 #include "station/report/stored_trials.hpp"
 #include "station/report/summary.hpp"
 #include "station/simulation/parallel.hpp"
@@ -22,10 +23,32 @@ std::optional<analysis::Interval> interval_of(const std::optional<analysis::Para
 
 /// Adds the procedures' own threshold estimates; of the method of limits also those of each direction. A
 /// report prints no intervals for them.
-void add_estimates(const Rehearsal& rehearsal, const std::string& unit, std::vector<Finding>& findings) {
+void add_estimates(const Rehearsal& rehearsal, const std::string& session, const std::string& unit,
+                   std::vector<Finding>& findings) {
   for (const auto& estimate : rehearsal.estimates)
     if (estimate.parameter.starts_with("threshold"))
-      findings.push_back({"procedure " + estimate.procedure, estimate.parameter, unit, estimate.mean, {}});
+      findings.push_back(
+          {"procedure " + estimate.procedure + session, estimate.parameter, unit, estimate.mean, {}});
+}
+
+/// Distance between the seeds of a participant's sessions: larger than any number of observers.
+constexpr std::uint64_t kSeedStep = std::uint64_t{1} << 40U;
+
+/// The blocks of all sessions of one participant, numbered as if they were one session.
+std::vector<records::BlockRecord> joined(const std::vector<Rehearsal>& sessions) {
+  std::vector<records::BlockRecord> blocks;
+  int first_block = 0, first_trial = 0;
+  for (const auto& session : sessions) {
+    int last_block = first_block;
+    for (auto block : session.blocks) {
+      block.start.block_index += first_block;
+      last_block = std::max(last_block, block.start.block_index);
+      for (auto& row : block.trials) row.trial_index += first_trial;
+      blocks.push_back(std::move(block));
+    }
+    first_block = last_block + 1, first_trial += session.trials;
+  }
+  return blocks;
 }
 
 std::string slope_unit(const analysis::FitOptions& options, const std::string& level_unit) {
@@ -125,6 +148,10 @@ std::string source_of(const std::string& what, const std::string& instruction) {
   return instruction.empty() ? what : what + " " + instruction;
 }
 
+std::string session_suffix(const protocol::Protocol& protocol, int number) {
+  return protocol.sessions ? ", session " + std::to_string(number) : "";
+}
+
 std::string d_prime_name(analysis::Deciding model, const std::optional<double>& level,
                          const std::string& unit) {
   std::string name = std::string("d', ") + analysis::name(model);
@@ -145,20 +172,25 @@ SessionOutcome simulate_session(const protocol::Protocol& protocol, const PowerO
     outcome.generating.add(protocol, trial, q, observer);
     return observer.answer(q);
   };
-  const auto rehearsal = rehearse(protocol, session, seed, sits);
   report::SessionData data;
   data.seed = seed;
-  report::add_trials(rehearsal.blocks, protocol, data);
+  std::vector<Rehearsal> sessions;
+  for (int number = 1; number <= protocol::session_count(protocol); ++number)
+    sessions.push_back(rehearse(protocol, {session, number},
+                                seed + static_cast<std::uint64_t>(number - 1) * kSeedStep, sits));
+  report::add_trials(joined(sessions), protocol, data);
   data.replicates = session < options.interval_sessions ? options.replicates : 0;
   const auto& unit = data.level_unit;
-  add_estimates(rehearsal, unit, outcome.findings);
+  for (std::size_t i = 0; i < sessions.size(); ++i) {
+    add_estimates(sessions[i], session_suffix(protocol, static_cast<int>(i) + 1), unit, outcome.findings);
+    outcome.presented += sessions[i].trials;
+    outcome.duration_s += sessions[i].duration_s;
+  }
   add_fits(data, unit, outcome);
   add_discriminations(protocol, data, outcome.findings);
   if (data.replicates > 0)
     add_differences(analysis::trade(data.trials, report::trade_options(data)), outcome.findings);
   outcome.design = data.design;
-  outcome.presented = rehearsal.trials;
-  outcome.duration_s = rehearsal.duration_s;
   for (const auto& trial : data.trials)
     if (trial.type == terms::TrialType::experimental && trial.correct)
       ++outcome.scored, outcome.right += *trial.correct ? 1 : 0;

@@ -43,14 +43,17 @@ std::vector<SessionOutcome> simulate_sessions(const protocol::Protocol& protocol
 Power power_of(const protocol::Protocol& protocol, const PowerOptions& options,
                const std::vector<SessionOutcome>& outcomes);
 
-/// Completes sessions 0, 1, 2, ... that were read from the files of parts. The files do not say what the
-/// first sessions ask and how they are fitted, so these are simulated again, without intervals.
+/// Completes sessions 0, 1, 2, ... that were read from the files of parts. The files do not contain the
+/// questions of the first sessions and the options of their fits. So these sessions are simulated again,
+/// without intervals.
 void complete(const protocol::Protocol& protocol, const PowerOptions& options,
               std::vector<SessionOutcome>& outcomes);
 
 /// The source of a finding: `what`, or `what` and the condition if there is one.
 std::string source_of(const std::string& what, const std::string& condition);
-/// The parameter of a finding: d' by this model at this level, whose unit is given, or over all levels.
+/// What is added to the source of a procedure's estimate: ", session 2" if the protocol plans several.
+std::string session_suffix(const protocol::Protocol& protocol, int number);
+/// Returns the parameter name of a d': by this model, at this level (with its unit), or over all levels.
 std::string d_prime_name(analysis::Deciding model, const std::optional<double>& level,
                          const std::string& unit);
 /// "spread" or "slope", whichever the fitted function has.

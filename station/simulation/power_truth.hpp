@@ -31,7 +31,8 @@ class GeneratingValues {
            const observer::Question& question, const observer::Observer& observer);
   void add(const GeneratingValues& other);
 
-  /// The sums of one condition, which can be added to others. They do not include the questions.
+  /// Sums over the trials of one condition. Sums of several sessions can be added. The questions are not part
+  /// of them.
   struct Sum {
     double deadline_s = 0;  ///< deadline of the first trial
     bool one_deadline = true;
@@ -40,7 +41,7 @@ class GeneratingValues {
   };
   std::map<std::string, Sum> sums() const;
   static GeneratingValues of_sums(const std::map<std::string, Sum>& sums);
-  /// Copies from `other` the questions of the conditions that both objects have.
+  /// Copies from `other` the observer's questions for the conditions that both objects have.
   void take_questions(const GeneratingValues& other);
   bool has_all_of(const GeneratingValues& other) const;  ///< true if this has each of the other's conditions
 

@@ -105,8 +105,7 @@ class Bench {
   std::deque<trial::Event> answers_;  ///< what the participant will press, in order of time
 };
 
-/// The participant's action in a trial: an answer, or a setting and the time at which the participant
-/// finished it.
+/// What the participant does in a trial: gives an answer, or makes a setting and finishes it at some time.
 struct Doing {
   observer::Reply reply;
   std::optional<double> setting;
@@ -116,7 +115,7 @@ Doing done_by(const Rehearser& rehearser, const TrialSpec& spec, const protocol:
               std::uint64_t seed) {
   if (spec.strokes) {
     Doing doing;
-    doing.reply.choice = 0;  // the movement is as the protocol asks for
+    doing.reply.choice = 0;  // the movement is the one that the protocol asks for
     return doing;
   }
   if (!spec.slider) return {rehearser.answer(spec, trial::question_of(spec, protocol, seed)), {}};
@@ -134,10 +133,10 @@ Doing done_by(const Rehearser& rehearser, const TrialSpec& spec, const protocol:
 
 }  // namespace
 
-Rehearsal rehearse(const protocol::Protocol& protocol, int sequence_index, std::uint64_t seed,
+Rehearsal rehearse(const protocol::Protocol& protocol, const protocol::Visit& visit, std::uint64_t seed,
                    const Rehearser& rehearser) {
   Rehearsal rehearsal;
-  trial::Director director(protocol, sequence_index, seed);
+  trial::Director director(protocol, visit, seed);
   std::int64_t now_ns = 0;
   while (const auto* block = director.block()) {
     auto& record = rehearsal.blocks.emplace_back();

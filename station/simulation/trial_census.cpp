@@ -4,6 +4,7 @@
 
 #include "station/procedure/description.hpp"
 #include "station/protocol/sources.hpp"
+#include "station/protocol/visits.hpp"
 
 namespace turnpoint::simulation {
 
@@ -29,8 +30,8 @@ double trials_of(const Protocol& protocol, const Block& block) {
   return trials;
 }
 
-// True if the first trials of this block differ on average from the later ones. They do not in a shuffled
-// list, every part of which has the same trials on average.
+// True if the first trials of this block differ, on average, from the later ones. In a shuffled list they do
+// not, because every part of it has the same trials on average.
 bool begins_unlike_it_goes_on(const Protocol& protocol, const Block& block) {
   if (block.practice || !block.trials || *block.trials >= trials_of(protocol, block)) return false;
   bool unlike = block.procedures.size() > 1;
@@ -44,8 +45,9 @@ bool begins_unlike_it_goes_on(const Protocol& protocol, const Block& block) {
 
 // Calls count(block, trial) for each trial of a session.
 template <typename Count>
-void run_session(const Protocol& protocol, std::uint64_t seed, const Answers& answers, Count&& count) {
-  trial::Director director(protocol, 0, seed);
+void run_session(const Protocol& protocol, const protocol::Visit& visit, std::uint64_t seed,
+                 const Answers& answers, Count&& count) {
+  trial::Director director(protocol, visit, seed);
   while (const auto* block = director.block()) {
     int trials = 0;
     while (const auto trial = director.next()) {
@@ -75,6 +77,10 @@ void TrialCensus::add(const Block& block, const procedure::Spec* spec, const std
   protocol::Factors fixed;
   for (const auto* factor : relevant_)
     if (const auto found = block.fixed.find(factor->name); found != block.fixed.end()) fixed.insert(*found);
+  for (const auto* factor : relevant_)
+    if (spec)
+      if (const auto found = spec->with.find(factor->name); found != spec->with.end())
+        fixed[factor->name] = found->second;
   const auto count = [&](const std::string& name, const std::vector<double>& values, double of_these) {
     const bool matters =
         std::any_of(relevant_.begin(), relevant_.end(), [&](const auto* f) { return f->name == name; });
@@ -103,10 +109,11 @@ void TrialCensus::add(const TrialCensus& other) {
 std::vector<protocol::Factors> TrialCensus::combinations(const protocol::Factors& cell) const {
   std::vector<protocol::Factors> all{cell};
   for (const auto* factor : relevant_) {
-    if (cell.count(factor->name) || factor->levels.empty()) continue;
+    const auto values = protocol::drawn_values(*factor);
+    if (cell.count(factor->name) || values.empty()) continue;
     std::vector<protocol::Factors> next;
     for (const auto& factors : all)
-      for (const auto& level : factor->levels) {
+      for (const auto& level : values) {
         next.push_back(factors);
         next.back()[factor->name] = level;
       }
@@ -125,14 +132,18 @@ bool levels_follow_right_answers(const Protocol& protocol) {
 
 TrialCensus census_of_session(const Protocol& protocol, std::uint64_t seed, const Answers& answers) {
   TrialCensus census(protocol);
-  run_session(protocol, seed, answers,
-              [&](const Block& block, const TrialSpec& trial) { census.add(block, trial); });
+  for (const auto& visit : protocol::different_visits(protocol))
+    run_session(protocol, visit, seed, answers,
+                [&](const Block& block, const TrialSpec& trial) { census.add(block, trial); });
   return census;
 }
 
 TrialCensus census_of(const Protocol& protocol) {
   TrialCensus census(protocol);
-  const auto blocks = protocol::block_order(protocol, 0);
+  std::vector<Block> blocks;
+  const auto visits = protocol::different_visits(protocol);
+  for (const auto& visit : visits)
+    for (auto& block : protocol::block_order(protocol, visit)) blocks.push_back(std::move(block));
   const bool sampled = std::any_of(blocks.begin(), blocks.end(), [&](const Block& block) {
     return begins_unlike_it_goes_on(protocol, block);
   });
@@ -142,8 +153,9 @@ TrialCensus census_of(const Protocol& protocol) {
     trials += block.practice ? 0 : 1;
   };
   for (std::uint64_t seed = 0; sampled && trials < enough_trials && seed < enough_trials; ++seed)
-    run_session(
-        protocol, seed, [](const TrialSpec&) { return 0; }, count);
+    for (const auto& visit : visits)
+      run_session(
+          protocol, visit, seed, [](const TrialSpec&) { return 0; }, count);
   if (sampled) return census;
   std::map<const procedure::Spec*, std::vector<double>> levels;
   for (const auto& source : protocol::sources_of(protocol))

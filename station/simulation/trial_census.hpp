@@ -12,7 +12,8 @@ namespace turnpoint::simulation {
 using Answers = std::function<int(const trial::TrialSpec&)>;
 
 /// Counts the trials of a session by kind. Practice and warm-up are left out. Where chance decides (drawn or
-/// balanced factors, catch trials), each kind gets its exact probability instead of the draw of this session.
+/// balanced factors, catch trials), each kind is counted by its exact probability, not by what was drawn in
+/// this session.
 class TrialCensus {
  public:
   explicit TrialCensus(const protocol::Protocol& protocol);

@@ -98,7 +98,8 @@ std::string drill_file(const std::string& backup) { return backup + ".drill"; }
 
 namespace {
 
-/// Returns the file system that holds a folder. The "/." makes an automounter mount the disk.
+/// Returns the file system that holds a folder. Appending "/." to the path makes an automounter mount the
+/// disk first.
 dev_t file_system_of(const std::string& folder) {
   struct stat status {};
   if (::stat((folder + "/.").c_str(), &status) == 0) return status.st_dev;

@@ -154,9 +154,9 @@ Link link_from(const Statement& row) {
   return link;
 }
 
-/// True if a session with this last link may have this status. Usually it is the status in the link. When a
-/// database is opened, the status of a session whose process died is changed without a new link, so these
-/// changes are accepted too.
+/// True if a session whose last link is `last` may have this status. Usually it is the status stored in the
+/// link. But when a database is opened, a session whose process died gets a new status without a new link;
+/// that is accepted too.
 bool follows(const Link& last, const std::string& status, const std::string& reason) {
   if (status == last.status && reason == last.status_reason) return true;
   const std::string running = name(SessionStatus::running), interrupted = name(SessionStatus::interrupted);

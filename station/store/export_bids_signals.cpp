@@ -16,13 +16,15 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// The label of a recording. The signals of force cells are called after what they measure.
+/// Returns the label of a recording. The stream "finger" of the force cells is labelled "force", after what
+/// it measures.
 std::string recording_of(const std::string& stream) {
   return stream == "finger" ? "force" : bids_label(stream);
 }
 
-/// Writes the signals of one run as a table without gaps in time: BIDS gives a recording one start and one
-/// rate. Each trial is placed by its time, to within half a point.
+/// Writes the signals of one run as one table. BIDS gives a recording one start and one rate, so the table
+/// has no gaps: each trial is placed by its time, to within half a point, and the rows between trials are
+/// filled.
 class Recording {
  public:
   Recording(const std::string& base, const SignalRow& first, std::vector<SignalChannel> channels)
@@ -53,7 +55,7 @@ class Recording {
     }
   }
 
-  /// `start` is the session that describes the task.
+  /// `start` is the session whose protocol describes the task in the sidecar file.
   void finish(const SessionStart& start, std::vector<ExportedFile>& files) {
     table_.finish(files);
     const auto columns = signal_columns(channels_);

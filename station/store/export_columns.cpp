@@ -260,7 +260,8 @@ ExportColumns event_columns() {
 ExportColumns session_columns() {
   ExportColumns columns{participant_id(), session_id()};
   add(columns, session,
-      {"session_index", "sequence_index", "run_mode", "status", "status_reason", "started"});
+      {"session_index", "sequence_index", "planned_session", "participant_group", "run_mode", "status",
+       "status_reason", "started"});
   columns.push_back(segments());
   columns.push_back(trials());
   add(columns, session,

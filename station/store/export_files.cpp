@@ -13,7 +13,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Size of the piece of text that is collected before it is written to a table's file.
+/// A table's text is collected in memory and written to the file whenever it reaches this size.
 constexpr std::size_t kPieceBytes = 1U << 18U;
 
 /// Calls `write`. If `write` fails, throws an error that says what the export was writing and what to do.

@@ -87,9 +87,9 @@ const Table<AnswerRow>& answer_table() {
       {field<&A::questionnaire>({"questionnaire", "questionnaire",
                                  "Name of the questionnaire, consent or screening in the protocol"}),
        field<&A::item>({"item", "item", "Item of the questionnaire; consent | screening"}),
-       field<&A::occasion>(
-           {"occasion", "occasion",
-            "Number of blocks before it; tells the occasions of the same questionnaire apart"}),
+       field<&A::occasion>({"occasion", "occasion",
+                            "Number of blocks before the questionnaire; distinguishes repeated uses of the "
+                            "same questionnaire"}),
        field<&A::answer>({"answer", "answer", "Id of the choice, or the number"}),
        field<&A::response_time_s>(
            {"response_time_s", "response_time", "Time from the appearance of the question", "s"})}};
@@ -104,12 +104,12 @@ const Table<FrictionLevelRow>& friction_level_table() {
       {field<&F::displacement_um>({"displacement_um", "displacement_um",
                                    "Displacement without a finger, rms over the measured part of the surface",
                                    "um"}),
-       field<&F::trials>({"trials", "trials", "Number of trials at this displacement that count"}),
+       field<&F::trials>({"trials", "trials", "Number of valid trials at this displacement"}),
        field<&F::measured>({"measured", "measured",
                             "Friction relative to the surface at rest, geometric mean of the trials"}),
        field<&F::relative_friction>(
            {"relative_friction", "relative_friction",
-            "The same after a monotone regression over the displacements; plans use this value"}),
+            "Relative friction after a monotone regression over the displacements; plans use this value"}),
        field<&F::sd>({"sd", "sd", "Standard error of relative_friction"}),
        field<&F::low>({"low", "low", "Lower end of the 95 % interval of relative_friction"}),
        field<&F::high>({"high", "high", "Upper end of the 95 % interval of relative_friction"})}};
@@ -164,6 +164,12 @@ const Table<SessionRecord>& session_table() {
                                               "Moisture of the fingertip, as a moisture meter read it before "
                                               "the session, in the meter's unit"}),
        since(5, field<&R::leased_place>({"leased_place"})),
+       since(5, start<&S::planned_session>(
+                    {"planned_session", "planned_session",
+                     "Which of the sessions that the protocol plans it is, from 1; n/a if it plans none"})),
+       since(5, start<&S::group>(
+                    {"participant_group", "participant_group",
+                     "Group of the participant: a level of the factor that is drawn per participant"})),
        field<&R::status>({"status", "status", "State of the session", "",
                           "running | completed | interrupted | stopped | abandoned"}),
        field<&R::status_reason>({"status_reason", "status_reason", "Why the session has this state"})}};

@@ -4,7 +4,7 @@ namespace turnpoint::store {
 
 namespace {
 
-/// This column is NULL if there is no response time: then no clock was read.
+/// This column is NULL if there is no response time, because no clock was read then.
 Field<TrialRow> response_time_quality() {
   auto quality = field<&TrialRow::response_time_quality>({"response_time_quality", "response_time_quality",
                                                           "Clock that gave the time stamp of the answer", "",
@@ -20,7 +20,7 @@ Field<TrialRow> response_time_quality() {
   return quality;
 }
 
-/// Describes a column of what force sensors measured in a trial.
+/// Describes a column with a value that force sensors measured in a trial.
 template <auto Member>
 Field<TrialRow> finger(const About& about) {
   return since(3, field<&TrialRow::finger, Member>(about));

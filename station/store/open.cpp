@@ -75,8 +75,8 @@ Database open_plain_reader(const std::string& path) {
   return Database(path, Database::Access::immutable);
 }
 
-/// Throws if a file has two names (hard links). A lock file belongs to one name, so a second station could
-/// lock the other name and write to the file at the same time.
+/// Throws if a file has two names (hard links). Each name has a lock file of its own, so a second station
+/// could lock the other name and write to the file at the same time.
 void refuse_second_name(const std::string& path) {
   struct stat status {};
   if (::lstat(path.c_str(), &status) != 0 || !S_ISREG(status.st_mode) || status.st_nlink < 2) return;

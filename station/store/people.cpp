@@ -12,8 +12,6 @@ namespace turnpoint::store {
 
 namespace {
 
-using Pair = std::pair<Bearer, Bearer>;
-
 std::set<Bearer> bearers_in(Database& database) {
   std::set<Bearer> bearers;
   Statement rows(
@@ -23,33 +21,35 @@ std::set<Bearer> bearers_in(Database& database) {
   return bearers;
 }
 
-std::vector<Pair> pairs_in(Database& database) {
-  std::vector<Pair> pairs;
-  Statement rows(database,
-                 "SELECT station_a, code_a, station_b, code_b FROM same_person ORDER BY 1, 2, 3, 4");
-  while (rows.step()) pairs.push_back({{rows.text(0), rows.text(1)}, {rows.text(2), rows.text(3)}});
-  return pairs;
-}
-
 /// Sorts the codes of one person. The code that names the person comes first: one that was never the second
 /// argument of join().
-void put_name_first(std::vector<Bearer>& person, const std::vector<Pair>& pairs) {
+void put_name_first(std::vector<Bearer>& person, const std::vector<Join>& joins) {
   std::sort(person.begin(), person.end());
   const auto second = [&](const Bearer& bearer) {
-    return std::any_of(pairs.begin(), pairs.end(), [&](const auto& pair) { return pair.second == bearer; });
+    return std::any_of(joins.begin(), joins.end(), [&](const auto& join) { return join.second == bearer; });
   };
   std::stable_partition(person.begin(), person.end(), [&](const auto& bearer) { return !second(bearer); });
 }
 
 }  // namespace
 
+std::vector<Join> list_joins(Database& database) {
+  std::vector<Join> joins;
+  Statement rows(database,
+                 "SELECT station_a, code_a, station_b, code_b, realtime_ns FROM same_person"
+                 " ORDER BY 1, 2, 3, 4");
+  while (rows.step())
+    joins.push_back({{rows.text(0), rows.text(1)}, {rows.text(2), rows.text(3)}, rows.integer(4)});
+  return joins;
+}
+
 std::string full_name(const Bearer& bearer) { return bearer.code + "@" + bearer.station_id; }
 
 People::People(Database& database) {
-  const auto pairs = pairs_in(database);
+  const auto joins = list_joins(database);
   std::map<Bearer, std::vector<Bearer>> linked;
   for (const auto& bearer : bearers_in(database)) linked[bearer];
-  for (const auto& [a, b] : pairs) linked[a].push_back(b), linked[b].push_back(a);
+  for (const auto& [a, b, when] : joins) linked[a].push_back(b), linked[b].push_back(a);
   for (const auto& [start, unused] : linked) {
     if (person_of_.count(start) != 0) continue;
     std::vector<Bearer> person{start};
@@ -57,7 +57,7 @@ People::People(Database& database) {
     for (std::size_t i = 0; i < person.size(); ++i)
       for (const auto& next : linked[Bearer(person[i])])
         if (person_of_.emplace(next, persons_.size()).second) person.push_back(next);
-    put_name_first(person, pairs);
+    put_name_first(person, joins);
     ++persons_with_code_[person.front().code];
     persons_.push_back(std::move(person));
   }

@@ -1,4 +1,5 @@
 #pragma once
+#include <cstdint>
 #include <map>
 #include <string>
 #include <utility>
@@ -14,6 +15,14 @@ struct Bearer {
   std::string station_id, code;
   auto operator<=>(const Bearer&) const = default;
 };
+
+/// Two codes that somebody has declared to belong to one person, which has the name of the first.
+struct Join {
+  Bearer first, second;
+  std::int64_t realtime_ns = 0;
+};
+
+std::vector<Join> list_joins(Database& database);
 
 /// Returns "CODE@STATION". Commands accept this form, and print it if a code is ambiguous.
 std::string full_name(const Bearer& bearer);

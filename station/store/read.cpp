@@ -165,8 +165,8 @@ std::vector<std::string> participants(const std::string& path) {
 
 namespace {
 
-/// The events of a session, in the order in which they were logged, with the checks of self-tests
-/// the answers to questionnaires, and the levels of friction tables.
+/// Reads the events of a session in the order in which they were logged. Events of self-tests get their
+/// checks, those of questionnaires their answer, and those of friction tables their levels.
 std::vector<EventRow> read_events(Database& database, const std::string& id) {
   Statement rows(database, "SELECT " + column_list(event_table()) +
                                " FROM event WHERE session_id = ? ORDER BY event_index");

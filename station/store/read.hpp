@@ -21,7 +21,8 @@ struct SessionFilter {
 std::vector<SessionRecord> list_sessions(const std::string& database, const SessionFilter& filter = {});
 std::vector<SessionRecord> list_sessions(Database& database, const SessionFilter& filter = {});
 
-/// Returns one session with its texts. Throws StoreError (missing) if there is no session with this id.
+/// Returns one session, including the texts of its protocol, rig and calibration. Throws StoreError (missing)
+/// if there is no session with this id.
 SessionRecord session_record(Database& database, const std::string& session_id);
 
 /// Returns the participant codes of all sessions, in alphabetical order.

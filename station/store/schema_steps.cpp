@@ -374,10 +374,10 @@ CREATE TRIGGER session_keeps_its_provenance BEFORE UPDATE OF session_id, partici
 )sql";
 
 // Version 8. The answers to questionnaires, consent forms and screenings: each belongs to an event of the
-// kind questionnaire. The places in the counterbalancing that a collector has leased to this station, and whether the
-// place of a session is one of them.
-// Friction over all strokes of a trial. Friction tables that were measured in a session: the levels of a table
-// belong to an event of the kind friction_table.
+// kind questionnaire. The places in the counterbalancing that a collector has leased to this station, and
+// whether the place of a session is one of them. The number of a planned session, and the group of its
+// participant. Friction over all strokes of a trial. Friction tables that were measured in a session: the
+// levels of a table belong to an event of the kind friction_table.
 const char* const kStep8 = R"sql(
 CREATE TABLE answer (
   session_id TEXT NOT NULL,
@@ -405,6 +405,11 @@ CREATE TABLE lease (
 ) STRICT, WITHOUT ROWID;
 ALTER TABLE session ADD COLUMN leased_place INTEGER NOT NULL DEFAULT 0 CHECK (leased_place IN (0, 1));
 CREATE TRIGGER session_keeps_its_place BEFORE UPDATE OF leased_place ON session
+  BEGIN SELECT RAISE(ABORT, 'the provenance of a session is never changed'); END;
+
+ALTER TABLE session ADD COLUMN planned_session INTEGER CHECK (planned_session >= 1);
+ALTER TABLE session ADD COLUMN participant_group TEXT NOT NULL DEFAULT '';
+CREATE TRIGGER session_keeps_its_plan BEFORE UPDATE OF planned_session, participant_group ON session
   BEGIN SELECT RAISE(ABORT, 'the provenance of a session is never changed'); END;
 
 ALTER TABLE trial ADD COLUMN mu REAL;

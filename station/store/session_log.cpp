@@ -119,6 +119,9 @@ void insert_session(Database& database, const std::string& id, const SessionStar
   session.sequence_index = enrol(database, start);
   session.leased_place = is_leased(database, start, session.sequence_index);
   session.session_index = next_session_index(database, start);
+  if (!start.groups.empty())
+    session.start.group =
+        start.groups[static_cast<std::size_t>(session.sequence_index) % start.groups.size()];
   if (start.calibration_id) keep(database, calibration_table(), session, *start.calibration_id);
   const auto protocol_key = keep_protocol(database, session);
   const auto rig_key = keep_rig(database, session);

@@ -25,8 +25,8 @@ std::int32_t whole(double value, const SignalChannel& channel) {
   return static_cast<std::int32_t>(rounded);
 }
 
-/// The double nearest to `whole` times the resolution. For a resolution such as 1e-4, only the division by
-/// 10000 is rounded once.
+/// Returns the double nearest to `whole` times the resolution. For a resolution such as 1e-4, divides by
+/// 10000 instead of multiplying, so that the result is rounded only once.
 double multiple(std::int32_t whole, double resolution) {
   const double parts = std::round(1 / resolution);
   return 1 / parts == resolution ? whole / parts : whole * resolution;

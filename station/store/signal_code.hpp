@@ -19,8 +19,8 @@ inline constexpr const char* kSignalEncoding = "int32 delta shuffle zlib";
 /// Throws std::logic_error for lists of different lengths, and for a value that does not fit into 32 bits.
 void encode(SignalRow& signal, std::span<const std::vector<double>> values);
 
-/// The values that encode() received, rounded to the resolution of their channel: one list per channel.
-/// Throws StoreError (corrupt) if the data do not belong to this encoding and these channels.
+/// Returns the values that encode() received, rounded to the resolution of their channel: one list per
+/// channel. Throws StoreError (corrupt) if the data do not have this encoding or these channels.
 std::vector<std::vector<double>> decode(const SignalRow& signal);
 
 }  // namespace turnpoint::store

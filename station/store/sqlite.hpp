@@ -98,7 +98,8 @@ class Database {
   const std::string& path() const { return path_; }
   sqlite3* handle() { return handle_; }
 
-  /// Statements that every transaction needs. They are prepared at their first use.
+  /// Prepared statements that begin and end a transaction. They are kept, because every transaction needs
+  /// them.
   Statement& begin_statement();
   Statement& commit_statement();
 

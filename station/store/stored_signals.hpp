@@ -25,7 +25,7 @@ struct StoredSignal {
 /// Reads the signals of one stream of a session one by one, in the order of their trials.
 class SignalReader {
  public:
-  /// `segment` restricts it to the trials of one segment.
+  /// Reads only the trials of `segment` if one is given.
   SignalReader(Database& database, const std::string& session_id, const std::string& stream,
                std::optional<int> segment = {});
   std::optional<StoredSignal> next();
@@ -37,7 +37,7 @@ class SignalReader {
 /// Frames per second of the playback in a session, from its rig file; empty if the file cannot be read.
 std::optional<double> playback_rate_Hz(const SessionStart& start);
 
-/// The place in `channels` of each channel of the signal.
+/// Returns, for each channel of the signal, its index in `channels`.
 std::vector<std::size_t> places_of(const SignalRow& signal, const std::vector<SignalChannel>& channels);
 
 /// Name and explanation of a channel in exports; the name includes the unit, such as normal_n or speed_mm_s.

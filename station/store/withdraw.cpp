@@ -133,7 +133,7 @@ std::vector<Tombstone> new_tombstones(const Withdrawal& withdrawal) {
   return tombstones;
 }
 
-/// Writes the tombstones, and deletes their sessions and the codes.
+/// Writes the tombstones, and deletes the sessions and codes that they withdraw.
 void remove_sessions(Database& database, const std::vector<Tombstone>& tombstones,
                      const std::vector<Bearer>& bearers) {
   Transaction transaction(database);
@@ -208,7 +208,7 @@ void carry_out(const std::string& path, Database& database, Withdrawal& withdraw
   }
 }
 
-/// Removes the tombstones that the database already has.
+/// Returns those of the given tombstones that the database does not have yet.
 std::vector<Tombstone> missing_in(Database& database, std::vector<Tombstone> tombstones) {
   Statement known(database, "SELECT 1 FROM tombstone WHERE session_id = ?");
   std::erase_if(tombstones, [&](const auto& stone) { return known.bind(stone.session_id).step(); });

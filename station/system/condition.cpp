@@ -47,7 +47,7 @@ std::optional<double> hottest_C(const std::string& folder) {
       if (!name.starts_with("temp") || !name.ends_with("_input")) continue;
       std::ifstream file(entry.path());
       double thousandths = 0;
-      // a sensor that is not connected reports a temperature that cannot be
+      // skip impossible temperatures, which a sensor reports if it is not connected
       if (!(file >> thousandths) || thousandths < -50'000 || thousandths > 150'000) continue;
       hottest = std::max(hottest.value_or(-1e9), 1e-3 * thousandths);
     }

@@ -7,7 +7,7 @@ namespace turnpoint::system {
 /// The disk that holds a folder.
 struct Disk {
   std::string folder;   ///< the folder, or the nearest one above it that exists
-  double free_MiB = 0;  ///< what this user may still write
+  double free_MiB = 0;  ///< space in which this user may still write
   bool writable = false;
   std::string error;  ///< why the disk cannot be examined; "" if it can
 };

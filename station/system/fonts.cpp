@@ -19,7 +19,8 @@ template <typename T>
 using Owned = std::unique_ptr<T, Destroy>;
 
 bool has_font(FcPattern* pattern) {
-  // Freed at exit, unlike the global one that nullptr would select.
+  // Use a configuration of our own, which is freed at exit; nullptr would select the global one, which is
+  // not.
   static const Owned<FcConfig> config(FcInitLoadConfigAndFonts());
   const Owned<FcObjectSet> no_properties(FcObjectSetCreate());
   const Owned<FcFontSet> fonts(FcFontList(config.get(), pattern, no_properties.get()));

@@ -6,14 +6,15 @@
 
 namespace turnpoint::system {
 
-/// Whether a program that does long work shows how far it is.
+/// Whether long work shows its progress.
 enum class ShowProgress {
   on_terminal,  ///< only if standard error is a terminal
-  always,       ///< elsewhere in lines of their own, at most one every three seconds
+  always,       ///< also to a file or pipe, as separate lines, at most one every three seconds
 };
 
-/// Shows on standard error how far long work is: what is counted, the share done, and the time left. On a
-/// terminal this is one line, which is overwritten several times a second and cleared at the end.
+/// Shows the progress of long work on standard error: what is being counted, the share that is done, and the
+/// time left. On a terminal this is one line, which is overwritten several times a second and cleared at the
+/// end.
 class Progress {
  public:
   explicit Progress(ShowProgress show);

@@ -14,11 +14,13 @@ struct Rights {
   std::string note;  ///< why a right was denied or what is not locked; "" if there is nothing to say
 };
 
-/// Locks memory, so that the audio thread never waits for a page. Call this before the thread starts. It
-/// locks the program, its libraries, the heap as it is now, and the given ranges. Objects that another thread
-/// than the first has made are not in the heap, so their ranges must be given. If locking failed, `note` in
-/// the result says why; otherwise it is `left_out`, a text about memory that the audio thread uses but that
-/// is in no range. mlockall is not used because it would also pin pages that a garbage collector gives back:
+/// Locks memory, so that the audio thread never waits for a page to be loaded. Call this before the thread
+/// starts. It locks the program, its libraries, the heap as it is now, and the given ranges. Objects that
+/// were allocated on another thread than the first are outside of this heap, so their ranges must be given.
+/// If locking failed, `note` in the result says why. Otherwise `note` is `left_out`, in which the caller
+/// names memory that the audio thread uses but that is in no range.
+///
+/// mlockall is not used, because it would also pin pages that a garbage collector gives back.
 /// madvise(MADV_DONTNEED) then fails, and Qt's JavaScript engine, which expects zeroed pages, crashes.
 Rights lock_memory(const std::vector<MemoryRange>& ranges, const std::string& left_out = "");
 

@@ -18,7 +18,7 @@ std::string first_line(const std::filesystem::path& path) {
   return line;
 }
 
-/// The name of the device behind a sensor's folder, such as 1-0048; "" if it has none.
+/// Returns the name of the device behind a sensor's folder, such as 1-0048; "" if it has none.
 std::string device_of(const std::filesystem::path& folder) {
   std::error_code none;
   const auto target = std::filesystem::canonical(folder / "device", none);

@@ -46,7 +46,9 @@ FileWriter::FileWriter(const std::string& path, mode_t mode) : path_(destination
     return;
   }
   draft_ = path_ + ".new";
-  ::unlink(draft_.c_str());  // remove a file that a killed process left, or a link that somebody made
+  // remove what may already exist under this name: a file from a process that was killed, or a link made by
+  // another user
+  ::unlink(draft_.c_str());
   file_ = FileDescriptor(::open(draft_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, mode));
   if (!file_.is_open()) fail(std::exchange(draft_, ""), errno);
 }

@@ -29,7 +29,7 @@ class FileWriter {
   FileDescriptor file_;
 };
 
-/// Writes a file in the way of FileWriter, if all its bytes are already in memory.
+/// Writes a file as FileWriter does. Use this if all bytes are already in memory.
 void write_file(const std::string& path, std::string_view bytes, mode_t mode = 0666);
 
 /// Makes a folder and the folders above it, unless they exist. Throws std::system_error with the folder's name.

@@ -33,8 +33,8 @@ std::string printed(const char* format, std::uint32_t code) {
   return buffer;
 }
 
-// Reads through the source and keeps track of strings and comments. It ignores errors that the parser reports
-// anyway, such as strings that are not closed.
+// Reads through the source and keeps track of whether it is inside a string or a comment. It ignores errors
+// that the parser reports anyway, such as strings that are not closed.
 class Scanner {
  public:
   Scanner(std::string_view source, const std::string& path) : source_(source), path_(path) {}

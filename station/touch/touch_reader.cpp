@@ -21,8 +21,8 @@ namespace {
 constexpr int kPriority = 60;
 constexpr int kLookAgain_ms = 1000;
 
-/// An open panel. If the panel can tell fingers apart, each finger is read (type B of the kernel's
-/// Documentation/input/multi-touch-protocol.rst); otherwise the panel is read as a single finger.
+/// An open panel. If the panel can tell fingers apart, each finger is read (by protocol type B of the
+/// kernel's Documentation/input/multi-touch-protocol.rst); otherwise the panel is read as a single finger.
 class OpenPanel {
  public:
   /// Throws std::system_error if the device is not a touch panel.

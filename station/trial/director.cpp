@@ -6,6 +6,7 @@
 
 #include "station/procedure/description.hpp"
 #include "station/procedure/state_hash.hpp"
+#include "station/protocol/sources.hpp"
 #include "station/text/number.hpp"
 #include "station/trial/director_state.hpp"
 #include "station/trial/orders.hpp"
@@ -50,12 +51,14 @@ const procedure::Spec* Director::State::find_spec(const std::string& name) const
 procedure::Context Director::State::context_for(const procedure::Spec& spec) const {
   procedure::Context context;
   for (const auto& factor : protocol.factors) context.factor_levels[factor.name] = factor.levels.size();
-  const auto fixed = now()->fixed;
+  auto fixed = now()->fixed;
+  for (const auto& [name, value] : spec.with) fixed[name] = value;
   context.right_answer = [this, fixed, level = spec.level](double value) {
     auto factors = fixed;
     factors[level] = value;
     for (const auto& factor : protocol.factors)
-      if (!factors.count(factor.name) && !factor.levels.empty()) factors[factor.name] = factor.levels.front();
+      if (const auto values = protocol::drawn_values(factor); !factors.count(factor.name) && !values.empty())
+        factors[factor.name] = values.front();
     return correct_choice(protocol.task, factors).value_or(-1);
   };
   context.unanswered_are_data = timeouts_are_data();
@@ -94,8 +97,8 @@ int Director::State::block_expected(const Block& b) const {
   return static_cast<int>(std::lround(trials * (1 + (b.catch_trials ? b.catch_trials->rate : 0))));
 }
 
-Director::Director(const protocol::Protocol& protocol, int sequence_index, std::uint64_t seed)
-    : state_(std::make_unique<State>(protocol, sequence_index, seed)) {}
+Director::Director(const protocol::Protocol& protocol, const protocol::Visit& visit, std::uint64_t seed)
+    : state_(std::make_unique<State>(protocol, visit, seed)) {}
 Director::~Director() = default;
 Director::Director(Director&&) noexcept = default;
 

@@ -25,11 +25,12 @@ struct TrialSpec {
   /// index of the right choice; empty if no choice is right
   std::optional<int> correct;
   std::optional<SliderSpan> slider;  ///< the slider; only for an adjustment
-  /// Set in a block of strokes, in which nothing is asked. The level of such a trial is the displacement in
-  /// um, 0 for the surface at rest.
+  /// Set in a block of strokes, in which nothing is asked. The level of such a trial is then the displacement
+  /// in um; 0 means that the surface is at rest.
   std::optional<protocol::Strokes> strokes;
   double iti_s = 0, foreperiod_s = 0;
-  std::optional<double> length_s = {};  ///< length of the interval, if not that of the task: for an example
+  /// length of the interval of an example; empty: the length that the task gives
+  std::optional<double> length_s = {};
   double deadline_s = 0, anticipation_s = 0;
   std::optional<double>
       signal_s;  ///< when the response signal comes, after response_zero; empty if there is none
@@ -57,11 +58,11 @@ std::string in_words(const ProcedureEstimate& estimate);
 
 /// Decides what comes next: blocks in the participant's order, practice until it is passed, procedures and
 /// their interleaving, catch trials, orders of intervals, roving, and times. Pure: the same protocol,
-/// sequence index, seed and results give the same trials, no matter how many void trials come in between. A
+/// visit, seed and results give the same trials, no matter how many void trials come in between. A
 /// session is resumed by replaying its stored results through a director.
 class Director {
  public:
-  Director(const protocol::Protocol& protocol, int sequence_index, std::uint64_t seed);
+  Director(const protocol::Protocol& protocol, const protocol::Visit& visit, std::uint64_t seed);
   ~Director();
   Director(Director&&) noexcept;
 
@@ -96,13 +97,14 @@ class Director {
   /// Threshold (or PSE) and its SD, as estimated by the procedure of the last trial; empty if that procedure
   /// has no estimate.
   std::optional<std::pair<double, std::optional<double>>> threshold() const;
-  /// A trial of a friction table: displacement, and measured coefficient of friction (empty if the trial did
-  /// not count).
+  /// A trial of a friction table: its displacement and the measured coefficient of friction, which is empty
+  /// if the trial did not count.
   struct Stroke {
     double displacement_um = 0;
     std::optional<double> friction;
   };
-  /// The trials of the newest attempt at a block, if it is a friction table, in the order presented.
+  /// Returns the trials of the newest attempt at a block that measures a friction table, in the order
+  /// presented. Empty for other blocks.
   const std::vector<Stroke>& strokes(int block_index) const;
   /// The blocks of the session in this participant's order.
   const std::vector<protocol::Block>& all_blocks() const;

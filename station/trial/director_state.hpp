@@ -33,8 +33,8 @@ struct Director::State {
   std::optional<TrialSpec> current;
   int current_procedure = no_procedure;
 
-  State(const protocol::Protocol& p, int sequence_index, std::uint64_t s)
-      : protocol(p), seed(s), blocks(protocol::block_order(p, sequence_index)) {
+  State(const protocol::Protocol& p, const protocol::Visit& visit, std::uint64_t s)
+      : protocol(p), seed(s), blocks(protocol::block_order(p, visit)) {
     enter_block();
   }
 
@@ -56,6 +56,7 @@ struct Director::State {
   bool timeouts_are_data() const;
   void set_times(TrialSpec& spec) const;
   protocol::Factors drawn_factors() const;
+  protocol::FactorValue drawn_value(const protocol::Factor& factor, int number) const;
   std::optional<int> pick_procedure() const;
   bool catch_due() const;
   TrialSpec blank(terms::TrialType type) const;

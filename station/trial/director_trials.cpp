@@ -10,7 +10,7 @@ using random::Stream;
 
 namespace {
 
-/// The movement of a block of strokes is measured at most this long after its end.
+/// Longest time from the end of a stimulus of strokes until its movement is known.
 constexpr double kMeasured_s = 5;
 
 /// Returns the easiest levels, for warm-up: the highest level or, if there are levels on both sides of zero,
@@ -53,10 +53,34 @@ void Director::State::set_times(TrialSpec& spec) const {
 protocol::Factors Director::State::drawn_factors() const {
   auto factors = now()->fixed;
   auto draw = draws(Stream::factor_level, trial);
-  for (const auto& factor : protocol.factors)
-    if (!factors.count(factor.name) && !factor.levels.empty())
+  for (std::size_t i = 0; i < protocol.factors.size(); ++i) {
+    const auto& factor = protocol.factors[i];
+    if (factors.count(factor.name)) continue;
+    if (factor.draw != protocol::FactorDraw::levels)
+      factors[factor.name] = drawn_value(factor, static_cast<int>(i));
+    else if (!factor.levels.empty())
       factors[factor.name] = factor.levels[draw.below(factor.levels.size())];
+  }
   return factors;
+}
+
+/// Draws the value of the factor with this number for the current trial.
+protocol::FactorValue Director::State::drawn_value(const protocol::Factor& factor, int number) const {
+  constexpr int most_factors = 100;
+  const auto key = [&](int of) { return of * most_factors + number; };
+  if (factor.draw == protocol::FactorDraw::without_repetition) {
+    const auto count = static_cast<int>(factor.levels.size());
+    auto levels = factor.levels;
+    draws(Stream::factor_list, key(trial / count)).shuffle(levels);
+    return levels[static_cast<std::size_t>(trial % count)];
+  }
+  const auto [low, high] = *factor.range;
+  auto draw = draws(Stream::factor_value, key(trial));
+  if (factor.draw == protocol::FactorDraw::uniform) return draw.uniform(low, high);
+  for (;;) {
+    const double value = factor.mean + factor.sd * draw.normal();
+    if (value >= low && value <= high) return value;
+  }
 }
 
 std::optional<int> Director::State::pick_procedure() const {
@@ -135,6 +159,7 @@ TrialSpec Director::State::warmup_trial() const {
   std::string factor = now()->level;
   if (!specs.empty()) {
     factor = specs.front()->level;
+    for (const auto& [name, value] : specs.front()->with) spec.factors[name] = value;
     levels = specs.front()->values.empty() ? specs.front()->stimuli.values : specs.front()->values;
     if (levels.empty() && specs.front()->start) levels = {*specs.front()->start};
     if (levels.empty() && specs.front()->min && specs.front()->max)
@@ -170,7 +195,8 @@ std::optional<TrialSpec> Director::State::practice_trial() const {
   return spec;
 }
 
-/// A trial of a block of strokes. In a training, "right" is a movement as [sensing] asks for.
+/// Returns a trial of a block of strokes. In a training, the "right" answer is a movement within the limits
+/// of [sensing].
 std::optional<TrialSpec> Director::State::strokes_trial() const {
   if (static_cast<std::size_t>(trial) >= practice_levels.size()) return std::nullopt;
   const bool training = now()->kind == protocol::BlockKind::training;
@@ -194,6 +220,7 @@ TrialSpec Director::State::procedure_trial(int index) const {
   spec.procedure = from.name;
   spec.level = proposal->level;
   spec.factors[from.level] = proposal->level;
+  for (const auto& [name, value] : from.with) spec.factors[name] = value;
   for (const auto& [name, level] : proposal->balanced)
     for (const auto& factor : protocol.factors)
       if (factor.name == name) spec.factors[name] = factor.levels.at(level);

@@ -101,8 +101,8 @@ std::vector<Action> Machine::handle(const Event& event) {
 
 std::optional<std::int64_t> Machine::wake_ns() const {
   if (phase_ == Phase::idle || phase_ == Phase::done) return std::nullopt;
-  // as long as the outcome is not final, the pause between trials ends with the last `heard` event, not at a
-  // given time
+  // Until the outcome is final, the pause between trials has no fixed end: it ends with the last `heard`
+  // event.
   if (phase_ == Phase::interval && !decided()) return std::nullopt;
   const bool answering = phase_ == Phase::stimulus || phase_ == Phase::response;
   const auto deadline = answering ? deadline_at() : kNever;
@@ -272,8 +272,8 @@ void Machine::conclude(Outcome outcome, std::int64_t at_ns) {
   const bool cut = outcome == Outcome::aborted || outcome == Outcome::fault;
   if (cut && !concluded_) return end(outcome, at_ns);
   if (cut) {
-    // The trial already has a result, but the result becomes final only if all intervals were presented
-    // without loss. After a fault before that, end at once, without feedback.
+    // The trial has a result, but that is final only once all intervals were played without loss. If a fault
+    // comes before that, end at once, without feedback.
     if (outcome == Outcome::fault && !decided()) return end(outcome, at_ns);
     return enter(Phase::interval, at_ns);
   }
@@ -283,7 +283,8 @@ void Machine::conclude(Outcome outcome, std::int64_t at_ns) {
   settle(at_ns);
 }
 
-// Makes the trial void, and lets the page say why. An outcome of timeout or anticipation is kept.
+// Makes the trial void, so that it is presented again, and lets the page say why. An outcome of timeout or
+// anticipation is kept.
 void Machine::repeat(std::int64_t at_ns) {
   if (decided() || (concluded_ && result_.outcome != Outcome::answered)) return;
   if (phase_ == Phase::stimulus) actions_.push_back({ActionKind::silence, interval_, at_ns});

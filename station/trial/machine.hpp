@@ -80,8 +80,9 @@ struct Event {
 
 enum class ActionKind {
   enter,  ///< value: the new phase; show its page
-  /// schedule all intervals with the gaps of the plan, the first no earlier than time_ns. Reply with an
-  /// `onset` event for each interval, and with a `heard` event when the interval has been played completely
+  /// schedule all intervals with the gaps of the plan, the first no earlier than time_ns; the caller replies
+  /// with an `onset` event for each interval, and with a `heard` event when the interval has been played
+  /// completely
   present,
   silence,  ///< ramp down what is playing now, and cancel what has not begun
   signal,   ///< give the response signal; time_ns: when it was due
@@ -135,7 +136,7 @@ class Machine {
   /// True once the outcome is final. Later events cannot change it.
   bool decided() const;
   int interval() const { return interval_; }
-  /// True from the response signal on.
+  /// True once the response signal has been given.
   bool signalled() const { return signalled_; }
   const Result& result() const { return result_; }
 

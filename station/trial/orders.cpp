@@ -63,7 +63,8 @@ std::vector<IntervalOrder> target_orders(const protocol::Task& task) {
   return orders;
 }
 
-// The two scenes in either order. X, which is one of them again, comes last or first.
+// The orders in which the two scenes A and B and their match X can come: A and B in either order, and X,
+// which repeats one of them, last or first.
 std::vector<IntervalOrder> matching_orders(const protocol::Task& task) {
   std::vector<IntervalOrder> orders;
   for (const bool swapped : {false, true})

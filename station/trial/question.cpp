@@ -33,7 +33,7 @@ observer::Finding finding_of(protocol::TaskKind kind) {
   }
 }
 
-/// The median distance between neighbouring categories.
+/// Returns the median distance between neighbouring categories.
 double median_step(std::vector<double> categories) {
   std::sort(categories.begin(), categories.end());
   for (std::size_t i = 0; i + 1 < categories.size(); ++i) categories[i] = categories[i + 1] - categories[i];

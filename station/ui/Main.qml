@@ -16,6 +16,7 @@ Window {
     property StudiesController studies: null
     property SessionsController sessions: null
     property RigController rig: null
+    property DesignController design: null
     required property OperatorLock operatorLock
     /// True while the operator's page is locked, until somebody has typed the code.
     property bool locked: false
@@ -221,6 +222,7 @@ Window {
             studies: root.studies
             sessions: root.sessions
             rig: root.rig
+            design: root.design
             pixelsPerMm: root.pixelsPerMm
         }
     }

@@ -34,7 +34,7 @@ TEST_CASE("the proportion correct of each model equals numerical integration, an
     }
     CHECK(proportion_correct(Deciding::independent, d, 0) == Approx(row[4]).margin(1e-9));
     CHECK(proportion_correct(Deciding::differencing, d, 0) == Approx(row[5]).margin(1e-9));
-    // Near d' = 0 both curves are flat, so that a rounded proportion determines d' less exactly.
+    // Near d' = 0 both curves are flat, so the rounding of the proportion in the table matters more.
     CHECK(d_prime(Deciding::independent, row[4], 0) == Approx(d).margin(1e-5));
     CHECK(d_prime(Deciding::differencing, row[5], 0) == Approx(d).margin(1e-5));
   }
@@ -104,7 +104,7 @@ TEST_CASE("d' is given by level, and for all levels together", "[analysis]") {
   CHECK_FALSE(found[2].level);
   CHECK(found[2].right.trials == 20);
   REQUIRE(found[1].d_primes.size() == 2);
-  // The log-linear proportion 9.5 / 11; differencing needs a larger d' for the same proportion.
+  // The log-linear proportion is 9.5 / 11. For the same proportion, differencing needs a larger d'.
   CHECK(proportion_correct(Deciding::independent, found[1].d_primes[0].second.value, 2) == Approx(9.5 / 11));
   CHECK(found[1].d_primes[1].second.value > found[1].d_primes[0].second.value);
   CHECK(discriminate(trials, {}, {Deciding::largest}, 3, 1).size() == 1);

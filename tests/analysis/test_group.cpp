@@ -47,6 +47,24 @@ TEST_CASE("Means count each participant once, and effects only those with both c
   CHECK(effects(measures)[0].persons == 9);
 }
 
+TEST_CASE("The effect between groups is that of R's Welch test", "[group]") {
+  // t.test(extra ~ group, sleep): two - one is 1.58, from -0.2054832 to 3.3654832; d_s = 1.58 / 1.898625
+  auto measures = sleep();
+  for (auto& entry : measures)
+    if (entry.condition == "two") entry.person += "b";
+  const auto found = effects(measures);
+  REQUIRE(found.size() == 1);
+  CHECK(found[0].between_groups);
+  CHECK(found[0].persons == 20);
+  CHECK(found[0].second == "two");
+  CHECK(found[0].difference->value == Approx(1.58));
+  // the quantile of Student's t is accurate to 0.8 %
+  CHECK(found[0].difference->interval.low == Approx(-0.2054832).margin(0.015));
+  CHECK(found[0].difference->interval.high == Approx(3.3654832).margin(0.015));
+  CHECK(*found[0].standardised == Approx(1.58 / 1.898625).epsilon(1e-5));
+  CHECK_FALSE(effects(sleep())[0].between_groups);
+}
+
 TEST_CASE("Two participants have no interval", "[group]") {
   const std::vector<PersonMeasure> two{
       {"A", "x", "m", "", 1}, {"B", "x", "m", "", 2}, {"A", "y", "m", "", 3}};

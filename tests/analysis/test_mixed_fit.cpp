@@ -16,7 +16,7 @@ namespace {
 
 using Words = std::vector<std::string>;
 
-/// The rows of a table beside this file, without comments and header.
+/// Returns the rows of a table beside this file, without comments and header.
 std::vector<Words> table(const std::string& name) {
   std::ifstream file(std::string(MIXED_TABLES) + "/" + name);
   REQUIRE(file);
@@ -50,7 +50,7 @@ MixedFit fitted(const std::vector<PersonCounts>& people, Function function, doub
   return *result.fit;
 }
 
-/// Draws a group whose thresholds and slopes differ, and one set of answers.
+/// Draws a group of participants whose thresholds and slopes differ, and one set of answers.
 struct Group {
   int people = 10, trials = 10;
   double threshold = 2, threshold_sd = 3, rate = 0.25, rate_sd = 0.04;
@@ -193,7 +193,8 @@ TEST_CASE("The shared lapse rate is found", "[mixed]") {
   auto people = Group{20, 60, 2, 2, 0.3, 0.03}.answers(draws, thresholds);
   for (auto& person : people)
     for (auto& point : person.counts) {
-      int positive = 0;  // each answer is a guess in one trial of 12, which is a slip of 1/24 either way
+      // one trial in 12 is answered by guessing, which adds a slip rate of 1/24 for either answer
+      int positive = 0;
       for (int i = 0; i < point.trials; ++i)
         positive += draws.uniform() < 1.0 / 12 ? draws.uniform() < 0.5 : i < point.positive;
       point.positive = positive;

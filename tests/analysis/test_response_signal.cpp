@@ -18,7 +18,7 @@ struct Truth {
   double asymptote, rate_per_s, intercept_s;
 };
 
-/// Answers of somebody with this curve and an equal-variance criterion that moves from lag to lag.
+/// Returns the answers of a participant with this curve, whose criterion changes from lag to lag.
 std::vector<TrialRecord> session(const Truth& truth, int per_lag, Draws& draws) {
   std::vector<TrialRecord> trials;
   double criterion = -0.3;
@@ -122,7 +122,7 @@ TEST_CASE("medians and intervals of the curve agree with an independent computat
       trials.push_back(trial);
     }
   const auto curve = response_signal(trials, {}, Detecting::sides, 1).front();
-  // numbers of make_response_signal.py
+  // expected numbers from make_response_signal.py
   const auto agrees = [](const Estimate& estimate, double low, double median, double high, double scale) {
     CHECK(estimate.interval.low == Approx(low).margin(0.02 * scale));
     CHECK(estimate.value == Approx(median).margin(0.02 * scale));

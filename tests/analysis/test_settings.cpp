@@ -79,7 +79,7 @@ TEST_CASE("Settings by the side of the start: means, scatters, and the differenc
     trials.push_back(set_to(v, -20)), trials.back().start_side = analysis::StartSide::below;
     trials.push_back(set_to(2 * v, 20)), trials.back().start_side = analysis::StartSide::above;
   }
-  trials.push_back(set_to(100, 0));  // a start that is on neither side
+  trials.push_back(set_to(100, 0));  // this start is on neither side
   const auto s = analysis::settings(trials).front();
   CHECK(s.values.size() == 11);
   CHECK(s.from_below.settings == 5);

@@ -27,8 +27,8 @@ class Entry:
 
 @dataclasses.dataclass
 class Cut:
-    # folder with the disk's files after the cut and after the file system's repair; the next cut
-    # overwrites it
+    # folder with the disk's files after the cut and after repairing the file system; the next cut overwrites
+    # it
     files: pathlib.Path
     marked: int          # number of the last mark that the disk had accepted
     position: int        # position of the cut in the record

@@ -75,7 +75,7 @@ std::function<void(int)> through_the_log(const std::string& path) {
   };
 }
 
-/// The tables of the schema without triggers, checks and keys.
+/// Tables with the columns of the schema, but without triggers, checks and keys.
 struct Bare {
   Bare(const std::string& path, const char* synchronous) : database(path, Database::Access::create) {
     database.execute(std::string("PRAGMA journal_mode = WAL; PRAGMA synchronous = ") + synchronous);

@@ -13,8 +13,8 @@ namespace {
 constexpr double kBudget_s = 0.5;
 constexpr int kReplicates = 1000, kBandPoints = 61;
 
-/// `trials` trials on 28 levels around a threshold of -18 dB, with the expected number of positive answers of
-/// a Weibull function of slope 2.
+/// Returns the expected answers in `trials` trials on 28 levels around a threshold of -18 dB, for a Weibull
+/// function of slope 2.
 std::vector<analysis::LevelCount> answers(int trials) {
   std::vector<analysis::LevelCount> data;
   for (int level = -30; level <= -3; ++level) {

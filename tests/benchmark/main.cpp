@@ -74,7 +74,8 @@ std::vector<std::string> write(const Report& report, const std::string& folder) 
   return files;
 }
 
-/// Returns the exit status. The first stop signal ends it after the table that is being measured.
+/// Runs the benchmarks and returns the exit status. The first stop signal ends the program after the table
+/// that is being measured.
 int bench(const Options& options) {
   Json document = Json::object();
   const auto tables = options.what.empty() ? kAll : options.what;

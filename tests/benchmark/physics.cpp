@@ -46,7 +46,7 @@ std::vector<Scene> scenes() {
           {"aluminium plate 30 kHz, Q = 60", physics::aluminium_plate(), 30000, true}};
 }
 
-/// |v| at the points, scaled so that the last maximum is one.
+/// Returns |v| at the points, scaled so that the last maximum is one.
 std::vector<double> amplitudes(const CentreLine& line, const std::vector<double>& x) {
   const double unit = line.value(line.last_peak_m().value_or(0)).ln_magnitude();
   Solution v(x.size());
@@ -144,7 +144,7 @@ OneModeProblem problem_of(const Scene& scene, const std::vector<double>& x) {
   return problem;
 }
 
-/// |v| scaled to one at the point where the reference has its largest value.
+/// Returns |v|, scaled to one at the point where the reference has its largest value.
 std::vector<double> scaled(const Solution& v, std::size_t top) {
   std::vector<double> a;
   for (const auto& one : v) a.push_back(std::abs(one) / std::abs(v[top]));
@@ -182,7 +182,7 @@ void bench_equation(const Scene& scene, double budget_s, std::vector<PhysicsRow>
 }
 
 /// Measures the plate theories on the simulated rig's plate (3 mm thick). The references are extrapolated
-/// from the two meshes of elastic_taper.csv: the mesh still leaves open about half of the change from the
+/// from the two meshes of elastic_taper.csv: the error of the finer mesh is about half of the change from the
 /// coarse one.
 void bench_theories(double budget_s, std::vector<PhysicsRow>& rows) {
   using physics::PlateTheory;

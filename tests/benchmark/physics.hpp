@@ -23,8 +23,8 @@ enum class Task {
   look_up
 };
 
-/// One row of results. `error` is the largest difference of |v| with the last maximum at one (for theory and
-/// look_up: metres); negative means not measured.
+/// One row of results. `error` is the largest difference of |v|, with the last maximum scaled to one. For the
+/// tasks theory and look_up it is in metres. A negative number means that it was not measured.
 struct PhysicsRow {
   Task task = Task::field;
   std::string scene;    ///< such as "seed brass 19.6 kHz, lossless"
@@ -40,8 +40,8 @@ struct PhysicsRow {
 /// user could use instead. Takes about `budget_s`.
 std::vector<PhysicsRow> measure_physics(double budget_s);
 
-/// Figures of the error against the time, one panel per scene: one figure for each of the tasks `field`,
-/// `theory` and `equation`.
+/// Returns figures that plot the error against the time, with one panel per scene: one figure for each of the
+/// tasks `field`, `theory` and `equation`.
 std::vector<Picture> physics_pictures(const std::vector<PhysicsRow>& rows);
 
 Report bench_physics(double budget_s);

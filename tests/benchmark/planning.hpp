@@ -3,8 +3,9 @@
 
 namespace turnpoint::benchmark {
 
-/// How long it takes to plan a scene for the first time, with its figures under a finger, by each plate
-/// theory. The ratio is that to Kirchhoff's theory in the same run.
+/// Measures how long it takes to plan a scene for the first time, and to compute its figures under a finger,
+/// with each plate theory. The table also has the ratio of this time to that of Kirchhoff's theory in the
+/// same run.
 Report bench_planning();
 
 }  // namespace turnpoint::benchmark

@@ -12,7 +12,7 @@ namespace turnpoint::benchmark {
 
 namespace {
 
-/// `count` evenly spaced values from `from` to `to`.
+/// Returns `count` evenly spaced values from `from` to `to`.
 std::vector<double> spaced(double from, double to, std::size_t count) {
   std::vector<double> values(count);
   for (std::size_t i = 0; i < count; ++i)
@@ -62,14 +62,15 @@ std::vector<Cell> own(const std::string& name, const procedure::Spec& spec, cons
           static_cast<double>(posterior.memory_bytes()) / 1e6};
 }
 
-/// The grid's size as arguments for the scripts of the other programs: stimuli, thresholds, slopes, lapses.
+/// Returns the grid's size as arguments for the scripts of the other programs: stimuli, thresholds, slopes,
+/// lapses.
 std::vector<std::string> arguments_of(const Shape& shape) {
   return {std::to_string(shape.stimuli), std::to_string(shape.thresholds), std::to_string(shape.slopes),
           std::to_string(shape.lapses)};
 }
 
-/// Makes a table row for another program from its output "version median p99"; empty if the program is
-/// missing.
+/// Makes a row of the table for another program from its output "version median p99". Returns no row if the
+/// program is missing.
 std::vector<std::vector<Cell>> peer(const std::string& name, const Shape& shape,
                                     const std::vector<std::string>& lines) {
   if (lines.empty()) return {};
@@ -81,7 +82,7 @@ std::vector<std::vector<Cell>> peer(const std::string& name, const Shape& shape,
            static_cast<double>(shape.thresholds * shape.slopes * shape.lapses), median_ms, p99_ms, Cell{}}};
 }
 
-/// A figure of the time per trial against the size of the grid, one series per program.
+/// Draws the time per trial against the size of the grid, with one series per program.
 Picture picture_of_procedures(const Table& table) {
   plot::Chart panel;
   panel.title = "One trial of QUEST+: median (marker) to 99th percentile";

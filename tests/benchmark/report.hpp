@@ -29,11 +29,11 @@ struct Report {
   std::vector<Picture> pictures;
 };
 
-/// The table as text with aligned columns; numbers have three digits, cells that were not measured contain
-/// "-".
+/// Returns the table as text with aligned columns. Numbers have three digits; a cell that was not measured
+/// contains "-".
 std::string to_text(const Table& table);
 
-/// The table as CSV (RFC 4180): quotes where needed, an empty cell if nothing was measured.
+/// Returns the table as CSV (RFC 4180), with quotes where needed. A cell that was not measured is empty.
 std::string to_csv(const Table& table);
 
 }  // namespace turnpoint::benchmark

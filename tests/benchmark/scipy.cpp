@@ -10,7 +10,7 @@ namespace turnpoint::benchmark {
 
 namespace {
 
-/// The problem's numbers in full precision, as command-line arguments for peers/one_mode.py.
+/// Returns the numbers of the problem in full precision, as command-line arguments for peers/one_mode.py.
 std::vector<std::string> arguments_of(const OneModeProblem& p) {
   std::vector<std::string> list;
   for (const double value :

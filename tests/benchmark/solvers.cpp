@@ -52,7 +52,7 @@ Start start_of(const OneModeProblem& p) {
 
 constexpr double small = 1e-16;
 
-/// Value and slope of g at the start. The slope is taken in the direction of the drive edge.
+/// Returns the value and slope of g at the start. The slope is taken in the direction of the drive edge.
 std::array<Complex, 2> start_values(const OneModeProblem& p, const Start& start) {
   if (start.held) return {0.0, small / p.length_m};
   return {small, small * std::sqrt(-potential(p, start.x_m))};

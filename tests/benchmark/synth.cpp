@@ -29,7 +29,7 @@ plot::Chart panel_of(const char* title, const SynthBenchmark& measured, std::siz
   return panel;
 }
 
-/// A figure of the error against the time since the start; the legend gives the cost per tone and frame.
+/// Draws the error against the time since the start. The legend gives the cost per tone and frame.
 Picture picture_of_synth(const SynthBenchmark& measured) {
   // The first methods are the station's own and others whose error does not grow with time.
   constexpr std::size_t exact = 5;

@@ -17,7 +17,7 @@ using namespace turnpoint::calibration;
 namespace {
 
 std::string written(const char* name, const std::string& content) {
-  static const TemporaryFolder folder;  // a folder of its own, because tests run in parallel
+  static const TemporaryFolder folder;  // one folder for this process, because tests run in parallel
   const std::string path = folder / name;
   std::ofstream(path) << content;
   return path;
@@ -43,7 +43,7 @@ Measurements measurements() {
 
 rig::Rig plate() { return rig::load(std::string(TURNPOINT_SOURCE_DIR) + "/tests/support/thin_plate.toml"); }
 
-// A plate that is held 0.25 mm behind the clamp's edge and is 2 % too thin.
+// Returns a plate that is held 0.25 mm behind the clamp's edge and is 2 % too thin.
 physics::Surface other_plate() {
   const auto surface = scene::surface_of(plate());
   return physics::changed(physics::changed(surface, physics::Parameter::clamp_line, 0.25e-3),

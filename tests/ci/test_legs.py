@@ -21,7 +21,7 @@ class Legs(unittest.TestCase):
         self.root = Path(self.folder.name)
         (self.root / ".ci").mkdir()
         shutil.copy(CI / "legs", self.root / ".ci")
-        # The real script, but the legs only write their names.
+        # The test runs the real script, except that each leg only writes its name.
         text = (CI / "leg").read_text()
         text = re.sub(r"^(endurance|faults|kills)\(\) \{(?: .* \}|\n(?:  .*\n)*\})$",
                       r"\1() { echo ran \1; test ! -e fail-\1; }", text, flags=re.M)
@@ -55,12 +55,12 @@ class Legs(unittest.TestCase):
         self.assertRegex((self.root / ".ci/ledger").read_text(), r"faults 22 \d{4}-\d\d-\d\d \d+\n")
 
     def test_a_leg_that_has_not_run_within_20_commits_fails(self):
-        self.assertEqual(self.legs(1)[0], 0)   # 20 commits ago: still allowed
+        self.assertEqual(self.legs(1)[0], 0)  # the last run was 20 commits ago, which is allowed
         self.commit()
         status, ran, printed = self.legs(1)
         self.assertEqual((status, ran), (1, []), printed)
         self.assertIn('"kills" last passed 21 commits ago, and 20 are allowed: run .ci/leg kills', printed)
-        self.assertEqual(self.legs(100000)[0], 0)   # with enough time, it runs the legs
+        self.assertEqual(self.legs(100000)[0], 0)  # with enough time, the legs run
 
     def test_a_merge_counts_once(self):
         self.git("checkout", "-q", "-b", "side")
@@ -74,7 +74,8 @@ class Legs(unittest.TestCase):
     def test_every_leg_of_the_ledger_exists(self):
         legs = re.findall(r"^(\w+)\(\) \{", (CI / "leg").read_text(), re.M)
         ledger = re.findall(r"^(\w+) \d+ ", (CI / "ledger").read_text(), re.M)
-        self.assertEqual(set(legs) - set(ledger), {"arm64_boot", "newcomer_whole"})   # these run by hand
+        # these two are run by hand
+        self.assertEqual(set(legs) - set(ledger), {"arm64_boot", "newcomer_whole"})
         self.assertLessEqual(set(ledger), set(legs))
 
     def test_a_leg_that_fails_fails_the_run_and_is_not_recorded(self):

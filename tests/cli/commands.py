@@ -1,6 +1,7 @@
 """commands.py PROGRAM [NAME...]: runs every command of the program as a user would: the example of its --help, its JSON
 output, and the mistakes that users make most. NAME chooses tests, as for python3 -m unittest."""
 import csv
+import datetime
 import fcntl
 import gzip
 import json
@@ -26,7 +27,7 @@ with open(os.path.join(HERE, "json_shapes.json"), encoding="utf-8") as file:
 # example may have: the doctor finds fault with most machines.
 COMMANDS = {
     "amplifier-off": {}, "annotate": {"needs": "session"}, "backup": {"needs": "session"},
-    "calibrate": {}, "check": {}, "doctor": {"status": (0, 1)}, "export": {"needs": "session"}, "field": {},
+    "calibrate": {}, "check": {}, "design": {"needs": "screen"}, "doctor": {"status": (0, 1)}, "export": {"needs": "session"}, "field": {},
     "collector-schema": {}, "figures": {}, "join": {"needs": "session"}, "map": {}, "merge": {"needs": "session"}, "new": {},
     "operator-code": {"needs": "code"}, "plan": {}, "power": {}, "preview": {}, "protocols": {},
     "push": {"needs": "server"}, "receive": {"needs": "server"}, "report": {"needs": "session"}, "resume": {"needs": "session"}, "run": {}, "self-test": {"status": (0, 1)},
@@ -41,7 +42,7 @@ JSON_EXAMPLES = {"calibrate": "turnpoint calibrate --rig simulated --boundaries 
 WITH_PROTOCOL = {"check": [], "plan": ["--scene", "edge"], "preview": ["--out", "looks"], "power": ["--observers", "2"],
                  "run": ["--db", "new.sqlite", "--participant", "P01", "--observer", "sim"],
                  "trace": ["--procedure", "levels", "--answers", "1"]}
-WITH_RIG = {"amplifier-off": [], "calibrate": ["--sweep"], "check": ["demo"], "doctor": ["--data", "."],
+WITH_RIG = {"amplifier-off": [], "calibrate": ["--sweep"], "check": ["demo"], "design": [], "doctor": ["--data", "."],
             "field": ["--tone", "30000", "--points", "3"], "map": ["--boundary", "150"],
             "plan": ["demo", "--scene", "edge"], "power": ["demo", "--observers", "2"], "preview": ["demo", "--out", "looks"],
             "run": ["demo", "--db", "new.sqlite", "--participant", "P01", "--observer", "sim"],
@@ -80,7 +81,7 @@ OUT_OF_RANGE = [
     (["synth", "--tone", "30000", "--seconds", "0", "--out", "null:"], "0.001 to 3600"),
     (["synth", "--tone", "30000", "--seconds", "1", "--ramp-ms", "-1", "--out", "null:"], "0 or more"),
 ]
-# What no message to a user may contain.
+# Parts of internal error messages, which must not appear in any message to a user.
 NOT_FOR_PEOPLE = re.compile(r"terminate called|std::|what\(\)|filesystem error|please report|SELECT|PRAGMA|TEXT|"
                             r"basic_string|Aborted|qt\.qpa")
 
@@ -123,6 +124,9 @@ def run(arguments, folder, typed="", **environment):
     ran = subprocess.run(words, env=variables, cwd=folder, input=typed, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
                          text=True, check=False, timeout=300)
     return ran.returncode, ran.stdout, ran.stderr
+
+
+TODAY = datetime.date.today().isoformat()
 
 
 class Folder(unittest.TestCase):
@@ -175,7 +179,7 @@ class Examples(Folder):
     def test_the_table_of_this_test_names_every_command(self):
         self.assertEqual(sorted(self.names), sorted(COMMANDS), "add a new command to COMMANDS and to the other tables")
         with_json = [name for name in self.names if "--json" in self.helps[name]]
-        self.assertEqual(sorted(with_json), sorted(SHAPES), "json_shapes.json needs one entry for each command with --json")
+        self.assertEqual(sorted(with_json), sorted(name for name in SHAPES if " " not in name), "json_shapes.json needs one entry for each command with --json")
 
     def example(self, name):
         lines = [line for line in self.helps[name].splitlines() if line.startswith("Example: ")]
@@ -202,7 +206,7 @@ class Examples(Folder):
                 self.assertTrue(out, "the example prints nothing")
 
     def test_json_documents_have_the_recorded_shape(self):
-        for name in SHAPES:
+        for name in COMMANDS.keys() & SHAPES.keys():   # class Sensors has the modes of calibrate
             if COMMANDS[name].get("needs") == "server":
                 continue
             with self.subTest(name):
@@ -229,7 +233,8 @@ class Examples(Folder):
                 rig = "simulated-forces" if protocol["id"] == "friction-measured" else "simulated"
                 status, _, err = run(["check", name, "--rig", rig, "--sessions", "0"], self.folder)
                 self.assertEqual(status, 0, err)
-        self.write("demo", b"")  # a file of that name is preferred
+        # a file of this name is used instead of the shipped protocol of the same name
+        self.write("demo", b"")
         self.refused(["check", "demo"], "demo: the file needs the key")
 
 
@@ -284,7 +289,7 @@ class Mistakes(Folder):
         os.mkdir(os.path.join(self.folder, "folder"))
         self.add_sessions("good.sqlite")
         files = ["./missing", "folder", "empty", "binary", "letter"]
-        if os.geteuid() != 0:  # root reads everything
+        if os.geteuid() != 0:  # root can read every file, so this check needs another user
             self.write("unreadable", b"format = 1\n")
             os.chmod(os.path.join(self.folder, "unreadable"), 0)
             files.append("unreadable")
@@ -325,7 +330,8 @@ class Mistakes(Folder):
         for name, rest in CREATES_DATABASE.items():
             for wrong in files[1:]:
                 self.refused([name, "--db", wrong, *rest], wrong, status=1 if wrong in ("empty", "unreadable") else 2)
-        for name in ("empty", "unreadable"):  # the lock beside a file that might be a database
+        # a lock file remains beside these two, because they might be databases
+        for name in ("empty", "unreadable"):
             before.pop(name + ".lock", None)
         after = {name: size for name, size in self.before().items() if name not in ("empty.lock", "unreadable.lock")}
         self.assertEqual(after, before, "a refused command left files behind")
@@ -336,7 +342,7 @@ class Mistakes(Folder):
             if "--session" in self.options(name):
                 got, out, err = run([name, "--db", "good.sqlite", *rest, "--session", "nonsense"], self.folder)
                 self.assertNotRegex(out + err, NOT_FOR_PEOPLE)
-                if name != "sessions":  # an empty list is an answer
+                if name != "sessions":  # an empty list of sessions is a valid answer
                     self.assertRegex(out + err, "nonsense|matches these options|no session with trials", name)
                     self.assertIn(got, (1, 2), name)
 
@@ -360,7 +366,8 @@ class Mistakes(Folder):
             fcntl.flock(lock, fcntl.LOCK_EX)
             for name, rest in WRITES_DATABASE.items():
                 self.refused_in_one_sentence([name, "--db", "busy.sqlite", *rest], "another station process, pid 4711", status=1)
-            for name in ("sessions", "verify", "report"):  # reading works beside a session
+            # commands that only read work while a session is running
+            for name in ("sessions", "verify", "report"):
                 self.assertEqual(run([name, "--db", "busy.sqlite"], self.folder)[0], 0)
 
 
@@ -424,6 +431,101 @@ class Signals(Folder):
         self.add_sessions()
         self.refused_in_one_sentence(["export", "--db", "lab.sqlite", "--out", "export", "--format", "signals"], "no signals", status=1)
         self.assertFalse(os.path.exists(os.path.join(self.folder, "export")))
+
+
+class Sensors(Folder):
+    def setUp(self):
+        super().setUp()
+        shutil.copy(os.path.join(SOURCE, "deploy/rigs/simulated-forces.toml"), os.path.join(self.folder, "plate.toml"))
+
+    def calibrated(self, mode, typed=""):
+        status, out, err = run(["calibrate", "--rig", "plate.toml", mode, "--out", "made.toml", "--json"], self.folder, typed)
+        self.assertEqual(status, 0, err)
+        document = json.loads(out)
+        self.assertEqual(is_like(document, SHAPES["calibrate " + mode]), "")
+        self.assertEqual(document["file"], "made.toml")
+        return document, err
+
+    def test_dead_weights(self):
+        document, asked = self.calibrated("--forces", "\n" * 39)
+        self.assertEqual(len(document["weights"]), 32)
+        self.assertEqual(document["repeated"], [])
+        self.assertEqual(asked.count("Take everything off the surface."), 7)
+        self.assertEqual(asked.count("hang 100 g on the string that pulls towards the wide edge."), 2)
+        self.assertLess(max(abs(weight["residual_position_mm"]) for weight in document["weights"]), 0.2)
+        # a session takes the file, and so does the next calibration, which keeps the cells
+        status, _, err = run(["run", "demo", "--rig", "plate.toml", "--calibration", "made.toml", "--participant", "P01", "--db",
+                              "lab.sqlite", "--observer", "sim", "--seed", "1"], self.folder)
+        self.assertEqual(status, 0, err)
+        os.rename(os.path.join(self.folder, "made.toml"), os.path.join(self.folder, "plate.calibration-" + TODAY + ".toml"))
+        document, _ = self.calibrated("--pickup")
+        self.assertEqual([pick_up["channel"] for pick_up in document["pick_ups"]], [5, 6])
+        with open(os.path.join(self.folder, "made.toml"), encoding="utf-8") as made:
+            self.assertIn("\n[forces] ", made.read())
+
+    def test_dead_weights_with_mistakes(self):
+        forces = ["calibrate", "--rig", "plate.toml", "--forces"]
+        for arguments, typed, what in ((forces, "\n\n", "the input ended"), (forces, "\nyes\n", "not \"yes\""),
+                                       (forces, "s\n\n", "the first step"), (forces, "\n" + "s\n" * 38, "at least 8"),
+                                       ([*forces, "--pickup"], "", "give one of them"),
+                                       (["calibrate", "--rig", "simulated", "--forces"], "", "has no force cells")):
+            status, _, err = run(arguments, self.folder, typed)
+            self.assertEqual(status, 2, err)
+            self.assertIn(what, err)
+        self.assertEqual(os.listdir(self.folder), ["plate.toml"])
+
+
+class Measured(Folder):
+    """The shipped protocol that measures the finger, with fewer trials, from the session to its exports."""
+    SHORTER = (("strokes = 10\nduration_s = 3.0\npass = { strokes = 8", "strokes = 4\nduration_s = 3.0\npass = { strokes = 2"),
+               ("[0.2, 0.4, 0.6, 0.8, 1.0, 1.3, 1.7, 2.2]\nrepeats = 6", "[0.4, 0.8, 1.6]\nrepeats = 3"), ("trials = 6\n", "trials = 2\n"),
+               ("stop = { trials = 96, threshold_sd = 1.5, rule = \"or\", min_trials = 32 }", "stop = { trials = 6 }"))
+    HALF_um = 0.754          # the displacement that halves the friction in the simulated laboratory, from the model's equations
+
+    def rows(self, path):
+        with open(os.path.join(self.folder, path), encoding="utf-8", newline="") as file:
+            return list(csv.DictReader(file))
+
+    def test_a_session_with_force_cells_from_the_training_to_the_exports(self):
+        with open(os.path.join(SOURCE, "protocols/friction-measured.toml"), encoding="utf-8") as file:
+            protocol = file.read()
+        for text, shorter in self.SHORTER:
+            self.assertIn(text, protocol)
+            protocol = protocol.replace(text, shorter)
+        self.write("short.toml", protocol.encode())
+        for arguments in (["run", "short.toml", "--rig", "simulated-forces", "--participant", "P01", "--observer", "sim", "--seed", "1"],
+                          ["verify"], ["report", "--out", "P01.html"],
+                          *(["export", "--out", kind, "--format", kind] for kind in ("csv", "bids", "signals"))):
+            status, out, err = run([*arguments, "--db", "lab.sqlite"], self.folder)
+            self.assertEqual(status, 0, err)
+            if arguments[0] == "verify":
+                self.assertIn("1 sessions, 0 changed", out)
+        trials = self.rows("csv/friction-measured/trials.csv")
+        self.assertEqual([len([t for t in trials if t["block_name"] == name]) for name in ("finger", "practice", "main")], [19, 2, 7])   # 6 and a catch trial
+        for trial in trials:
+            self.assertEqual(trial["sensing"], "ok")
+            self.assertAlmostEqual(float(trial["normal_n"]), 0.5, delta=0.15)
+        table = self.rows("csv/friction-measured/friction_tables.csv")
+        self.assertEqual([round(float(row["displacement_um"]), 9) for row in table], [0.4, 0.8, 1.6])
+        below, above = ((float(row["displacement_um"]), float(row["relative_friction"])) for row in table[:2])
+        half = below[0] + (below[1] - 0.5) / (below[1] - above[1]) * (above[0] - below[0])
+        self.assertAlmostEqual(half, self.HALF_um, delta=0.06 * self.HALF_um)
+        signals = self.rows("signals/friction-measured/signals.csv")
+        self.assertEqual([int(signal["trial_index"]) for signal in signals], list(range(len(trials))))
+        with gzip.open(os.path.join(self.folder, "signals/friction-measured", signals[0]["file"]), "rt", encoding="utf-8") as file:
+            points = list(csv.DictReader(file))
+        self.assertEqual(len(points), sum(int(signal["points"]) for signal in signals))
+        # every second trial of the table is at rest, with the friction of the simulated finger
+        rest = [t for t in trials if t["block_name"] == "finger"][::2]
+        self.assertAlmostEqual(sum(float(t["mu"]) for t in rest) / len(rest), 0.8, delta=0.05)
+        folder = os.path.join(self.folder, "bids/friction-measured/sub-P01/ses-01/beh/sub-P01_ses-01_task-frictionmeasured_run-01_recording-force_physio.")
+        with open(folder + "json", encoding="utf-8") as file:
+            sidecar = json.load(file)
+        self.assertEqual(sidecar["SamplingFrequency"], 1000)
+        with gzip.open(folder + "tsv.gz", "rt", encoding="utf-8") as file:
+            self.assertEqual({len(line.split("\t")) for line in file}, {len(sidecar["Columns"])})
+        with open(os.path.join(self.folder, "P01.html"), encoding="utf-8") as page:
+            self.assertIn("<h2>The finger</h2>", page.read())
 
 
 STUDY = ["power", "boundary-constant", "--observers", "12", "--intervals", "4"]
@@ -639,7 +741,7 @@ class Screen(Folder):
 
     @unittest.skipIf(os.path.exists("/dev/dri") or os.path.exists("/dev/fb0"), "this machine has a screen")
     def test_without_a_screen_each_command_advises_what_it_accepts(self):
-        for words, advice in ((["station", "--db", "lab.sqlite"], "turnpoint run"), (["preview", "demo"], "--out"),
+        for words, advice in ((["station", "--db", "lab.sqlite"], "turnpoint run"), (["design", "x.toml"], "turnpoint new"), (["preview", "demo"], "--out"),
                               (["run", "demo", "--db", "lab.sqlite", "--participant", "P03"], "--buttons-only"),
                               (["calibrate", "--rig", "simulated", "--panel"], "on its screen only")):
             self.refused_in_one_sentence(words, "no screen: no DISPLAY", advice, QT_QPA_PLATFORM=None)

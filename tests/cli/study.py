@@ -110,7 +110,8 @@ class Study(unittest.TestCase):
         found = {tuple(line.split(",")[:3]): line.split(",")[3:] for line in out.splitlines()}
         for effect in self.study["effects"]:
             key = (effect["measure"], effect["first"], effect["second"])
-            sign = 1 if key in found else -1  # pandas sorts the conditions
+            # pandas sorts the conditions, so the difference may have the opposite sign
+            sign = 1 if key in found else -1
             value, _, persons = found[key if sign == 1 else (key[0], key[2], key[1])]
             self.assertAlmostEqual(sign * float(value), effect["difference"]["value"], delta=1e-5 * max(1, abs(float(value))))
             self.assertEqual(int(persons), effect["participants"])
@@ -128,12 +129,67 @@ class Study(unittest.TestCase):
         compared = 0
         for what, condition, theirs, ours in found:
             if what == "log_likelihood":
-                self.assertGreater(float(ours), float(theirs) - 0.01)  # lme4 must not find a better maximum
+                # lme4 must not find a higher maximum than ours
+                self.assertGreater(float(ours), float(theirs) - 0.01)
                 self.assertLess(float(ours), float(theirs) + 0.3)
             elif what in ("rate", "threshold"):
                 self.assertLess(math.fabs(float(ours) - float(theirs)), 0.1 * errors[what, condition])
                 compared += 1
         self.assertEqual(compared, 4)
+
+
+class Groups(unittest.TestCase):
+    """Two groups: every second participant, and the differences between them."""
+
+    def setUp(self):
+        self.folder = tempfile.mkdtemp()
+        with open(os.path.join(SOURCE, "protocols/demo.toml"), encoding="utf-8") as file:
+            text = file.read()
+        factor = '[[factor]]\nname = "team"\nlevels = ["trained", "untrained"]\ndraw = "per-participant"\n\n'
+        with open(os.path.join(self.folder, "teams.toml"), "w", encoding="utf-8") as file:
+            file.write(text.replace("[task]", factor + "[task]", 1))
+        for i in range(8):
+            bound = 0.6 if i % 2 == 0 else 1.2
+            self.call(["run", "teams.toml", "--participant", f"P{i}", "--db", "lab.sqlite", "--observer", f"sim:bound={bound}",
+                       "--seed", str(i)])
+
+    def tearDown(self):
+        shutil.rmtree(self.folder)
+
+    def call(self, arguments):
+        return subprocess.run([PROGRAM, *arguments], cwd=self.folder, check=True, capture_output=True, text=True).stdout
+
+    def rows(self, name):
+        with open(os.path.join(self.folder, name), encoding="utf-8") as file:
+            return list(csv.DictReader(file))
+
+    def test_groups_are_stored_exported_and_compared(self):
+        expected = {f"P{i}": "trained" if i % 2 == 0 else "untrained" for i in range(8)}
+        self.call(["export", "--db", "lab.sqlite", "--out", "out"])
+        self.assertEqual({row["participant_code"]: row["participant_group"] for row in self.rows("out/demo/sessions.csv")}, expected)
+        self.assertEqual({(row["participant_id"], row["team"]) for row in self.rows("out/demo/trials.csv")}, set(expected.items()))
+        self.call(["report", "--study", "--db", "lab.sqlite", "--tables", "tables", "--out", "study.html"])
+        self.assertEqual({row["participant"]: row["group"] for row in self.rows("tables/participants.csv")}, expected)
+        study = json.loads(self.call(["report", "--study", "--db", "lab.sqlite", "--json"]))
+        self.assertEqual({person["participant"]: person["group"] for person in study["participants"]}, expected)
+        effects = {effect["measure"]: effect for effect in study["effects"]}
+        effect = effects["median response time"]
+        self.assertTrue(effect["between_groups"])
+        self.assertEqual((effect["first"], effect["second"], effect["participants"]), ("trained", "untrained", 8))
+        times = {"trained": [], "untrained": []}
+        for row in self.rows("tables/measures.csv"):
+            if row["measure"] == "median response time":
+                self.assertEqual(row["condition"], expected[row["participant"]])
+                times[row["condition"]].append(float(row["value"]))
+        # Welch's interval, with the quantile of t for 3 to 6 degrees of freedom
+        difference = statistics.mean(times["untrained"]) - statistics.mean(times["trained"])
+        error = math.sqrt(sum(statistics.variance(values) / 4 for values in times.values()))
+        found = effect["difference"]
+        self.assertAlmostEqual(found["value"], difference, 9)
+        self.assertGreater(difference, 0.1)  # a wider separation of the bounds takes longer
+        half = (found["interval"]["high"] - found["interval"]["low"]) / 2
+        self.assertGreater(half / error, 2.4)
+        self.assertLess(half / error, 3.3)
 
 
 if __name__ == "__main__":

@@ -1,4 +1,4 @@
-// Tests that map, plan and check say how uncertain a boundary is.
+// Tests that the commands `map`, `plan` and `check` say how uncertain a boundary is.
 #include <fstream>
 #include <nlohmann/json.hpp>
 

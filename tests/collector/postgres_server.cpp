@@ -1,9 +1,13 @@
 #include "tests/collector/postgres_server.hpp"
 
+#include <arpa/inet.h>
 #include <fmt/format.h>
+#include <netinet/in.h>
+#include <sys/socket.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <fstream>
 #include <stdexcept>
 #include <vector>
@@ -14,13 +18,25 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The folder of the newest server that is installed.
+/// The root folder of a Debian whose server is to be used, or "" for this machine's.
+std::string server_root() {
+  const char* root = std::getenv("TURNPOINT_POSTGRES_ROOT");
+  return root != nullptr ? root : "";
+}
+
+/// Returns the folder with the programs of the newest installed PostgreSQL.
 std::string programs() {
   std::vector<std::string> found;
-  for (const auto& version : fs::directory_iterator("/usr/lib/postgresql"))
-    if (fs::exists(version.path() / "bin/initdb")) found.push_back(version.path() / "bin/");
+  for (const auto& version : fs::directory_iterator(server_root() + "/usr/lib/postgresql"))
+    if (fs::exists(version.path() / "bin/initdb")) found.push_back(version.path().filename());
   if (found.empty()) throw std::runtime_error("install the package postgresql: these tests start a server");
-  return *std::max_element(found.begin(), found.end());
+  return "/usr/lib/postgresql/" + *std::max_element(found.begin(), found.end()) + "/bin/";
+}
+
+/// Runs a command where the server is.
+int run_there(const std::string& command) {
+  const auto root = server_root();
+  return std::system(((root.empty() ? "" : "chroot " + root + " ") + "sh -c '" + command + "'").c_str());
 }
 
 std::string read_file(const std::string& path) {
@@ -28,22 +44,55 @@ std::string read_file(const std::string& path) {
   return {std::istreambuf_iterator<char>(file), {}};
 }
 
-}  // namespace
-
-void PostgresServer::run(const std::string& program, const std::string& arguments) const {
-  const bool root = ::geteuid() == 0;
-  const auto command = fmt::format("cd {0} && {1} {2}{3} {4} >>{0}/log 2>&1 </dev/null", folder_.path,
-                                   root ? "setpriv --reuid=postgres --regid=postgres --clear-groups --" : "",
-                                   programs(), program, arguments);
-  if (std::system(command.c_str()) != 0)
-    throw std::runtime_error(program + " failed:\n" + read_file(folder_ / "log"));
+/// A port of the loopback interface that nobody uses.
+int free_port() {
+  sockaddr_in address{};
+  address.sin_family = AF_INET;
+  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  socklen_t size = sizeof address;
+  const int probe = ::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
+  const bool bound = ::bind(probe, reinterpret_cast<sockaddr*>(&address), size) == 0 &&
+                     ::getsockname(probe, reinterpret_cast<sockaddr*>(&address), &size) == 0;
+  ::close(probe);
+  if (!bound) throw std::runtime_error("no free port");
+  return ntohs(address.sin_port);
 }
 
-PostgresServer::PostgresServer() {
-  std::ofstream(folder_ / "log") << "";
-  if (::geteuid() == 0 && std::system(("chown -R postgres:postgres " + folder_.path).c_str()) != 0)
+}  // namespace
+
+void PostgresServer::as_server(const std::string& command) const {
+  const auto* as_postgres =
+      ::geteuid() == 0 ? "setpriv --reuid=postgres --regid=postgres --clear-groups --" : "";
+  if (run_there(fmt::format("cd {} && PGPORT={} {} {} >>log 2>&1 </dev/null", folder_.path, port_,
+                            as_postgres, command)) != 0)
+    throw std::runtime_error(command + " failed:\n" + read_file(folder_ / "log"));
+}
+
+void PostgresServer::own(const std::string& folder) {
+  if (::geteuid() == 0 && run_there("chown -R postgres:postgres " + folder) != 0)
     throw std::runtime_error("no user postgres");
-  run("initdb", "--no-sync --auth=trust --encoding=UTF8 --locale=C.UTF-8 --username=postgres -D data");
+}
+
+void PostgresServer::run(const std::string& program, const std::string& arguments) const {
+  as_server(programs() + program + " " + arguments);
+}
+
+void PostgresServer::make_certificate() {
+  port_ = free_port();
+  tls_ = true;
+  as_server(
+      "openssl req -x509 -newkey ec -pkeyopt ec_paramgen_curve:prime256v1 -nodes -days 2 -subj /CN=localhost"
+      " -addext subjectAltName=DNS:localhost -keyout server.key -out server.crt");
+}
+
+PostgresServer::PostgresServer() : PostgresServer(Options()) {}
+
+PostgresServer::PostgresServer(const Options& options) {
+  std::ofstream(folder_ / "log") << "";
+  own(folder_.path);
+  run("initdb", "--no-sync --auth=trust --encoding=UTF8 --locale=C.UTF-8 --username=postgres -D data " +
+                    options.initdb);
+  if (options.tls) make_certificate();
   start();
   run("createdb", fmt::format("-h {} -U postgres turnpoint", folder_.path));
   std::ofstream(folder_ / "schema.sql") << turnpoint::collector::schema_sql();
@@ -58,16 +107,20 @@ PostgresServer::~PostgresServer() {
   try {
     stop();
   } catch (const std::exception&) {
-    // A server that does not stop ends by itself when its folder is gone.
+    // Ignore the error: a server whose folder is gone ends by itself.
   }
 }
 
 void PostgresServer::start() {
-  // The data are not to survive a power cut, so nothing waits for the disk.
-  run("pg_ctl",
-      fmt::format("-w -D data -l log -o \"-c listen_addresses='' -c unix_socket_directories={} -c fsync=off"
-                  " -c max_connections=60 -c shared_buffers=64MB\" start",
-                  folder_.path));
+  // The data of this server need not survive a power cut, so it need not wait for the disk.
+  const auto network = tls_ ? fmt::format(
+                                  "-c listen_addresses=127.0.0.1 -c ssl=on -c ssl_cert_file={0}/server.crt"
+                                  " -c ssl_key_file={0}/server.key",
+                                  folder_.path)
+                            : "-c listen_addresses=";
+  run("pg_ctl", fmt::format("-w -D data -l log -o \"{} -c port={} -c unix_socket_directories={} -c fsync=off"
+                            " -c max_connections=60 -c shared_buffers=64MB\" start",
+                            network, port_, folder_.path));
   runs_ = true;
 }
 
@@ -78,7 +131,11 @@ void PostgresServer::stop() {
 }
 
 std::string PostgresServer::as(const std::string& role) const {
-  return fmt::format("host={} dbname=turnpoint user={}", folder_.path, role);
+  return fmt::format("host={} port={} dbname=turnpoint user={}", folder_.path, port_, role);
+}
+
+std::string PostgresServer::address(const std::string& role) const {
+  return fmt::format("postgresql:///turnpoint?host={}&port={}&user={}", folder_.path, port_, role);
 }
 
 turnpoint::collector::Connection PostgresServer::admin() const {

@@ -25,23 +25,77 @@ bool write_all(int to, const char* bytes, std::size_t size) {
   return true;
 }
 
-int connect_to(const std::string& path) {
-  sockaddr_un address{};
-  address.sun_family = AF_UNIX;
-  std::strncpy(address.sun_path, path.c_str(), sizeof address.sun_path - 1);
-  const int server = ::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0);
-  if (::connect(server, reinterpret_cast<sockaddr*>(&address), sizeof address) == 0) return server;
+sockaddr_in loopback(int port) {
+  sockaddr_in address{};
+  address.sin_family = AF_INET;
+  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  address.sin_port = htons(static_cast<std::uint16_t>(port));
+  return address;
+}
+
+int connected(int family, const void* address, std::size_t size) {
+  const int server = ::socket(family, SOCK_STREAM | SOCK_CLOEXEC, 0);
+  if (::connect(server, static_cast<const sockaddr*>(address), static_cast<socklen_t>(size)) == 0)
+    return server;
   ::close(server);
   return -1;
 }
 
+int connect_to(const std::string& where) {
+  if (!where.starts_with('/')) {
+    const auto address = loopback(std::stoi(where));
+    return connected(AF_INET, &address, sizeof address);
+  }
+  sockaddr_un address{};
+  address.sun_family = AF_UNIX;
+  std::strncpy(address.sun_path, where.c_str(), sizeof address.sun_path - 1);
+  return connected(AF_UNIX, &address, sizeof address);
+}
+
+/// Flips a bit of one byte in a stream, but not in the head of a message: after a changed length, both sides
+/// could wait for each other for ever.
+class Corruption {
+ public:
+  /// `before_tls` is how many bytes come before the records of TLS; -1 for the messages of PostgreSQL without
+  /// TLS, of which a client's first one has no type.
+  Corruption(std::uint64_t at, int before_tls)
+      : at_(at), before_tls_(before_tls), tls_(before_tls >= 0), head_(tls_ ? 0 : 1) {}
+
+  void pass(char* bytes, std::size_t size) {
+    for (std::size_t i = 0; i < size; ++i) {
+      const bool content = is_content(static_cast<unsigned char>(bytes[i]));
+      if (position_++ < at_ || !content || done_) continue;
+      bytes[i] ^= 0x10;
+      done_ = true;
+    }
+  }
+
+ private:
+  /// True if this byte, the next one of the stream, belongs to the content of a message, which under TLS is
+  /// encrypted.
+  bool is_content(unsigned char byte) {
+    constexpr unsigned kEncrypted = 23, kHeadBytes = 5;
+    if (before_tls_ > 0) return --before_tls_, false;
+    if (content_ > 0) return --content_, !tls_ || type_ == kEncrypted;
+    if (head_ == 0) type_ = byte;
+    if (head_ >= (tls_ ? 3U : 1U)) length_ = (length_ << 8U) | byte;
+    if (++head_ < kHeadBytes) return false;
+    content_ = tls_ ? length_ : length_ - 4;  // PostgreSQL counts the length itself
+    head_ = length_ = 0;
+    return false;
+  }
+
+  std::uint64_t at_, position_ = 0;
+  int before_tls_;
+  bool tls_, done_ = false;
+  unsigned head_, type_ = 0, length_ = 0, content_ = 0;
+};
+
 }  // namespace
 
-Proxy::Proxy(std::string socket, std::function<Trouble()> trouble)
-    : socket_(std::move(socket)), trouble_(std::move(trouble)) {
-  sockaddr_in address{};
-  address.sin_family = AF_INET;
-  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+Proxy::Proxy(std::string server, std::function<Trouble()> trouble)
+    : server_(std::move(server)), trouble_(std::move(trouble)) {
+  auto address = loopback(0);
   socklen_t size = sizeof address;
   listener_ = ::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
   if (::bind(listener_, reinterpret_cast<sockaddr*>(&address), size) != 0 || ::listen(listener_, 8) != 0 ||
@@ -70,8 +124,10 @@ void Proxy::serve() {
 }
 
 void Proxy::pass(int client, const Trouble& trouble) {
-  const int server = connect_to(socket_);
+  const int server = connect_to(server_);
   std::uint64_t sent = 0, received = 0;
+  Corruption corrupt_sent(trouble.corrupt_sent, trouble.tls ? 8 : -1),
+      corrupt_received(trouble.corrupt_received, trouble.tls ? 1 : -1);
   char bytes[4096];
   for (bool open = server >= 0; open;) {
     pollfd ready[] = {{client, POLLIN, 0}, {server, POLLIN, 0}, {wake_[0], POLLIN, 0}};
@@ -80,8 +136,7 @@ void Proxy::pass(int client, const Trouble& trouble) {
       const auto size = ::read(client, bytes, sent < trouble.slow_sent ? 1 : sizeof bytes);
       const auto end = sent + static_cast<std::uint64_t>(size > 0 ? size : 0);
       if (size <= 0 || end > trouble.cut_sent) break;
-      if (trouble.corrupt_sent >= sent && trouble.corrupt_sent < end)
-        bytes[trouble.corrupt_sent - sent] ^= 0x10;
+      corrupt_sent.pass(bytes, static_cast<std::size_t>(size));
       open = write_all(server, bytes, static_cast<std::size_t>(size));
       sent = end;
     }
@@ -89,6 +144,7 @@ void Proxy::pass(int client, const Trouble& trouble) {
       const auto size = ::read(server, bytes, sizeof bytes);
       received += static_cast<std::uint64_t>(size > 0 ? size : 0);
       if (size <= 0 || received > trouble.cut_received) break;
+      corrupt_received.pass(bytes, static_cast<std::size_t>(size));
       open = write_all(client, bytes, static_cast<std::size_t>(size));
     }
   }

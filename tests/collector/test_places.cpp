@@ -35,7 +35,8 @@ TEST_CASE("leased places make one design over two stations, also while the serve
   const auto a = folder / "a.sqlite", b = folder / "b.sqlite";
   sample::session(a, 1, at_station("bench-a", "A0"));
   sample::session(b, 1,
-                  at_station("bench-b", "B0"));  // the same place, before the stations shared the design
+                  // both stations gave this place before they shared the design
+                  at_station("bench-b", "B0"));
   CHECK(places_in(a) == places_in(b));
   const auto lease = [&](const std::string& db, const std::string& role, std::int64_t count) {
     collector::PushOptions options{db, postgres.as(role), "", "", {}, {}};
@@ -46,13 +47,15 @@ TEST_CASE("leased places make one design over two stations, also while the serve
   lease(b, "station_b", 0);
   CHECK(lease(a, "station_a", 3).places.at(kProtocol) == 3);
   CHECK(lease(b, "station_b", 2).places.at(kProtocol) == 2);
-  CHECK(lease(a, "station_a", 3).places.at(kProtocol) == 3);  // no more than asked for
+  // the station gets no more places than it asks for
+  CHECK(lease(a, "station_a", 3).places.at(kProtocol) == 3);
   postgres.stop();
   for (const auto* code : {"A1", "A2", "A3"}) sample::session(a, 1, at_station("bench-a", code));
   for (const auto* code : {"B1", "B2"}) sample::session(b, 1, at_station("bench-b", code));
   CHECK(places_in(a) == std::set<int>{0, 1, 2, 3});
   CHECK(places_in(b) == std::set<int>{0, 4, 5});
-  // A known participant keeps the place; a new one does not get a place that may be another station's.
+  // A known participant keeps the place from before. A new participant must not get a place that may belong
+  // to another station.
   sample::session(a, 1, at_station("bench-a", "A1"));
   const auto [kind, message] = sample::failure([&] { sample::session(a, 1, at_station("bench-a", "A4")); });
   CHECK(kind == store::ErrorKind::refused);
@@ -62,17 +65,16 @@ TEST_CASE("leased places make one design over two stations, also while the serve
   sample::session(a, 1, at_station("bench-a", "A4"));
   CHECK(places_in(a) == std::set<int>{0, 1, 2, 3, 6});
 
-  // What is given back, another station gets.
+  // A place that one station gives back can be leased to another station.
   collector::PushOptions give_back{a, postgres.as("station_a"), "", "", {}, {kProtocol}};
   CHECK(collector::push(give_back).complete());
   CHECK(lease(b, "station_b", 2).places.at(kProtocol) == 2);
   sample::session(b, 1, at_station("bench-b", "B3"));
   CHECK(places_in(b) == std::set<int>{0, 4, 5, 7});
 
-  // The sessions know whether their place was leased, at the station and in what is read from the server.
+  // Whether a place was leased is stored with the session, at the station and on the server.
   CHECK(lease(b, "station_b", 0).complete());
-  const collector::ReadableDatabase fetched("postgresql:///turnpoint?host=" + postgres.folder() +
-                                            "&user=reader");
+  const collector::ReadableDatabase fetched(postgres.address("reader"));
   for (const auto& path : {b, fetched.path()})
     for (const auto& session : store::list_sessions(path)) {
       INFO(session.start.participant);
@@ -118,7 +120,7 @@ TEST_CASE("the example queries run for a reader, and count what was recorded", "
                            " -U reader -d turnpoint -f queries.sql -o answers");
   const auto answers = sample::bytes_of(postgres.folder() + "/answers");
   CHECK(sample::contains(answers, "bench-a|2024-02-29|1|10\n"));
-  // Every fifth trial of the sample is a timeout.
+  // Every fifth trial of the sample is a timeout, so 2 of 10 are.
   CHECK(sample::contains(answers, "|10|2|0\n"));
   CHECK(sample::contains(answers, "|2023-02-28|366\n"));
 }

@@ -2,15 +2,15 @@
 
 #include <fmt/format.h>
 
+#include <filesystem>
 #include <functional>
-#include <map>
 
 #include "station/collector/fetch.hpp"
 #include "station/store/annotate.hpp"
 #include "station/store/checksum.hpp"
-#include "station/store/export.hpp"
 #include "station/store/merge.hpp"
 #include "station/store/schema.hpp"
+#include "tests/collector/exported.hpp"
 #include "tests/collector/postgres_server.hpp"
 #include "tests/store/sample.hpp"
 #include "tests/support/catch.hpp"
@@ -19,25 +19,6 @@ using namespace turnpoint;
 using What = collector::PushedSession::What;
 
 namespace {
-
-std::string uri(const PostgresServer& postgres, const std::string& role) {
-  return "postgresql:///turnpoint?host=" + postgres.folder() + "&user=" + role;
-}
-
-/// All exported bytes of a database, by path.
-std::map<std::string, std::string> exported(const std::string& database, const std::string& folder) {
-  for (const auto format :
-       {store::ExportFormat::csv, store::ExportFormat::bids, store::ExportFormat::signals}) {
-    store::ExportOptions options;
-    options.format = format;
-    store::export_data(database, fmt::format("{}/{}", folder, static_cast<int>(format)), options);
-  }
-  std::map<std::string, std::string> files;
-  for (const auto& entry : std::filesystem::recursive_directory_iterator(folder))
-    if (entry.is_regular_file())
-      files[std::filesystem::relative(entry.path(), folder)] = sample::bytes_of(entry.path());
-  return files;
-}
 
 store::SessionStart at_station(const std::string& station, const std::string& participant) {
   auto start = sample::start(participant);
@@ -91,7 +72,7 @@ TEST_CASE("a push sends each session once, and a continued session is extended",
     auto log = store::SessionLog::resume(db, second, sample::segment("resume"));
     log.begin_block(sample::block());
     log.append(sample::answered(7));
-    // While it runs, it is not sent; what the server has stays.
+    // A session that runs is not sent, and its earlier part stays on the server.
     const auto meanwhile = collector::push(options);
     CHECK(meanwhile.running == 1);
     CHECK(count("trial") == 19);
@@ -121,7 +102,7 @@ TEST_CASE("a server gives the same exports as the merged files of its stations",
   collector::push({a, postgres.as("station_a"), "", "", {}, {}});
   store::merge(merged, a);
   store::merge(merged, b);
-  const collector::ReadableDatabase fetched(uri(postgres, "reader"));
+  const collector::ReadableDatabase fetched(postgres.address("reader"));
   const auto from_file = exported(merged, folder / "file"),
              from_server = exported(fetched.path(), folder / "server");
   CHECK(from_file.size() > 10);
@@ -134,7 +115,7 @@ TEST_CASE("rows that were changed on the server are not read", "[collector]") {
   sample::session(folder / "a.sqlite", 3);
   collector::push({folder / "a.sqlite", postgres.as("station_a"), "", "", {}, {}});
   postgres.admin().query("UPDATE turnpoint.trial SET level = level + 1 WHERE trial_index = 1");
-  const auto message = message_of([&] { collector::ReadableDatabase fetched(uri(postgres, "reader")); });
+  const auto message = message_of([&] { collector::ReadableDatabase fetched(postgres.address("reader")); });
   CHECK(sample::contains(message, "trial 1"));
   CHECK(sample::contains(message, "differs from what was recorded"));
 }
@@ -162,7 +143,7 @@ TEST_CASE("the server calculates each checksum from what it stored", "[collector
   store::annotate(db, id, "a note");
   auto server = postgres.admin();
   server.query("GRANT USAGE ON SCHEMA public TO turnpoint_owner");
-  // A server that stores something else than what arrived.
+  // Makes a server that stores something other than what arrives.
   const std::pair<std::string, std::string> changes[] = {{"trial", "NEW.\"threshold_sd\" := 1.25"},
                                                          {"tone", "NEW.\"friction\" := NULL"},
                                                          {"signal", "NEW.data := NEW.data || '\\x00'"},
@@ -237,7 +218,7 @@ TEST_CASE("a server with another schema is refused with what to do", "[collector
   const auto push = [&] { collector::push({folder / "a.sqlite", postgres.as("station_a"), "", "", {}, {}}); };
   postgres.admin().query("UPDATE turnpoint.version SET schema = schema - 1");
   CHECK(sample::contains(message_of(push), "update the server first"));
-  CHECK(sample::contains(message_of([&] { collector::ReadableDatabase fetched(uri(postgres, "reader")); }),
+  CHECK(sample::contains(message_of([&] { collector::ReadableDatabase fetched(postgres.address("reader")); }),
                          "update the server"));
   postgres.admin().query("UPDATE turnpoint.version SET schema = schema + 2");
   CHECK(sample::contains(message_of(push), "update Turnpoint on this station"));

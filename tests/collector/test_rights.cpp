@@ -35,7 +35,8 @@ TEST_CASE("a station reads nothing, changes nothing and stores nothing that is a
       CHECK(state_of(station, "SELECT 1 FROM turnpoint." + table.name) == "42501");
       CHECK(state_of(station, "DELETE FROM turnpoint." + table.name) == "42501");
     }
-    // Even with a right that somebody gave by mistake, row security shows a station nothing.
+    // Even if somebody has granted a station the right to read a table by mistake, row security hides all
+    // rows from it.
     postgres.admin().query("GRANT SELECT ON turnpoint." + table.name + " TO station_b");
     CHECK(b.query("SELECT 1 FROM turnpoint." + table.name).count() == 0);
   }
@@ -48,18 +49,18 @@ TEST_CASE("a station reads nothing, changes nothing and stores nothing that is a
     INFO(forbidden);
     CHECK(state_of(b, forbidden) == "42501");
   }
-  // A tombstone for another's session does nothing.
+  // A tombstone for the session of another station has no effect.
   b.query("SELECT * FROM turnpoint.exchange_tombstones($1)",
           {fmt::format(R"([{{"session_id":"{}","salt":"s","participant_sha256":"","withdrawn_realtime_ns":1,)"
                        R"("station_id":"bench-b"}}])",
                        id)});
   CHECK(postgres.admin().query("SELECT 1 FROM turnpoint.session").count() == 1);
   CHECK(postgres.admin().query("SELECT 1 FROM turnpoint.tombstone").count() == 0);
-  // The same database under another station's role.
+  // Pushes the same database with the role of another station.
   const auto report = collector::push({db, postgres.as("station_b"), "", "", {}, {}});
   CHECK(report.sessions.empty());
   CHECK(report.foreign == std::vector<std::string>{"bench-a"});
-  // A reader reads, and cannot change.
+  // A reader may read but not change anything.
   collector::Connection reader(postgres.as("reader"));
   CHECK(reader.query("SELECT 1 FROM turnpoint.trial").count() == 3);
   CHECK(state_of(reader, "DELETE FROM turnpoint.trial") == "42501");

@@ -9,7 +9,7 @@
 using namespace turnpoint;
 
 TEST_CASE("every table of the station that holds data of sessions is collected", "[collector]") {
-  // meta, merged and lease describe one file or one station.
+  // The tables meta, merged and lease are not collected, because they describe one file or one station.
   const std::set<std::string> own = {"meta", "merged", "lease"};
   std::set<std::string> collected;
   for (const auto& table : collector::collected_tables()) collected.insert(table.name);
@@ -61,7 +61,7 @@ TEST_CASE("the schema may be applied again, and an older program does not bring 
           "[collector]") {
   const PostgresServer postgres;
   auto server = postgres.admin();
-  // A column that an earlier version of the server did not have is added.
+  // A column that an earlier version of the server did not have must be added by an upgrade.
   server.query("ALTER TABLE turnpoint.trial DROP COLUMN confidence");
   const auto apply = [&] {
     postgres.run("psql", "-q -h " + postgres.folder() + " -U postgres -d turnpoint -f schema.sql");

@@ -38,7 +38,8 @@ TEST_CASE("what is withdrawn on a station is deleted on the server", "[collector
   CHECK(server.query("SELECT 1 FROM turnpoint.participant WHERE code = 'P01'").count() == 0);
   CHECK(server.query("SELECT 1 FROM turnpoint.enrolment WHERE participant = 'P01'").count() == 0);
 
-  // A backup of the server from before brings the data back only until the station's next contact.
+  // If the server is restored from an older backup, withdrawn data come back, but only until the next contact
+  // with the station.
   server.query("DROP SCHEMA turnpoint CASCADE");
   postgres.run("psql", "-q -h " + postgres.folder() + " -U postgres -d turnpoint -f before.sql");
   CHECK(rows_about(postgres, gone) > 0);
@@ -60,7 +61,7 @@ TEST_CASE("what is withdrawn on the server is deleted on the station at its next
   CHECK(rows_about(postgres, gone) == 0);
 
   {
-    // While a session runs, its process is the only one that may write.
+    // While a session runs, only its process may write to the database.
     auto log = store::SessionLog::begin(db, sample::start("P03"), sample::segment());
     const auto report = collector::push(options);
     CHECK_FALSE(report.complete());
@@ -75,7 +76,7 @@ TEST_CASE("what is withdrawn on the server is deleted on the station at its next
   CHECK(rows_about(postgres, gone) == 0);
   CHECK(store::list_sessions(db).size() == 2);
   CHECK_FALSE(sample::contains(sample::bytes_of(db), "SECRET-CODE"));
-  // The code cannot be used again on the station.
+  // The station must not assign the code again.
   CHECK(sample::failure([&] { sample::session(db, 1, start); }).first == store::ErrorKind::refused);
   CHECK(collector::push(options).withdrawn.sessions.empty());
   CHECK(store::list_sessions(db).size() == 2);

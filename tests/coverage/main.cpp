@@ -23,7 +23,7 @@ struct Request {
   bool table_only = false;
 };
 
-/// Number of sessions that are run before they are saved.
+/// Sessions are saved in parts of this many.
 constexpr std::size_t kPart = 20;
 
 std::string file_of(const Request& request, const std::string& procedure, std::size_t source) {

@@ -45,7 +45,7 @@ std::optional<Ends> ends(const std::optional<analysis::ParameterInterval>& found
   return Ends{found->interval.low, found->interval.high};
 }
 
-/// The values that the report prints for these trials.
+/// Returns the values that the report prints for these trials.
 Printed printed(const report::SessionData& data) {
   const auto fits = report::fits_of(data);
   const auto& intervals = fits.front().intervals;

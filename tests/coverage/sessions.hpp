@@ -23,8 +23,8 @@ struct Truth {
   double of(Quantity quantity) const;
 };
 
-/// The true threshold and slope of simulated sessions: `fixed`, or, without it, drawn anew for each session
-/// from the prior that the report assumes.
+/// Where the true threshold and slope of simulated sessions come from: they are `fixed`, or, if that is
+/// empty, drawn for each session from the prior that the report assumes.
 struct Source {
   std::string name;
   std::optional<Truth> fixed;

@@ -23,17 +23,18 @@ struct Tally {
 Tally tally(const std::vector<Session>& sessions, std::size_t trials_index, Quantity quantity,
             double stretch = 1);
 
-/// The promise that this cell breaks; "" if it keeps all of them. Promised coverage with true values from the
-/// prior: 93.5 to 96.5 %; with fixed true values: at least 93 %, for the slope at least 95 %. The observed
-/// proportion itself must reach these figures, without an allowance for chance. Promised width: at most 1.3
-/// times that of the reference interval. Missing threshold intervals: at most 5 % from 96 trials on.
+/// Returns the promise that this cell breaks; "" if it keeps all of them. Promised coverage: 93.5 to 96.5 %
+/// if the true values are drawn from the prior; at least 93 % with fixed true values, and for the slope at
+/// least 95 %. The observed proportion itself must reach these figures, without an allowance for chance.
+/// Promised width: at most 1.3 times that of the reference interval. Promised presence: from 96 trials on, at
+/// most 5 % of the threshold intervals may be missing.
 std::string broken_promise(const Tally& tally, const Source& source, Quantity quantity, int trials);
 
 /// Reads a cell's sessions from a file that has one session per line and every number with all its digits.
 /// Drops an incomplete last line. Throws std::runtime_error if a seed occurs twice, as after joining two
 /// runs.
 std::vector<Session> read(const std::string& path);
-/// The seeds from 1 to `sessions` that have no session yet, ascending.
+/// Returns the seeds from 1 to `sessions` that have no session yet, in ascending order.
 std::vector<std::uint64_t> missing_seeds(const std::vector<Session>& there, int sessions);
 void append(const std::string& path, const std::vector<Session>& sessions);
 

@@ -56,7 +56,7 @@ class Collector:
         return done.stdout + done.stderr
 
     def server(self, action):
-        # A server in the background would keep the pipes of run() open.
+        # Do not use run() here: the server in the background would keep its pipes open.
         subprocess.run([*AS_POSTGRES, BIN + "/pg_ctl", "-w", "-D", self.data, "-l", self.data + "/log", "-m", "fast", "-o",
                         f"-c unix_socket_directories={self.at('socket')} -c fsync=off -p {self.environment['PGPORT']}", action],
                        env=self.environment, check=True, stdout=subprocess.DEVNULL, stdin=subprocess.DEVNULL, cwd="/")
@@ -84,7 +84,7 @@ def main(work):
 def steps(lab):
     check("wrong words must be refused", "collector create DATABASE" in lab.collector("crate", "lab", status=2))
     lab.collector("create", "lab", "localhost")
-    lab.collector("create", "lab", "localhost")  # again changes nothing
+    lab.collector("create", "lab", "localhost")  # repeating the command changes nothing
     lab.server("restart")
     for person in ("P01", "P02"):
         lab.run(PROGRAM, "run", "demo", "--db", "lab.sqlite", "--participant", person, "--observer", "sim", "--seed", "1")
@@ -101,7 +101,8 @@ def steps(lab):
     check("TLS is on", lab.sql("SHOW ssl") == "on")
     check("nothing is sent twice", lab.push().count(" unchanged ") == 2)
 
-    # A server that cannot prove who it is, a wrong name, a wrong password, and no encryption.
+    # The connection must be refused if the server cannot prove who it is, and with a wrong name, a wrong
+    # password or no encryption.
     port = lab.environment["PGPORT"]
     lab.run("openssl", "req", "-x509", "-newkey", "rsa:2048", "-nodes", "-subj", "/CN=other", "-keyout", "/dev/null", "-out",
             lab.at("other.crt"))
@@ -112,7 +113,7 @@ def steps(lab):
     check("another password", "password" in lab.push(1, PGPASSFILE="/dev/null", PGPASSWORD="wrong"))
     check("no encryption", "pg_hba.conf" in lab.push(1, f"host=localhost {user} sslmode=disable"))
 
-    # A reader, from anywhere with the certificate.
+    # A reader can connect from anywhere with the certificate.
     name, password = lab.collector("reader", "lab", "anna").removeprefix("user ").strip().split(", password ")
     address = (f"postgresql://{name}@localhost:{port}/lab?sslrootcert={lab.at('station/root.crt')}")
     check("the list from the server is that of the file",
@@ -130,7 +131,8 @@ def steps(lab):
             texts.append(file.read().replace(f">{name}<", "><"))
     check("the study reports are equal, except for the name of the database", texts[0] == texts[1])
 
-    # Backup; then P01 withdraws, which the next backup notes; then the server is lost and the older dump restored.
+    # Make a backup. Then P01 withdraws, which the next backup notes. Then the server is lost and the older
+    # dump is restored.
     dump = lab.collector("backup", "lab", lab.at("dumps")).strip()
     lab.sql(f"SELECT turnpoint.withdraw('{station}', 'P01')")
     kept = lab.at("kept.dump")

@@ -49,7 +49,7 @@ desk::LiveTrial answered(bool correct, double response_time_s) {
   return trial;
 }
 
-/// Passes on the beginnings of the session's first trials to another monitor, then ends the session.
+/// Passes the beginnings of the session's first trials on to another monitor, then ends the session.
 struct FirstTrials : session::Monitor {
   session::Monitor& to;
   int left;
@@ -63,7 +63,7 @@ struct FirstTrials : session::Monitor {
   }
 };
 
-/// The drives that the page shows, one for each tone, such as "0.512 um on", in order.
+/// Returns the drive amplitudes that the page shows, one for each tone, such as "0.512 um on", in order.
 std::vector<std::string> drives_shown(const desk::LiveState& state) {
   std::vector<std::string> drives;
   for (const auto& [label, value] : state.scene) {
@@ -284,6 +284,25 @@ TEST_CASE("the report on the screen has the finger's forces and friction, if for
   CHECK(value_of(pages.forces, "speed: felt \u2212 planned boundary").find(" mm") != std::string::npos);
   CHECK(pages.finger);
   CHECK(pages.friction);
+}
+
+TEST_CASE("new studies are saved with the protocols or, if that is not possible, beside the database",
+          "[desk]") {
+  const Folder folder;
+  const auto database = (folder.path / "data/lab.sqlite").string();
+  const auto own = (folder.path / "data/protocols").string(), shipped = (folder.path / "shipped").string();
+  CHECK(desk::folder_for_studies(folder.path.string(), database) == folder.path.string());
+  CHECK(desk::folder_for_studies((folder.path / "none").string(), database) == own);
+  std::filesystem::create_directories(own);
+  std::filesystem::create_directories(shipped);
+  std::filesystem::copy_file(TURNPOINT_SOURCE_DIR "/protocols/demo.toml", own + "/mine.toml");
+  CHECK(desk::list_studies(shipped, database).empty());
+  if (::geteuid() == 0) return;  // root may write into every folder
+  ::chmod(shipped.c_str(), 0555);
+  const auto list = desk::list_studies(shipped, database);
+  ::chmod(shipped.c_str(), 0755);
+  REQUIRE(list.size() == 1);
+  CHECK(list[0].path == own + "/mine.toml");
 }
 
 TEST_CASE("the list of protocol files in a folder includes those that cannot be used", "[operator]") {

@@ -1,4 +1,4 @@
-// What the operator's pages of studies and sessions show.
+// Tests what the operator's pages of studies and sessions show.
 #include <unistd.h>
 
 #include <filesystem>

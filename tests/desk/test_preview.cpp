@@ -24,7 +24,8 @@ protocol::Factors factors(const desk::Preview& preview, const std::vector<std::s
   return desk::factors_for(preview.protocol(), set, assumed);
 }
 
-/// The position of the boundary in the picture of a surface. Only the boundary's line has this colour.
+/// Returns the position of the boundary in the picture of a surface. It is found by its colour, which no
+/// other line has.
 double boundary_x(const std::string& svg) {
   for (const auto& line : svg_geometry::elements(svg, "line"))
     if (svg_geometry::attribute(line, "stroke") == "#b3400a") return svg_geometry::number(line, "x1");

@@ -30,7 +30,7 @@ int failure() { return failure(card.state); }
 
 constexpr std::int64_t kHistory = 1 << 16;  // longest loop delay
 
-/// The capture has a handle of its own.
+/// The handle that stands for the capture, which differs from that of the playback.
 snd_pcm_t* capture() { return reinterpret_cast<snd_pcm_t*>(&card.captured); }
 
 /// Remembers what is played now, and captures what was played one loop delay ago.

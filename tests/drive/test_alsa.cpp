@@ -38,7 +38,7 @@ bool opens(const OutputConfig& config) {
   }
 }
 
-/// Why the capture is refused; "" if it opens.
+/// Returns the reason why this capture is refused; "" if it opens.
 std::string capture_refused(const OutputConfig& config) {
   try {
     DeviceCapture capture(config);

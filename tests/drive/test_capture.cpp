@@ -29,7 +29,7 @@ struct Card {
     capture = std::make_unique<DeviceCapture>(config);
   }
 
-  /// Takes all blocks that wait and checks that they are in order.
+  /// Takes all blocks that are waiting, and checks that they are in order.
   void take() {
     while (capture->take(block)) {
       CHECK(block.first_frame >= next);

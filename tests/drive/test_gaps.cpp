@@ -28,7 +28,7 @@ Burst burst_of(std::int64_t length_frames) {
   return burst;
 }
 
-/// Channel 0 of frames [first, end), as an uninterrupted synthesis renders it.
+/// Returns frames [first, end) of channel 0 as an uninterrupted synthesis renders them.
 std::vector<std::int32_t> unbroken(std::span<const PreparedBurst> bursts, const Format& format,
                                    std::int64_t first, std::int64_t end) {
   Synth synth(format);
@@ -122,7 +122,7 @@ class Bench {
         run.scheduled.back().start_frame + kLengths[1] - stream.counters().frames + 4 * buffer();
     plan(mishaps, kinds, frames);
     const auto last = fake_pcm().now + frames + 3 * buffer() + lasting_;
-    const auto one_in = pick({1, 3, 40});  // the session polls once in this many steps
+    const auto one_in = pick({1, 3, 40});  // the session polls once in this many steps of the stream
     bool answered = false;
     while (fake_pcm().now < last || !machine.done()) {
       stream.step();

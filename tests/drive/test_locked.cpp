@@ -92,7 +92,8 @@ TEST_CASE("if memory is recorded as locked, the audio thread's stack, its blocks
     while (probe.address == 0) std::this_thread::yield();
     const auto all = mappings();
     CHECK(unlocked(all, probe.address - 16384, 16384) == 0);
-    // The clock's pairs of frame and time, 16 kB, are not used by the audio thread, so they need no lock.
+    // Leave out the clock's 16 kB of pairs of frame and time: the audio thread does not use them, so they
+    // need no lock.
     std::size_t engine = 0, left_out = 0;
     for (const auto& allocation : allocations) {
       if (allocation.size < 1024) continue;

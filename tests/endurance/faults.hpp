@@ -15,7 +15,7 @@ enum class Fault {
   touch_gone,      ///< the touch panel is unplugged
   lines_gone,      ///< the GPIO chip of buttons and amplifier is unplugged, and comes back
   disarm,          ///< the operator disarms
-  repeat,          ///< the operator voids this trial, so that it is repeated
+  repeat,          ///< the operator declares this trial void, so that it is repeated
   pause,           ///< the operator pauses the session
   end_session,     ///< participant or operator ends the session, which is continued later
   clock_jump,      ///< somebody changes the wall clock by up to three days
@@ -28,8 +28,8 @@ enum class Fault {
 inline constexpr int kFaults = 17;
 const char* name(Fault fault);
 
-/// The course of events, determined by a seed: when the next fault comes, and which one. It is the same on
-/// every machine.
+/// The sequence of faults in a run, determined by a seed: when the next fault comes, and which one. It is the
+/// same on every machine.
 class Course {
  public:
   Course(std::uint64_t seed, double mean_interval_s) : random_(seed), mean_interval_s_(mean_interval_s) {}

@@ -1,6 +1,7 @@
-// endurance [--hours H] [--seed N] [--every S] [--plant NAME]: runs hours of session on the virtual clock
-// with a seeded fault about every S seconds. Exits with 1 if an acknowledged trial was lost, the amplifier
-// was on when it must not be, memory grew, or a session differed from one without faults.
+// endurance [--hours H] [--seed N] [--every S] [--plant NAME]: runs sessions for hours on the virtual clock.
+// A fault, drawn from the seed, happens about every S seconds. Exits with 1 if a trial that was reported as
+// stored is lost, if the amplifier was on when it must not be, if the memory use grew, or if a session
+// differed from one without faults.
 #include <fmt/format.h>
 
 #include <chrono>

@@ -32,8 +32,8 @@ Room::Room(World& world, Disk disk, std::unique_ptr<session::Stage> inner, int r
 }
 
 Room::~Room() {
-  // Whatever ends the process, the kernel then releases the enable line, and its pull-down resistor makes it
-  // low.
+  // When the process ends for whatever reason, the kernel releases the enable line, and the pull-down
+  // resistor takes it low.
   world_.amplifier.line(world_ns(), false);
   for (const char* what : {"amplifier line", "stop pressed", "lines gone"}) world_.amplifier.over(what);
   world_.now_ns = world_ns();

@@ -12,16 +12,16 @@
 
 namespace endurance {
 
-/// Violations that a run plants on purpose. The checks must detect each of them.
+/// Violations that a run commits on purpose. The checks must detect each of them.
 enum class Plant { none, deaf_guard, never_off, lost_trial, careless_disk, leak };
 
-/// Simulates the death of the process. Thrown out of the run after the files were copied as they were at that
-/// moment.
+/// Simulates the death of the process. It is thrown after the files were copied in the state in which this
+/// death leaves them.
 struct Died : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// The surroundings of a station, which exist longer than a process of the station.
+/// Everything around a station that outlives its processes.
 struct World {
   explicit World(Course c, Plant p) : course(std::move(c)), plant(p) {}
 
@@ -49,10 +49,10 @@ struct Disk {
   std::function<bool()> dead;
 };
 
-/// The room for one life of the station's process. Time, drive and observer are the virtual stage's; the
-/// amplifier is the station's own guard on a line that the watch observes; faults come as the course
-/// prescribes. It also plays the operator, who repairs and arms (sometimes too early), and the participant,
-/// who sees the pages.
+/// The room during the life of one process of the station. Time, drive and observer are those of the virtual
+/// stage. The amplifier is the station's own guard, on a line that the watch observes. Faults come as the
+/// course prescribes. The room also plays the operator, who repairs and arms (sometimes too early), and the
+/// participant, who sees the pages.
 class Room : public turnpoint::session::Stage, public turnpoint::session::Display {
  public:
   using Input = turnpoint::session::Input;

@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// A session that has not ended after this many processes counts as unable to end.
+// A session that needs more processes than this counts as one that cannot be completed.
 constexpr int kLivesAtMost = 400;
 constexpr std::int64_t kRest_ns =
     2'400'000'000'000;  // longer than the half hour without stimuli that ends a period of exposure
@@ -117,7 +117,7 @@ void Station::take_files(Fault how) {
     if (fs::exists(database_ + suffix)) fs::copy_file(database_ + suffix, into + "/a.sqlite" + suffix);
 }
 
-/// Called after the process has died: checks the files that it left, and continues with them.
+/// Called after the process has died. Checks the files that it left, and continues with them.
 void Station::bury(const std::string& how) {
   operations_left_ = 0;
   full_.space_again();
@@ -183,8 +183,8 @@ Station::Ending Station::give_up(const std::string& why) {
   return Ending::unusable;
 }
 
-/// Runs the session in one process and handles its end. A problem that the station's own checks find is a
-/// violation too.
+/// Runs the session until it, or the process that it runs in, has ended. Problems that the station's own
+/// checks find also count as violations.
 Station::Ending Station::live_and_die(const session::Setup& setup) {
   std::string how = "its end";
   auto ending = Ending::on_the_way;

@@ -171,7 +171,7 @@ void TrialWatch::check(const std::string& database, const std::string& when) {
     violations_.push_back(fmt::format("trial lost: after {}: number {} of session {} {}", when, key.second,
                                       key.first, there == found.end() ? "is gone" : "has changed"));
   }
-  kept_ = std::move(found);  // report a lost trial only once
+  kept_ = std::move(found);  // keep what was found, so that a lost trial is reported only once
 }
 
 void TrialWatch::compare(const std::string& database, const std::string& session_id,

@@ -14,12 +14,13 @@ namespace endurance {
 /// Descriptions of violations. A run with an empty list has passed.
 using Violations = std::vector<std::string>;
 
-/// Watches the amplifier's line from outside, with separate rules. It knows the line, the events in the room,
+/// Watches the amplifier's line from outside, by rules of its own. It knows the line, the events in the room,
 /// the operator's actions and the page on the screen, but none of the program's states. Times are world times
 /// in ns and never go back.
+///
 /// The line must be low unless all of these hold: an operator has armed since power-on and since the last
-/// fault, stop or disarming; no cause of a fault is present; and a trial is on the screen (until 250 ms after
-/// the pages of its stimuli). During a stimulus that is answered, it must be high.
+/// fault, stop or disarming; no cause of a fault is present; and a trial is on the screen, or was until at
+/// most 250 ms ago. During a stimulus that is answered, the line must be high.
 class AmplifierWatch {
  public:
   explicit AmplifierWatch(Violations& violations) : violations_(violations) {}

@@ -23,7 +23,8 @@ std::string hash_of(const std::vector<Value>& values) {
       .substr(0, 16);
 }
 
-/// A burst of one second with ramps: two tones glide to two others, and a pulse marks onset and change.
+/// Returns a burst of one second with ramps. Two tones glide to two others, and a pulse marks onset and
+/// change.
 drive::Burst burst() {
   drive::Burst burst;
   burst.start_frame = 1000;
@@ -74,7 +75,7 @@ std::vector<records::TrialRow> session_of(const std::string& protocol, const Tem
   return trials;
 }
 
-/// A hash of the questions and answers, to the last bit.
+/// Returns a hash of the questions and answers, to the last bit.
 std::string decided(const std::vector<records::TrialRow>& trials) {
   std::ostringstream text;
   text << std::hexfloat;
@@ -90,7 +91,7 @@ std::string decided(const std::vector<records::TrialRow>& trials) {
   return text::sha256(text.str()).substr(0, 16);
 }
 
-/// A hash of the stimuli and their times, to the last bit.
+/// Returns a hash of the stimuli and their times, to the last bit.
 std::string driven(const std::vector<records::TrialRow>& trials) {
   std::ostringstream text;
   text << std::hexfloat;
@@ -103,8 +104,8 @@ std::string driven(const std::vector<records::TrialRow>& trials) {
   return text::sha256(text.str()).substr(0, 16);
 }
 
-/// A hash of the mutual information of every stimulus, to the last bit, over 20 answers, if these parameters
-/// are of no interest.
+/// Returns a hash of the mutual information of every stimulus over 20 answers, to the last bit. The
+/// parameters in `nuisance` are of no interest.
 std::string informed(const std::vector<std::string>& nuisance) {
   procedure::Spec spec;
   spec.kind = procedure::Kind::psi_marginal;

@@ -81,7 +81,7 @@ std::string absolute(const char* path) {
 enum class Effect {
   reads,
   writes,    ///< calls that need space on the disk
-  arranges,  ///< calls that change files or folders but need no space
+  arranges,  ///< calls that change files or folders but need no space on the disk
 };
 
 /// Returns true, with errno set, if this call must fail. `torn` executes only the first half of the call.

@@ -1,5 +1,5 @@
-// Any bytes must either be a protocol or be refused with at least one problem. For an accepted protocol,
-// calls every function that needs no rig.
+// Whatever the bytes are, they must either be a protocol or be refused with at least one problem. If they are
+// accepted, this calls every function that needs no rig.
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>

@@ -17,8 +17,8 @@ namespace {
 using Layers = std::set<std::string>;
 
 struct Table {
-  std::map<std::string, Layers> allowed;  // a layer -> the layers that it may use
-  // prefix of a system header -> prefix of the only paths that may include it
+  std::map<std::string, Layers> allowed;  // for each layer, the layers that it may use
+  // pairs of the beginning of a system header's name and the beginning of the only paths that may include it
   std::vector<std::pair<std::string, std::string>> system_only;
 };
 
@@ -47,21 +47,21 @@ Table table_of_the_tree() {
   return parse_table(file);
 }
 
-/// The layer of a source file: "physics" or "station/<layer>".
+/// Returns the layer of a source file: "physics" or "station/<layer>".
 std::string layer_of(const std::string& path) {
   const auto first = path.find('/');
   if (path.substr(0, first) != "station") return path.substr(0, first);
   return path.substr(0, path.find('/', first + 1));
 }
 
-/// The layer to which this namespace belongs; "" if there is none.
+/// Returns the layer to which this namespace belongs; "" if there is none.
 std::string layer_of_namespace(const Table& table, const std::string& name) {
   for (const auto& layer : {name, "station/" + name})
     if (table.allowed.count(layer) > 0) return layer;
   return "";
 }
 
-/// The line without its comment and without text in quotes.
+/// Returns the line without its comment and without text in quotes.
 std::string code_of(const std::string& line) {
   std::string code;
   char quote = '\0';
@@ -88,8 +88,8 @@ std::string included_by(const std::string& line) {
   return open == std::string::npos ? "" : line.substr(open);
 }
 
-/// The other layers that a line of `file` uses by an include, a qualified name, or a declaration in another
-/// layer's namespace.
+/// Returns the other layers that a line of `file` uses by an include, a qualified name, or a declaration in
+/// another layer's namespace.
 Layers used_by(const Table& table, const std::string& file, const std::string& line) {
   Layers used;
   const auto header = included_by(line);
@@ -138,7 +138,7 @@ void each_line(const fs::path& root, const Take& take) {
     }
 }
 
-/// Entries of the table that no line of the sources needs, each as "LAYER: LAYER".
+/// Returns the entries of the table that no line of the sources needs, each as "LAYER: LAYER".
 std::vector<std::string> unused(const Table& table, const std::map<std::string, Layers>& used) {
   std::vector<std::string> all;
   for (const auto& [layer, allowed] : table.allowed)
@@ -187,7 +187,8 @@ TEST_CASE("a name of a layer that the table does not allow is found without an i
   CHECK(breaks("  const auto rows = turnpoint::store::read_session(path, id);"));
   CHECK(breaks("std::vector<store::SessionRecord> all;"));
   CHECK(breaks("using namespace store;"));
-  CHECK(breaks("namespace turnpoint::store {"));  // a namespace that is opened, as for a forward declaration
+  // opening a namespace, as a forward declaration does, counts too
+  CHECK(breaks("namespace turnpoint::store {"));
   CHECK_FALSE(breaks("namespace turnpoint::trial {"));
   CHECK_FALSE(breaks("  return terms::name(outcome);"));
   CHECK_FALSE(breaks("  log(\"store::read_session\");  // as store::read_session"));

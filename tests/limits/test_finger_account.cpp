@@ -49,7 +49,8 @@ TEST_CASE("a trial that a crash cut off counts as the longest stimulus", "[sessi
   CHECK(history.stimuli[0].end_s - kNow_s == Approx(0).margin(1e-5));  // the stimulus counts only up to now
   records::BlockRecord block;
   block.trials.emplace_back();
-  session.blocks.push_back(block);  // negative control: a stored trial was not cut off
+  // negative control: a stored trial has ended, so it does not count as cut off
+  session.blocks.push_back(block);
   CHECK(finger_history({session}, kNow_s, 30).stimuli.empty());
 }
 

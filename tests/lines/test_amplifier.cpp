@@ -38,7 +38,7 @@ struct Bench {
   }
 };
 
-/// The reason of a refusal; "" if there was none.
+/// Returns the reason of a refusal; "" if there was none.
 std::string why_not(const drive::Amplifier::Refusal& refusal) {
   return refusal ? terms::describe(*refusal) : "";
 }

@@ -9,7 +9,7 @@ namespace {
 
 constexpr std::int64_t ms = 1'000'000;
 
-/// The reason of a refusal; "" if there was none.
+/// Returns the reason of a refusal; "" if there was none.
 std::string why_not(const std::optional<Guard::Refusal>& refusal) {
   if (!refusal) return "";
   return std::string(name(refusal->kind)) + (refusal->latched ? " latched" : "");

@@ -23,7 +23,7 @@ struct Set {
   std::uint32_t levels = 0;
 };
 
-/// What the lines were set to, and when.
+/// The levels to which the lines were set, with the times.
 struct Record {
   std::mutex mutex;
   std::vector<Set> sets;
@@ -168,7 +168,8 @@ TEST_CASE("each pulse of a sync line is reported with the time of its first edge
   CHECK(faults[0] == "sync line: 2 edges were lost");
 }
 
-// Not a test: prints how late an ordinary thread gives out codes on this machine. Run it by its name.
+// Not a test: prints how late an ordinary thread on this machine sends codes. It runs only if it is called by
+// name.
 TEST_CASE("how late codes are", "[.][trigger]") {
   Record record;
   TriggerLines lines(std::make_unique<RecordedOutputs>(record), three_bits(true));

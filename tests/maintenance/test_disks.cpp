@@ -1,4 +1,5 @@
-// Disks that can be taken out, in folders laid out like the kernel's, with a script in place of udisksctl.
+// Tests disks that can be taken out. Folders with the kernel's layout stand for the kernel, and a script for
+// udisksctl.
 #include <unistd.h>
 
 #include <filesystem>
@@ -50,7 +51,7 @@ struct Machine {
   void mounts(const std::string& more) const {
     write(sources.mounts, "25 1 179:0 / / rw,noatime shared:1 - ext4 /dev/mmcblk0 rw\n" + more);
   }
-  /// udisksctl as a script that notes its arguments and then does this.
+  /// Replaces udisksctl by a script that notes its arguments and then runs the commands `does`.
   void udisks(const std::string& does) const {
     write(sources.tool, "#!/bin/sh\necho \"$@\" >> " + (folder / "asked").string() + "\n" + does + "\n");
     fs::permissions(sources.tool, fs::perms::owner_all);
@@ -58,7 +59,7 @@ struct Machine {
   std::string asked() const { return system::read_file((folder / "asked").string()); }
 };
 
-/// The message of the error that a call throws; "" if it throws none.
+/// Returns the message of the error that a call throws; "" if it throws none.
 template <typename Call>
 std::string error_of(Call call) {
   try {
@@ -105,7 +106,8 @@ TEST_CASE("ejecting unmounts and then switches off, and stops if the disk is in 
   const Machine machine;
   machine.mounts(kStick);
   const auto disk = maintenance::removable_disks(machine.sources).at(0);
-  machine.udisks("case $1 in power-off) exit 1;; esac");  // a card cannot be switched off
+  // this disk cannot be switched off, like a memory card
+  machine.udisks("case $1 in power-off) exit 1;; esac");
   maintenance::eject(disk, machine.sources);
   CHECK(machine.asked() ==
         "unmount --no-user-interaction --block-device /dev/sda1\n"

@@ -15,9 +15,11 @@ using maintenance::PickUpOptions;
 
 namespace {
 
-constexpr double kFullScalePerUm = 0.1, kUmPerFullScale = 4;  // of the simulated pick-ups and transducer
+// sensitivity of the simulated pick-ups, and displacement of the simulated transducer at full scale
+constexpr double kFullScalePerUm = 0.1, kUmPerFullScale = 4;
 
-/// Writes what an instrument would show that is wrong by the factor `error` and by `power` of frequency.
+/// Writes the table of an instrument whose readings are wrong by the factor `error` and by this `power` of
+/// frequency.
 std::string table(const TemporaryFolder& folder, const plant::Plant& plant, double error,
                   const std::vector<double>& frequencies, double power = 0) {
   const auto path = folder / "vibrometer.csv";
@@ -125,7 +127,7 @@ TEST_CASE("a session with the calibration of a sweep is proven, and one with wro
     CHECK(std::abs(trial.drive_ratio_dB.value()) < 0.05);
   }
   for (auto& pick_up : calibration.pick_ups)
-    for (auto& point : pick_up.response.points) point.amplitude *= 1.25;  // 1.9 dB
+    for (auto& point : pick_up.response.points) point.amplitude *= 1.25;  // change the amplitude by 1.9 dB
   CHECK(run_with(folder, path, write("loud.toml"), bad).status == records::SessionStatus::interrupted);
   REQUIRE_FALSE(bad.empty());
   for (const auto& trial : bad) {
@@ -135,7 +137,7 @@ TEST_CASE("a session with the calibration of a sweep is proven, and one with wro
   }
   for (auto& pick_up : calibration.pick_ups)
     for (auto& point : pick_up.response.points)
-      point.amplitude /= 1.25, point.phase_rad += 0.35;  // 20 degrees
+      point.amplitude /= 1.25, point.phase_rad += 0.35;  // change the phase by 20 degrees
   CHECK(run_with(folder, path, write("turned.toml"), late).voided == 0);
   for (const auto& trial : late) CHECK(trial.proof == terms::Proof::flagged);
 }
@@ -146,13 +148,15 @@ TEST_CASE("a table that contradicts the sweep, has another unit, or is too short
   const auto rig = rig::load(measured::with_capture(folder, measured::kPickUps));
   session::SimulatedRoom room(rig);
   PickUpOptions options;
-  options.vibrometer = table(folder, room.plant(), 1000, kFrequencies);  // nanometres
+  // readings in nanometres instead of micrometres
+  options.vibrometer = table(folder, room.plant(), 1000, kFrequencies);
   CHECK(refusal(rig, options).find("check the unit") != std::string::npos);
   options.vibrometer = table(folder, room.plant(), 1, {24e3, 28e3, 32e3, 36e3});
   CHECK(refusal(rig, options).find("needs 5 or more") != std::string::npos);
   options.vibrometer = table(folder, room.plant(), 1, {15e3, 28e3, 32e3, 36e3, 40e3});
   CHECK(refusal(rig, options).find("outside of the sweep") != std::string::npos);
-  options.vibrometer = table(folder, room.plant(), 1, kFrequencies, 6);  // another place or sensor
+  // a pick-up at another place, or another sensor, would give such a table
+  options.vibrometer = table(folder, room.plant(), 1, kFrequencies, 6);
   CHECK(refusal(rig, options).find("proportional to the power") != std::string::npos);
   options.vibrometer = folder / "wrong.csv";
   std::ofstream(options.vibrometer)

@@ -113,8 +113,8 @@ TEST_CASE("a passage is found for any drift and bound", "[observer]") {
 
 namespace {
 
-/// The probability that a walk has left at +1 or is above 0 at `time`, by explicit finite differences of the
-/// Fokker-Planck equation dp/dt = -drift dp/dx + 1/2 d2p/dx2 between absorbing boundaries.
+/// Computes the probability that a walk has left at +1 or is above 0 at `time`, by explicit finite
+/// differences of the Fokker-Planck equation dp/dt = -drift dp/dx + 1/2 d2p/dx2 between absorbing boundaries.
 double upper_by_differences(double drift, double time) {
   constexpr int n = 200;  // cells from -1 to 1
   const double h = 2.0 / n;

@@ -22,7 +22,7 @@ Question at_level(double level) {
   return question;
 }
 
-/// The share of each answer in this many simulated trials.
+/// Returns the share of each answer in this many simulated trials.
 std::vector<double> shares(const Observer& observer, Question question, int trials) {
   std::vector<double> counts(static_cast<std::size_t>(question.answers));
   for (int trial = 0; trial < trials; ++trial) {
@@ -243,8 +243,9 @@ TEST_CASE(
 
 TEST_CASE("with several intervals, and in ABX, the observer is as good as its noisy observations are",
           "[observer]") {
-  // An observer of two intervals who is right in 1 - 2^-(1 + level) of the trials has this d'. Here the
-  // proportions that follow from this d' are found by drawing the observations.
+  // `low` becomes the d' of an observer who is right in 1 - 2^-(1 + level) of the trials with two intervals.
+  // Noisy observations with this d' are simulated in the other tasks, and their proportions of right answers
+  // are compared with the observer's.
   std::mt19937_64 random(7);
   std::normal_distribution<> noise;
   constexpr int trials = 200'000;

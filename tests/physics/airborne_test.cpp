@@ -14,8 +14,8 @@ namespace {
 
 constexpr double pi = std::numbers::pi;
 
-/// The sources of a round piston of radius `a_m` that moves by `u_m`. They form rings of equal width and are
-/// nearly equally far from each other.
+/// Returns the sources of a round piston of radius `a_m` that moves by `u_m`: rings of equal width, in which
+/// the sources are nearly equally far from each other.
 std::vector<SoundSource> piston(double a_m, double u_m, int rings) {
   std::vector<SoundSource> sources;
   for (int ring = 0; ring < rings; ++ring) {

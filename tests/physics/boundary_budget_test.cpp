@@ -51,7 +51,8 @@ Surface membrane(TaperForm taper) {
   return s;
 }
 
-// The derivative of the edge's position by a parameter, from solutions on two changed surfaces.
+// Returns the derivative of the edge's position with respect to a parameter, from solutions on two changed
+// surfaces.
 double solved_derivative(const Surface& s, Parameter p, const char* text, double f) {
   const double step = 0.1 * standard_deviation(s, p);
   return (solved_m(changed(s, p, step), text, f) - solved_m(changed(s, p, -step), text, f)) / (2 * step);
@@ -74,8 +75,8 @@ void check_derivatives(const Surface& s, const char* text, double f) {
 }  // namespace
 
 TEST_CASE("a thin plate's boundary moves as its closed form says", "[physics]") {
-  // x = W0/d - C (E h^2 / rho)^(1/4) / (d sqrt f), where x is the boundary, W0 and d are half-width and slope
-  // of the taper, E, rho and h are modulus, density and thickness, f is the frequency and C a constant.
+  // The boundary is x = W0/d - C (E h^2 / rho)^(1/4) / (d sqrt f). W0 and d are half-width and slope of the
+  // taper; E, rho and h are modulus, density and thickness; f is the frequency and C a constant.
   const Surface s = plate();
   for (const double f : {22.4e3, 30e3, 45e3}) {
     const double x = solved_m(s, "turning", f), w = 0.014 - 0.03 * x;
@@ -132,8 +133,8 @@ TEST_CASE("the first-order uncertainty agrees with the scatter of random surface
 
 TEST_CASE("the first-order uncertainty of thick plates agrees with the scatter of random surfaces",
           "[physics]") {
-  // Sampled at the turning point, whose position takes microseconds. Above, the derivatives of p50 are
-  // compared.
+  // This samples the turning point, whose position takes only microseconds to compute. The derivatives of the
+  // edge p50 are compared above.
   std::mt19937_64 random(12);
   std::normal_distribution<double> normal;
   for (const PlateTheory theory : {PlateTheory::mindlin, PlateTheory::elastic}) {
@@ -163,8 +164,8 @@ TEST_CASE("a budget lists first the parameter whose measurement helps most", "[p
   double variance = 0;
   for (const Contribution& c : budget.contributions) variance += c.moved_m * c.moved_m;
   CHECK(budget.total_m == Approx(std::sqrt(variance)));
-  // The uncertainty that is left after the clamp line was measured is the total of a surface whose clamp line
-  // is known.
+  // The uncertainty that would be left after measuring the clamp line is the total for a surface whose clamp
+  // line is known.
   s.sd.clamp_line_m = 0;
   CHECK(boundary_budget(s, 30e3, solved_m(s, "p50", 30e3)).total_m ==
         Approx(budget.contributions.front().left_m));

@@ -39,8 +39,8 @@ Surface random_surface(Surface s, std::mt19937_64& random) {
   return s;
 }
 
-// Boundaries measured on the surface `truth`, at frequencies for which the map of `nominal` places them
-// evenly from 100 to 205 mm.
+// Returns boundaries measured on the surface `truth`, at frequencies for which the map of `nominal` places
+// them evenly from 100 to 205 mm.
 std::vector<MeasuredBoundary> measured(const Surface& nominal, const Surface& truth, int count, double sd_m,
                                        std::mt19937_64& random) {
   std::normal_distribution<double> error(0, sd_m);
@@ -53,12 +53,13 @@ std::vector<MeasuredBoundary> measured(const Surface& nominal, const Surface& tr
 }
 
 struct Errors {
-  double rms_m = 0, largest_m = 0;  // largest_m: 95 % of the plates have no larger error
+  double rms_m = 0, largest_m = 0;  // largest_m: exceeded by only 5 % of the plates
   double coverage = 0;              // share of boundaries inside the stated 95 % interval
 };
 
-// Errors of a map for random plates, whose parameters scatter as `nominal` states, at boundaries from 100 to
-// 205 mm. The map is that of a fit to `count` measured boundaries or, if `count` is 0, that of `nominal`.
+// Returns the errors of a map at boundaries from 100 to 205 mm on random plates, whose parameters scatter as
+// `nominal` states. The map is that of a fit to `count` measured boundaries or, if `count` is 0, that of
+// `nominal`.
 Errors simulated(const Surface& nominal, int count, double sd_m, int plates) {
   std::mt19937_64 random(3);
   double square = 0;
@@ -164,7 +165,7 @@ TEST_CASE("a boundary that was read wrongly is named as an outlier", "[physics]"
   points[3].boundary_m -= 3e-3;
   points[0].boundary_m -= 10e-3;
   CHECK(names()[0]);
-  // Two boundaries that contradict each other are both named.
+  // If two boundaries contradict each other, both must be named.
   points.resize(2);
   points[1] = points[0];
   points[1].boundary_m += 10e-3;

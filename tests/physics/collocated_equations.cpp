@@ -16,17 +16,19 @@ using std::numbers::pi;
 using Real = Eigen::MatrixXd;
 using Index = Eigen::Index;
 
-// Differentiates functions of eta, from their values at the points between 0 and 1.
+// Matrices that differentiate functions of eta, given their values at the points between 0 and 1.
 struct Across {
   Eigen::VectorXd eta;
-  Real even1, even2, odd1, odd2;  // first and second derivatives of even and odd functions that vanish at 1
-  Eigen::VectorXd side1, side2;   // what the value at 1 adds to the derivatives of an even function
-  Real clamped1, clamped2;  // derivatives of an even function that vanishes at 1 together with its slope
-  Eigen::RowVectorXd clamped_side;  // and its second derivative at 1
+  // first and second derivatives of even and of odd functions that vanish at 1
+  Real even1, even2, odd1, odd2;
+  // the contribution of the value at 1 to the derivatives of an even function
+  Eigen::VectorXd side1, side2;
+  Real clamped1, clamped2;          // derivatives of an even function whose value and slope vanish at 1
+  Eigen::RowVectorXd clamped_side;  // the second derivative of such a function at 1
   Eigen::RowVectorXd centre;        // value at 0 of an even function that vanishes at 1
 
   explicit Across(int points) {
-    const int n = points, last = 2 * n + 1;  // there is no point at 0
+    const int n = points, last = 2 * n + 1;  // `last` is an odd number, so that there is no point at 0
     const Eigen::VectorXd t = chebyshev_points(last);
     const Real d = differentiation(t), dd = d * d;
     eta = t.segment(n + 1, n);
@@ -56,8 +58,9 @@ struct Across {
   }
 };
 
-// The strip at one x, in units of 1/k. A derivative by x at constant y is a sum of derivatives by x at
-// constant eta and by eta, with these factors.
+// The strip at one x, in units of 1/k. The coordinates are x and eta = y / W(x). A derivative with respect to
+// x at constant y is a sum of derivatives with respect to x (at constant eta) and eta, with the following
+// factors.
 struct Strip {
   Eigen::ArrayXd eta;
   double w, slope, r, curve;
@@ -69,13 +72,14 @@ struct Strip {
         r(slope / w),
         curve(taper.second_derivative(x) / k / w) {}
 
-  // first derivative: that by x, and
-  Eigen::VectorXd along_once() const { return -r * eta; }  // that by eta
-  // second derivative: that by x, and
-  Eigen::VectorXd mixed() const { return -2 * r * eta; }                        // that by x and eta
-  Eigen::VectorXd once() const { return (2 * r * r - curve) * eta; }            // that by eta
-  Eigen::VectorXd along_twice() const { return r * r * eta.square(); }          // that by eta twice
-  Eigen::VectorXd twice() const { return r * r * eta.square() + 1 / (w * w); }  // the same, of the Laplacian
+  // the first derivative is d/dx plus
+  Eigen::VectorXd along_once() const { return -r * eta; }  // this factor times d/deta
+  // the second derivative is d2/dx2 plus
+  Eigen::VectorXd mixed() const { return -2 * r * eta; }              // this factor times d2/(dx deta), plus
+  Eigen::VectorXd once() const { return (2 * r * r - curve) * eta; }  // this factor times d/deta, plus
+  Eigen::VectorXd along_twice() const { return r * r * eta.square(); }  // this factor times d2/deta2
+  // factor of d2/deta2 in the whole Laplacian
+  Eigen::VectorXd twice() const { return r * r * eta.square() + 1 / (w * w); }
 };
 
 std::complex<double> lossy(const Surface& s) { return {1, -0.5 / s.quality_factor}; }
@@ -106,13 +110,14 @@ CollocatedEquations membrane(const Surface& s, double k, int points, const physi
   return e;
 }
 
-// Shape of a clamped strip at its first cut-off, cos(a eta)/cos a - cosh(b eta)/cosh b.
+// Returns the shape of a clamped strip at its first cut-off, cos(a eta)/cos a - cosh(b eta)/cosh b.
 double shape_at(double eta, double a, double b) {
   const double cosh_ratio = std::exp(b * (eta - 1)) * (1 + std::exp(-2 * b * eta)) / (1 + std::exp(-2 * b));
   return std::cos(a * eta) / std::cos(a) - cosh_ratio;
 }
 
-// Thin plate: u = lap v and lap u - tau u = mu v. On a clamped side lap v = (1 + W'^2)/W^2 d2v/deta2.
+// The equations of a thin plate: u = lap v and lap u - tau u = mu v. On a clamped side lap v = (1 + W'^2)/W^2
+// d2v/deta2.
 CollocatedEquations thin_plate(const Surface& s, double k, int points) {
   const auto across = std::make_shared<Across>(points);
   const auto taper = std::make_shared<Taper>(s);
@@ -149,7 +154,8 @@ CollocatedEquations thin_plate(const Surface& s, double k, int points) {
                                       side * twice.cwiseProduct(across->side2);
     here.bottomLeftCorner(m, m) = from_side * across->clamped_side;
   };
-  // the cut-off of the drive edge's own width: a tan a + b tanh b = 0 with b^2 = a^2 + tension
+  // The drive edge has the shape of the cut-off of its own width: a tan a + b tanh b = 0 with b^2 = a^2 +
+  // tension.
   const double w0 = k * taper->half_width_m(0), tension = tau * w0 * w0;
   double low = pi / 2, high = pi;
   for (int i = 0; i < 100; ++i) {
@@ -159,13 +165,13 @@ CollocatedEquations thin_plate(const Surface& s, double k, int points) {
   const double b = std::sqrt(low * low + tension), unit = shape_at(0, low, b);
   e.drive.resize(m);
   for (Index j = 0; j < m; ++j) e.drive[j] = shape_at(across->eta[j], low, b) / unit;
-  const Strip strip(*taper, k, across->eta, 0);  // no slope at constant y
+  const Strip strip(*taper, k, across->eta, 0);  // at the drive edge, the slope at constant y is 0
   e.drive_slope = -strip.along_once().cwiseProduct(across->clamped1 * e.drive);
   return e;
 }
 
-// Mindlin's plate, with the unknowns w, beta_x / k and beta_y / k. At the drive edge, w and beta_y have the
-// shape of the first cut-off of the edge's own width, and beta_x is 0.
+// The equations of Mindlin's plate, with the unknowns w, beta_x / k and beta_y / k. At the drive edge, w and
+// beta_y have the shape of the first cut-off of the edge's own width, and beta_x is 0.
 CollocatedEquations mindlin_plate(const Surface& s, double f, double k, int points) {
   const auto across = std::make_shared<Across>(points);
   const auto taper = std::make_shared<Taper>(s);
@@ -192,7 +198,7 @@ CollocatedEquations mindlin_plate(const Surface& s, double f, double k, int poin
     const double by_y = 1 / strip.w;
     first.setZero(3 * m, 3 * m);
     here.setZero(3 * m, 3 * m);
-    // second derivatives of a field by x and y, with these factors
+    // adds the second derivatives of a field with respect to x and y, multiplied by these factors
     const auto add_second = [&](Index i, const Real& d1, const Real& d2, double xx, double yy) {
       block(first, i, i) += xx * (mixed.asDiagonal() * d1);
       block(here, i, i) += xx * (once.asDiagonal() * d1) + xx * (strip.along_twice().asDiagonal() * d2) +
@@ -201,16 +207,16 @@ CollocatedEquations mindlin_plate(const Surface& s, double f, double k, int poin
     add_second(0, even1, across->even2, 1, 1);
     add_second(1, even1, across->even2, 1, less);
     add_second(2, odd1, across->odd2, less, 1);
-    const auto add_mixed = [&](Index i, Index j, const Real& d1, const Real& d2) {  // more d2/dxdy
+    const auto add_mixed = [&](Index i, Index j, const Real& d1, const Real& d2) {  // adds d2/(dx dy)
       block(first, i, j) += more * by_y * d1;
       block(here, i, j) -= more * by_y * strip.r * (d1 + across->eta.asDiagonal() * d2);
     };
     add_mixed(1, 2, odd1, across->odd2);
     add_mixed(2, 1, even1, across->even2);
-    block(first, 0, 1) += one;  // div beta
+    block(first, 0, 1) += one;  // the divergence of beta
     block(here, 0, 1) += along.asDiagonal() * even1;
     block(here, 0, 2) += by_y * odd1;
-    block(first, 1, 0) -= shear * one;  // beta + grad w
+    block(first, 1, 0) -= shear * one;  // beta plus the gradient of w
     block(here, 1, 0) -= shear * (along.asDiagonal() * even1);
     block(here, 2, 0) -= shear * by_y * even1;
     block(here, 1, 1) -= shear * one;

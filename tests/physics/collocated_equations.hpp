@@ -11,7 +11,8 @@
 
 namespace turnpoint::physics_test {
 
-// The unknowns u at one x are the values of one or more fields at the points across. They obey
+// Linear equations for the unknowns u at each x, which are the values of one or more fields at the points
+// across the strip:
 //   second u'' + first(x) u' + (here(x) + inertia mass) u = -(source(x) + inertia mass lift(x)).
 struct CollocatedEquations {
   Eigen::VectorXd second;
@@ -20,8 +21,9 @@ struct CollocatedEquations {
   std::complex<double> inertia;
   // empty if there is no load
   std::function<void(double x_m, Eigen::VectorXd& source, Eigen::VectorXd& lift)> load;
-  // At both ends, the first `drive.size()` unknowns are given: `drive` at the drive edge, 0 at the far end.
-  // If there are more unknowns, the derivatives of these by x are given instead of the others.
+  // Conditions at the ends. The first `drive.size()` unknowns are given at both ends: `drive` at the drive
+  // edge, 0 at the far end. If there are more unknowns, the other conditions give the derivatives of the
+  // first ones with respect to x.
   Eigen::VectorXd drive, drive_slope;
   Eigen::RowVectorXd centre;  // displacement of the centre line
 };

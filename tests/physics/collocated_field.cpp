@@ -51,17 +51,18 @@ using Matrix = Eigen::Matrix<Scalar, Eigen::Dynamic, Eigen::Dynamic>;
 template <class Scalar>
 using Vector = Eigen::Matrix<Scalar, Eigen::Dynamic, 1>;
 
-// An element's inner values from those at its ends: inner = left u_l + right u_r + source.
+// Gives the inner values of an element from those at its ends: inner = left u_l + right u_r + source.
 template <class Scalar>
 struct Slab {
   Matrix<Scalar> left, right;
   Vector<Scalar> source;
-  Matrix<Scalar> step;  // u_r = step u_l + offset
+  // gives the values at the right end from those at the left end: u_r = step u_l + offset
+  Matrix<Scalar> step;
   Vector<Scalar> offset;
 };
 
-// The unknowns at the right end of the last element, from those at its left end. The far end is held; if the
-// derivatives of the held unknowns are given too, the other unknowns there follow from them.
+// Gives the unknowns at the right end of the last element from those at its left end. The far end is held. If
+// the derivatives of the held unknowns are given too, the other unknowns there follow from them.
 template <class Scalar>
 Matrix<Scalar> at_far_end(const CollocatedEquations& e, const Matrix<Scalar>& by_left,
                           const Matrix<Scalar>& by_right) {
@@ -86,7 +87,8 @@ void CollocatedField::solve(const Surface& surface, const CollocatedEquations& e
   const Matrix<Scalar> one = Matrix<Scalar>::Identity(m, m);
 
   std::vector<Slab<Scalar>> slabs(strips.size());
-  Matrix<Scalar> slope;  // du/dx = slope u + slope_source at the left end of what lies farther out
+  // gives du/dx at the left end of everything farther out: du/dx = slope u + slope_source
+  Matrix<Scalar> slope;
   Vector<Scalar> slope_source;
   Real first, here;
   Eigen::VectorXd source(m), lift(m);
@@ -94,7 +96,8 @@ void CollocatedField::solve(const Surface& surface, const CollocatedEquations& e
     const double x0 = strips[s].first, h = k * strips[s].second;
     Slab<Scalar>& slab = slabs[s];
     Matrix<Scalar> a = Matrix<Scalar>::Zero(inner * m, inner * m);
-    Matrix<Scalar> ends = Matrix<Scalar>::Zero(inner * m, 2 * m + 1);  // left, right, source
+    // columns: for the left end, for the right end, and for the source
+    Matrix<Scalar> ends = Matrix<Scalar>::Zero(inner * m, 2 * m + 1);
     for (int i = 1; i < n; ++i) {
       const double x = x0 + 0.5 * strips[s].second * (1 + t[i]);
       const Eigen::Index row = (i - 1) * m;
@@ -119,7 +122,7 @@ void CollocatedField::solve(const Surface& surface, const CollocatedEquations& e
     slab.left = all.leftCols(m);
     slab.right = all.middleCols(m, m);
     slab.source = all.col(2 * m);
-    // du/dx at an end, from the inner values and those at both ends
+    // returns du/dx at an end, from the inner values and those at both ends
     const auto derivative = [&](int end, const auto& part) {
       Matrix<Scalar> sum = Matrix<Scalar>::Zero(m, part.cols());
       for (int i = 1; i < n; ++i) sum += 2 / h * d(end, i) * part.middleRows((i - 1) * m, m);
@@ -188,7 +191,7 @@ std::complex<double> CollocatedField::value(double x) const {
   const double at = 2 * (x - e->x0) / e->h - 1;
   std::complex<double> top = 0;
   double bottom = 0;
-  for (int i = 0; i <= n; ++i) {  // barycentric interpolation
+  for (int i = 0; i <= n; ++i) {  // barycentric interpolation between the points
     const double gap = at + std::cos(pi * i / n);
     const double weight = (i % 2 == 0 ? 1.0 : -1.0) * (i == 0 || i == n ? 0.5 : 1.0);
     if (std::abs(gap) < 1e-14) {

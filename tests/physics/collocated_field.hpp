@@ -13,12 +13,14 @@ namespace turnpoint::physics_test {
 struct CollocatedEquations;
 
 struct CollocationGrid {
-  int along = 12;          // degree in each element along x
-  int across = 9;          // points between the centre and the side, beyond half the phase across
-  int across_plate = 9;    // the same for a clamped plate
+  int along = 12;  // degree in each element along x
+  // number of points between the centre and the side, in addition to those that half of the phase across
+  // needs
+  int across = 9;
+  int across_plate = 9;    // this number for a clamped plate
   double radians = 4;      // phase along x that an element spans at most
-  double narrowing = 0.6;  // half-width at an element's right end, divided by that at its left end, at least
-  double lift = 0.8;       // reach of a piston's jump, in half-widths of the drive edge
+  double narrowing = 0.6;  // smallest ratio of the half-widths at an element's right and left end
+  double lift = 0.8;       // how far a piston's jump reaches, in half-widths of the drive edge
   double decay = 26;       // the strip ends where the field has decayed by e^-26 beyond the turning point
 };
 

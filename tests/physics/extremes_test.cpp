@@ -36,7 +36,7 @@ bool warns(const FieldNotes& notes, const char* code) {
   return std::ranges::any_of(notes.warnings, [&](const Warning& w) { return w.code == code; });
 }
 
-// Re and Im in columns i and i + 1.
+// Returns the complex number whose parts are in columns i and i + 1.
 std::complex<double> complex_at(const std::vector<std::string>& row, std::size_t i) {
   return {std::stod(row[i]), std::stod(row[i + 1])};
 }
@@ -80,7 +80,7 @@ Surface strip_of(const std::vector<std::string>& row) {
   return s;
 }
 
-// The plate of make_curved_plate.py, with its taper as a table of measured points.
+// Returns the plate of make_curved_plate.py, with its taper as a table of measured points.
 Surface curved_plate(const std::vector<std::string>& row) {
   const auto number = [&](std::size_t i) { return std::stod(row[i]); };
   Surface s = aluminium_plate();
@@ -148,7 +148,8 @@ TEST_CASE("fields of uniform strips near their resonances stay within the bound 
     std::vector<double> x;
     for (int i = 1; i < 10; ++i) x.push_back(s.length_m * (i / 10.37));
     for (const Model model : {Model::mode, Model::modes}) {
-      // `mode` has one transverse function; the closed form of a clamped strip has it, too
+      // compare `mode` with the references without a piston, which have a single transverse function, and
+      // `modes` with the others
       if ((model == Model::mode) == (row[1] == "piston")) continue;
       if (model == Model::modes && row[0] == "clamped") continue;
       CAPTURE(row[0], row[1], row[5], row[6], row[7], name(model));
@@ -163,9 +164,10 @@ TEST_CASE("fields of uniform strips near their resonances stay within the bound 
         const double resonance = tone.frequency_Hz / (1 + std::stod(row[7]));
         const double found = nearest_resonance_Hz(s, resonance * 1.0005).value();
         CHECK(std::abs(found / resonance - 1) <
-              (s.thickness_m < 0.4e-3 ? 1e-6 : 2e-9));  // thin: boundary layers
+              // thin plates have boundary layers, so their error is larger
+              (s.thickness_m < 0.4e-3 ? 1e-6 : 2e-9));
       }
-      // The shape does not suffer from the division by v(0).
+      // Errors of the shape alone, which the division by v(0) does not amplify.
       double exact = 0, same_shape = 0;
       for (std::size_t i = 9; i < row.size(); i += 2) exact = std::max(exact, std::abs(complex_at(row, i)));
       const double scale = largest(peak.tones[0].v) / exact;
@@ -273,7 +275,7 @@ TEST_CASE("the tones of a designed profile give the stated residual with Bessel 
 }
 
 TEST_CASE("a taper given by points that meet at the cut-off is as exact as the straight taper", "[physics]") {
-  // The turning point is a point of the table, at the drive edge, inside, and at the clamped end.
+  // The turning point is exactly at a point of the table: at the drive edge, inside, and at the clamped end.
   for (const double turning_m : {0.0, 0.1, 0.25}) {
     Surface s = membrane(60);
     s.taper = LinearTaper{0.03, 0.1};

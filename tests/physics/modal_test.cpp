@@ -26,7 +26,8 @@ TEST_CASE("the model modes reproduces the exact mode of a wedge that drives its 
     for (const int spare : {1, 2, 3}) {
       ModalResolution resolution;
       resolution.spare_functions = spare;
-      // The displacement of the drive edge, interpolated (barycentric) between Chebyshev points of eta^2.
+      // Returns the displacement of the drive edge, by barycentric interpolation between Chebyshev points of
+      // eta^2.
       resolution.drive = [&](double eta) {
         double top = 0, bottom = 0;
         for (int i = 0; i < edge_points; ++i) {

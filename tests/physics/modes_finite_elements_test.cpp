@@ -1,4 +1,4 @@
-// The bounds of `modes` on 200 random surfaces, against finite elements (oracles/make_modes.py).
+// Checks the bounds of `modes` on 200 random surfaces against finite elements (oracles/make_modes.py).
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -16,14 +16,15 @@ using turnpoint::physics_test::oracle;
 namespace {
 
 constexpr int points = 20;
-constexpr double reading_m = 1e-8;  // how exactly an edge is read from the finite elements
+// accuracy with which the position of an edge is read from the finite elements
+constexpr double reading_m = 1e-8;
 
 struct Scene {
   Surface surface;
   double frequency_Hz = 0;
   std::vector<double> v;  // |v| at x = 0.025 L, 0.075 L, ..., with |v| = 1 at the drive edge
   double most = 0, peak = 0, edge_m = 0;
-  // how much a coarser mesh changes |v|, relative to `most`; the peak, relative to itself; and the edge
+  // by how much a coarser mesh changes |v| (relative to `most`), the peak (relative to itself) and the edge
   double v_off = 0, peak_off = 0, edge_off_m = 0;
 };
 
@@ -73,7 +74,7 @@ Scene scene_of(const std::vector<std::string>& row) {
 
 double ln_at(const CentreLine& line, double x) { return line.value(x).ln_magnitude(); }
 
-// Largest difference of |v|, relative to the largest |v|.
+// Returns the largest difference of |v|, relative to the largest |v|.
 double amplitude_error(const Scene& scene, const CentreLine& line, Normalise normalise) {
   const bool drive = normalise == Normalise::drive;
   const double unit = ln_at(line, drive ? 0 : line.last_peak_m().value()), true_unit = drive ? 1 : scene.peak;

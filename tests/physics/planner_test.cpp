@@ -191,7 +191,7 @@ TEST_CASE("the planner's model is inside the tolerance, and the next cheaper mod
     const auto truth = make_centre_line(s, frequency_Hz, Model::modes);
     const auto error = true_error(s, choice.model, *truth, Normalise::peak);
     met += !error || error->amplitude <= *request.tolerance.amplitude ? 1 : 0;
-    // The smallest true error among the cheaper models, which the planner rejected.
+    // the smallest true error among the cheaper models that the planner rejected
     double best = std::numeric_limits<double>::infinity();
     for (const RungEstimate& rung : choice.considered) {
       if (rung.cost_s >= choice.bound.cost_s || !rung.usable) continue;

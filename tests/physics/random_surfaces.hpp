@@ -11,8 +11,8 @@ namespace turnpoint::physics_test {
 
 inline constexpr double frequency_Hz = 20000;
 
-// A table of 4 to 6 points with long, nearly even parts and steep steps. Higher modes are trapped between the
-// steps.
+// Returns a table of 4 to 6 points with long, nearly even parts and steep steps. Higher modes are trapped
+// between the steps.
 inline physics::TabulatedTaper stepped_table(Draw& draw, double w0, double length) {
   physics::TabulatedTaper table{{{0, w0}}};
   const int points = 4 + static_cast<int>(draw.next() % 3);
@@ -59,7 +59,7 @@ inline double random_quality_factor(Draw& draw) {
   return draw.next() % 3 == 0 ? std::numeric_limits<double>::infinity() : draw.spread(5, 2000);
 }
 
-// A membrane with any taper and both drives.
+// Returns a membrane with any taper and either drive.
 inline physics::Surface random_membrane(Draw& draw) {
   physics::Surface s = physics::seed_brass();
   const double cut = physics::cut_off_half_width_m(s, frequency_Hz);
@@ -70,15 +70,16 @@ inline physics::Surface random_membrane(Draw& draw) {
   return s;
 }
 
-// A plate of 0.3 to 3 mm with any taper, driven with the shape of its first mode: one in four simply
-// supported, one in four clamped under tension, the others clamped and free of tension.
+// Returns a plate of 0.3 to 3 mm with any taper, driven with the shape of its first mode. One in four is
+// simply supported, one in four clamped under tension, and the others clamped without tension.
 inline physics::Surface random_thin_plate(Draw& draw) {
   physics::Surface s = physics::aluminium_plate();
   s.thickness_m = draw.spread(0.3e-3, 3e-3);
   const auto kind = draw.next() % 4;
   if (kind == 0) s.edges = physics::Edges::supported;
   const double free_cut = physics::cut_off_half_width_m(s, frequency_Hz);
-  if (kind <= 1) {  // the boundary layer of the tension is 3 to 1/15 of the half-width
+  // the width of the boundary layer that the tension makes is from 3 times down to 1/15 of the half-width
+  if (kind <= 1) {
     const double layers = draw.spread(0.3, 15);
     s.bending = physics::Bending::on;
     s.tension_Pa =
@@ -90,7 +91,7 @@ inline physics::Surface random_thin_plate(Draw& draw) {
   return s;
 }
 
-// A clamped plate by Mindlin's theory, with h/W at the cut-off from 0.05 to 0.5.
+// Returns a clamped plate with Mindlin's theory, whose h/W at the cut-off is from 0.05 to 0.5.
 inline physics::Surface random_thick_plate(Draw& draw) {
   physics::Surface s = physics::aluminium_plate();
   s.theory = physics::PlateTheory::mindlin;

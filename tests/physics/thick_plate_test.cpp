@@ -21,7 +21,7 @@ using turnpoint::physics_test::oracle;
 
 namespace {
 
-// A clamped plate with shear modulus 1 and density 1, the units of the reference table.
+// Returns a clamped plate with shear modulus 1 and density 1, which are the units of the reference table.
 Surface unit_plate(double thickness, double poisson, PlateTheory theory) {
   Surface s = aluminium_plate();
   s.density_kg_m3 = 1;
@@ -34,11 +34,11 @@ Surface unit_plate(double thickness, double poisson, PlateTheory theory) {
 
 double number(const std::string& cell) { return std::stod(cell); }
 
-// Squared wavenumbers along the strip, times W^2, of the waves at a given omega W / c_s, smallest magnitude
-// first. Only waves that are symmetric about the centre line and antisymmetric through the thickness are
-// included. A value is complex where two evanescent branches have met. The method is semi-analytical finite
-// elements: with u = (i k A, b, c) exp(-i k x) and A, b, c made of elements in y and z, the eigenvalue
-// problem is linear in k^2 (S. Dong & R. Nelson, J. Appl. Mech. 39 (1972) 739).
+// Returns the squared wavenumbers along the strip, times W^2, of the waves at a given omega W / c_s, smallest
+// magnitude first. Only waves that are symmetric about the centre line and antisymmetric through the
+// thickness are included. A value is complex where two evanescent branches have met. The method is
+// semi-analytical finite elements: with u = (i k A, b, c) exp(-i k x) and A, b, c made of elements in y and
+// z, the eigenvalue problem is linear in k^2 (S. Dong & R. Nelson, J. Appl. Mech. 39 (1972) 739).
 std::vector<std::complex<double>> elastic_wavenumbers2(double t, double poisson, double omega, int count) {
   const SectionPencil s = SectionElements(t, poisson).pencil;
   const Eigen::Index na = s.along_mass.rows(), nb = s.mass.rows();

@@ -76,8 +76,8 @@ inline double carrier(std::int64_t frame, int channel) {
   return channel == 3 ? cosine(kCarrier_Hz, frame) : 0;
 }
 
-/// Complex amplitude z of the tone Re(z exp(2 pi i f frame / rate)) in a channel, with a Hann window over the
-/// frames [from, to).
+/// Returns the complex amplitude z of the tone Re(z exp(2 pi i f frame / rate)) in a channel, measured with a
+/// Hann window over the frames [from, to).
 inline std::complex<double> amplitude(const Recording& recording, int channel, double frequency_Hz,
                                       std::int64_t from, std::int64_t to) {
   std::complex<double> sum = 0;

@@ -140,7 +140,7 @@ TEST_CASE("clipping limits the drive and adds a third harmonic", "[plant]") {
   double highest = 0;
   for (std::int64_t n = kAt; n < kEnd; ++n) highest = std::max(highest, std::abs(recording.at(n, kPickup)));
   CHECK(highest == Approx(0.4 * 4 * 0.1).margin(2e-7));
-  // Closed form for the fundamental of a cosine of amplitude 2 that is clipped at 1, which it reaches at 60
+  // The fundamental in closed form for a cosine of amplitude 2 that is clipped at 1. It reaches 1 at 60
   // degrees.
   const double c = std::acos(0.5);
   const double harmonic1 = std::abs(amplitude(recording, kPickup, 1600, kAt + 9600, kEnd)) / (0.4 * 0.4);
@@ -192,7 +192,7 @@ TEST_CASE("a finger that lifts takes its forces away", "[plant]") {
   run(plant, 19200, silence);
   CHECK(plant.truth().normal_N == 0);
   CHECK(plant.truth().lateral_N == 0);
-  CHECK(plant.truth().finger.finger_m > place_m);  // the hand continues its stroke
+  CHECK(plant.truth().finger.finger_m > place_m);  // the hand continues its stroke in the air
   run(plant, 38400, silence);
   CHECK(plant.truth().normal_N == Approx(0.5).epsilon(1e-9));
 }

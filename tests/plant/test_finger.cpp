@@ -146,8 +146,8 @@ TEST_CASE("force and friction vary with the given standard deviations", "[plant]
 
 TEST_CASE("pink noise has the same power in each octave", "[plant]") {
   PinkNoise noise(3, 5, 8000, 1, 1100);
-  // Compares the power in the octaves from 4, 32 and 256 Hz. It uses Fourier sums over blocks of 1 s, because
-  // the noise itself is made of first-order low-passes.
+  // Compares the power in the octaves that begin at 4, 32 and 256 Hz. It uses Fourier sums over blocks of 1 s
+  // and not filters, because the noise itself is made by first-order low-pass filters.
   constexpr int blocks = 60;
   double power[9] = {};
   std::vector<double> x(8000);
@@ -172,7 +172,7 @@ TEST_CASE("the finger touches when it is scheduled, and its force builds up smoo
   std::vector<FingerState> states;
   for (int k = 0; k < 12000; ++k) states.push_back(stroker.step());
   CHECK(states[799].normal_N == 0);
-  // After half of the 50 ms in which the force rises.
+  // at half of the 50 ms in which the force rises
   CHECK(states[800 + 199].normal_N == Approx(0.25).epsilon(1e-9));
   CHECK(states[800 + 399].normal_N == Approx(0.5).epsilon(1e-9));
   CHECK(states[3999].normal_N == Approx(0.5).epsilon(1e-9));

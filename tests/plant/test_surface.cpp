@@ -18,7 +18,8 @@ auto tone_on_drive(double frequency_Hz, double full_scale) {
   return [=](std::int64_t n, int channel) { return channel == 0 ? full_scale * cosine(frequency_Hz, n) : 0; };
 }
 
-/// The position beyond the last maximum of the gain at which the gain is half of that maximum.
+/// Returns the position beyond the last maximum of the gain at which the gain has fallen to half of that
+/// maximum.
 double half_gain_m(const Plant& plant) {
   double x = 0.299;
   while (plant.gain_at(0, x - 1e-4) < 1e-2 || plant.gain_at(0, x - 1e-4) > plant.gain_at(0, x)) x -= 1e-4;
@@ -122,7 +123,8 @@ TEST_CASE("the finger's friction is the mean over the fingertip of the friction 
     const double of_rms = setup.friction.relative_friction(0.8e-6 * std::sqrt(square));
     largest = std::max(largest, std::abs(mean - of_rms));
   }
-  CHECK(largest > 0.015);  // negative control: the friction at the rms displacement differs
+  // negative control: the friction of the mean displacement would be clearly different
+  CHECK(largest > 0.015);
 }
 
 TEST_CASE("the amplitudes of tones under the finger add as squares, and follow what was played", "[plant]") {

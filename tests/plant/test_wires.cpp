@@ -36,7 +36,7 @@ TEST_CASE("a known load gives a carrier of known amplitude on each bridge", "[pl
   CHECK(std::abs(b) == Approx(per_N * (1.0 / 3 + 0.01 * 0.4 / 0.3)).epsilon(1e-6));
   CHECK(std::abs(t) == Approx(per_N * 0.4).epsilon(1e-6));
   CHECK(std::abs(reference) == Approx(2.5 / 3.0).epsilon(1e-6));
-  // reference and bridges are in phase with the playback, 400 frames later
+  // apart from the delay of 400 frames, reference and bridges have the phase of the played carrier
   const auto at_playback = without_delay(reference, kCarrier_Hz, 400);
   CHECK(std::abs(std::arg(at_playback)) < 1e-6);
   CHECK(std::abs(std::arg(a / reference)) < 1e-5);

@@ -38,7 +38,8 @@ Share normal_around(double mean, double sd) {
   return [=](double level) { return normal_cdf((level - mean) / sd); };
 }
 
-/// What a series yields: the probability that it has a midpoint, and mean and variance of this midpoint.
+/// What is expected of one series: the probability that it has a midpoint, and the mean and variance of that
+/// midpoint.
 struct Expected {
   double used = 0, mean = 0, variance = 0, trials = 0;
 };
@@ -63,7 +64,8 @@ Expected enumerate(const Share& share, double start, double step, double end, in
         next[r + 1] += run[r] * changes;
         continue;
       }
-      if (k + 1 == run.size()) continue;  // changed from the first trial on
+      // the answer had changed already in the first trial, so there is no midpoint
+      if (k + 1 == run.size()) continue;
       const double midpoint = level - (static_cast<double>(n_change) - 0.5) * step;
       all.used += run[r] * changes;
       all.mean += run[r] * changes * midpoint, squares += run[r] * changes * midpoint * midpoint;
@@ -177,7 +179,8 @@ TEST_CASE("limits: both directions and all starts come equally often, and depend
     std::vector<double> starts;
     while (const auto proposal = procedure->next()) {
       starts.push_back(proposal->level);
-      procedure->record(proposal->level < 0 ? Answer::one : Answer::zero);  // each series ends at once
+      // the first answer of each series is already the new one, so each series ends at once
+      procedure->record(proposal->level < 0 ? Answer::one : Answer::zero);
     }
     REQUIRE(starts.size() == 12);
     for (const double start : spec.ascending.values)
@@ -231,7 +234,8 @@ TEST_CASE("limits: mean, variance and number of trials are those of the enumerat
   CHECK(std::fabs(differences.mean() - (up.mean - down.mean)) < 4 * differences.error());
   CHECK(std::fabs(trials.mean() - 3 * (up.trials + down.trials)) < 4 * trials.error());
   CHECK(std::fabs(used.mean() - 3 * (up.used + down.used)) < 4 * used.error() + 0.01);
-  if (up.used > 0.999 && down.used > 0.999)  // the number of midpoints is then fixed
+  // if every series has a midpoint, the number of midpoints is fixed
+  if (up.used > 0.999 && down.used > 0.999)
     CHECK(thresholds.variance() == Approx(0.25 * (up.variance + down.variance) / 3).epsilon(0.1));
   // A shallow function changes the answer too early in both directions, in spite of a symmetric mean.
   if (n_change == 1) CHECK(up.mean < down.mean);
@@ -265,7 +269,7 @@ TEST_CASE("limits: on a scale of ratios, steps and midpoints are geometric", "[p
   CHECK(result.estimates.at("threshold").mean == Approx(1));
   // The midpoints are +-10 dB: the standard error is 10 dB, or ln(10) / 2 in natural logarithms.
   CHECK(*result.estimates.at("threshold").sd == Approx(std::log(10.0) / 2));
-  spec.step = {1e6};  // neither overflows
+  spec.step = {1e6};  // even such a step makes the level neither overflow nor become 0
   CHECK(validate(spec).size() == 1);
 }
 

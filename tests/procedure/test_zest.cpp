@@ -66,7 +66,8 @@ TEST_CASE("best PEST begins in the middle, and then in the middle of the equally
   const auto spec = at_threshold(Kind::best_pest);
   const auto result = trace(spec, {}, "1");
   CHECK(result.levels[0] == -20);
-  CHECK(*result.next == -34);  // from -40 to -28, a right answer at -20 is as likely as it can be
+  // a right answer at -20 makes levels from -40 to -28 equally likely; the next level is their middle
+  CHECK(*result.next == -34);
 }
 
 TEST_CASE("a procedure ends with 8 of the last 10 answers right, and not before", "[procedure]") {
@@ -81,10 +82,11 @@ TEST_CASE("a procedure ends with 8 of the last 10 answers right, and not before"
   zest.stop = list.stop;
   for (const auto& spec : {list, track, zest}) {
     INFO(name(spec.kind));
-    CHECK(trace(spec, {}, "111111110").next);          // 8 right, but of 9
-    CHECK_FALSE(trace(spec, {}, "1111111100").next);   // 8 of 10
-    CHECK(trace(spec, {}, "0001111111").next);         // 7 of 10
-    CHECK_FALSE(trace(spec, {}, "00011111111").next);  // 8 of the last 10
+    CHECK(trace(spec, {}, "111111110").next);         // 8 right answers, but of 9 and not of 10
+    CHECK_FALSE(trace(spec, {}, "1111111100").next);  // 8 right answers of 10: the procedure has ended
+    CHECK(trace(spec, {}, "0001111111").next);        // only 7 right answers of 10
+    // 8 right answers among the last 10: the procedure has ended
+    CHECK_FALSE(trace(spec, {}, "00011111111").next);
     CHECK(trace(spec, {}, "01010101011111").next);
     CHECK_FALSE(trace(spec, {}, "010101010111111").next);
   }

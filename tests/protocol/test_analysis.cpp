@@ -13,7 +13,7 @@ std::string source_of(const std::string& name) {
   return system::read_file(std::string(TURNPOINT_SOURCE_DIR) + "/protocols/" + name + ".toml");
 }
 
-/// A shipped protocol with another [analysis] table.
+/// Returns a shipped protocol whose [analysis] table is replaced.
 std::string with_analysis(const std::string& name, const std::string& analysis) {
   auto source = source_of(name);
   if (const auto at = source.find("[analysis]"); at != std::string::npos)

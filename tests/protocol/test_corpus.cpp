@@ -41,7 +41,7 @@ std::vector<text::Problem> problems_of(const std::string& source) {
   }
 }
 
-// The differences between reported and expected problems: expected ones that were not reported, and
+// Returns the differences between reported and expected problems: expected ones that were not reported, and
 // unexpected ones that were.
 std::string misreported(const std::string& source) {
   const auto expected = expected_lines(source);

@@ -146,6 +146,46 @@ TEST_CASE("arithmetic on factors is linear, with the usual precedence", "[protoc
   CHECK(value("+170.5e0") == 170.5);
 }
 
+TEST_CASE("factors can be multiplied, and the extremes of a product are found at the ends of their ranges",
+          "[protocol]") {
+  const auto source = [](const std::string& expression) {
+    auto text = system::read_file(shipped + "friction-weber.toml");
+    const std::string product = "\"reference * (1 - proportion)\"";
+    text.replace(text.find(product), product.size(), "\"" + expression + "\"");
+    return text;
+  };
+  const auto value = [&](const std::string& expression) {
+    const auto protocol = protocol::parse(source(expression), "p.toml");
+    return evaluate(*protocol.scenes.at("comparison").zone->friction,
+                    {{"reference", 0.8}, {"proportion", 0.25}, {"end_mm", 185.0}});
+  };
+  CHECK(value("reference * (1 - proportion)") == Approx(0.6).epsilon(1e-15));
+  CHECK(value("(1 - proportion) * reference") == Approx(0.6).epsilon(1e-15));
+  CHECK(value("reference - proportion * reference") == Approx(0.6).epsilon(1e-15));
+  CHECK(value("2 * reference * proportion / 4 + 0.5") == Approx(0.6).epsilon(1e-15));
+  CHECK(value("(reference - 1) * (proportion - 1)") == Approx(0.15).epsilon(1e-15));
+  CHECK(value("(reference - proportion) * (1 + 0) - 0.01 * reference * proportion * 2 * 0") ==
+        Approx(0.55).epsilon(1e-15));
+  // Friction must be below 1. The largest product is 0.85 * (1 + 0.17) in the first case, which is allowed,
+  // and 0.85 * (1 + 0.18) in the second, which is not. Only the upper ends of both ranges together show this.
+  CHECK_NOTHROW(protocol::parse(source("reference * (1 + 0.37 * proportion)"), "p.toml"));
+  CHECK_THROWS_AS(protocol::parse(source("reference * (1 + 0.41 * proportion)"), "p.toml"), text::BadInput);
+}
+
+TEST_CASE("for_each makes one procedure for each level, and the block runs all of them", "[protocol]") {
+  const auto protocol = protocol::load(shipped + "friction-weber.toml");
+  REQUIRE(protocol.procedures.size() == 3);
+  const std::vector<std::pair<std::string, double>> expected{
+      {"weber-0.65", 0.65}, {"weber-0.75", 0.75}, {"weber-0.85", 0.85}};
+  for (std::size_t i = 0; i < expected.size(); ++i) {
+    auto name = expected[i].first;
+    std::replace(name.begin(), name.end(), '.', '_');
+    CHECK(protocol.procedures[i].name == name);
+    CHECK(std::get<double>(protocol.procedures[i].with.at("reference")) == expected[i].second);
+    CHECK(block(protocol, 1).procedures.at(i) == name);
+  }
+}
+
 TEST_CASE("a grid in the file becomes values, with both ends exact", "[protocol]") {
   const auto oddity = protocol::load(shipped + "two-spots-oddity.toml");
   const auto& spec = oddity.procedures.at(0);

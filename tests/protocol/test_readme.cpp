@@ -95,7 +95,8 @@ TEST_CASE("the manual documents every key that the reader knows", "[protocol]") 
   const auto documented = words_in_backticks();
   auto known = tests::known_keys();
   for (const auto* factor : {"contrast_dB", "offset_mm", "spread_mm", "mark_mm", "change", "instruction"})
-    known.erase(factor);  // not keys, but names of factors, which [[block]] catch uses like keys
+    // the keys of [[block]] catch include names of factors, which are not keys of the format
+    known.erase(factor);
   CHECK(known.size() > 80);
   for (const auto& key : known) {
     INFO(key);

@@ -31,7 +31,7 @@ std::string problems(const std::string& protocol_text, const rig::Rig& rig) {
 
 bool contains(const std::string& all, const std::string& part) { return all.find(part) != std::string::npos; }
 
-/// The rig with the pick-ups and force cells of simulated-forces.toml.
+/// Returns the rig with the pick-ups and force cells of simulated-forces.toml added.
 rig::Rig with_cells(rig::Rig rig) {
   rig.capture = rig::load(root + "/deploy/rigs/simulated-forces.toml").capture;
   return rig;
@@ -55,6 +55,20 @@ void check_shipped(const rig::Rig& rig) {
 TEST_CASE("every shipped protocol can be run, without a warning, on a rig like the simulated one",
           "[protocol]") {
   check_shipped(quick_rig());
+}
+
+TEST_CASE("a protocol that watches the finger needs force cells, and real ones need a calibration",
+          "[protocol]") {
+  const auto protocol = protocol::load(root + "/protocols/friction-measured.toml");
+  const auto found = [&](const rig::Rig& rig) { return all_of(protocol::survey(protocol, rig).problems); };
+  auto rig = with_cells(quick_rig());
+  CHECK(found(rig) == "");
+  rig.capture->uri = "alsa:hw:1";
+  CHECK(contains(found(rig), "the rig's force cells are not calibrated"));
+  rig.capture->forces = rig::ForceCells{};
+  CHECK(found(rig) == "");
+  rig.capture->bridges.clear();
+  CHECK(contains(found(rig), "the rig has no force cells"));
 }
 
 TEST_CASE("every shipped protocol can be run on the simulated rig, without a warning", "[protocol]") {

@@ -13,7 +13,7 @@ using protocol::TriggerEvent;
 
 namespace {
 
-/// speed-accuracy has two conditions, its instructions.
+/// Returns the protocol speed-accuracy with these triggers. It has two conditions, its two instructions.
 protocol::Protocol with(const std::string& triggers) {
   const auto source =
       system::read_file(std::string(TURNPOINT_SOURCE_DIR) + "/protocols/speed-accuracy.toml") + "\n" +
@@ -55,7 +55,8 @@ std::string survey_problems(const protocol::Protocol& protocol, const rig::Rig& 
 TEST_CASE("by default each event of each condition has a code of its own", "[protocol][trigger]") {
   const auto protocol = with("");
   const auto codes = protocol::trigger_codes(protocol);
-  REQUIRE(codes.size() == 12);  // four events; two instructions, and trials without one
+  // four events in each of two instructions, and in trials without an instruction
+  REQUIRE(codes.size() == 12);
   std::set<int> different;
   for (std::size_t k = 0; k < codes.size(); ++k) {
     CHECK(codes[k].code == static_cast<int>(k) + 1);

@@ -216,8 +216,8 @@ TEST_CASE("If the answers determined the levels, the report states the posterior
 
 namespace {
 
-/// A session of two instructions with force cells. The finger meets the boundary 0.4 mm before its planned
-/// place.
+/// Makes a session with two instructions and force cells. The finger meets the boundary 0.4 mm before its
+/// planned place.
 SessionData force_session() {
   auto data = speed_accuracy(6);
   data.conditions = {"speed", "accuracy"};

@@ -92,7 +92,7 @@ TEST_CASE("conditions are in the order of the file, whichever block came first",
   const auto began = [](int index) {
     return data_of(shipped("speed-accuracy"), "sim", index).trials.back().instruction;
   };
-  CHECK(began(0) != began(1));  // the two sessions begin with different conditions
+  CHECK(began(0) != began(1));  // the order of conditions differs between the two sessions
   for (const auto& report : {first, second}) {
     REQUIRE(report["instructions"].size() == 2);
     CHECK(report["instructions"][0]["instruction"] == "speed");
@@ -221,7 +221,7 @@ TEST_CASE("ratings and numbers are reported by level, and right and wrong are le
   const auto line = report_of(data_of(shipped("smoothness-line")));
   REQUIRE(line["judgements"].size() == 1);
   REQUIRE(line["judgements"][0]["levels"].size() == 5);
-  CHECK(line["judgements"][0]["levels"][0]["answers"] == 8);  // practice is left out
+  CHECK(line["judgements"][0]["levels"][0]["answers"] == 8);  // trials of practice are not counted
   CHECK(line["judgements"][0]["levels"][4]["mean"]["value"] >
         line["judgements"][0]["levels"][0]["mean"]["value"]);
   CHECK(line["judgements"][0]["exponent"].is_null());
@@ -243,7 +243,7 @@ TEST_CASE("identification is reported as a confusion matrix, without a curve and
   REQUIRE(rows.size() == 5);
   for (std::size_t i = 0; i < 5; ++i) {
     CHECK(rows[i]["stimulus"] == std::to_string(i + 1));
-    CHECK(rows[i]["trials"] == 15);  // practice is left out
+    CHECK(rows[i]["trials"] == 15);  // trials of practice are not counted
     CHECK(rows[i]["answers"][i] == rows[i]["correct"]["right"]);
   }
   CHECK(report["confusion"][0]["correct"]["trials"] == 75);

@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cstdlib>
 #include <fstream>
+#include <optional>
 #include <random>
 
 #include "station/setup/prepare.hpp"
@@ -17,14 +18,15 @@ using namespace turnpoint;
 
 namespace {
 
-/// TURNPOINT_KILLS=1000 makes a long run with that many kills, and with an adaptive protocol in addition.
+/// TURNPOINT_KILLS=1000 makes a long run with this number of kills, which also includes an adaptive protocol.
 const char* const kLong = std::getenv("TURNPOINT_KILLS");
 
-/// A shipped protocol, with texts that are replaced, and the number of kills without TURNPOINT_KILLS.
+/// A shipped protocol with some texts replaced, and the number of kills if TURNPOINT_KILLS is not set.
 struct Case {
   std::string file;
   std::vector<std::pair<std::string, std::string>> edits = {};
   int kills = 2;
+  std::optional<int> planned_session = {};  ///< of a protocol that plans several
 };
 
 int kills_wanted(const Case& wanted) { return kLong != nullptr ? std::atoi(kLong) : wanted.kills; }
@@ -36,7 +38,7 @@ std::vector<Case> shipped() {
   return all;
 }
 
-/// The other kinds of task and procedure, with few trials.
+/// Protocols with the other kinds of task and procedure, shortened to few trials.
 std::vector<Case> other_tasks() {
   const std::pair<std::string, std::string> three_each{"repeats = 15", "repeats = 3"};
   const std::pair<std::string, std::string> few{"repeats = 8", "repeats = 3"};
@@ -62,6 +64,19 @@ std::vector<Case> other_tasks() {
             {"n_change = 1", "n_change = 2"},
             {"[22.0, 26.0, 30.0]", "{ uniform = [20.0, 30.0] }"}}},
           {"response-signal.toml", {{"repeats = 84", "repeats = 3"}, {"trials = 28", "trials = 4"}}},
+          {"friction-weber.toml", {{"stop = { trials = 40 }", "stop = { trials = 6 }"}}},
+          {"friction-weber.toml",
+           {{"stop = { trials = 40 }", "stop = { trials = 6 }"},
+            {"draw = \"uniform\"", "draw = { normal = { mean = 185.0, sd = 2.0 } }"}}},
+          {"friction-weber.toml",
+           {{"stop = { trials = 40 }", "stop = { trials = 6 }"},
+            {"range = [180.0, 190.0]\ndraw = \"uniform\"",
+             "levels = [180.0, 183.0, 185.0, 188.0, 190.0]\ndraw = \"without-repetition\""}}},
+          {"friction-training.toml", {{"stop = { trials = 60 }", "stop = { trials = 8 }"}}, 2, 3},
+          {"speed-accuracy.toml",
+           {{"[protocol]", "[sessions]\ncount = 2\n\n[protocol]"}, {"repeats = 14", "repeats = 2"}},
+           2,
+           2},
           {"boundary-adjustment.toml", {{"repeats = 9", "repeats = 4"}}}};
 }
 
@@ -77,7 +92,7 @@ std::string written(const Case& wanted, const TemporaryFolder& folder) {
   return path;
 }
 
-session::Setup setup_for(const std::string& protocol, const std::string& db) {
+session::Setup setup_for(const std::string& protocol, const Case& wanted, const std::string& db) {
   setup::RunRequest request;
   request.protocol = protocol;
   request.rig = std::string(TURNPOINT_SOURCE_DIR) + "/tests/support/thin_plate.toml";
@@ -86,6 +101,7 @@ session::Setup setup_for(const std::string& protocol, const std::string& db) {
   request.observer = "sim";
   request.seed = 42;
   request.headless = true;
+  request.planned_session = wanted.planned_session;
   return setup::prepare(request);
 }
 
@@ -139,7 +155,7 @@ void check_equal(const records::TrialRow& a, const records::TrialRow& b) {
   CHECK(a.confidence == b.confidence);
   CHECK(a.outcome == b.outcome);
   REQUIRE(a.response_time_s.has_value() == b.response_time_s.has_value());
-  // The times may differ by one frame.
+  // Times may differ by up to one frame.
   if (a.response_time_s) CHECK(*a.response_time_s == Approx(*b.response_time_s).margin(1e-5));
   CHECK(a.state_hash == b.state_hash);
   REQUIRE(a.tones.size() == b.tones.size());
@@ -155,18 +171,20 @@ void check_killed(const Case& wanted) {
   INFO(wanted.file << (wanted.edits.empty() ? "" : ", " + wanted.edits.back().second));
   const auto whole = folder / "whole.sqlite";
   const auto start = std::chrono::steady_clock::now();
-  run_to_end(setup_for(protocol, whole));
+  run_to_end(setup_for(protocol, wanted, whole));
   const std::chrono::duration<double, std::micro> whole_us = std::chrono::steady_clock::now() - start;
   const auto expected = trials_of(whole, store::list_sessions(whole).front().session_id);
   REQUIRE(!expected.empty());
   std::mt19937 random(3);
-  // Kills at any moment of a session, so that its beginning, its trials and its ending are all hit.
+  // Kill at a random moment of the whole session, so that its beginning, its trials and its end are all
+  // interrupted sometimes.
   std::uniform_int_distribution<useconds_t> moment(0, static_cast<useconds_t>(1.2 * whole_us.count()));
   int kills = 0, finished = 0, resumed = 0;
-  // If the unbroken session ran while the machine was busy, most kills come too late: then try more often.
+  // If the machine was busy when the uninterrupted session was timed, most kills come too late. Then try more
+  // often.
   while (kills < kills_wanted(wanted) || finished == 0 || (resumed == 0 && finished < 100)) {
     const auto db = folder / ("broken" + std::to_string(finished) + ".sqlite");
-    const auto setup = setup_for(protocol, db);
+    const auto setup = setup_for(protocol, wanted, db);
     while (killed_on_the_way(setup, moment(random))) ++kills;
     ++finished;
     auto raw = sample::raw(db);

@@ -16,7 +16,7 @@ namespace {
 
 const std::string simulated = std::string(TURNPOINT_SOURCE_DIR) + "/deploy/rigs/simulated.toml";
 
-// a rig that mistakes are put into
+// Returns a rig file into which the tests put mistakes.
 std::string source() {
   return system::read_file(std::string(TURNPOINT_SOURCE_DIR) + "/tests/support/thin_plate.toml");
 }
@@ -27,7 +27,7 @@ std::string replaced(std::string where, const std::string& from, const std::stri
   return where.replace(at, from.size(), to);
 }
 
-// The problems of the rig after `from` was replaced with `to`, one per line.
+// Replaces `from` by `to` in the rig file, and returns the problems that are reported, one per line.
 std::string problems(const std::string& from, const std::string& to) {
   try {
     rig::parse(replaced(source(), from, to), "r.toml");
@@ -216,6 +216,12 @@ TEST_CASE("a capture on a card needs a loop: an output channel of its own, wired
   CHECK(rig.capture->reference == 3);
   CHECK(rig.capture->excitation_channel == 4);
   CHECK(rig::channels(rig) == 5);
+  const auto cells =
+      rig::parse(replaced(source(), "[limits]",
+                          "[capture]\nuri = \"alsa:hw:1\"\nchannels = 6\npickups = [1, 2]\nreference = 0\n"
+                          "excitation_channel = 4\nbridges = [3, 4, 5]\n[limits]"),
+                 "r.toml");
+  CHECK(cells.capture.value().bridges == std::vector<int>{3, 4, 5});
   CHECK(contains(with(""), "\"reference\""));
   CHECK(contains(with(""), "\"excitation_channel\""));
   CHECK(contains(with("reference = 4\nexcitation_channel = 2"),

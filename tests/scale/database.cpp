@@ -72,7 +72,7 @@ ToneRow tone_of(int trial, int index) {
   return tone;
 }
 
-/// A trial whose answer is more often right at higher levels, with a few wrong ones at every level.
+/// Makes a trial. Answers are more often right at higher levels, but some are wrong at every level.
 TrialRow trial_of(int session, int trial) {
   TrialRow row;
   row.trial_index = row.trial_in_block = trial;

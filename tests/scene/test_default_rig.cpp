@@ -1,4 +1,5 @@
-// The simulated rig and the boards' rigs share one plate. These tests say what its dimensions must achieve.
+// The simulated rig and the rigs of the boards have the same plate. These tests check what its dimensions
+// must achieve.
 #include <cmath>
 
 #include "physics/boundary_budget.hpp"
@@ -20,7 +21,8 @@ rig::Rig shipped(const std::string& name) {
 
 constexpr double kLowest_m = 0.100, kHighest_m = 0.205, kLowest_Hz = 22.4e3, kHighest_Hz = 48e3;
 
-/// Position of the p50 edge by three-dimensional elasticity of the section, and its standard deviation.
+/// Position of the p50 edge according to three-dimensional elasticity of the cross-section, and its standard
+/// deviation.
 struct Edge {
   double at_m, sd_m;
 };
@@ -32,7 +34,8 @@ Edge edge_at(const rig::Rig& rig, double frequency_Hz) {
   return {at_m, physics::boundary_budget(surface, frequency_Hz, at_m).total_m};
 }
 
-/// Whether boundaries from 100 to 205 mm lie in the band even if the plate is two standard deviations off.
+/// True if boundaries from 100 to 205 mm can be reached within the band, even if the plate deviates by two
+/// standard deviations.
 bool reachable(const rig::Rig& rig) {
   const auto low = edge_at(rig, kLowest_Hz), high = edge_at(rig, kHighest_Hz);
   return low.at_m + 2 * low.sd_m < kLowest_m && high.at_m - 2 * high.sd_m > kHighest_m;
@@ -47,7 +50,7 @@ Scene tone_at(double boundary_m) {
   return scene;
 }
 
-/// The smallest share of the displacement at the last maximum that the rig's finger leaves.
+/// Returns the smallest fraction of the displacement at the last maximum that remains under the rig's finger.
 double least_share(const rig::Rig& rig) {
   Planner planner(rig);
   double least = 1;
@@ -68,7 +71,7 @@ TEST_CASE("boundaries from 100 to 205 mm are inside the band, whatever the plate
     CHECK(reachable(rig));
     CHECK(rig.transducers[0].low_Hz <= kLowest_Hz);
     CHECK(rig.transducers[0].high_Hz >= kHighest_Hz);
-    // The theory that plans use is within 0.5 mm of the elastic section.
+    // Plans use a theory that is within 0.5 mm of the elastic cross-section.
     const auto surface = surface_of(rig);
     for (const double f : {kLowest_Hz, 30e3, kHighest_Hz}) {
       const double at_m = physics::make_centre_line(surface, f, physics::Model::mode)->level_m(0.5).value();
@@ -77,7 +80,7 @@ TEST_CASE("boundaries from 100 to 205 mm are inside the band, whatever the plate
     // The strip is wider than a finger, 14 mm, wherever it ends.
     CHECK(2 * physics::cut_off_half_width_m(surface, kHighest_Hz) > 14e-3);
   }
-  // Negative control: the plate that thin-plate theory had led to.
+  // Negative control: the dimensions that the theory of thin plates had led to.
   auto thin = shipped("simulated");
   thin.surface.thickness_m = 2e-3, thin.surface.thickness_sd_m = 0.045e-3;
   thin.surface.taper.half_width_m = 14e-3;

@@ -107,7 +107,7 @@ TEST_CASE("a displacement requested under a finger is reached there, and limits 
         Approx(plan.tones[0].amplitude_m * std::pow(10, 0.3)).epsilon(1e-6));
   scene.rove_dB = 0;
 
-  // Allows the 0.3 um wanted under the finger, but not the plan's peak.
+  // This limit allows the 0.3 um wanted under the finger, but not the plan's peak displacement.
   rig.limits.displacement_m = 0.5 * plan.peak_displacement_m;
   CHECK(rig.limits.displacement_m > 0.3e-6);
   CHECK_THROWS_AS(Planner(rig).plan(scene), Unreachable);

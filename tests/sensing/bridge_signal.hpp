@@ -18,16 +18,17 @@ struct BridgeSignal {
   double rate_Hz = 192000, carrier_Hz = 10525;
   /// Force on all cells, as a function of time (s).
   std::function<double(double)> force_N = [](double) { return 0.0; };
-  /// As a function of time (s), one force for each cell; replaces force_N.
+  /// Force on each cell, as a function of time (s). If set, it replaces force_N.
   std::function<std::array<double, bridge_count>(double)> forces_N;
   /// Factor on the excitation, as a function of time (s).
   std::function<double(double)> gain = [](double) { return 1.0; };
-  double phase_rad = 0.4;                  ///< phase of the carrier on all channels
-  double bridge_phase_rad = 0;             ///< phase of the resistive part against the reference
-  double quadrature_V_V = 0;               ///< from unbalanced capacitance
-  std::vector<double> tones_Hz;            ///< drive tones that reach the bridges
-  double tone_V = 1e-3, cubic_per_V2 = 0;  ///< tone: amplitude at the bridge; cubic: distortion of the output
-  double noise_V_rtHz = 0;                 ///< density of the noise at the bridge
+  double phase_rad = 0.4;        ///< phase of the carrier, the same on all channels
+  double bridge_phase_rad = 0;   ///< phase of the resistive part against the reference
+  double quadrature_V_V = 0;     ///< from unbalanced capacitance
+  std::vector<double> tones_Hz;  ///< drive tones that reach the bridges
+  /// amplitude of each tone at the bridge; cubic distortion of the output
+  double tone_V = 1e-3, cubic_per_V2 = 0;
+  double noise_V_rtHz = 0;  ///< density of the noise at the bridge
   unsigned seed = 1;
 
   static constexpr double excitation_V = 2.5, volt_per_volt_N = 2e-4, amplifier = 200, full_scale_V = 3;
@@ -78,7 +79,7 @@ inline BridgeOptions bridge_options() {
   return options;
 }
 
-/// All points of a capture that begins at playback frame `first`.
+/// Demodulates a capture that begins at playback frame `first`, and returns all points.
 inline std::vector<BridgePoint> demodulated(const BridgeOptions& options, std::int64_t first,
                                             const std::vector<std::int32_t>& samples) {
   BridgeDemodulator demodulator(options);

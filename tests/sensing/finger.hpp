@@ -55,7 +55,7 @@ struct Finger {
     std::vector<ForcePoint> forces;
     std::vector<Truth> truth;
 
-    /// The truth, averaged over 31 ms because noise of friction shakes the contact.
+    /// Returns the truth averaged over 31 ms, because the noise of friction makes the contact jitter.
     Truth smooth_truth(std::size_t at) const {
       Truth mean{0, 0};
       for (std::size_t k = at - 15; k <= at + 15; ++k) {
@@ -66,7 +66,7 @@ struct Finger {
     }
   };
 
-  /// Friction under a finger that partly covers both sides of the edge.
+  /// Returns the friction under a finger that covers a part of both sides of the edge.
   double friction(double position_mm) const {
     const double share = std::clamp((position_mm - edge_mm) / width_mm + 0.5, 0.0, 1.0);
     return friction_below + (friction_above - friction_below) * share;

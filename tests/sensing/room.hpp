@@ -28,7 +28,8 @@ struct SimplePickUp {
   }
 };
 
-/// The calibration of `pick_up` for one output channel, with a point every 50 Hz from 20 to 48 kHz.
+/// Returns the calibration that belongs to `pick_up` for one output channel, with a point every 50 Hz from 20
+/// to 48 kHz.
 inline PickUp calibrated(const SimplePickUp& pick_up, int drive_channel = 0) {
   Transfer transfer{drive_channel, {}, {}};
   for (double f = 20e3; f <= 48e3; f += 50) {
@@ -46,24 +47,24 @@ struct Room {
   double noise = 1e-4;
   std::uint64_t seed = 1;
   std::vector<SimplePickUp> pick_ups{SimplePickUp{}};
-  // faults
+  // the members from here on are faults
   double drive_gain = 1;  ///< factor on the vibration
   double frequency_factor = 1;
   double late_s = 0;
   double limiter = 1e9;  ///< largest absolute value of the vibration's samples
-  double hum = 0;        ///< 50 Hz
+  double hum = 0;        ///< amplitude of 50 Hz hum
   /// Added to the captured signal of each pick-up, as a function of the time since the onset (s).
   std::function<double(double)> extra;
   std::function<double(double)> gain_at;
 };
 
-/// The sample that a 24-bit converter captures for this value.
+/// Returns the sample that a 24-bit converter gives for this value.
 inline std::int32_t converted(double value) {
   const double full = 0x1p23;
   return static_cast<std::int32_t>(std::clamp(std::round(value * full), -full, full - 1)) * 256;
 }
 
-/// Gain of a burst with raised-cosine ramps at the time t (s) since its start.
+/// Returns the gain of a burst with raised-cosine ramps at the time t (s) since its start.
 inline long double gate(const drive::Burst& burst, int rate_Hz, long double t) {
   // The synthesiser computes the ramp at the middle of each frame.
   const long double at = t * rate_Hz + 0.5L, ramp = static_cast<long double>(burst.ramp.frames),
@@ -75,7 +76,7 @@ inline long double gate(const drive::Burst& burst, int rate_Hz, long double t) {
   return rise(at) * rise(left);
 }
 
-/// Captured frames [first, first + count) of a room in which the burst is played.
+/// Returns captured frames [first, first + count) of a room in which the burst is played.
 inline std::vector<std::int32_t> captured(const Room& room, const drive::Burst& burst, std::int64_t first,
                                           std::int64_t count) {
   const auto channels = static_cast<std::size_t>(room.channels);

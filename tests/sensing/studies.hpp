@@ -6,8 +6,8 @@
 
 namespace turnpoint::sensing {
 
-/// With TURNPOINT_STUDIES=400, each simulated study has 400 repetitions and prints its figures. Otherwise it
-/// has `everyday` repetitions.
+/// How often simulated studies are repeated. With TURNPOINT_STUDIES=400, each study is repeated 400 times and
+/// prints its figures. Otherwise it is repeated `everyday` times.
 inline const char* const wanted_studies = std::getenv("TURNPOINT_STUDIES");
 inline int repetitions(int everyday) {
   return wanted_studies != nullptr ? std::atoi(wanted_studies) : everyday;

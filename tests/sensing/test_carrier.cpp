@@ -40,8 +40,8 @@ std::vector<double> measured_N(const BridgeSignal& signal, std::size_t frames, s
   return forces_N(complete(demodulated(options, first, signal.frames(first, frames))));
 }
 
-/// Delay of the demodulated force (in frames) for a force of one frequency, if the first captured frame is
-/// `first` but is given as `said`.
+/// Returns the delay (in frames) of the demodulated force for a force of one frequency. The first captured
+/// frame really is `first`, but the demodulator is told `said`.
 double delay_frames(std::int64_t first, std::int64_t said, Band band, double frequency_Hz) {
   BridgeSignal signal;
   const double omega = 2 * std::numbers::pi * frequency_Hz;
@@ -227,7 +227,8 @@ TEST_CASE("the carrier keeps away from mains and from products of the drive tone
   CHECK(choose({}).carrier_Hz == 10525);
   CHECK(choose({{30e3}}).carrier_Hz == 10525);
   CHECK(choose({{30e3, 32e3}}).carrier_Hz == 10525);  // products: 2, 4, 6, 8 kHz; 28 and 34 kHz
-  // The product 3 x 3.4 kHz is 325 Hz below the default carrier.
+  // For the two tones of 30 and 33.4 kHz, three times their difference is only 325 Hz below the default
+  // carrier.
   const auto moved = choose({{30e3, 33.4e3}});
   CHECK(moved.carrier_Hz != 10525);
   CHECK(moved.clearance_Hz >= enough_clearance_Hz);

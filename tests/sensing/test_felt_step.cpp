@@ -74,9 +74,11 @@ TEST_CASE("friction is the quotient of sums, per stroke and bin", "[sensing]") {
   const auto add = [&](double normal, double lateral, double position, bool contact = true) {
     track.push_back({static_cast<std::int64_t>(track.size()), normal, lateral, position, 50, contact});
   };
-  add(1, -0.5, 10.5), add(0.2, -0.2, 11.5);          // bin 0: 0.7 / 1.2, not (0.5 + 1) / 2
-  add(0.09, -0.09, 12.5), add(0.5, 0.1, 13, false);  // bin 1: too little force, no contact
-  add(0.5, 0.1, 14.2), add(0.5, 0.15, 15.9);         // bin 2
+  // bin 0: 0.7 / 1.2, because sums are divided; the mean of the quotients would be another number
+  add(1, -0.5, 10.5), add(0.2, -0.2, 11.5);
+  // bin 1 stays empty: one point has too little force, the other no contact
+  add(0.09, -0.09, 12.5), add(0.5, 0.1, 13, false);
+  add(0.5, 0.1, 14.2), add(0.5, 0.15, 15.9);  // bin 2
   const std::vector<Stroke> strokes{{0, 6, 1}, {4, 6, 1}, {4, 5, -1}};
   const auto profile = friction_profile(track, strokes, {10, 2, 4});
   REQUIRE(profile.strokes.size() == 3);

@@ -141,7 +141,8 @@ TEST_CASE("strokes are long, fast and in one direction", "[sensing]") {
   CHECK(track[strokes[1].first].position_mm == Approx(75).margin(0.2));
   CHECK(track[strokes[1].end - 1].position_mm == Approx(45).margin(0.2));
 
-  // A missing point with 30 mm of the stroke on either side.
+  // Remove one point in the middle of a stroke, so that 30 mm of the stroke are left on either side. No
+  // stroke may span the gap.
   track[500].speed_mm_s = track[500].position_mm = nan_value;
   CHECK(find_strokes(track).size() <= 3);
   for (const auto& stroke : find_strokes(track)) CHECK((stroke.end <= 500 || stroke.first > 500));

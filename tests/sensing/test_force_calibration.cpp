@@ -42,12 +42,15 @@ std::vector<DeadWeight> weights(const Cells& cells, std::mt19937_64& random) {
 }
 
 struct Errors {
-  double normal_share = 0, friction = 0, position_mm = 0;  ///< root mean square errors
-  double covered_position = 0, covered_friction = 0;       ///< proportion within 1.96 standard deviations
+  /// root mean square errors of normal force (relative), friction and position
+  double normal_share = 0, friction = 0, position_mm = 0;
+  /// proportion of errors within 1.96 of the stated standard deviations
+  double covered_position = 0, covered_friction = 0;
 };
 
-/// Errors over many calibrated stations, at 3 forces x 3 positions, with friction in both directions. Without
-/// `with_height`, the calibration ignores the height of the finger above the cells.
+/// Returns the errors over many calibrated stations, each tested with 3 forces at 3 positions and with
+/// friction in both directions. Without `with_height`, the calibration ignores the height of the finger above
+/// the cells.
 Errors errors(int stations, bool with_height) {
   std::mt19937_64 random(11);
   Errors sum;
@@ -80,7 +83,7 @@ Errors errors(int stations, bool with_height) {
           std::sqrt(sum.position_mm / count), sum.covered_position / count, sum.covered_friction / count};
 }
 
-/// 300 ms of points without a finger. The normal force has the constant offset `normal_N`, and noise.
+/// Returns 300 ms of points without a finger: a constant offset of the normal force, `normal_N`, and noise.
 std::vector<BridgePoint> rest(const Cells& cells, double normal_N, double noise_N) {
   std::mt19937_64 random(3);
   std::normal_distribution<double> normal;

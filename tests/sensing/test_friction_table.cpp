@@ -18,12 +18,12 @@ namespace {
 
 const std::vector<double> levels_m{0.2e-6, 0.4e-6, 0.6e-6, 0.8e-6, 1.0e-6, 1.3e-6, 1.7e-6, 2.2e-6};
 
-/// Relative friction of the simulated skin; it never falls below 0.15.
+/// Returns the true relative friction of the simulated skin, which never falls below 0.15.
 double truth(double displacement_m) { return 0.15 + 0.85 / (1 + std::pow(displacement_m / 0.65e-6, 2.5)); }
 const double true_half_m = 0.65e-6 * std::pow(0.85 / 0.35 - 1, 0.4);
 
-/// Strokes with 10 % of noise each, over skin whose ln friction rises by nearly `drift` during the
-/// measurement.
+/// Returns simulated strokes with noise of 10 %. The logarithm of the skin's friction rises by nearly `drift`
+/// during the measurement.
 std::vector<TableStroke> measured(const std::vector<double>& order, std::mt19937_64& random,
                                   double drift = 0.3) {
   std::normal_distribution<double> noise(0, 0.1);
@@ -37,7 +37,8 @@ std::vector<TableStroke> measured(const std::vector<double>& order, std::mt19937
 }
 
 struct Study {
-  double rms = 0, worst_bias = 0;  ///< errors of ln friction over all levels
+  /// root mean square error and largest mean error of ln friction, over all levels
+  double rms = 0, worst_bias = 0;
   double covered = 0, least_covered = 1, covered_by_half = 0;
   double half_bias = 0, half_sd = 0, half_covered = 0;
 };
@@ -105,7 +106,7 @@ TEST_CASE("a friction table is precise, and its intervals have the stated covera
 TEST_CASE("strokes at rest between the driven ones remove a drift", "[sensing]") {
   std::mt19937_64 random(8);
   auto order = trial::friction_table_order(levels_m, 20, {1});
-  // the worst order: levels ascending, while friction falls to a third
+  // the order that distorts a table most: ascending levels, while the skin's friction falls to a third
   std::vector<double> driven;
   for (const double level : order)
     if (level > 0) driven.push_back(level);
@@ -163,7 +164,7 @@ TEST_CASE(
   const auto good = measured(trial::friction_table_order(levels_m, 6, {4}), random);
   CHECK(friction_table(good, 1, 10).unused == 0);
   auto strokes = good;
-  // A stroke at rest; both of its neighbours become unusable.
+  // One stroke at rest becomes invalid, so both driven strokes beside it cannot be used.
   strokes[2].friction = std::numeric_limits<double>::quiet_NaN();
   CHECK(friction_table(strokes, 1, 10).unused == 2);
   strokes = good;

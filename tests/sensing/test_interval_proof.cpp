@@ -2,70 +2,14 @@
 #include <random>
 #include <vector>
 
-#include "station/drive/synth.hpp"
-#include "station/sensing/interval_proof.hpp"
 #include "station/sensing/silence_proof.hpp"
-#include "tests/sensing/room.hpp"
+#include "tests/sensing/proofs.hpp"
 #include "tests/support/catch.hpp"
 
 using namespace turnpoint;
 using namespace turnpoint::sensing;
 using terms::Proof;
 using terms::ProofCause;
-
-namespace {
-
-drive::Burst burst_of(std::vector<drive::Tone> tones, std::int64_t length = 76800, std::int64_t ramp = 960) {
-  drive::Burst burst;
-  burst.start_frame = 123'456'789'012;
-  burst.length_frames = length;
-  burst.ramp.frames = ramp;
-  burst.tones.count = static_cast<std::int32_t>(tones.size());
-  std::copy(tones.begin(), tones.end(), burst.tones.tones.begin());
-  return burst;
-}
-
-drive::Burst three_tones() {
-  return burst_of({{25000.5, 0.3, 0.2, 0}, {30321.7, 0.25, 1.9, 0}, {36543.2, 0.2, -2.5, 0}});
-}
-
-/// Tones at least 1 kHz apart between 22 and 46 kHz. Phases are random, and levels are random within 10 dB.
-drive::Burst random_burst(std::mt19937_64& random, int tones, double steady_s) {
-  std::uniform_real_distribution<double> uniform(0, 1);
-  std::vector<drive::Tone> made;
-  const double room_Hz = 24000.0 - 1000.0 * (tones - 1);
-  std::vector<double> places;
-  for (int i = 0; i < tones; ++i) places.push_back(room_Hz * uniform(random));
-  std::sort(places.begin(), places.end());
-  for (int i = 0; i < tones; ++i)
-    made.push_back({22000 + 1000.0 * i + places[static_cast<std::size_t>(i)],
-                    0.9 / tones * std::pow(10, -0.5 * uniform(random)), 6.28 * uniform(random), 0});
-  auto burst = burst_of(made, 2 * 960 + std::llround(192000 * (steady_s + 0.01)));
-  burst.start_frame = static_cast<std::int64_t>(random() % 1'000'000'000'000);
-  return burst;
-}
-
-IntervalPlan plan_of(const Room& room, const drive::Burst& burst) {
-  IntervalPlan plan;
-  plan.burst = drive::prepare(burst, {room.rate_Hz, 2, 24});
-  plan.rate_Hz = room.rate_Hz;
-  plan.capture_channels = room.channels;
-  for (const SimplePickUp& pick_up : room.pick_ups) plan.pick_ups.push_back(calibrated(pick_up));
-  plan.delay_frames = room.delay_frames;
-  return plan;
-}
-
-IntervalResult proven(const Room& room, const drive::Burst& burst, std::optional<bool> in_contact = false,
-                      const IntervalPlan* other_plan = nullptr) {
-  IntervalProof proof(other_plan != nullptr ? *other_plan : plan_of(room, burst));
-  const std::int64_t first = proof.first_frame();
-  const auto samples = captured(room, burst, first, proof.end_frame() - first);
-  in_blocks(room, samples, first, {384}, [&](const CaptureBlock& block) { proof.push(block); });
-  CHECK(proof.complete());
-  return proof.result(in_contact);
-}
-
-}  // namespace
 
 TEST_CASE("an interval that vibrates as planned is proven", "[sensing][proof]") {
   const IntervalResult proof = proven(Room{}, three_tones());
@@ -203,75 +147,6 @@ TEST_CASE("the onset is measured to 30 us for ramps of 5 ms, and to 150 us for r
       REQUIRE(result.onset_error_us);
       CHECK(*result.onset_error_us == Approx(1e6 * room.late_s).margin(tolerance_us));
     }
-}
-
-namespace {
-
-double planned_rms(const Room& room, const drive::Burst& burst) {
-  double square = 0;
-  for (int i = 0; i < burst.tones.count; ++i) {
-    const drive::Tone& tone = burst.tones.tones[static_cast<std::size_t>(i)];
-    square += std::norm(tone.amplitude * room.pick_ups[0].response(tone.frequency_Hz)) / 2;
-  }
-  return std::sqrt(square);
-}
-
-/// A room without faults: levels within 0.3 dB of the plan, noise of 10^-4.5 to 10^-2.5 of full scale.
-Room random_room(std::mt19937_64& random) {
-  std::uniform_real_distribution<double> uniform(0, 1);
-  Room room;
-  room.channels = 2;
-  room.seed = random();
-  room.delay_frames = 96000 * uniform(random);
-  room.drive_gain = std::pow(10, (0.6 * uniform(random) - 0.3) / 20);
-  room.pick_ups[0] = {static_cast<int>(random() % 2), 0.2 + 0.6 * uniform(random), 6 * uniform(random),
-                      3e-4 * uniform(random)};
-  room.noise = std::pow(10, -4.5 + 2 * uniform(random));
-  return room;
-}
-
-}  // namespace
-
-TEST_CASE("of a thousand clean intervals, all are proven", "[sensing][proof]") {
-  std::mt19937_64 random(13);
-  std::uniform_real_distribution<double> uniform(0, 1);
-  for (int k = 0; k < 1000; ++k) {
-    Room room = random_room(random);
-    const auto burst = random_burst(random, 1 + k % 8, 0.02 + 0.03 * uniform(random));
-    room.noise *= planned_rms(room, burst);
-    const IntervalResult result = proven(room, burst);
-    if (result.verdict != Proof::ok)
-      FAIL_CHECK(k << ": " << name(result.verdict) << " " << name(result.cause) << " " << result.ratio_dB
-                   << " dB, residual " << result.residual_dB << " dB, onset "
-                   << result.onset_error_us.value_or(-1) << " us");
-  }
-}
-
-TEST_CASE("each fault of the drive is named in random intervals", "[sensing][proof]") {
-  std::mt19937_64 random(14);
-  const ProofCause causes[] = {ProofCause::dead, ProofCause::half,    ProofCause::frequency,
-                               ProofCause::late, ProofCause::clipped, ProofCause::level};
-  for (int k = 0; k < 120; ++k) {
-    Room room = random_room(random);
-    const auto burst = random_burst(random, 1 + k % 8, 0.1);
-    const double rms = planned_rms(room, burst);
-    room.noise *= rms;
-    const ProofCause cause = causes[k % 6];
-    if (cause == ProofCause::dead) room.drive_gain = 0;
-    if (cause == ProofCause::half) room.drive_gain *= 0.5;
-    if (cause == ProofCause::frequency) room.frequency_factor = 1.03;
-    if (cause == ProofCause::late) room.late_s = 0.005;
-    if (cause == ProofCause::clipped) room.limiter = 1.1 * rms;
-    if (cause == ProofCause::level) room.drive_gain = 0.8;
-    const IntervalResult result = proven(room, burst);
-    if (result.cause != cause || (result.verdict != Proof::refused && result.verdict != Proof::stopped))
-      FAIL_CHECK(k << ": " << burst.tones.count << " tones, " << name(cause) << " judged as "
-                   << name(result.verdict) << " " << name(result.cause) << ", " << result.ratio_dB
-                   << " dB, residual " << result.residual_dB << " dB, product "
-                   << (result.product ? name(*result.product) : "") << " "
-                   << (result.product ? result.product->level_dB : 0) << " dB, onset "
-                   << result.onset_error_us.value_or(-1) << " us");
-  }
 }
 
 TEST_CASE("a tone on a node of the pick-up is not proven, unless another pick-up can measure it",

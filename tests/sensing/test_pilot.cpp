@@ -30,8 +30,8 @@ struct Loop {
 
 constexpr std::int64_t start = 987'654'321;
 
-/// What a listener finds if the reference channel carries `signal(frames since the pilot's start)` and noise.
-/// The capture begins 100 frames before the pilot.
+/// Returns what a listener finds if the reference channel carries `signal`, a function of the frames since
+/// the pilot's start, and noise. The capture begins 100 frames before the pilot.
 template <class Signal>
 std::optional<PilotEcho> heard(const Pilot& pilot, const Loop& loop, const Signal& signal) {
   PilotListener listener(pilot, start, 1, 0);

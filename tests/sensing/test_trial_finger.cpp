@@ -11,7 +11,8 @@ namespace {
 
 constexpr std::int64_t second = 192000;
 
-/// A finger that lands and rests at one place; before that, something may lie there.
+/// A finger that lands and then rests at one place. Before it lands, something may already lie on the
+/// surface.
 struct Scene {
   double normal_N = 0.5, lateral_N = 0.2, place_mm = 90, lands_s = 1.0, lying_N = 0;
 };
@@ -44,7 +45,8 @@ struct Bench {
   FingerSetup setup;
 };
 
-/// Pushes samples that begin at frame 0, and announces the trial when those before it have been pushed.
+/// Pushes samples that begin at frame 0. The trial is announced after the samples before frame `quiet_until`
+/// have been pushed.
 void trial(TrialFinger& finger, const std::vector<std::int32_t>& samples, std::int64_t quiet_until,
            const std::vector<TrialFinger::Range>& intervals) {
   const auto before = static_cast<std::size_t>(4 * quiet_until);
@@ -75,7 +77,7 @@ TEST_CASE("the forces of a trial are those on the cells, minus the tare before i
     CHECK(point.position_mm == Approx(90).margin(0.5));
   }
   CHECK(seen > 1300);
-  // The result is taken once; the next trial has not been announced.
+  // result() ends the trial, and no other trial has been announced, so there is nothing to return.
   CHECK(finger.result().track.empty());
 }
 
@@ -86,7 +88,7 @@ TEST_CASE("missing frames, a wire fault and a load before the trial are told apa
   trial(finger, good, second - 9600, {{second + 9600, second + 96000}});
   REQUIRE(std::string(name(finger.result().state)) == "ok");
 
-  // Each trial lasts two seconds of its own, and the finger lands in its middle.
+  // Each trial lasts two seconds, and the finger lands in the middle of these.
   const auto state = [&](const Scene& scene, std::int64_t lost) {
     const auto samples = bench.samples(scene, 0, 2 * second);
     const std::int64_t begin = 2 * second, gap = begin + second + 30000;
@@ -124,7 +126,8 @@ TEST_CASE("without a tare at the first trial the forces are not known", "[sensin
   Bench bench;
   TrialFinger finger(bench.setup);
   const auto samples = bench.samples({}, 0, 2 * second);
-  trial(finger, samples, 30000, {{second + 9600, second + 96000}});  // only 156 ms before
+  // only 156 ms of silence before the trial are captured
+  trial(finger, samples, 30000, {{second + 9600, second + 96000}});
   const auto forces = finger.result();
   CHECK(std::string(name(forces.state)) == "tare");
   CHECK(forces.track.empty());

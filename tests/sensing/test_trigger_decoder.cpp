@@ -15,21 +15,21 @@ using namespace turnpoint::sensing;
 namespace {
 
 constexpr int rate = 192000;
-constexpr std::int64_t bit = 192;  // 1 ms
+constexpr std::int64_t bit = 192;  // frames of a bit of 1 ms
 constexpr double pi = 3.14159265358979323846;
 
-/// What a line does to a code before it is captured.
+/// The distortions of a line through which a code passes before it is captured.
 struct Line {
   double gain = 1;
-  double high_pass_Hz = 0;  // first order; 0: none
-  double low_pass_Hz = 0;   // first order; 0: none
+  double high_pass_Hz = 0;  // cut-off of a first-order high-pass filter; 0: no filter
+  double low_pass_Hz = 0;   // cut-off of a first-order low-pass filter; 0: no filter
   double ripple_dB = 0;     // gain above 2 kHz relative to that below
   double noise = 0;         // rms
-  double offset = 0;        // by how much of a frame (0 to 1) sampling is late
+  double offset = 0;        // fraction of a frame (0 to 1) by which sampling is late
   std::uint64_t seed = 1;
 };
 
-/// A first-order high-pass; what it removes is the low-pass.
+/// A first-order high-pass filter: the signal minus its low-passed part.
 class HighPass {
  public:
   explicit HighPass(double corner_Hz) : decay_(std::exp(-2 * pi * corner_Hz / rate)) {}
@@ -55,8 +55,8 @@ void through(std::vector<double>& wave, const Line& line) {
   }
 }
 
-/// The wave of a code according to the documentation, not from the program's pattern, sampled `late` frames
-/// late.
+/// Returns the wave of a code, sampled `late` frames late. It is computed from the documentation and not from
+/// the program's pattern.
 double ideal(std::uint8_t code, double frame) {
   if (frame < 0 || frame >= 14.0 * bit) return 0;
   const int check = [&] {
@@ -93,7 +93,7 @@ std::vector<double> all_codes(double offset) {
 }
 
 /// Sends all codes through the line, one after the other. Returns how many were found at most `tolerance`
-/// frames from their places, or -1 if there were others.
+/// frames from where they were sent, or -1 if other codes were found.
 int found_of_255(const Line& line, double tolerance) {
   auto wave = all_codes(line.offset);
   through(wave, line);

@@ -1,4 +1,4 @@
-// Tests the whole way from captured samples to the felt step, with all parts of the layer.
+// Tests the whole chain of this layer, from captured samples to the felt step.
 #include <algorithm>
 #include <cmath>
 
@@ -42,7 +42,8 @@ ForceCalibration exact_calibration(const Cells& cells) {
 }
 
 struct Result {
-  double position_mm = 0, speed_share = 0;  ///< root mean square errors within strokes
+  /// root mean square errors of position and (relative) speed, within strokes
+  double position_mm = 0, speed_share = 0;
   std::optional<FeltStep> step;
   std::size_t strokes = 0;
 };

@@ -135,8 +135,8 @@ struct CardSession {
     agenda.emplace_back(system::monotonic_ns() + static_cast<std::int64_t>(1e9 * s), std::move(happens));
   }
 
-  /// The card's capture: channel 0 is wired to output channel 2, and the pick-up on channel 1 captures what
-  /// output channel 0 plays, times `gain`.
+  /// Adds a capture to the card. Its channel 0 is wired to output channel 2 of the playback. The pick-up on
+  /// its channel 1 captures what output channel 0 plays, times `gain`.
   void add_capture(std::int64_t loop_delay, bool calibrated = true) {
     setup.rig.capture = rig::Capture{"alsa:fake", 2, {1}, 0, 2, {}};
     if (calibrated)

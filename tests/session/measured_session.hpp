@@ -12,7 +12,7 @@
 #include "station/store/read.hpp"
 #include "tests/support/temporary_folder.hpp"
 
-// Simulated sessions on a rig that captures, with faults in the room.
+// Helpers for tests: simulated sessions on a rig with capture channels, and faults in the simulated room.
 namespace measured {
 
 using namespace turnpoint;
@@ -24,7 +24,7 @@ inline const char* const kCells =
     "uri = \"sim:\"\nchannels = 8\npickups = [5, 6]\nreference = 0\nexcitation_channel = 3\nbridges = [1, 2, "
     "3]\n";
 
-/// Writes the simulated rig with this [capture].
+/// Writes the simulated rig to a file, with this [capture] table instead of its own.
 inline std::string with_capture(const TemporaryFolder& folder, const std::string& capture) {
   std::ostringstream rig;
   rig << std::ifstream(kSource + "/tests/support/thin_plate.toml").rdbuf() << "\n[capture]\n" << capture;
@@ -63,14 +63,14 @@ struct Ran {
   std::vector<records::EventRow> events;
 };
 
-/// What may go wrong in a room before a trial.
+/// A function that changes the simulated laboratory before each trial, for example by adding faults.
 using Sabotage = std::function<void(int trial, plant::Plant& plant)>;
 
 struct How {
   std::string capture = kPickUps;
-  bool repaired = true;  ///< faults last for one trial
+  bool repaired = true;  ///< true if each fault is repaired after one trial
   std::string observer = "sim";
-  std::function<void(plant::Setup&)> room = {};  ///< changes the laboratory
+  std::function<void(plant::Setup&)> room = {};  ///< changes the simulated laboratory before the session
 };
 
 /// Runs a protocol file in a room with faults.

@@ -69,7 +69,7 @@ TEST_CASE("confidence is stored with its answer; a stop before it leaves no tria
     if (page.kind != PageKind::confidence) return room.cooperate(page);
     CHECK(page.answers.size() == 3);
     CHECK(page.text == "Sure?");
-    room.press(0);  // a response button is no confidence
+    room.press(0);  // a press of a response button is not accepted as a confidence
     room.push(asked++ == 0 ? InputKind::answer : InputKind::stop, 2);
   };
   const auto summary = session::run(setup, &room, room.inputs, room.devices());

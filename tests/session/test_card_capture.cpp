@@ -61,7 +61,7 @@ TEST_CASE("a trial whose capture has a gap is void, and a new pilot aligns the n
       if (unknown)
         fake_pcm().capture_state = drive::FakePcm::State::xrun;
       else
-        fake_pcm().taken -= 5'000;  // as if 5000 frames had not been read
+        fake_pcm().taken -= 5'000;  // as if the station had left 5000 more frames unread
     });
   };
   const auto trials = card.runs();
@@ -130,7 +130,8 @@ TEST_CASE("trigger codes that the card plays are read back, and other codes on t
   rig.marker->amplitude = 0.45;
   rig.capture->channels = 3;
   rig.capture->marker_channel = 2;
-  std::int64_t stray = -1;  // frames since another device has begun to send code 77
+  // number of frames since another device began to send code 77; -1 while it sends nothing
+  std::int64_t stray = -1;
   const auto wires = fake_pcm().wires;
   fake_pcm().wires = [&](std::span<const std::int32_t> played, std::span<std::int32_t> captured) {
     wires(played, captured);

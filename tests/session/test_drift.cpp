@@ -43,7 +43,7 @@ struct DriftRun {
   std::vector<records::TrialRow> trials;
   std::vector<records::EventRow> events;
   rig::Rig rig;
-  double resonance = 1;  ///< true factor of the resonances at the end
+  double resonance = 1;  ///< factor by which the room's resonances have really moved at the end
 };
 
 /// Runs the demo in a room that is warmer by `warmth_K` from the third trial on.
@@ -99,7 +99,7 @@ TEST_CASE("a thermometer is found by its name, and by its device if the name is 
   CHECK_THROWS_WITH(system::find_thermometer("hwmon:lm75/temp1", root),
                     Catch::Contains("2 temperature sensors fit") && Catch::Contains("lm75@1-0048"));
   CHECK_THROWS_WITH(system::find_thermometer("hwmon:tmp117/temp1", root), Catch::Contains("0 temperature"));
-  sensors.set("hwmon1", 250);  // not connected
+  sensors.set("hwmon1", 250);  // 250 degrees: a sensor that is not connected
   CHECK_FALSE(
       system::read_thermometer_C(system::find_thermometer("hwmon:lm75@1-0049/temp1", root)).has_value());
 }
@@ -132,14 +132,15 @@ TEST_CASE("after 10 K, corrected frequencies put each boundary where it was plan
     const auto& trial = warm.trials[k];
     CHECK(trial.outcome == terms::Outcome::answered);
     for (std::size_t t = 0; t < trial.tones.size(); ++t) {
-      // where the warm plate has its boundary: that of a cold one at a frequency higher by the same factor
+      // On the warm plate, the boundary of a tone is where a cold plate has it at a frequency that is higher
+      // by the same factor.
       const auto planned = physics::turning_point_m(surface, cold.trials[k].tones[t].frequency_Hz);
       const auto now = physics::turning_point_m(
           surface, trial.tones[t].frequency_Hz / (trial.trial_index < 2 ? 1 : warm.resonance));
       const double off_mm = 1e3 * std::abs(now.value() - planned.value());
       INFO("trial " << trial.trial_index << ": " << off_mm << " mm");
       if (trial.trial_index == 2)
-        CHECK(off_mm > 0.2);  // the trial that found the drift
+        CHECK(off_mm > 0.2);  // in the trial that found the drift, the frequencies were not corrected yet
       else
         CHECK(off_mm < 0.05);
     }

@@ -9,7 +9,7 @@ using namespace measured;
 
 namespace {
 
-/// The demo with other values of some keys.
+/// Writes the demo protocol with other values of some keys.
 std::string demo_with(const TemporaryFolder& folder,
                       const std::vector<std::pair<std::string, std::string>>& changes) {
   std::ostringstream text;
@@ -90,7 +90,8 @@ TEST_CASE("the felt boundary is measured at the planned level of friction, here 
   const auto ran = run(
       protocol, [](int, plant::Plant&) {}, how);
   REQUIRE(ran.trials.size() == 5);
-  for (const auto& trial : ran.trials)  // the middle of the step is some 4 mm away
+  // The margin excludes the place half-way up the step, which is some 4 mm away.
+  for (const auto& trial : ran.trials)
     CHECK(trial.finger.boundary_felt_mm.value() == Approx(trial.boundary_mm.value()).margin(1.2));
 }
 

@@ -15,7 +15,7 @@ using namespace measured;
 
 namespace {
 
-/// What somebody sees who looks at the bars only: for each trial and interval, the mean of each bar.
+/// What somebody would see who looked only at the bars: for each trial and interval, the mean of each bar.
 struct Watcher : session::Display {
   struct Seen {
     std::array<double, 2> force{}, speed{};
@@ -37,7 +37,8 @@ struct Watcher : session::Display {
   }
   void look(const session::Guidance& guidance) {
     if (trials.empty() || !guidance.force || !guidance.force->value) return;
-    // What is seen in the pause belongs to the first interval, and after the second interval to it.
+    // What the bars show in the pause counts as part of the first interval; what they show after the second
+    // interval counts as part of the second.
     const bool second = page.interval == 2;
     if (page.kind == session::PageKind::cue || page.kind == session::PageKind::interval) return;
     auto& seen = trials.back();
@@ -104,7 +105,8 @@ struct Session {
   std::vector<std::array<double, 2>> friction;
 };
 
-/// |lateral| / normal in the two intervals of a signal with 1000 points per second that ends with the second.
+/// Returns |lateral| / normal for both intervals of a signal with 1000 points per second, which ends at the
+/// end of the second interval.
 std::array<double, 2> friction_of(const std::vector<double>& normal, const std::vector<double>& lateral) {
   std::array<double, 2> friction{};
   const std::array<std::size_t, 2> before_end{4500, 2000};
@@ -141,8 +143,8 @@ void run_guided(Session& made, const std::string& guidance) {
     made.second_is_right.push_back(trial.correct_response == "2");
 }
 
-/// The proportion of right answers of somebody who chooses the interval in which a number is smaller, or the
-/// other one if that is better.
+/// Returns the proportion of right answers of somebody who always chooses the interval with the smaller
+/// number, or, if that is better, always the other interval.
 template <class Number>
 double best_share(const Session& made, const Number& number) {
   double right = 0;
@@ -154,8 +156,8 @@ double best_share(const Session& made, const Number& number) {
   return std::max(right, n - right) / n;
 }
 
-/// An observer at chance exceeds this share of 40 answers in fewer than 1 of 100 sessions (29 of 40, both
-/// sides).
+/// In fewer than 1 of 100 sessions of 40 answers, an observer who guesses gets more than this share right, or
+/// more than this share wrong.
 constexpr double kChance = 0.71;
 
 }  // namespace
@@ -179,8 +181,8 @@ TEST_CASE("an observer who sees only the bars stays at chance; one who sees fric
   };
   CHECK(best_share(made, mean(&Watcher::Seen::force)) <= kChance);
   CHECK(best_share(made, mean(&Watcher::Seen::speed)) <= kChance);
-  // The control: the same decision from friction is nearly always right, so the bars would have given it
-  // away.
+  // Negative control: deciding by friction in the same way is nearly always right, so bars that showed
+  // friction would have given the answer away.
   CHECK(best_share(made, [&](std::size_t i) { return std::pair(made.friction[i][0], made.friction[i][1]); }) >
         0.9);
 }
@@ -199,7 +201,8 @@ TEST_CASE(
   CHECK_FALSE(guide.bars()->force->value);
   CHECK(guide.move(sensing::FingerNow{0.6, 80, true}));
   CHECK(guide.bars()->force->value.value() == Approx(0.5));
-  CHECK_FALSE(guide.move(sensing::FingerNow{0.601, 300, true}));  // too little to be seen
+  // a change of 0.001 N is too small to be seen, so the bar does not move
+  CHECK_FALSE(guide.move(sensing::FingerNow{0.601, 300, true}));
   CHECK(guide.freeze(true));
   CHECK_FALSE(guide.move(sensing::FingerNow{1.1, 80, true}));
   CHECK(guide.bars()->force->value.value() == Approx(0.5));

@@ -1,5 +1,5 @@
-// What comes around the trials: consent, questionnaires with branches and Back, explanations with examples to
-// feel, screenings. It is stored at once, and a session that dies goes on with the next question.
+// Tests of interludes: consent, questionnaires with branches and Back, explanations with examples to feel,
+// screenings. Answers are stored at once, and a session whose process dies continues with the next question.
 #include <algorithm>
 #include <fstream>
 #include <sstream>
@@ -76,7 +76,7 @@ std::string around(std::string text) {
   return text + kAfter;
 }
 
-/// The answers that stand, as "questionnaire.item@occasion=answer".
+/// Returns the valid answers, as "questionnaire.item@occasion=answer".
 std::vector<std::string> answers_in(const std::string& database, const std::string& session) {
   std::vector<std::string> all;
   const auto stored = store::read_session(database, session);
@@ -87,7 +87,7 @@ std::vector<std::string> answers_in(const std::string& database, const std::stri
   return all;
 }
 
-/// A person who takes part, and answers each question with the next of these; an answer below 0 is Back.
+/// A participant who answers the questions one after another with these numbers; a number below 0 means Back.
 struct Person : Room {
   std::vector<double> replies;
   std::size_t next_reply = 0;
@@ -130,7 +130,8 @@ struct Cut : session::Display {
 TEST_CASE("a questionnaire branches, Back withdraws an answer, and every answer is stored", "[session]") {
   const TemporaryFolder folder;
   const auto setup = visit(folder);
-  // consent; left, 12 years, back, back, right (which skips the years), mood 4; afterwards 2.5
+  // The answers: agree to the consent; left, 12 years, back, back, right (which skips the question about
+  // years), mood 4; later 2.5.
   Person person({0, 0, 12, -1, -1, 1, 3, 2.5});
   const auto summary = session::run(setup, &person, person.inputs, person.devices());
   CHECK(summary.status == records::SessionStatus::completed);
@@ -196,7 +197,7 @@ TEST_CASE("an example is presented as often as the participant wishes", "[sessio
   CHECK(summary.status == records::SessionStatus::completed);
   const auto examples = events_of(setup.database, summary, "example");
   REQUIRE(examples.size() == 3);
-  // each lasts 0.3 s, and begins 0.8 s after the press of its button
+  // Each example lasts 0.3 s and begins 0.8 s after its button was pressed.
   for (std::size_t i = 1; i < 3; ++i) CHECK(examples[i].time_ns - examples[i - 1].time_ns > 1'100'000'000);
   const auto first_trial = events_of(setup.database, summary, "presented").front().time_ns;
   const auto driven = person.enables();
@@ -219,7 +220,7 @@ TEST_CASE("a session killed at any question goes on with the next one", "[sessio
   request.participant = "P01";
   request.database = folder / "whole.sqlite";
   request.observer = "sim";
-  request.seed = 3;  // draws a mood that passes the screening
+  request.seed = 3;  // with this seed, the simulated participant gives a mood that passes the screening
   session::Inputs inputs;
   const auto whole = session::run(setup::prepare(request), nullptr, inputs);
   REQUIRE(whole.status == records::SessionStatus::completed);
@@ -235,7 +236,7 @@ TEST_CASE("a session killed at any question goes on with the next one", "[sessio
     }
     std::ostringstream messages;
     const auto again = setup::prepare_resume({request.database, "", ""}, messages);
-    if (!again) continue;  // killed at the first page: nothing had been answered
+    if (!again) continue;  // the process was killed at the first page, so no question has been answered yet
     const auto resumed = session::run(*again, nullptr, inputs);
     CHECK(resumed.status == records::SessionStatus::completed);
     CHECK(answers_in(request.database, resumed.session_id) == expected);

@@ -43,7 +43,7 @@ struct PausingRoom : Room {
     return session::run(setup, this, inputs, devices());
   }
 
-  /// The kind of the page that followed the request.
+  /// The kind of page that the session showed in response to the request.
   PageKind answered_by() const { return asked_at < pages.size() ? pages[asked_at].kind : PageKind::end; }
   int count(PageKind kind) const {
     return static_cast<int>(

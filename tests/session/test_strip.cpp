@@ -7,7 +7,8 @@
 #include "tests/session/measured_session.hpp"
 #include "tests/support/catch.hpp"
 
-// Friction along the strip beside the planned boundary, in the report and for the operator.
+// Tests the curve of friction along the strip beside the planned boundary, in the report and on the
+// operator's page.
 
 using namespace turnpoint;
 using namespace measured;
@@ -34,7 +35,7 @@ std::string demo_with(const TemporaryFolder& folder, const std::string& sensing)
   return path;
 }
 
-/// Keeps the newest row, and what the page of the operator shows about it.
+/// Keeps the row of the newest trial, and what the operator's page shows about it.
 struct Sensors : session::Monitor {
   std::optional<protocol::Sensing> asked;
   std::map<std::string, std::string> facts;
@@ -107,7 +108,8 @@ TEST_CASE("the report counts the trials that were presented again, by level", "[
       "[sensing]\nspeed_mm_s = [200, 300]\nstrokes = 1\noutside = \"repeat\"\nrepeats = 1\n", sensors);
   REQUIRE(data.repeats.size() == 5);
   for (const auto& at : data.repeats) {
-    CHECK(at.presented == 2);  // the first time in vain, then marked
+    // the movement was wrong twice, so the trial was presented twice; the second time it counts and is marked
+    CHECK(at.presented == 2);
     CHECK(at.repeated == 1);
   }
   CHECK(sensors.facts.at("Finger") == "slow");

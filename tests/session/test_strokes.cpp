@@ -6,14 +6,15 @@
 #include "tests/session/measured_session.hpp"
 #include "tests/support/catch.hpp"
 
-// Blocks in which the finger strokes the surface and nothing is asked: training, and the friction table.
+// Tests of blocks in which the finger strokes the surface and nothing is asked: training, and measuring the
+// friction table.
 
 using namespace turnpoint;
 using namespace measured;
 
 namespace {
 
-/// One trial that asks for a relative friction of 0.6, after these blocks.
+/// Returns a protocol with these blocks, followed by one trial that asks for a relative friction of 0.6.
 std::string protocol_with(const TemporaryFolder& folder, const std::string& blocks,
                           const std::string& sensing = "strokes = 1") {
   const auto path = folder / "strokes.toml";
@@ -69,7 +70,7 @@ const char* const kTraining =
     "[[block]]\nname = \"training\"\nkind = \"training\"\nstrokes = 5\nduration_s = 4.0\n"
     "pass = { strokes = 4, retries = 1 }\n";
 
-/// The curve of a finger on which half the vibration does what the rig's curve says.
+/// Returns the friction map of a finger that needs twice the vibration of the rig's curve.
 physics::FrictionMap stiff_finger() {
   const physics::FrictionMap rig{physics::LoadSharing{}};
   std::vector<physics::FrictionPoint> points;
@@ -106,7 +107,7 @@ TEST_CASE("a session measures how much vibration reduces the friction of this fi
   TemporaryFolder folder;
   const auto finger = stiff_finger();
   const auto ran = run(protocol_with(folder, std::string(kTable) + "true\n"), nothing,
-                       with_finger(finger, 0.3 / 120));  // 30 % within two minutes
+                       with_finger(finger, 0.3 / 120));  // friction drifts by 30 % within two minutes
   REQUIRE(ran.summary.status == records::SessionStatus::completed);
   REQUIRE(ran.trials.size() == 27);
   const auto& table = table_of(ran);
@@ -132,7 +133,8 @@ TEST_CASE("a session measures how much vibration reduces the friction of this fi
       CHECK(trial.response == "ok");
       CHECK_FALSE(trial.correct);
     }
-    CHECK(ran.trials[24].finger.mu.value() / ran.trials[0].finger.mu.value() > 1.15);  // the drift
+    // the friction of the same finger has drifted
+    CHECK(ran.trials[24].finger.mu.value() / ran.trials[0].finger.mu.value() > 1.15);
   }
 }
 
@@ -146,7 +148,8 @@ TEST_CASE("trials are planned with the measured table where the protocol asks fo
     return ran.trials.back().amplitude.value();
   };
   const double by_rig = strength_um("false\n"), by_table = strength_um("true\n");
-  CHECK(by_table / by_rig == Approx(2).epsilon(0.1));  // this finger needs twice the vibration
+  // this finger needs twice the vibration, and the table has measured that
+  CHECK(by_table / by_rig == Approx(2).epsilon(0.1));
 }
 
 TEST_CASE("a resumed session continues the table, and plans with the same table afterwards",
@@ -158,7 +161,7 @@ TEST_CASE("a resumed session continues the table, and plans with the same table 
   request.participant = "P01";
   request.observer = "sim";
   request.seed = 7;
-  // Stops the session before trial `stop_at`.
+  // Runs the session, and stops it before trial `stop_at`.
   const auto run_once = [&](session::Setup setup, int stop_at) {
     auto room = std::make_unique<session::SimulatedRoom>(setup.rig, with_finger(stiff_finger()).room);
     Saboteur saboteur;
@@ -189,7 +192,8 @@ TEST_CASE("a resumed session continues the table, and plans with the same table 
     trials.insert(trials.end(), block.trials.begin(), block.trials.end());
   CHECK(tables == 1);
   REQUIRE(trials.size() == 27);
-  // With the rig's curve the last trials would have half the strength.
+  // If the resumed session used the rig's curve instead of the measured table, the last trials would be half
+  // as strong.
   request.database = folder / "whole.sqlite";
   const auto whole = run_once(setup::prepare(request), -1);
   const auto reference = store::read_session(request.database, whole.session_id);

@@ -29,8 +29,8 @@ struct Ran {
   std::string report;  ///< what the report says about the codes
 };
 
-/// Runs a protocol of the project on the simulated rig with more tables, in a room whose marker wire may be
-/// broken during some trials.
+/// Runs a protocol of the project. These tables are added to the simulated rig, and the wire of the marker
+/// may be broken during some trials.
 Ran run(const std::string& protocol, const std::string& rig_tables,
         const std::function<bool(int trial)>& wire_broken = {}) {
   TemporaryFolder folder;
@@ -152,7 +152,7 @@ TEST_CASE("pulses of another device are stored with their frames and times", "[s
 
 namespace {
 
-/// A stream with a marker channel whose codes are captured.
+/// A stream with a marker channel, whose output a TriggerCapture captures.
 struct Bench {
   session::TriggerSetup setup;
   std::unique_ptr<drive::SynchronousStream> stream;
@@ -177,7 +177,8 @@ struct Bench {
     trigger.code = code, trigger.frame = frame, trigger.time_ns = stream->time_of(frame).value();
     triggers->scheduled(trigger);
   }
-  /// The state of all codes once these frames have been captured, with these codes in them.
+  /// Returns the state of all codes after these ranges of frames have been captured, in which these codes
+  /// were found.
   std::vector<session::Trigger> after(const std::vector<std::pair<std::int64_t, std::int64_t>>& captured,
                                       const std::vector<sensing::DecodedTrigger>& heard = {}) {
     triggers->captured({heard, {}, captured});

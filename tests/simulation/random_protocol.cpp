@@ -15,7 +15,8 @@ class Maker {
 
   std::string text() {
     task_ = pick({"single-interval", "2ifc", "same-different", "oddity"});
-    // Not drawn from random_, so that these tasks change nothing else of the files.
+    // Decide by the seed instead of drawing from random_: additional draws would change everything else in
+    // the files of all seeds.
     if (seed_ % 4 == 3 && task_ == "2ifc") task_ = "3ifc";
     if (seed_ % 4 == 1 && task_ == "2ifc") task_ = "4ifc";
     if (seed_ % 4 == 3 && task_ == "same-different") task_ = seed_ % 8 == 3 ? "abx" : "match-to-sample";
@@ -91,7 +92,7 @@ class Maker {
     for (const auto& id : ids) text += "{ id = " + quoted(id) + ", label = { en = " + quoted(id) + " } },";
     text += "]\n";
     if (single_) text += correct();
-    // Not drawn from random_, so that this feature changes nothing else of the file.
+    // Decided by the seed, so that the rest of the file stays as it was before this feature was added.
     if (seed_ % 4 == 0) {
       use("confidence");
       text +=
@@ -103,7 +104,7 @@ class Maker {
 
   std::string correct() {
     const auto rule = pick({"side", "side", "distance", "criterion"});
-    // Not drawn from random_, so that this feature changes nothing else of the file.
+    // Decided by the seed, so that the rest of the file stays as it was before this feature was added.
     if (three_answers()) {
       use("three answers about one interval");
       return "correct = { a = \"level_mm < -7\", b = \"abs(level_mm) < 7\", c = \"level_mm > 7\" }\n";

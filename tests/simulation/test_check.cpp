@@ -33,8 +33,8 @@ std::vector<double> values_of(const std::vector<simulation::SessionLength>& leng
   return values;
 }
 
-/// True if the range holds 86 to 94 % of the sessions. Several sessions may lie exactly on an end, because
-/// trials are counted; half of them count as held.
+/// True if 86 to 94 % of the sessions lie in the range. Trials are counted in whole numbers, so several
+/// sessions may lie exactly on an end of the range; half of these count as inside.
 bool holds_nine_of_ten(const simulation::Spread& spread, const std::vector<double>& values) {
   double inside = 0;
   for (const double value : values)
@@ -120,14 +120,15 @@ TEST_CASE("the duration estimated by check includes time to set a slider", "[che
 
 TEST_CASE("the ranges of check hold nine of ten sessions of each shipped protocol, and its medians are right",
           "[check]") {
-  int too_few = 0;  // ranges of 21 sessions that do not
+  int too_few = 0;  // number of estimates from only 21 sessions that fail this check
   for (const auto& entry :
        std::filesystem::directory_iterator(std::string(TURNPOINT_SOURCE_DIR) + "/protocols")) {
     if (entry.path().extension() != ".toml") continue;
     INFO(entry.path().stem().string());
     const auto protocol = protocol::load(entry.path().string());
     const auto stated = lengths(protocol, 0, simulation::usual_sessions(protocol)),
-               others = lengths(protocol, 2000, 600);  // enough for chance alone to stay inside
+               // of this many sessions, chance alone keeps the share within the limits
+        others = lengths(protocol, 2000, 600);
     for (const auto what : {&simulation::SessionLength::trials, &simulation::SessionLength::duration_s}) {
       const auto spread = simulation::spread_of(values_of(stated, what));
       const auto values = values_of(others, what);

@@ -68,7 +68,7 @@ TEST_CASE(
 TEST_CASE("the true values are the observer's own parameters, never estimates", "[power]") {
   const auto power = simulation::power(shipped("speed-accuracy"), options("sim:threshold=0.15", 6, 6));
   const auto& right = find(power, "accuracy - speed", "proportion correct");
-  CHECK(right.mean > 0);  // fast answers are less often right
+  CHECK(right.mean > 0);  // the speed instruction reduces accuracy
   CHECK(find(power, "accuracy - speed", "median response time").mean > 0);
   REQUIRE((right.truth && right.coverage && right.interval_width));
   CHECK(right.coverage->trials == static_cast<int>(right.estimates.size()));
@@ -187,6 +187,26 @@ TEST_CASE("the method of limits finds the middle between its symmetric series", 
   CHECK(find(power, "procedure series", "threshold ascending - descending").mean < -3);
 }
 
+TEST_CASE("a study of several days analyses all sessions of a participant together", "[power]") {
+  const auto power = simulation::power(shipped("friction-training"), options("sim:threshold=-15,lapse=0", 4));
+  // 6 practice trials, 60 to measure the threshold on two days, 60 of training on each of three days, and
+  // some that were not answered in time
+  CHECK(power.trials >= 306);
+  CHECK(power.trials < 325);
+  for (const auto* source : {"procedure before, session 1", "procedure after, session 3"}) {
+    const auto& threshold = find(power, source, "threshold");
+    CHECK(threshold.estimates.size() == 4);
+    REQUIRE(threshold.truth);
+    CHECK(threshold.mean == Approx(*threshold.truth).margin(4));
+  }
+  CHECK_THROWS(find(power, "procedure before, session 3", "threshold"));
+  // Two of the four participants belong to each group. Each session has draws of its own.
+  for (const auto* source : {"fit feedback, before", "fit none, before", "fit none, after"})
+    CHECK(find(power, source, "threshold").estimates.size() == 2);
+  CHECK(find(power, "procedure training, session 1", "threshold").estimates !=
+        find(power, "procedure training, session 2", "threshold").estimates);
+}
+
 TEST_CASE("options out of range are refused", "[power]") {
   CHECK_THROWS_AS(simulation::power(shipped("demo"), options("sim", 0)), std::invalid_argument);
 }
@@ -248,7 +268,9 @@ TEST_CASE(
     CHECK(*at.truth > last);
     last = *at.truth;
     REQUIRE(at.coverage);
-    CHECK(at.coverage->value > 0.9);  // Clopper and Pearson's intervals are too long, if anything
+    // intervals of Clopper and Pearson are longer than necessary, so they contain the true value more often
+    // than 95 %
+    CHECK(at.coverage->value > 0.9);
   }
   // Adaptive levels differ from session to session: only d' over all trials can be compared.
   const auto three = simulation::power(shipped("friction-3ifc"), options("sim:threshold=-12,lapse=0", 20, 0));

@@ -20,7 +20,7 @@ struct Change {
   bool truncates = false;
 };
 
-/// The durable content of a file, and the writes that are so far only in the disk's cache.
+/// The durable content of a file, and the writes that so far are only in the disk's cache.
 struct Platter {
   std::string durable;
   std::vector<Change> waiting;
@@ -33,7 +33,8 @@ std::map<std::string, Platter> platters;
 std::map<sqlite3_file*, std::string> names;
 std::function<void()> hook;
 LossyDisk::Syncs mode;
-// SQLite's own methods. Those for writing, truncating, syncing and closing are the same for all files.
+// SQLite's own methods of some file. Those for writing, truncating, syncing and closing are the same for all
+// files.
 const sqlite3_io_methods* any_real = nullptr;
 
 void apply(std::string& bytes, const Change& change) {

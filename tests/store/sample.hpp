@@ -41,6 +41,8 @@ inline SessionStart start(const std::string& participant = "P01") {
   s.realtime_rights = "none";
   s.started_local = "2024-02-29T10:00:00+01:00";
   s.consent_version = "c1";
+  s.planned_session = 2;
+  s.groups = {"trained", "untrained"};
   return s;
 }
 

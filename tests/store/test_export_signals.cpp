@@ -137,7 +137,8 @@ TEST_CASE("exported signals are the same after a merge, and gone after a withdra
   CHECK(sample::bytes_of(folder / "here" + table_of(id)) ==
         sample::bytes_of(folder / "there" + table_of(id)));
   withdraw(db, {"P07", "", "", ""});
-  // The earlier export still has the signals of the session, and says so instead of keeping them silently.
+  // The folder contains signals of an earlier export, of a session that is not part of this export. The
+  // export must refuse to mix them.
   const auto [kind, message] = sample::failure([&] { export_data(db, folder / "here", signals_only()); });
   CHECK(kind == ErrorKind::conflict);
   CHECK(sample::contains(message, id + "_finger.csv.gz"));

@@ -66,7 +66,8 @@ TEST_CASE("a stored signal has the documented encoding", "[store]") {
   encode(row,
          std::vector<std::vector<double>>{{1, 1.5, std::numeric_limits<double>::quiet_NaN()}, {-1, -1, 300}});
   CHECK(row.points == 3);
-  // Whole numbers 2, 3, -2^31 and -1, -1, 300; differences 2, 1, 0x7FFFFFFD and 0xFFFFFFFF, 0, 301.
+  // The whole numbers are 2, 3, -2^31 in the first channel and -1, -1, 300 in the second. Their differences
+  // are 2, 1, 0x7FFFFFFD and 0xFFFFFFFF, 0, 301.
   const std::string shuffled{
       "\x02\x01\xFD\xFF\x00\x2D"
       "\x00\x00\xFF\xFF\x00\x01"

@@ -160,7 +160,7 @@ TEST_CASE("a restore sets a damaged database aside and puts the newest good back
   backup(db, {dir, 9});
   sample::session(db, 3, sample::start("P02"));
   const auto newest = backup(db, {dir, 9});
-  // A restore is refused while the database is undamaged.
+  // The database is undamaged, so a restore must be refused.
   CHECK(sample::failure([&] { restore_backup(db, {dir, ""}); }).first == ErrorKind::refused);
   auto bytes = sample::bytes_of(db);
   bytes.resize(6000);

@@ -16,7 +16,7 @@ class Child {
   void signal(int number) const;
   /// Writes a line to the program's standard input. Throws std::system_error if the program has ended.
   void type(const std::string& line) const;
-  /// From now on nobody reads the program's output, so that its pipe fills up.
+  /// From now on, nobody reads the program's output, so its pipe fills up.
   void stop_listening();
   /// Waits until the program has printed `text` on standard output or error. Returns false if the program
   /// ends first, or prints nothing for `patience_ms`.

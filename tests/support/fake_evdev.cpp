@@ -81,8 +81,7 @@ bool FakeEvdev::is(int descriptor) const {
   struct stat mine {
   }, found{};
   if (path_.empty()) return descriptor == ends_[0];
-  // stat() with the path is used, because a sanitizer would report fstat() as a use of the reader's
-  // descriptor.
+  // Use stat() with the path, because a sanitizer would report fstat() as a use of the reader's descriptor.
   const auto path = "/proc/self/fd/" + std::to_string(descriptor);
   return ::fstat(ends_[1], &mine) == 0 && ::stat(path.c_str(), &found) == 0 && found.st_dev == mine.st_dev &&
          found.st_ino == mine.st_ino;

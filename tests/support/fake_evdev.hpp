@@ -10,9 +10,9 @@
 /// the C library.
 class FakeEvdev {
  public:
-  /// A panel of 800 x 480 with this many slots for fingers; with 0 slots it cannot tell fingers apart.
+  /// Makes a panel of 800 x 480 with this many slots for fingers; with 0 slots it cannot tell fingers apart.
   explicit FakeEvdev(int slot_count);
-  /// The same panel, for programs that open a device by its path.
+  /// Makes the same panel for programs that open a device by its path.
   FakeEvdev(int slot_count, const std::string& path);
   FakeEvdev(const FakeEvdev&) = delete;
   FakeEvdev& operator=(const FakeEvdev&) = delete;

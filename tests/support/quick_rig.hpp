@@ -12,8 +12,8 @@ inline std::string replaced(std::string text, const std::string& from, const std
   return text.replace(at, from.size(), to);
 }
 
-/// The file of the thin plate, changed to simply supported sides and a thicker plate. Its boundary map is
-/// nearly the same but has a closed form, so that surveys of protocols are fast.
+/// Returns the file of the rig with the thin plate, changed to simply supported sides and a thicker plate.
+/// Its boundary map is nearly the same but has a closed form, so that surveys of protocols are fast.
 inline std::string quick_rig_source() {
   const auto text =
       turnpoint::system::read_file(std::string(TURNPOINT_SOURCE_DIR) + "/tests/support/thin_plate.toml");

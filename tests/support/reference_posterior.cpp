@@ -26,7 +26,8 @@ double probability(Shape shape, double guess, const Point& at, double x) {
   return guess + (1 - guess - at[2]) * f;
 }
 
-/// Log prior density of threshold or ln slope, at this fraction of the parameter's range.
+/// Returns the logarithm of the prior density of threshold or ln slope, at this fraction of the parameter's
+/// range.
 double log_prior(double at, double falling_share) {
   const double nearest = std::min(at, 1 - at);
   return nearest < falling_share ? std::log(nearest / falling_share) : 0;

@@ -38,7 +38,7 @@ Samples sample(Shape shape, const std::vector<Level>& data, const Prior& prior, 
                std::uint64_t seed);
 
 double quantile(std::vector<double> values, double p);
-/// The share of values within [low, high].
+/// Returns the share of values within [low, high].
 double share_inside(const std::vector<double>& values, double low, double high);
 
 }  // namespace reference

@@ -5,7 +5,7 @@
 
 #include "station/system/read_file.hpp"
 
-/// The shipped staircase protocol, with both of its staircases replaced by accelerated stochastic
+/// Returns the shipped staircase protocol, with both of its staircases replaced by accelerated stochastic
 /// approximation of 20 trials each.
 inline std::string stochastic_approximation() {
   auto source =

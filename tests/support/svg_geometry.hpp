@@ -65,8 +65,8 @@ inline std::vector<Text> texts(const std::string& svg) {
   return found;
 }
 
-/// The area covered by curves, round markers, outlined rectangles and lines, as small boxes. Lines in the
-/// colours of grid and axes are left out.
+/// Returns the area covered by curves, round markers, outlined rectangles and lines, as small boxes. Lines in
+/// the colours of grid and axes are left out.
 inline std::vector<Box> ink(const std::string& svg, const std::vector<std::string>& not_of_colour) {
   std::vector<Box> boxes;
   const auto stroke = [&](double x0, double y0, double x1, double y1, double half) {

@@ -7,7 +7,7 @@
 /// A folder for one test, which is removed afterwards.
 struct TemporaryFolder {
   TemporaryFolder() {
-    // In memory if possible, because these tests do not test whether data are durable.
+    // Use memory if possible, because no test that uses this folder checks whether data are durable.
     std::string name = std::filesystem::exists("/dev/shm") ? "/dev/shm" : "/tmp";
     name += "/turnpoint-test-XXXXXX";
     if (::mkdtemp(name.data()) == nullptr) throw std::runtime_error("no temporary folder");

@@ -72,8 +72,21 @@ TEST_CASE("every text is used, and every text that the program requests exists",
   for (const auto kind : terms::fault_kinds)
     for (const char* part : {".happened", ".safe", ".to_do"})
       of_faults.insert(std::string("fault.") + terms::name(kind) + part);
+  const auto schema =
+      system::read_file(std::string(TURNPOINT_SOURCE_DIR) + "/protocols/protocol.schema.json");
+  const auto goals = system::read_file(std::string(TURNPOINT_SOURCE_DIR) + "/station/design/goals.cpp");
   for (const auto& key : keys) {
     INFO(key);
+    // The designer asks for the text of every key that the schema knows, and of every goal.
+    const auto last = "\"" + key.substr(key.rfind('.') + 1) + "\"";
+    if (key.starts_with("design.keys.")) {
+      CHECK(schema.find(last) != std::string::npos);
+      continue;
+    }
+    if (key.starts_with("design.goals.")) {
+      CHECK(goals.find("{" + last) != std::string::npos);
+      continue;
+    }
     CHECK((source.words.count(key) == 1 || of_faults.count(key) == 1));
   }
   for (const auto kind : terms::fault_kinds) {
@@ -91,7 +104,8 @@ TEST_CASE(
   CHECK_THROWS_AS(texts::text("no_such_key", "en"), std::logic_error);
 }
 
-TEST_CASE("a language is known to be spoken or not, and to have been read by a native speaker or not", "[texts]") {
+TEST_CASE("a language is known to be spoken or not, and to have been read by a native speaker or not",
+          "[texts]") {
   CHECK(texts::translation("en-GB") == texts::Translation::read);
   CHECK(texts::translation("ar") == texts::Translation::unread);
   CHECK(texts::translation("fi") == texts::Translation::none);
@@ -107,7 +121,7 @@ TEST_CASE("every fault says what happened, what is safe and what to do in each l
       CHECK_FALSE(text.safe.empty());
       CHECK_FALSE(text.to_do.empty());
       if (language != "en") CHECK(text.happened != texts::fault_text(kind, "en").happened);
-      CHECK(pages.insert(text.happened).second);  // each kind of fault has a text of its own
+      CHECK(pages.insert(text.happened).second);  // two kinds of fault must not have the same text
     }
   CHECK(texts::fault_text(terms::FaultKind::amplifier, "fi").safe ==
         texts::fault_text(terms::FaultKind::amplifier, "en").safe);

@@ -1,5 +1,10 @@
+#include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <map>
+#include <set>
+#include <utility>
+#include <vector>
 
 #include "station/trial/director.hpp"
 #include "station/trial/question.hpp"
@@ -130,7 +135,7 @@ TEST_CASE("the times of a trial follow its factors", "[session]") {
   auto protocol = shipped("response-signal");
   Director signalled(protocol, 0, 5);
   std::map<double, int> lags;
-  signalled.finish_block();  // the practice
+  signalled.finish_block();  // leave the practice block
   while (const auto spec = signalled.next()) {
     const double lag_s = std::get<double>(spec->factors.at("lag_s"));
     ++lags[lag_s];
@@ -151,4 +156,97 @@ TEST_CASE("the times of a trial follow its factors", "[session]") {
     CHECK_FALSE(spec->signal_s);
     limited.record(answered(*spec, true));
   }
+}
+
+TEST_CASE("each of the interleaved procedures presents its own value of the factor", "[session]") {
+  const auto protocol = shipped("friction-weber");
+  Director director(protocol, 0, 8);
+  director.finish_block();  // leave the practice block
+  std::map<std::string, int> trials;
+  std::map<std::string, int> followed;  // how often each procedure was followed by another one
+  std::string last;
+  while (const auto spec = director.next()) {
+    const double reference = std::get<double>(spec->factors.at("reference"));
+    CHECK(spec->procedure == "weber-0_" + std::to_string(static_cast<int>(100 * reference + 0.5)));
+    ++trials[spec->procedure];
+    followed[last] += last != spec->procedure;
+    last = spec->procedure;
+    // The answers depend on the reference, so the three procedures reach different levels if each has a state
+    // of its own.
+    director.record(answered(*spec, reference > 0.7 || trials[spec->procedure] % 2 == 0));
+  }
+  CHECK(trials == std::map<std::string, int>{{"weber-0_65", 40}, {"weber-0_75", 40}, {"weber-0_85", 40}});
+  for (const auto& [procedure, count] : trials) CHECK(followed[procedure] > 15);
+  std::map<std::string, double> thresholds;
+  for (const auto& estimate : director.estimates())
+    if (estimate.parameter == "threshold") thresholds[estimate.procedure] = estimate.mean;
+  CHECK(thresholds.at("weber-0_65") > 3 * thresholds.at("weber-0_75"));
+  CHECK(thresholds.at("weber-0_75") == Approx(thresholds.at("weber-0_85")).epsilon(0.5));
+}
+
+TEST_CASE("values are drawn from a range as the protocol says", "[session]") {
+  auto protocol = shipped("friction-weber");
+  auto& factor = protocol.factors.at(2);
+  REQUIRE(factor.name == "end_mm");
+  const auto drawn = [&] {
+    std::vector<double> values;
+    for (std::uint64_t seed = 0; seed < 40; ++seed) {
+      Director director(protocol, 0, seed);
+      director.finish_block();
+      while (const auto spec = director.next()) {
+        values.push_back(std::get<double>(spec->factors.at("end_mm")));
+        director.record(answered(*spec, true));
+      }
+    }
+    return values;
+  };
+  const auto moments = [](const std::vector<double>& values) {
+    double sum = 0, squares = 0;
+    for (const double value : values) sum += value;
+    const double mean = sum / static_cast<double>(values.size());
+    for (const double value : values) squares += (value - mean) * (value - mean);
+    return std::pair(mean, std::sqrt(squares / static_cast<double>(values.size() - 1)));
+  };
+  // 4800 values. The limits are four standard errors of mean and standard deviation.
+  const auto uniform = drawn();
+  REQUIRE(uniform.size() == 4800);
+  CHECK(*std::min_element(uniform.begin(), uniform.end()) >= 180);
+  CHECK(*std::max_element(uniform.begin(), uniform.end()) <= 190);
+  CHECK(moments(uniform).first == Approx(185).margin(0.17));
+  CHECK(moments(uniform).second == Approx(10 / std::sqrt(12.0)).margin(0.08));
+
+  factor.draw = protocol::FactorDraw::normal;
+  factor.mean = 185, factor.sd = 1;
+  // the range, 180 to 190, is 5 standard deviations wide on either side of the mean
+  const auto normal = drawn();
+  CHECK(moments(normal).first == Approx(185).margin(0.06));
+  CHECK(moments(normal).second == Approx(1).margin(0.042));
+  factor.sd = 10;  // values outside of the range are drawn again
+  for (const double value : drawn()) CHECK((value >= 180 && value <= 190));
+}
+
+TEST_CASE("without repetition, each level comes once before any comes again", "[session]") {
+  auto protocol = shipped("friction-weber");
+  auto& factor = protocol.factors.at(2);
+  factor.range.reset();
+  factor.levels = {180.0, 183.0, 185.0, 188.0, 190.0};
+  factor.draw = protocol::FactorDraw::without_repetition;
+  Director director(protocol, 0, 8);
+  director.finish_block();
+  std::set<double> round;
+  std::set<std::vector<double>> orders;
+  std::vector<double> order;
+  while (const auto spec = director.next()) {
+    const double value = std::get<double>(spec->factors.at("end_mm"));
+    CHECK(round.insert(value).second);
+    order.push_back(value);
+    if (round.size() == 5) round.clear(), orders.insert(std::exchange(order, {}));
+    if (order.size() == 3) {  // a void trial is presented again with the same value
+      director.record({terms::Outcome::fault, {}, {}, {}});
+      CHECK(std::get<double>(director.next()->factors.at("end_mm")) == value);
+    }
+    director.record(answered(*spec, true));
+  }
+  CHECK(order.empty());
+  CHECK(orders.size() > 10);  // the block has 24 rounds
 }

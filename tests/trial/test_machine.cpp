@@ -1,68 +1,7 @@
-#include <random>
-
-#include "station/trial/machine.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/trial/timings.hpp"
 
-using namespace turnpoint::trial;
-
-namespace {
-
-constexpr std::int64_t ms = 1'000'000;
-
-Timing exploration() {
-  Timing plan;
-  plan.cue_ns = 500 * ms;
-  plan.intervals = {{4000 * ms, {}}};
-  plan.answer_ends_stimulus = true;
-  plan.deadline_ns = 6000 * ms;
-  plan.anticipation_ns = 150 * ms;
-  plan.late_ns = 800 * ms;
-  plan.iti_ns = 1000 * ms;
-  plan.correct = 1;
-  return plan;
-}
-
-Timing two_intervals() {
-  Timing plan;
-  plan.intervals = {{1500 * ms, {}}, {1500 * ms, {}}};
-  plan.gap_ns = 1000 * ms;
-  plan.response_zero = ResponseZero::interval_off;
-  plan.deadline_ns = 3000 * ms;
-  plan.iti_ns = 800 * ms;
-  plan.correct = 0;
-  return plan;
-}
-
-bool has(const std::vector<Action>& actions, ActionKind kind, int value) {
-  for (const auto& action : actions)
-    if (action.kind == kind && action.value == value) return true;
-  return false;
-}
-bool enters(const std::vector<Action>& actions, Phase phase) {
-  return has(actions, ActionKind::enter, static_cast<int>(phase));
-}
-
-/// Starts at time 0 and advances the machine to the first frame of the exploration at 500 ms.
-Machine exploring(const Timing& plan = exploration()) {
-  Machine machine(plan);
-  machine.start(0);
-  machine.handle({500 * ms, EventKind::onset, 0});
-  machine.handle({500 * ms, EventKind::tick, 0});
-  return machine;
-}
-
-/// Presents two intervals from 10 ms on, and gives the first choice 300 ms after the end of the second.
-Machine answered_after_two() {
-  Machine machine(two_intervals());
-  machine.start(0);
-  machine.handle({10 * ms, EventKind::onset, 0});
-  machine.handle({2510 * ms, EventKind::onset, 1});
-  machine.handle({1520 * ms, EventKind::heard, 0});
-  machine.handle({4310 * ms, EventKind::answer, 0});
-  return machine;
-}
-
-}  // namespace
+using namespace trial_test;
 
 TEST_CASE("an exploration consists of cue, stimulus, answer and pause, and times count from the go cue",
           "[trial]") {
@@ -315,88 +254,6 @@ TEST_CASE("an impossible plan is refused, and the message says what is wrong", "
   CHECK_THROWS_AS(Machine(plan), std::invalid_argument);
 }
 
-namespace {
-
-/// Simulates a drive that replies to `present` with onsets, and sometimes with `heard` events.
-struct Drive {
-  Machine& machine;
-  const Timing& plan;
-  std::vector<Action> follow(const std::vector<Action>& actions, std::int64_t now, std::int64_t later) {
-    std::vector<Action> more;
-    for (const auto& action : actions) {
-      silenced |= action.kind == ActionKind::silence;
-      if (action.kind != ActionKind::present) continue;
-      ++presented;
-      auto at = std::max(now, action.time_ns) + later;
-      for (std::size_t i = 0; i < plan.intervals.size(); ++i) {
-        const auto next = machine.handle({at, EventKind::onset, static_cast<int>(i)});
-        more.insert(more.end(), next.begin(), next.end());
-        at += plan.intervals[i].duration_ns + plan.gap_ns;
-      }
-    }
-    return more;
-  }
-  int presented = 0;
-  bool silenced = false;
-};
-
-/// Checks the rules for every finished trial, whatever happened in it. Returns the rule that is broken; "" if
-/// none is.
-std::string broken_invariant(const Machine& machine, const Timing& plan, const Drive& drive, bool hurt) {
-  const auto& result = machine.result();
-  if (!machine.done()) return "a trial that does not end";
-  const bool answered = result.outcome == Outcome::answered;
-  if (answered != result.response.has_value()) return "response without answered";
-  if (answered != result.response_time_ns.has_value()) return "time without answer";
-  if (result.correct && !answered) return "a score without an answer";
-  if (answered &&
-      (*result.response_time_ns < plan.anticipation_ns || *result.response_time_ns > plan.deadline_ns))
-    return "response time outside anticipation and deadline";
-  if (drive.presented > 1) return "presented twice";
-  if (hurt && result.outcome != Outcome::fault && result.outcome != Outcome::aborted)
-    return "lost frames without a void trial";
-  return "";
-}
-
-}  // namespace
-
-TEST_CASE("whatever comes in whatever order, the invariants of a trial hold", "[trial]") {
-  std::mt19937_64 random(20261121);
-  const auto below = [&](std::uint64_t n) { return static_cast<std::int64_t>(random() % n); };
-  constexpr EventKind common[] = {EventKind::tick, EventKind::answer, EventKind::touch, EventKind::contact};
-  constexpr EventKind rare[] = {EventKind::xrun, EventKind::fault, EventKind::abort};
-  for (int sequence = 0; sequence < 100'000; ++sequence) {
-    auto plan = below(2) ? exploration() : two_intervals();
-    if (plan.answer_ends_stimulus && below(3) == 0) {
-      plan.intervals[0].scene_starts_ns = {1000 * ms};
-      plan.response_zero = ResponseZero::change;
-    } else if (below(4) == 0) {
-      plan.response_zero = below(2) ? ResponseZero::first_contact : ResponseZero::lift_off;
-    }
-    Machine machine(plan);
-    Drive drive{machine, plan};
-    std::int64_t now = 0;
-    bool hurt = false;
-    drive.follow(machine.start(now), now, below(40) * ms);
-    for (int event = 0; event < 60 && !machine.done(); ++event) {
-      now += below(5) == 0 ? below(4000) * ms : below(50) * ms;
-      const auto kind = below(60) == 0 ? rare[below(3)] : common[below(4)];
-      const int value = static_cast<int>(below(4)) - 1;
-      hurt |= kind == EventKind::xrun && value != 0 && !machine.decided();
-      drive.follow(machine.handle({now, kind, value}), now, 0);
-    }
-    for (int i = 0; i < static_cast<int>(plan.intervals.size()) && !machine.done(); ++i)
-      drive.follow(machine.handle({now, EventKind::heard, i}), now, 0);
-    for (int tick = 0; tick < 30 && !machine.done() && machine.wake_ns(); ++tick) {
-      now = std::max(now, *machine.wake_ns());
-      drive.follow(machine.handle({now, EventKind::tick, 0}), now, 0);
-    }
-    if (const auto broken = broken_invariant(machine, plan, drive, hurt); !broken.empty())
-      FAIL(broken << ", sequence " << sequence << " " << name(machine.result().outcome));
-  }
-  SUCCEED();
-}
-
 TEST_CASE("confidence is asked for after an answer, and completes the trial", "[trial]") {
   auto plan = exploration();
   plan.confidence = 4;
@@ -407,8 +264,10 @@ TEST_CASE("confidence is asked for after an answer, and completes the trial", "[
   CHECK_FALSE(machine.wake_ns());  // no deadline
   machine.handle({1500 * ms, EventKind::heard, 0});
   CHECK_FALSE(machine.decided());
-  machine.handle({1400 * ms, EventKind::answer, 2});  // began before the answer
-  machine.handle({1600 * ms, EventKind::answer, 4});  // there are only four degrees
+  // this touch began before the answer, so it is no confidence
+  machine.handle({1400 * ms, EventKind::answer, 2});
+  // index 4 does not exist, because there are only four degrees
+  machine.handle({1600 * ms, EventKind::answer, 4});
   CHECK_FALSE(machine.result().confidence);
   CHECK(machine.result().extra_touches == 2);
   CHECK(enters(machine.handle({20'000 * ms, EventKind::answer, 2}), Phase::interval));

@@ -206,7 +206,7 @@ void add_interludes(std::vector<Exhibit>& all, const Words& words) {
   all.push_back({"explanation-playing", explained});
 }
 
-/// Bars with a finger that presses well and moves too slowly.
+/// Adds the bars that guide the finger, for a finger that presses well but moves too slowly.
 Page guided(Page page, bool frozen = false) {
   session::Guidance bars;
   bars.force = session::Guidance::Bar{0.5, 0.36, 0.67};
@@ -306,7 +306,7 @@ void add_faults(std::vector<Exhibit>& all, const Words& words) {
     page.to_do = text.to_do;
     page.detail = detail;
     if (kind == FaultKind::disarmed) page.amplifier = "disarmed";
-    // The amplifier stays armed during these faults.
+    // With these faults, the amplifier stays armed.
     const auto armed = {FaultKind::disarmed,  FaultKind::limits,          FaultKind::touch_gone,
                         FaultKind::disk_full, FaultKind::stimulus_missed, FaultKind::vibration,
                         FaultKind::capture,   FaultKind::self_test,       FaultKind::other};

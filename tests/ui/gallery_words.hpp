@@ -4,7 +4,7 @@
 
 namespace turnpoint::ui {
 
-/// A protocol's texts in Arabic and in Chinese, by the English text.
+/// Translations of a protocol's English texts into Arabic and Chinese.
 struct GalleryWords {
   const char *ar, *zh;
 };

@@ -23,7 +23,7 @@ setup::RunRequest request_for(const std::string& protocol, const std::string& da
   return request;
 }
 
-/// Passes on the session's first trials to another monitor, then ends the session.
+/// Passes the session's first trials on to another monitor, then ends the session.
 struct FirstTrials : session::Monitor {
   session::Monitor& to;
   int left;

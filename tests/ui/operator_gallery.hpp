@@ -6,12 +6,12 @@
 
 namespace turnpoint::ui {
 
-/// What an operator would see after `trials` trials of a session with a simulated observer.
+/// Returns what an operator would see after `trials` trials of a session with a simulated observer.
 desk::LiveState live_exhibit(const std::string& protocol, int trials);
 
-/// The report of a whole simulated session of that protocol.
+/// Returns the report of a whole simulated session of that protocol.
 desk::ReportPages report_exhibit(const std::string& protocol);
-/// The same, as if force cells had recorded; their values are made up.
+/// Returns the same report as if force cells had recorded; their values are invented.
 desk::ReportPages forces_exhibit(const std::string& protocol);
 
 /// Creates a database in `folder` with an interrupted session of participant P03. Returns its path.

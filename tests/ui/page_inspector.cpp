@@ -30,8 +30,8 @@ double luminance(QRgb colour) {
   return 0.2126 * linear(qRed(colour)) + 0.7152 * linear(qGreen(colour)) + 0.0722 * linear(qBlue(colour));
 }
 
-/// Contrast between the darkest and the lightest pixel of an area. In an area with text, these belong to
-/// letters and background.
+/// Returns the contrast between the darkest and the lightest pixel of an area. If the area contains text,
+/// these pixels belong to letters and background.
 double contrast(const QImage& image, const QRect& place) {
   double darkest = 1, lightest = 0;
   for (int y = place.top(); y <= place.bottom(); ++y)
@@ -49,7 +49,7 @@ void each_text(const QQuickItem& item, const std::function<void(const QQuickItem
   for (const auto* child : item.childItems()) each_text(*child, look);
 }
 
-/// The part of an area that the clipping items around `item` leave visible.
+/// Returns the part of an area that is visible, taking into account the items around `item` that clip it.
 QRectF seen(const QQuickItem& item, QRectF area) {
   for (const auto* around = item.parentItem(); around != nullptr; around = around->parentItem())
     if (around->clip()) area = area.intersected(around->mapRectToScene(around->boundingRect()));
@@ -110,7 +110,7 @@ QStringList PageInspector::brokenWords(QQuickItem* page) const {
   each_text(*page, [&](const QQuickItem& text) {
     if (text.property("lineCount").toInt() < 2) return;
     QFont font = text.property("font").value<QFont>();
-    // The size to which Qt has shrunk the font so that the text fits.
+    // Qt may have shrunk the font so that the text fits, so use the size that Qt reports.
     font.setPixelSize(text.property("fontInfo").value<QJSValue>().property("pixelSize").toInt());
     const QFontMetricsF metrics(font);
     for (const auto& word : text.property("text").toString().split(QRegularExpression("\\s+")))
@@ -181,7 +181,8 @@ const char* role_word(QAccessible::Role role) {
   }
 }
 
-/// The role and the name of an item as assistive technology reads them; both "" if it does not find the item.
+/// Returns the role and the name of an item as assistive technology reads them; both are "" if it does not
+/// find the item.
 std::pair<QString, QString> read_aloud(QQuickItem* item) {
   auto* interface = QAccessible::queryAccessibleInterface(item);
   if (interface == nullptr || !interface->isValid()) return {};

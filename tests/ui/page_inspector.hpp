@@ -22,8 +22,8 @@ class PageInspector : public QObject {
   /// Texts below `page` with a line break inside a word. (Breaks between Chinese or Japanese characters do
   /// not count.)
   Q_INVOKABLE QStringList brokenWords(QQuickItem* page) const;
-  /// Pairs of a text and something that it touches: another text, or a button that it is not part of. Pairs
-  /// of buttons that touch each other, too.
+  /// Returns pairs of items that touch each other: a text and another text, a text and a button that it is
+  /// not part of, or two buttons.
   Q_INVOKABLE QStringList overlaps(QQuickItem* page) const;
   /// True if anything but the background reaches the left or the right edge of an item.
   Q_INVOKABLE bool reachesEdge(QQuickItem* item) const;

@@ -16,6 +16,7 @@
 #include <utility>
 #include <vector>
 
+#include "station/ui/operator/design_controller.hpp"
 #include "station/ui/operator/latency_controller.hpp"
 #include "station/ui/operator/live_model.hpp"
 #include "station/ui/operator/operator_controller.hpp"
@@ -94,7 +95,7 @@ class Camera {
   void shoot(const turnpoint::session::Page& page, const QString& name) {
     bridge_.show(page);
     QGuiApplication::processEvents();
-    // Only the operator can open this page with numbers.
+    // Only the operator can open the end page with numbers.
     window_->findChild<QQuickItem*>("participantView")->setProperty("counting", name == "end-operator");
     shoot(name);
   }
@@ -209,6 +210,13 @@ class OperatorCamera {
   int count_ = 0;
 };
 
+/// The designer with a study that has a mistake, so that a problem is at its field.
+void begin_study(turnpoint::ui::DesignController& design) {
+  design.make("contrast", "my-study");
+  auto text = design.text();
+  design.setText(text.replace("deadline_s = 3.0", "deadline_s = -3.0"));
+}
+
 /// Renders the operator's pages with their bar in several languages, in the dark theme, and with large text.
 int shoot_places(const QString& out, const QStringList& sizes, const QStringList& languages,
                  turnpoint::ui::OperatorController& operating) {
@@ -224,20 +232,58 @@ int shoot_places(const QString& out, const QStringList& sizes, const QStringList
   wait_for([&] { return rig.busy().isEmpty(); });
   rig.examine();
   wait_for([&] { return rig.busy().isEmpty(); });
+  const QTemporaryDir studies_folder;
+  ui::DesignController design(
+      {studies_folder.path().toStdString(), request.rig, TURNPOINT_SOURCE_DIR "/protocols"});
+  const auto design_ready = [&] {
+    return design.verdict() != "checking" &&
+           (design.stage() != "form" || design.verdict() == "bad" || !design.profiles().isEmpty());
+  };
+  auto with_cells = request;
+  with_cells.rig = "plate-with-cells.toml";
+  QFile::copy(TURNPOINT_SOURCE_DIR "/deploy/rigs/simulated-forces.toml", "plate-with-cells.toml");
+  ui::RigController weighing(with_cells), weighed(with_cells);
+  weighed.weigh();
+  while (!weighed.busy().isEmpty()) {
+    wait_for([&] { return weighed.busy().isEmpty() || weighed.asked() == "weight"; });
+    weighed.answer("read");
+  }
+  weighing.weigh();
+  wait_for([&] { return weighing.asked() == "weight"; });
   std::vector<std::pair<QString, Look>> looks{{"dark", {"en", true}}, {"large", {"en", false, 200}}};
   for (const auto& language : languages) looks.push_back({language, {language}});
   int count = 0;
   for (const auto& size : sizes)
     for (const auto& [name, look] : looks) {
       OperatorCamera camera(out, panel_of(size), size + "-operator-" + name + "-", look);
+      design.close();
       for (const char* place : {"run", "studies", "sessions", "rig"})
         camera.shoot("StationPages.qml", place,
                      {{"operating", QVariant::fromValue(&operating)},
                       {"studies", QVariant::fromValue(&studies)},
                       {"sessions", QVariant::fromValue(&sessions)},
                       {"rig", QVariant::fromValue(&rig)},
+                      {"design", QVariant::fromValue(&design)},
                       {"shown", place}},
                      [&] { return !studies.checking() && !operating.checking(); });
+      camera.shoot("RigPage.qml", "weights", {{"rig", QVariant::fromValue(&weighing)}, {"tab", "weights"}});
+      camera.shoot("RigPage.qml", "residuals", {{"rig", QVariant::fromValue(&weighed)}, {"tab", "weights"}});
+      const auto shoot_design = [&](const QString& picture, const QString& beside = "") {
+        camera.shoot("DesignPage.qml", picture,
+                     {{"design", QVariant::fromValue(&design)}, {"beside", beside}}, design_ready);
+      };
+      design.startNew();
+      shoot_design("design-goals");
+      design.make("contrast", "my-study");
+      for (int section = 0; section < 7; ++section) {
+        design.show(section);
+        shoot_design("design-" + QString::number(section));
+      }
+      shoot_design("design-text", "text");
+      shoot_design("design-check", "check");
+      begin_study(design);
+      design.show(5);
+      shoot_design("design-problem");
       count += camera.count();
     }
   return count;

@@ -169,6 +169,14 @@ void StationRoom::calibrate() {
   write(calibration::file_for(rig.path, made.made_on), calibration::to_toml(made));
 }
 
+void StationRoom::addCells() {
+  QFile file(folder_->filePath("rig.toml"));
+  if (!file.open(QIODevice::Append)) return;
+  file.write(
+      "\n[capture]\nuri = \"sim:\"\nchannels = 8\npickups = [5, 6]\nreference = 0\nexcitation_channel = 3\n"
+      "bridges = [1, 2, 3]\n");
+}
+
 void StationRoom::pressed(double ago_ms) {
   latency_.edge(now_ns() - static_cast<std::int64_t>(ago_ms * 1e6));
 }

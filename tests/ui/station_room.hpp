@@ -56,7 +56,7 @@ class StationRoom : public QObject {
   Q_INVOKABLE QString askedUdisks() const;
   /// Files and folders in a folder of the station, sorted; those of the stick are in "stick".
   Q_INVOKABLE QStringList filesIn(const QString& folder) const;
-  /// The first bytes of the first file below a folder whose name ends so.
+  /// Returns the first bytes of the first file below a folder whose name has this ending.
   Q_INVOKABLE QString startOf(const QString& folder, const QString& ending, int bytes) const;
   /// Presses or releases a key of a keyboard.
   Q_INVOKABLE void pressKey(int key);
@@ -64,6 +64,8 @@ class StationRoom : public QObject {
   /// Writes a protocol file with two mistakes into the folder of protocols.
   Q_INVOKABLE void addMistaken();
 
+  /// Adds simulated pick-ups and force cells to the rig.
+  Q_INVOKABLE void addCells();
   /// Writes a calibration of the rig (response, friction, sound level), as `turnpoint calibrate` does.
   Q_INVOKABLE void calibrate();
   /// Simulates a press of the reference button this many milliseconds ago. If the operator accepts a latency,

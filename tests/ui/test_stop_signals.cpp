@@ -37,7 +37,8 @@ struct Loop {
   QCoreApplication application{argc, argv};
 };
 
-/// Gives signals their default action during a test, because the test framework has installed handlers.
+/// While it exists, signals have their default action, because the test framework has installed its own
+/// handlers.
 struct KernelsWay {
   KernelsWay() { set(SIG_DFL, SIG_DFL); }
   ~KernelsWay() { set(terminate, interrupt); }

@@ -61,7 +61,7 @@ Item {
             type("P1")
             tap("accept")
             compare(accepted.count, 0)
-            tap("mine")  // too early to have been read
+            tap("mine")  // this tap comes too early: nobody can have read the page yet
             compare(accepted.count, 0)
             wait(400)
             tap("notMine")

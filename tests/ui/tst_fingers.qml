@@ -2,8 +2,8 @@ import QtQuick
 import QtTest
 import Turnpoint
 
-// Taps that nobody meant: double taps, taps with a second finger, and a hand that changes sides while a page is
-// shown. None of them may end a session, leave two pages, or keep somebody from pausing.
+// Tests taps that nobody meant: double taps, taps with a second finger, and taps of a hand that is moved
+// while a page is shown. None of them may end a session, skip a page, or keep somebody from pausing.
 Item {
     id: stage
     width: 800
@@ -130,7 +130,7 @@ Item {
                 show("between-trials")
                 show(row.page)
                 tapTwice(all(view, item => item.holdMs !== undefined)[i])
-                // the first taps come too early
+                // these taps come too early and must be ignored
                 compare(script.inputs.filter(input => input !== "pause"), [])
                 untilArmed()
                 tapTwice(all(view, item => item.holdMs !== undefined)[i])
@@ -166,7 +166,7 @@ Item {
             const keep = button("keep"), confirm = button("confirm")
             const inside = confirm.mapFromItem(stage, place.x, place.y)
             verify(!confirm.contains(Qt.point(inside.x, inside.y)))
-            // the safe choice is the first one
+            // the safe choice must be on the left
             verify(centre(keep).x < centre(confirm).x || centre(keep).y < centre(confirm).y)
             mouseClick(stage, place.x, place.y)
             compare(script.inputs, [])

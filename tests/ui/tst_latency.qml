@@ -37,7 +37,7 @@ Item {
                 desk.pressed(50)
                 tap()
                 if (k === 0) tryVerify(() => centre() === "#ffffff")
-                wait(410)  // a tap is matched only with an edge of the last 400 ms
+                wait(410)  // wait until the edge is too old to be matched with a tap (400 ms)
             }
             tryCompare(desk.latency, "pairs", 10)
             compare(inspector.cutTexts(page), [])
@@ -45,7 +45,7 @@ Item {
             compare(desk.keptLatencyMs(), 0)
             mouseClick(keep)
             verify(desk.keptLatencyMs() >= 50 && desk.keptLatencyMs() < 150, desk.keptLatencyMs())
-            // Taps are deleted only by a long press.
+            // Only a long press deletes the taps.
             const again = findChild(page, "latencyAgain")
             mouseClick(again)
             compare(desk.latency.taps, 10)

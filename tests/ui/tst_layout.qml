@@ -67,10 +67,10 @@ Item {
                                        { width: 1280, height: 800, mm: 5.9 }, { width: 480, height: 800, mm: 5.2 },
                                        { width: 600, height: 1024, mm: 6.7 }, { width: 800, height: 1280, mm: 5.9 }]
 
-        // Answers of 20 mm for these pages do not fit on a panel of 5 inches beside everything else.
+        // On a panel of 5 inches, these pages have no room for answers of 20 mm beside everything else.
         readonly property var needSevenInches: ["rating-9", "line-labels", "number", "number-standard", "choices-9",
                                                     "question-number"]
-        // These texts scroll, and a cue says so.
+        // On these pages the text scrolls, and a cue shows that.
         readonly property var scrolling: ["consent-form-long"]
 
         SignalSpy { id: shown; target: script.bridge; signalName: "shown" }

@@ -98,7 +98,8 @@ Item {
             compare(operating.live, false)
             verify(says(page.item, "Begin pilot"))
             tap(page.item, "live")
-            // The simulated rig has no measured friction, so the choice itself is refused with that reason.
+            // The simulated rig has no measured friction, so choosing a live session is refused at once, with
+            // that reason.
             tryVerify(() => operating.problems.length > 0, 20000)
             verify(says(page.item, "Begin LIVE session"))
             compare(operating.problems[0], "Live is not possible: the rig uses the illustrative friction curve, which was not measured")

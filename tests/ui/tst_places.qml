@@ -2,8 +2,8 @@ import QtQuick
 import QtTest
 import Turnpoint
 
-// The operator's pages of the whole program, reached through the bar and operated by taps: what they show, what they
-// write, and that nothing that cannot be undone happens by a stray tap.
+// Tests the operator's pages in the whole program, reached through the bar and operated by taps: what they
+// show and what they write, and that a stray tap does nothing that cannot be undone.
 Item {
     id: stage
     width: 1280
@@ -152,7 +152,8 @@ Item {
             room.plugIn()
             tap("backUp")
             tap("place1")
-            // The stick of this test is a folder on the database's own disk, as after somebody has pulled it out.
+            // In this test the stick is a folder on the database's own disk, as if somebody had pulled it
+            // out. So the backup must be refused.
             tryVerify(() => says("no disk is mounted"), 20000)
             compare(room.filesIn("stick"), [])
             tap("backUp")
@@ -200,6 +201,38 @@ Item {
             tryVerify(() => shown("finding0") && find(room.screen, "bar-run").enabled, 60000)
             verify(says("gate"))
             verify(shown("gauge0"))
+        }
+
+        function test_the_force_cells_are_calibrated_with_dead_weights() {
+            room.addCells()
+            goTo("rig")
+            tap("weightsTab")
+            tap("weigh")
+            tryVerify(() => says("Take everything off the surface."), 20000)
+            verify(says("thousandths of the excitation"))
+            verify(!find(room.screen, "bar-run").enabled)
+            for (let step = 0; step < 39; ++step) {
+                tryVerify(() => find(room.screen, "weightsRead").enabled, 20000)
+                tap("weightsRead")
+            }
+            tryVerify(() => shown("finding0") && find(room.screen, "bar-run").enabled, 20000)
+            verify(says("Uncertainty"))
+            verify(says("200 g at 210 mm with a pull of 100 g towards the wide edge"))
+            verify(says("force cells"))
+        }
+
+        function test_weighing_can_be_stopped_and_writes_nothing_then() {
+            room.addCells()
+            goTo("rig")
+            tap("weightsTab")
+            tap("weigh")
+            const stop = appears("weightsStop")
+            tryVerify(() => stop.enabled, 20000)
+            mousePress(stop)
+            tryVerify(() => find(room.screen, "bar-run").enabled, 20000)
+            mouseRelease(stop)
+            verify(!shown("finding0"))
+            verify(says("None. Make one"))
         }
 
         function test_language_theme_and_text_size_are_kept() {

@@ -406,7 +406,7 @@ Item {
             tryVerify(() => operating.mayBegin, 20000)
             tap("begin")
             appears("codePage")
-            // The keypad is empty again, and the hand is the usual one.
+            // The keypad must be empty again, and the layout that for right-handers.
             compare(find(room.screen, "accept").enabled, false)
             verify(says(room.screen, "right hand"))
             for (const key of "T2") tap("key" + key)

@@ -1,4 +1,4 @@
-"""Reads databases and exports into pandas frames."""
+"""Reads databases, collectors and exports into pandas frames."""
 import gzip
 from dataclasses import dataclass
 from pathlib import Path
@@ -8,7 +8,7 @@ import pandas as pd
 from . import _store
 
 TABLES = ("trials", "intervals", "events", "sessions", "self_tests", "answers", "friction_tables")
-PREFIXED = ("=", "+", "-", "@")  # exports put an apostrophe in front of texts that begin so
+PREFIXED = ("=", "+", "-", "@")  # exports put an apostrophe in front of texts that begin with one of these
 # Columns that are texts even if they look like numbers: a participant's code may be 007.
 TEXTS = ("participant_id participant_code session_id run_mode protocol_id protocol_version protocol_sha256 block_name "
          "instruction trial_type procedure level_unit model correct_response response outcome response_zero "
@@ -33,12 +33,12 @@ class Study:
 
 
 def read(source, *, session="", participant="", protocol="") -> Study:
-    """Reads a database, or a folder that `turnpoint export` wrote.
+    """Reads a database, a collector ("postgresql://USER@HOST/DATABASE"), or a folder that `turnpoint export` wrote.
 
     session, participant (CODE or CODE@STATION) and protocol choose sessions; "" takes all. Raises FileNotFoundError,
-    StoreError for a database that cannot be read, and LookupError if no session is chosen."""
+    StoreError for a database or a server that cannot be read, and LookupError if no session is chosen."""
     source = _existing(source)
-    if source.is_dir():
+    if isinstance(source, Path) and source.is_dir():
         return _read_export(source, session, participant, protocol)
     parts = _store.tables(str(source), session, participant, protocol)
     tables = {name: _joined([_frame(part[name]) for part in parts]) for name in TABLES}
@@ -47,21 +47,28 @@ def read(source, *, session="", participant="", protocol="") -> Study:
 
 def read_signals(source, *, session="", participant="", protocol="", stream="finger") -> pd.DataFrame:
     """Reads every recorded point of a stream: session_id, trial_index, segment_id, time_s (from the start of the segment)
-    and one column per channel, such as normal_n. Takes a database, or a folder written by
-    `turnpoint export --format signals`. Raises like read()."""
+    and one column per channel, such as normal_n. Takes a database, a collector, or a folder
+    written by `turnpoint export --format signals`. Raises like read()."""
     source = _existing(source)
-    if source.is_dir():
+    if isinstance(source, Path) and source.is_dir():
         return _read_exported_signals(source, session, participant, protocol, stream)
     parts = _store.signals(str(source), session, participant, protocol)
     frames = [pd.DataFrame({"session_id": pd.Series([part["session_id"]] * len(part["time_s"]), dtype=object),
                             **{name: values for name, values in part.items() if name not in ("session_id", "stream")}})
               for part in parts if part["stream"] == stream]
     if not frames:
-        raise LookupError(f"{source}: no signals of the stream \"{stream}\"")
+        raise LookupError(f"{_shown(source)}: no signals of the stream \"{stream}\"")
     return _joined(frames)
 
 
+def _shown(source):
+    """The address of a collector may contain a password."""
+    return source if isinstance(source, Path) else "collector"
+
+
 def _existing(source):
+    if isinstance(source, str) and source.startswith(("postgresql://", "postgres://")):
+        return source
     source = Path(source)
     if not source.exists():
         raise FileNotFoundError(f"{source} does not exist")

@@ -4,7 +4,8 @@ turnpoint report --study --db lab.sqlite --tables tables
 python3 study.py tables
 
 Prints one line for each measure and pair of conditions: the mean of the participants' own differences, its
-standard error and the number of participants. The report has the same differences with intervals.
+standard error and the number of participants. If no participant has both conditions, they are those of two
+groups, and the line has the difference of the groups' means. The report has the same differences with intervals.
 """
 import itertools
 import pathlib
@@ -19,6 +20,11 @@ def effects(measures: pd.DataFrame) -> pd.DataFrame:
         wide = part.pivot(index="participant", columns="condition", values="value")
         for first, second in itertools.combinations(wide.columns, 2):
             difference = (wide[second] - wide[first]).dropna()
+            if difference.empty:
+                a, b = wide[first].dropna(), wide[second].dropna()
+                error = (a.var() / len(a) + b.var() / len(b)) ** 0.5
+                rows.append((measure, first, second, b.mean() - a.mean(), error, len(a) + len(b)))
+                continue
             rows.append((measure, first, second, difference.mean(), difference.sem(), len(difference)))
     return pd.DataFrame(rows, columns=["measure", "first", "second", "difference", "se", "participants"])
 

@@ -1,8 +1,8 @@
 import QtQuick
 import Turnpoint
 
-// One of several choices. The chosen one has a tick, so that it is not known by its colour alone. Its width does not
-// depend on whether it is chosen, so that the others stay under the finger.
+// One of several choices. The chosen one has a tick, because colour alone must not tell which one it is. A
+// button keeps its width when it is chosen, so that the others do not move under the finger.
 ActionButton {
     id: root
     property bool chosen: false

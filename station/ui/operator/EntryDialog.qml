@@ -1,7 +1,8 @@
 import QtQuick
 import Turnpoint
 
-// Asks for a line of text, with a keyboard on the screen and with suggestions. It covers the page.
+// Asks for a line of text, with a keyboard on the screen and with suggestions. It covers the page. With `pick`, one
+// of the suggestions is the answer; with `list`, several of them are, and the keyboard is not needed.
 Rectangle {
     id: root
     required property Theme theme
@@ -10,12 +11,30 @@ Rectangle {
     property string cancelText
     property var suggestions: []
     property bool emptyAllowed: false
+    property bool pick: false
+    property bool list: false
+    /// True for sentences, which need capitals and more signs.
+    property bool sentences: false
+    /// What the line means, and why the last one was refused.
+    property string help
+    property string refused
     signal accepted(text: string)
 
     function open(text: string) {
         entry.text = text
         visible = true
         entry.forceActiveFocus()
+    }
+    function choose(word: string) {
+        if (pick) {
+            entry.text = word
+            keep()
+        } else if (list) {
+            const words = entry.text.split(",").map(part => part.trim()).filter(part => part !== "")
+            entry.text = (words.includes(word) ? words.filter(other => other !== word) : words.concat([word])).join(", ")
+        } else {
+            entry.text = word
+        }
     }
     function keep() {
         if (entry.text === "" && !emptyAllowed) return
@@ -37,12 +56,21 @@ Rectangle {
             font { pixelSize: root.theme.textTitle; weight: Font.Bold }
             wrapMode: Text.Wrap
         }
+        PlainText {
+            visible: text !== ""
+            width: parent.width
+            text: root.refused !== "" ? root.refused : root.help
+            color: root.refused !== "" ? root.theme.wrong : root.theme.quiet
+            font.pixelSize: root.theme.textSmall
+            wrapMode: Text.Wrap
+        }
         Rectangle {
             width: parent.width
             height: root.theme.controlHeight
             radius: root.theme.radius
             color: root.theme.raised
             border { color: root.theme.action; width: root.theme.stroke }
+            visible: !root.pick
             TextInput {
                 id: entry
                 objectName: "entry"
@@ -65,14 +93,19 @@ Rectangle {
                 ActionButton {
                     required property string modelData
                     theme: root.theme
-                    primary: false
-                    quiet: true
+                    readonly property bool chosen: root.pick ? entry.text === modelData : root.list && entry.text.split(",").some(part => part.trim() === modelData)
+                    objectName: "suggestion-" + modelData
+                    primary: chosen
+                    quiet: !chosen
+                    glyph: chosen ? "tick" : ""
                     text: modelData
-                    onActivated: entry.text = modelData
+                    onActivated: root.choose(modelData)
                 }
             }
         }
         ScreenKeyboard {
+            visible: !root.pick && !(root.list && root.suggestions.length > 0)
+            full: root.sentences
             width: parent.width
             theme: root.theme
             onTyped: character => entry.text += character
@@ -83,6 +116,7 @@ Rectangle {
             spacing: root.theme.unit
             ActionButton {
                 objectName: "keepEntry"
+                visible: !root.pick
                 theme: root.theme
                 enabled: entry.text !== "" || root.emptyAllowed
                 text: root.keepText

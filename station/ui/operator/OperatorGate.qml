@@ -45,7 +45,8 @@ Rectangle {
         PlainText {
             objectName: "gateSays"
             anchors.horizontalCenter: parent.horizontalCenter
-            // Shows one dot for each typed digit, so that nobody learns the length of the correct code.
+            // One dot for each typed digit. There are no empty places, so nobody learns the length of the
+            // right code.
             text: root.lock.waitS > 0 ? "Wrong code. Wait " + root.lock.waitS + " s."
                 : root.lock.checking ? "Checking …" : root.wrong ? "Wrong code. Try again."
                 : root.typed === "" ? "Type the digits, then OK." : "•".repeat(root.typed.length)

@@ -1,7 +1,7 @@
 import QtQuick
 import Turnpoint
 
-// Asks to which place files are to be written: a folder of this machine, or a disk that is plugged in.
+// Asks where to write files: to a folder of this machine, or to a disk that is plugged in.
 Rectangle {
     id: root
     required property Theme theme

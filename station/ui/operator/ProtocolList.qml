@@ -1,7 +1,7 @@
 import QtQuick
 import Turnpoint
 
-// The protocols of the station's folder, one of which is chosen.
+// The list of protocols in the station's folder. The operator chooses one of them.
 Rectangle {
     id: root
     required property Theme theme

@@ -1,13 +1,16 @@
 import QtQuick
 import Turnpoint
 
-// The rig: its calibration, what the doctor and the self-test find, and how the operator's pages look.
+// The operator's page about the rig: its calibration, the findings of the doctor and the self-test, and
+// settings for how the operator's pages look.
 Rectangle {
     id: root
     required property RigController rig
     required property real pixelsPerMm
     readonly property bool tall: height > width
-    property bool testing: false
+    property string tab: "doctor"
+    readonly property bool testing: tab === "selfTest"
+    readonly property bool weighing: tab === "weights"
     readonly property var languages: [{ code: "en", name: "English" }, { code: "de", name: "Deutsch" }, { code: "es", name: "Español" },
                                       { code: "ja", name: "日本語" }, { code: "zh", name: "中文" }, { code: "ar", name: "العربية" }]
 
@@ -111,8 +114,9 @@ Rectangle {
         id: tabs
         anchors { left: results.left; right: results.right; top: root.tall ? state.bottom : parent.top; topMargin: root.tall ? look.unit : look.margin }
         spacing: look.unit
-        ChoiceButton { objectName: "doctorTab"; theme: look; chosen: !root.testing; text: texts.text("operator.doctor"); onActivated: root.testing = false }
-        ChoiceButton { objectName: "selfTestTab"; theme: look; chosen: root.testing; text: texts.text("operator.self_test"); onActivated: root.testing = true }
+        ChoiceButton { objectName: "doctorTab"; theme: look; chosen: root.tab === "doctor"; text: texts.text("operator.doctor"); onActivated: root.tab = "doctor" }
+        ChoiceButton { objectName: "selfTestTab"; theme: look; chosen: root.testing; text: texts.text("operator.self_test"); onActivated: root.tab = "selfTest" }
+        ChoiceButton { objectName: "weightsTab"; visible: root.rig.hasCells; theme: look; chosen: root.weighing; text: texts.text("operator.weights"); onActivated: root.tab = "weights" }
     }
     OperatorCard {
         id: results
@@ -124,10 +128,21 @@ Rectangle {
             text: root.rig.asked === "press_stop" ? texts.text("operator.press_stop")
                 : root.rig.asked === "release_stop" ? texts.text("operator.release_stop")
                 : root.rig.asked === "press_button" ? texts.text("operator.press_button").arg(root.rig.askedButton)
+                : root.rig.asked !== "" ? root.rig.instruction
                 : root.rig.busy !== "" ? texts.text("operator.working")
+                : root.weighing ? texts.text("operator.weights_text")
                 : root.testing ? texts.text("operator.self_test_text") : texts.text("operator.doctor_text")
             color: look.ink
             font { pixelSize: look.textBody; weight: root.rig.busy !== "" ? Font.Bold : Font.Normal }
+            wrapMode: Text.Wrap
+        }
+        PlainText {
+            objectName: "weightsReading"
+            visible: root.rig.busy === "weights" && root.rig.reading !== ""
+            width: results.inner
+            text: texts.text("operator.weights_now").arg(root.rig.reading)
+            color: look.ink
+            font.pixelSize: look.textBody
             wrapMode: Text.Wrap
         }
         Repeater {
@@ -142,7 +157,7 @@ Rectangle {
             }
         }
         Repeater {
-            model: root.testing ? root.rig.checks : root.rig.findings
+            model: root.weighing ? root.rig.weights : root.testing ? root.rig.checks : root.rig.findings
             Column {
                 id: finding
                 required property var modelData
@@ -174,7 +189,7 @@ Rectangle {
                         font { pixelSize: look.textBody; weight: Font.Bold }
                     }
                 }
-                // The reading, from 0 to its limit.
+                // A bar for the reading, from 0 to its limit.
                 Rectangle {
                     objectName: visible ? "gauge" + finding.index : ""
                     visible: (finding.modelData.share ?? -1) >= 0
@@ -208,14 +223,46 @@ Rectangle {
             }
         }
     }
-    ActionButton {
+    Flow {
         id: begin
-        objectName: root.testing ? "selfTest" : "examine"
-        anchors { right: parent.right; bottom: parent.bottom; margins: look.margin }
-        theme: look
-        enabled: root.rig.busy === ""
-        holdMs: root.testing ? 900 : 0
-        text: root.testing ? texts.text("operator.hold_to_test") : texts.text("operator.examine")
-        onActivated: root.testing ? root.rig.selfTest() : root.rig.examine()
+        anchors { left: results.left; right: parent.right; bottom: parent.bottom; margins: look.margin; leftMargin: 0 }
+        layoutDirection: Qt.RightToLeft
+        spacing: look.unit
+        ActionButton {
+            objectName: root.weighing ? "weigh" : root.testing ? "selfTest" : "examine"
+            visible: !(root.weighing && root.rig.busy === "weights")
+            theme: look
+            enabled: root.rig.busy === ""
+            holdMs: root.testing ? 900 : 0
+            text: root.weighing ? texts.text("operator.weights_begin") : root.testing ? texts.text("operator.hold_to_test") : texts.text("operator.examine")
+            onActivated: root.weighing ? root.rig.weigh() : root.testing ? root.rig.selfTest() : root.rig.examine()
+        }
+        ActionButton {
+            objectName: "weightsRead"
+            visible: root.weighing && root.rig.busy === "weights"
+            theme: look
+            text: texts.text("operator.weights_read")
+            enabled: root.rig.asked !== ""
+            onActivated: root.rig.answer("read")
+        }
+        ActionButton {
+            objectName: "weightsLeaveOut"
+            visible: root.weighing && root.rig.busy === "weights"
+            theme: look
+            primary: false
+            text: texts.text("operator.weights_leave_out")
+            enabled: root.rig.asked === "weight"
+            onActivated: root.rig.answer("leave_out")
+        }
+        ActionButton {
+            objectName: "weightsStop"
+            visible: root.weighing && root.rig.busy === "weights"
+            theme: look
+            primary: false
+            holdMs: 900
+            text: texts.text("operator.weights_stop")
+            enabled: root.rig.asked !== ""
+            onActivated: root.rig.answer("stop")
+        }
     }
 }

@@ -1,7 +1,7 @@
 import QtQuick
 import Turnpoint
 
-// The stored sessions: search, and what can be done with one of them.
+// The list of stored sessions with a search field, and buttons for what can be done with the chosen session.
 Rectangle {
     id: root
     required property SessionsController sessions

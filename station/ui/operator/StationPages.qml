@@ -9,8 +9,9 @@ Rectangle {
     required property StudiesController studies
     required property SessionsController sessions
     required property RigController rig
+    required property DesignController design
     required property real pixelsPerMm
-    /// run, studies, sessions or rig
+    /// name of the page that is shown: run, studies, sessions or rig
     property string shown: "run"
     readonly property bool tall: height > width
     readonly property bool busy: rig.busy !== "" || sessions.busy || operating.preparing
@@ -82,11 +83,27 @@ Rectangle {
         }
         Loader {
             anchors.fill: parent
-            active: root.shown === "studies"
+            active: root.shown === "studies" && root.design.stage !== ""
+            sourceComponent: DesignPage {
+                objectName: "designPage"
+                design: root.design
+                pixelsPerMm: root.pixelsPerMm
+                onClosed: root.design.close()
+            }
+        }
+        Connections {
+            target: root.design
+            function onSaved() { root.studies.selectFile(root.design.savedAs) }
+        }
+        Loader {
+            anchors.fill: parent
+            active: root.shown === "studies" && root.design.stage === ""
             sourceComponent: StudiesPage {
                 objectName: "studiesPage"
                 studies: root.studies
                 pixelsPerMm: root.pixelsPerMm
+                onNewWanted: root.design.startNew()
+                onChangeWanted: path => root.design.open(path)
                 onRunWanted: index => {
                     root.operating.refresh()
                     root.operating.select(index)

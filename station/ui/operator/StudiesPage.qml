@@ -1,8 +1,9 @@
 import QtQuick
 import Turnpoint
 
-// The studies of this station. For the chosen protocol it shows everything that a check says: each problem with its
-// line and a hint, and for each cue that gives answers away what can be done about it.
+// The protocols in the station's folder. For the chosen protocol, the page shows everything that a check
+// says: each problem with its line and a hint, and, for each cue that gives answers away, what can be done
+// about it.
 Rectangle {
     id: root
     required property StudiesController studies
@@ -10,6 +11,8 @@ Rectangle {
     readonly property bool tall: height > width
     readonly property color verdictColor: studies.verdict === "bad" ? look.wrong : studies.verdict === "good" ? look.right : look.ink
     signal runWanted(index: int)
+    signal newWanted()
+    signal changeWanted(path: string)
 
     color: look.paper
     Component.onCompleted: studies.open()
@@ -146,6 +149,22 @@ Rectangle {
                 enabled: root.studies.selected >= 0
                 text: texts.text("operator.check_again")
                 onActivated: root.studies.open()
+            }
+            ActionButton {
+                objectName: "changeStudy"
+                theme: look
+                primary: false
+                enabled: root.studies.selected >= 0
+                text: texts.text("design.change")
+                onActivated: root.changeWanted(root.studies.path(root.studies.selected))
+            }
+            ActionButton {
+                objectName: "newStudy"
+                theme: look
+                primary: false
+                glyph: "plus"
+                text: texts.text("design.new_study")
+                onActivated: root.newWanted()
             }
         }
     }

@@ -13,17 +13,28 @@ namespace {
 /// simulated quickly, and give the duration to within some minutes.
 constexpr int kSessions = 5;
 
-}  // namespace
-
-simulation::Check check_protocol(const std::string& protocol, const std::string& rig,
-                                 const std::stop_token& stop) {
+simulation::CheckOptions options() {
   simulation::CheckOptions options{kSessions};
   options.load_rig = [](const std::string& path) {
     std::ostringstream messages;  // the page says elsewhere which calibration is used
     return setup::calibrated_rig(path, "", messages);
   };
   options.drawable = system::drawable;
-  return simulation::check(protocol, rig, options, stop);
+  return options;
+}
+
+}  // namespace
+
+simulation::Check check_protocol(const std::string& protocol, const std::string& rig,
+                                 const std::stop_token& stop) {
+  return simulation::check(protocol, rig, options(), stop);
+}
+
+simulation::Check check_source(const std::string& source, const std::string& path, const std::string& rig,
+                               const std::stop_token& stop) {
+  auto with_source = options();
+  with_source.load_protocol = [&source](const std::string& file) { return protocol::parse(source, file); };
+  return simulation::check(path, rig, with_source, stop);
 }
 
 }  // namespace turnpoint::ui

@@ -16,4 +16,10 @@ using Checker = std::function<simulation::Check(const std::string& protocol, con
 simulation::Check check_protocol(const std::string& protocol, const std::string& rig,
                                  const std::stop_token& stop);
 
+/// Checks the text of a protocol that need not be saved. `path` is the file name in messages.
+using SourceChecker = std::function<simulation::Check(const std::string& source, const std::string& path,
+                                                      const std::string& rig, const std::stop_token& stop)>;
+simulation::Check check_source(const std::string& source, const std::string& path, const std::string& rig,
+                               const std::stop_token& stop);
+
 }  // namespace turnpoint::ui

@@ -25,7 +25,7 @@ OperatorController::~OperatorController() = default;
 void OperatorController::refresh() {
   armed_ = false;
   participant_.clear();
-  protocols_ = desk::list_protocols(request_.protocols);
+  protocols_ = desk::list_studies(request_.protocols, request_.database);
   try {
     participants_ = to_list(desk::known_participants(request_.database));
     interrupted_ = desk::interrupted_note(request_.database);

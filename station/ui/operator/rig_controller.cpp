@@ -1,5 +1,7 @@
 #include "station/ui/operator/rig_controller.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
@@ -17,12 +19,12 @@ namespace turnpoint::ui {
 
 namespace {
 
-/// Number of days before the end of a calibration from which on the page says that it ends soon.
+/// The page warns that a calibration ends soon from this number of days before its end.
 constexpr int kSoon_days = 14;
 
 using Facts = std::vector<std::pair<std::string, std::string>>;
 
-/// What was measured for a calibration.
+/// Lists what was measured for a calibration.
 std::string measured(const calibration::Calibration& made) {
   std::string text;
   const auto add = [&text](bool there, const char* what) {
@@ -34,6 +36,7 @@ std::string measured(const calibration::Calibration& made) {
   add(!made.sound.empty(), "sound level");
   add(made.panel.has_value(), "panel latency");
   add(!made.pick_ups.empty(), "pick-ups");
+  add(made.forces.has_value(), "force cells");
   return text;
 }
 
@@ -59,7 +62,31 @@ const char* word(session::Request::Kind kind) {
                                       : "press_button";
 }
 
-/// A reading as a share of its limit, from 0 to 1; -1 if there is no number.
+/// The uncertainty, and each weight with its residual.
+QVariantList weights_of(const maintenance::ForceResult& result, const std::string& file) {
+  QVariantList list;
+  const auto add = [&list](const std::string& name, const char* verdict, const std::string& what) {
+    list += QVariantMap{{"name", QString::fromStdString(name)},
+                        {"verdict", verdict},
+                        {"what", QString::fromStdString(what)},
+                        {"share", -1.0}};
+  };
+  add("Uncertainty (one standard deviation)", "ok",
+      fmt::format("position {:.2f} mm, friction {:.4f}, lateral force {:.1f} mN; largest change of the zero "
+                  "{:.2f} mN; written to {}",
+                  result.sd.position_mm, result.sd.friction, 1e3 * result.sd.lateral_N, result.zero_moved_mN,
+                  std::filesystem::path(file).filename().string()));
+  for (std::size_t k = 0; k < result.steps.size(); ++k) {
+    const auto& rest = result.residuals[k];
+    add(result.steps[k].name(), result.steps[k].remark.empty() ? "ok" : "warning",
+        fmt::format("{}residual: normal {:.2f} mN, lateral {:.2f} mN, position {:.2f} mm",
+                    result.steps[k].remark.empty() ? "" : "weighed again; ", 1e3 * rest.normal_N,
+                    1e3 * rest.lateral_N, rest.position_mm));
+  }
+  return list;
+}
+
+/// Returns a reading as a share of its limit, from 0 to 1; -1 if the check has no number.
 double share_of_limit(const session::CheckRow& check) {
   if (!check.value || !check.limit || *check.limit == 0) return -1;
   return std::min(1.0, std::abs(*check.value / *check.limit));
@@ -79,6 +106,7 @@ void RigController::open() {
   if (busy_.isEmpty()) errors_.clear();
   try {
     const auto rig = rig::load(rig_);
+    has_cells_ = rig.capture && !rig.capture->bridges.empty();
     const auto file = calibration::newest_for(rig.path);
     if (!file.empty()) {
       const auto made = calibration::load(file);
@@ -98,16 +126,16 @@ void RigController::open() {
 
 /// Runs a job on the worker thread, unless another one is running. The function that it returns runs on the
 /// GUI thread.
-void RigController::run(const QString& what, std::function<std::function<void()>()> job) {
+void RigController::run(const QString& what, NewestJob::Job job) {
   if (!busy_.isEmpty()) return;
   busy_ = what;
   errors_.clear();
   Q_EMIT changed();
-  worker_.start([this, job = std::move(job)](const std::stop_token&) -> std::function<void()> {
+  worker_.start([this, job = std::move(job)](const std::stop_token& stop) -> std::function<void()> {
     std::function<void()> result;
     std::vector<std::string> errors;
     try {
-      result = job();
+      result = job(stop);
     } catch (const std::exception& error) {
       errors = lines_of(error);
     }
@@ -123,7 +151,7 @@ void RigController::run(const QString& what, std::function<std::function<void()>
 
 void RigController::examine() {
   findings_.clear();
-  run("doctor", [this]() -> std::function<void()> {
+  run("doctor", [this](const std::stop_token&) -> std::function<void()> {
     std::ostringstream messages;  // the page shows the calibration elsewhere
     auto findings = maintenance::examine(setup::calibrated_rig(rig_, "", messages), data_folder_);
     return [this, findings = std::move(findings)] { findings_ = findings; };
@@ -132,7 +160,7 @@ void RigController::examine() {
 
 void RigController::selfTest() {
   checks_.clear();
-  run("self_test", [this]() -> std::function<void()> {
+  run("self_test", [this](const std::stop_token&) -> std::function<void()> {
     std::ostringstream messages;
     const auto rig = setup::calibrated_rig(rig_, "", messages);
     auto checks = session::self_test(
@@ -148,6 +176,42 @@ void RigController::selfTest() {
         data_folder_);
     return [this, checks = std::move(checks)] { checks_ = checks; };
   });
+}
+
+void RigController::weigh() {
+  weights_.clear();
+  run("weights", [this](const std::stop_token& stop) -> std::function<void()> {
+    const auto rig = rig::load(rig_);
+    const auto show = [this](const Weighing::Shown& shown) {
+      QMetaObject::invokeMethod(
+          this, [this, shown] { this->show(shown); }, Qt::QueuedConnection);
+    };
+    const auto result = weighing_.run(rig, show, stop);
+    if (!result) return {};
+    const auto file = maintenance::write_forces(rig, result->cells, "");
+    return [this, list = weights_of(*result, file)] {
+      weights_ = list;
+      open();
+    };
+  });
+}
+
+void RigController::answer(const QString& answer) {
+  using Answer = Weighing::Answer;
+  if (busy_ != "weights" || asked_.isEmpty()) return;
+  asked_.clear();  // a second tap must not answer the next question
+  weighing_.answer(answer == "read"        ? Answer::read
+                   : answer == "leave_out" ? Answer::leave_out
+                                           : Answer::stop);
+  Q_EMIT changed();
+}
+
+void RigController::show(const Weighing::Shown& shown) {
+  if (busy_ != "weights") return;
+  instruction_ = QString::fromStdString(shown.ask);
+  reading_ = QString::fromStdString(shown.reading);
+  asked_ = shown.ask.empty() ? "" : shown.failed ? "repair" : "weight";
+  Q_EMIT changed();
 }
 
 void RigController::ask(const QString& what, const QString& button) {

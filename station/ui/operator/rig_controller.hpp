@@ -11,11 +11,12 @@
 #include "station/lines/probe.hpp"
 #include "station/session/self_test.hpp"
 #include "station/setup/station_request.hpp"
+#include "station/ui/operator/weighing.hpp"
 #include "station/ui/platform/newest_job.hpp"
 
 namespace turnpoint::ui {
 
-/// The page of the rig: its calibration and the age of this, the doctor, and the self-test with its readings.
+/// The page of the rig: its calibration and how old this is, the doctor, and the self-test with its readings.
 /// The doctor and the self-test run on a separate thread, one at a time, and use the devices of the rig; no
 /// session may begin meanwhile. GUI thread only.
 class RigController : public QObject {
@@ -26,13 +27,19 @@ class RigController : public QObject {
   Q_PROPERTY(QVariantList calibration READ calibration NOTIFY changed)  ///< facts as {label, value}
   /// good, ageing (it expires within 14 days), bad or none
   Q_PROPERTY(QString calibrationState READ calibration_state NOTIFY changed)
-  Q_PROPERTY(QString busy READ busy NOTIFY changed)  ///< doctor, self_test or ""
+  Q_PROPERTY(QString busy READ busy NOTIFY changed)  ///< doctor, self_test, weights or ""
+  Q_PROPERTY(bool hasCells READ has_cells NOTIFY changed)
+  /// weights after a calibration of the force cells, like `checks`
+  Q_PROPERTY(QVariantList weights READ weights NOTIFY changed)
+  /// what the operator is asked to do with the weights, and what the cells read meanwhile; in English
+  Q_PROPERTY(QString instruction READ instruction NOTIFY changed)
+  Q_PROPERTY(QString reading READ reading NOTIFY changed)
   /// findings of the doctor as {name, status: ok | warning | failed, what, mend}
   Q_PROPERTY(QVariantList findings READ findings NOTIFY changed)
-  /// checks of the self-test as {name, verdict: ok | failed | absent (not possible), what, share}; `share` is
-  /// the reading as a share of its limit, -1 without a number
+  /// checks of the self-test as {name, verdict, what, share}. The verdict is ok, failed or absent (not
+  /// possible); `share` is the reading as a share of its limit, or -1 for a check without a number.
   Q_PROPERTY(QVariantList checks READ checks NOTIFY changed)
-  /// what the self-test waits for: press_stop, release_stop, press_button or ""
+  /// what the self-test or the weights wait for: press_stop, release_stop, press_button, weight, repair or ""
   Q_PROPERTY(QString asked READ asked NOTIFY changed)
   Q_PROPERTY(QString askedButton READ asked_button NOTIFY changed)
   Q_PROPERTY(QStringList errors READ errors NOTIFY changed)
@@ -46,6 +53,10 @@ class RigController : public QObject {
   QString busy() const { return busy_; }
   QVariantList findings() const;
   QVariantList checks() const;
+  bool has_cells() const { return has_cells_; }
+  QVariantList weights() const { return weights_; }
+  QString instruction() const { return instruction_; }
+  QString reading() const { return reading_; }
   QString asked() const { return asked_; }
   QString asked_button() const { return asked_button_; }
   QStringList errors() const { return errors_; }
@@ -53,14 +64,19 @@ class RigController : public QObject {
   /// Reads the calibration again.
   Q_INVOKABLE void open();
   Q_INVOKABLE void examine();
-  /// Arms the amplifier and plays quiet tones. The page makes the operator hold a button for it.
+  /// Runs the self-test, which arms the amplifier and plays quiet tones. The page therefore makes the
+  /// operator hold a button to start it.
   Q_INVOKABLE void selfTest();
+  /// Calibrates the force cells with dead weights. `answer` is read, leave_out or stop.
+  Q_INVOKABLE void weigh();
+  Q_INVOKABLE void answer(const QString& answer);
 
  Q_SIGNALS:
   void changed();
 
  private:
-  void run(const QString& what, std::function<std::function<void()>()> job);
+  void run(const QString& what, NewestJob::Job job);
+  void show(const Weighing::Shown& shown);
   void ask(const QString& what, const QString& button);
 
   std::string rig_, data_folder_;
@@ -70,6 +86,10 @@ class RigController : public QObject {
   std::vector<lines::Finding> findings_;
   std::vector<session::CheckRow> checks_;
   QStringList errors_;
+  bool has_cells_ = false;
+  QVariantList weights_;
+  QString instruction_, reading_;
+  Weighing weighing_;
   NewestJob
       worker_;  // The last member, so that its thread ends before the objects that it uses are destroyed.
 };

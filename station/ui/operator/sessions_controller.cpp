@@ -37,7 +37,7 @@ std::string joined_lines(const std::vector<std::string>& lines) {
   return text;
 }
 
-/// What a withdrawal deletes, in words.
+/// Describes in words what a withdrawal deletes.
 std::vector<std::string> words_of(const store::Withdrawal& gone, const char* verb) {
   std::vector<std::string> words{fmt::format("{} {}: {} sessions, {} trials, {} events and {} notes.",
                                              gone.participant, verb, gone.sessions.size(), gone.trials,
@@ -49,7 +49,8 @@ std::vector<std::string> words_of(const store::Withdrawal& gone, const char* ver
   return words;
 }
 
-/// The options for withdrawing everything of a person, with the folder of the last backup if it is reachable.
+/// Returns the options for withdrawing everything of a person. They include the folder of the last backup, if
+/// that folder can be reached.
 store::WithdrawOptions withdrawal_of(const std::string& person, const std::string& database) {
   store::WithdrawOptions options;
   options.participant = person;
@@ -106,7 +107,7 @@ void SessionsController::setSearch(const QString& search) {
 void SessionsController::lookForDisks() {
   try {
     disks_ = maintenance::removable_disks(sources_);
-  } catch (const std::exception& error) {  // a disk was unplugged while it was looked at
+  } catch (const std::exception& error) {  // ignore this: a disk was unplugged while the list was made
     disks_.clear();
     said_ = to_list(lines_of(error));
     failed_ = true;
@@ -189,7 +190,7 @@ void SessionsController::exportTo(int place, bool all, const QString& format) {
   store::ExportOptions options;
   if (!all) options.session_id = chosen_;
   if (format == "bids") options.format = store::ExportFormat::bids;
-  // A folder of its own for each export, so that no file of an earlier export stands beside newer ones.
+  // Each export gets a new folder, so that files of an earlier export never stand beside newer ones.
   const auto name =
       "turnpoint-export-" + QDateTime::currentDateTime().toString("yyyy-MM-dd-hhmmss").toStdString();
   act([this, options, name, place, disks = disks_, folder = folder_of(place)] {
@@ -206,7 +207,8 @@ void SessionsController::backUpTo(int place) {
     const auto at = mounted(folder, disks, place, sources_);
     options.directory = place == 0 ? (fs::path(database_).parent_path() / "backups").string()
                                    : (fs::path(at) / "turnpoint-backups").string();
-    // The folder of a disk that was pulled out in the meantime would lie on the system's own disk.
+    // If the disk was pulled out meanwhile, its folder would now lie on the system's own disk. With this
+    // setting the backup refuses that.
     if (place > 0) options.destination = store::Destination::disk;
     const auto report = store::backup(database_, options);
     std::vector<std::string> said{

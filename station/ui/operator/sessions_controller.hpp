@@ -70,7 +70,7 @@ class SessionsController : public QObject {
   Q_INVOKABLE void exportTo(int place, bool all, const QString& format);
   Q_INVOKABLE void backUpTo(int place);
   Q_INVOKABLE void eject(int place);
-  /// Finds out what a withdrawal of the chosen participant would delete. withdraw() deletes it.
+  /// Finds out what a withdrawal of the chosen participant would delete. withdraw() then deletes it.
   Q_INVOKABLE void planWithdrawal();
   Q_INVOKABLE void withdraw();
 
@@ -81,7 +81,7 @@ class SessionsController : public QObject {
  private:
   struct Done {
     std::vector<std::string> said;
-    std::function<void()> then = {};  ///< what else to do on the GUI thread
+    std::function<void()> then = {};  ///< what else to do on the GUI thread; may be empty
   };
   void act(std::function<Done()> action);
   const desk::SessionLine* line() const;

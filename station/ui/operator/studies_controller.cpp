@@ -15,7 +15,7 @@ StudiesController::StudiesController(setup::StationRequest request, Checker chec
 
 void StudiesController::open() {
   const auto before = selected_ < 0 ? std::string() : protocols_[static_cast<std::size_t>(selected_)].path;
-  protocols_ = desk::list_protocols(request_.protocols);
+  protocols_ = desk::list_studies(request_.protocols, request_.database);
   const auto found = std::find_if(protocols_.begin(), protocols_.end(),
                                   [&](const auto& entry) { return entry.path == before; });
   selected_ = -1;
@@ -43,6 +43,17 @@ void StudiesController::select(int index) {
       return [this, words] { take(words); };
     }
   });
+}
+
+void StudiesController::selectFile(const QString& path) {
+  open();
+  for (std::size_t i = 0; i < protocols_.size(); ++i)
+    if (QString::fromStdString(protocols_[i].path) == path) select(static_cast<int>(i));
+}
+
+QString StudiesController::path(int index) const {
+  if (index < 0 || index >= static_cast<int>(protocols_.size())) return {};
+  return QString::fromStdString(protocols_[static_cast<std::size_t>(index)].path);
 }
 
 void StudiesController::take(desk::CheckWords words) {

@@ -48,6 +48,9 @@ class StudiesController : public QObject {
   /// Reads the folder again, and checks the chosen protocol again, because its file may have changed.
   Q_INVOKABLE void open();
   Q_INVOKABLE void select(int index);
+  /// Selects the protocol of this file, if the folder has it.
+  Q_INVOKABLE void selectFile(const QString& path);
+  Q_INVOKABLE QString path(int index) const;
 
  Q_SIGNALS:
   void changed();

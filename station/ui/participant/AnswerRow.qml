@@ -11,7 +11,8 @@ Item {
     /// Smaller texts below the answers. The list may be shorter than `answers`.
     property var captions: []
     required property int pressed
-    /// The points of a scale may be close together, so that more of them fit one row.
+    /// The points of a scale may be closer together than other answers, so that more of them fit into one
+    /// row.
     readonly property real gap: !captioned ? theme.targetGap
         : Math.max(2, Math.min(theme.unit, (width - columns * theme.targetMin) / Math.max(1, columns - 1)))
     readonly property int count: answers.length
@@ -20,7 +21,7 @@ Item {
     readonly property int columns: Math.max(1, Math.ceil(count / rows))
     readonly property real buttonWidth: (width - (columns - 1) * gap) / columns
     readonly property real buttonHeight: (height - (rows - 1) * gap) / rows
-    /// The height at which the answers are as high as a finger needs.
+    /// The smallest height at which each answer is still as high as a finger needs.
     readonly property real leastHeight: rows * (theme.targetMin + gap) - gap
     readonly property bool captioned: captions.some(caption => caption !== "")
     readonly property real labelHeight: (captioned ? 0.5 : 1) * (buttonHeight - 2 * theme.unit)

@@ -1,7 +1,7 @@
 import QtQuick
 import Turnpoint
 
-// Leads back to the previous question, at the same place on each page before the session.
+// Leads back to the previous question. It is at the same place on all pages before the session.
 ActionButton {
     id: root
     required property Texts texts

@@ -9,7 +9,8 @@ Item {
     required property Texts texts
     property bool leftHanded: false
     property bool known: false
-    /// True if a known code must be confirmed. False if an operator types, who need not be asked twice.
+    /// True if the participant must confirm a code that is already known. False if an operator types, who has
+    /// chosen the known code deliberately.
     property bool confirms: true
     /// True if the participant may choose which hand taps. This changes the layout, but not the scoring.
     property bool asksHand: false

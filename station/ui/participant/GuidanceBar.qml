@@ -1,8 +1,8 @@
 import QtQuick
 import Turnpoint
 
-// A bar that guides the finger: the range to be in is a frame with open paper inside, and a solid block shows
-// the finger. The block is in the frame, before it or behind it, so nothing depends on colour.
+// A bar that guides the finger. The range that is asked for is an open frame, and a solid block shows the
+// finger's value. The block lies below, in or above the frame, so the bar can be read without colour.
 Item {
     id: root
     required property Theme theme

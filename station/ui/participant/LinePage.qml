@@ -44,8 +44,8 @@ Item {
         function place(index: int): real { return line.inset + (root.page.anchorPlaces[index] ?? 0) * (width - 2 * line.inset) }
         anchors { left: parent.left; right: parent.right; bottom: line.top }
         height: 3.4 * root.theme.textBody
-        /// Returns the border between the space of this text and that of the next one. The texts at the two
-        /// ends may extend to one side only, so they get more space.
+        /// Returns where the space for the text of this anchor ends and that for the next one begins. The
+        /// texts at the two ends may extend to one side only, so they get more space.
         function border(index: int): real {
             const share = count < 3 ? 0.5 : index === 0 ? 0.6 : index === count - 2 ? 0.4 : 0.5
             return (1 - share) * place(index) + share * place(index + 1)

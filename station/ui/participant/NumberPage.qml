@@ -1,7 +1,7 @@
 import QtQuick
 import Turnpoint
 
-// Page on which the participant types a number. Done appears once the number is one that the task accepts.
+// Page on which the participant types a number. Done appears once the task accepts the number.
 Item {
     id: root
     required property Theme theme
@@ -15,7 +15,7 @@ Item {
     readonly property string point: Qt.locale(page.language).decimalPoint
     readonly property real value: typed === "" || typed === "." ? NaN : Number(typed)
     readonly property bool accepted: value >= page.valueLow && value <= page.valueHigh
-    /// Three columns on a tall screen, otherwise six.
+    /// On a tall screen the keypad has three columns, otherwise six.
     readonly property bool tall: height > width
     readonly property var keys: tall ? ["1", "2", "3", "4", "5", "6", "7", "8", "9", ".", "0", "<"]
                                      : ["1", "2", "3", "4", "5", "<", "6", "7", "8", "9", "0", "."]

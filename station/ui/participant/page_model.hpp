@@ -101,7 +101,8 @@ class PageModel : public QObject {
 
   bool is_guided() const { return page_.guidance.has_value(); }
   bool bars_frozen() const { return page_.guidance && page_.guidance->frozen; }
-  /// Value, and lower and upper end of the range that is asked for; empty if there is no such bar.
+  /// The value of the force, and the lower and upper end of the range that the protocol asks for; empty if
+  /// there is no such bar.
   QList<double> force_bar() const;
   QList<double> speed_bar() const;
   Kind kind() const;

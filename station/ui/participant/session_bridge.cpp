@@ -105,7 +105,7 @@ void SessionBridge::annotate(const QString& text) {
 
 void SessionBridge::frames_lost(int frames) {
   if (frames <= 0) return;
-  // do not use push(): it clears the pending touches, as if somebody had pressed a button
+  // Do not use push() here. It clears the pending touches, as if a button on the page had been pressed.
   session::Input input;
   input.time_ns = clock_();
   input.kind = session::InputKind::frames_lost;

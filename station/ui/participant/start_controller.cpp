@@ -32,8 +32,8 @@ StartController::Stage StartController::stage() const {
 QStringList StartController::language_names() const {
   QStringList names;
   for (const auto& code : questions_.languages) {
-    // Offer each language under its own name. Without a country, Qt takes the largest one and calls these two
-    // "American English" and "español de España".
+    // Show each language under its own name. If the locale names no country, Qt takes the largest one and
+    // writes "American English" and "español de España", so use shorter names for these two.
     const QLocale locale(code);
     const QString own = code == "en" ? "English" : code == "es" ? "Español" : locale.nativeLanguageName();
     names += own.isEmpty() ? code : locale.toUpper(own.left(1)) + own.mid(1);

@@ -38,7 +38,8 @@ struct SurfaceDrawing::Layout {
   double px_per_mm = 1;        ///< scale along the strip
   double wide_half = 0, narrow_half = 0;
   double scale_text = 0, flag_text = 0, flag_height = 0;
-  /// 1/20 of the height; strokes and gaps are multiples of it, so that they grow with the item
+  /// a twentieth of the height; widths of strokes and gaps are multiples of it, so that they grow with the
+  /// item
   double unit = 1;
   double length_mm = 1;
   bool wide_left = true;
@@ -77,6 +78,14 @@ SurfaceDrawing::Layout SurfaceDrawing::layout() const {
   at.narrow_half = narrow_half_width_mm_ * across * shrink;
   at.axis_y = above + room;
   return at;
+}
+
+double SurfaceDrawing::xOf(double mm) const { return length_mm_ > 0 ? layout().x(mm) : 0; }
+
+double SurfaceDrawing::mmAt(double x) const {
+  if (length_mm_ <= 0) return 0;
+  const Layout at = layout();
+  return std::clamp((at.wide_left ? x - at.left : at.right - x) / at.px_per_mm, 0.0, length_mm_);
 }
 
 void SurfaceDrawing::paint(QPainter* painter) {

@@ -26,6 +26,10 @@ class SurfaceDrawing : public QQuickPaintedItem {
   explicit SurfaceDrawing(QQuickItem* parent = nullptr);
   void paint(QPainter* painter) override;
 
+  /// x of a position in mm from the wide end, and the position at an x.
+  Q_INVOKABLE double xOf(double mm) const;
+  Q_INVOKABLE double mmAt(double x) const;
+
  Q_SIGNALS:
   void changed();
 

@@ -21,7 +21,7 @@ namespace turnpoint::ui {
 namespace {
 
 /// Writes a configuration file that makes eglfs use a graphics card with a connector. (By itself, eglfs uses
-/// the first card, which may have none.) Returns nothing if the user has already chosen a configuration.
+/// the first card, which may have none.) Returns nothing if the user has already set one.
 std::unique_ptr<QTemporaryFile> eglfs_config(const std::string& card) {
   if (qEnvironmentVariableIsSet("QT_QPA_EGLFS_KMS_CONFIG")) return nullptr;
   auto file = std::make_unique<QTemporaryFile>();
@@ -59,7 +59,7 @@ std::unique_ptr<QTemporaryFile> choose_platform() {
   return nullptr;
 }
 
-/// Says why Qt has no screen. Called when Qt gives up, which is when no display answers.
+/// Says why Qt has no screen. Qt calls this when it gives up, which happens if no display answers.
 void explain_no_screen() {
   std::string tried;
   for (const char* variable : {"QT_QPA_PLATFORM", "WAYLAND_DISPLAY", "DISPLAY"})
@@ -90,7 +90,7 @@ class StartMessages {
   static void take(QtMsgType type, const QMessageLogContext&, const QString& text) {
     if (type != QtFatalMsg) return texts().push_back(text.toStdString());
     explain_no_screen();
-    std::_Exit(2);  // Qt would abort when this function returns
+    std::_Exit(2);  // end the process here, because Qt would abort it when this function returns
   }
   QtMessageHandler before_;
 };

@@ -9,8 +9,9 @@ namespace turnpoint::ui {
 /// that range.
 double pixels_per_mm(const QScreen& screen);
 
-/// Sets the application's font, and for each script the families that replace it, in order of preference. A text that
-/// mixes scripts then finds all of its glyphs. Catalogue::family says which languages need another font.
+/// Sets the application's font and, for each script, the fonts to fall back on, in order of preference. A
+/// text that mixes scripts then finds all of its glyphs. Catalogue::family says which languages need a
+/// different first font.
 void set_fonts();
 
 }  // namespace turnpoint::ui

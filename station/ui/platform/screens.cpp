@@ -1,8 +1,12 @@
 #include "station/ui/platform/screens.hpp"
 
 #include <QQmlApplicationEngine>
+#include <filesystem>
 #include <stdexcept>
 
+#include "station/setup/places.hpp"
+#include "station/text/toml.hpp"
+#include "station/ui/operator/design_controller.hpp"
 #include "station/ui/operator/latency_controller.hpp"
 #include "station/ui/operator/operator_controller.hpp"
 #include "station/ui/operator/preview_controller.hpp"
@@ -20,8 +24,8 @@ StationWindow::Place place_on(const Application& application, bool fullscreen) {
           fullscreen || application.is_bare_panel()};
 }
 
-/// From the moment at which the window shows its first page, a stop signal ends the event loop. Before that,
-/// the signal kills the process.
+/// Makes a stop signal end the event loop, from the moment at which the window shows its first page. Before
+/// that, a stop signal kills the process.
 void stop_in_order(const Application& application, const QQuickWindow& window) {
   auto& stop = application.stop_signals();
   QObject::connect(
@@ -29,8 +33,8 @@ void stop_in_order(const Application& application, const QQuickWindow& window) {
       static_cast<Qt::ConnectionType>(Qt::AutoConnection | Qt::SingleShotConnection));
 }
 
-/// Like the function above. In addition, a stop signal ends the event loop from the beginning of a session,
-/// which may come before the first page.
+/// Like the function above, but a stop signal already ends the event loop from the beginning of a session,
+/// even if no page has been shown yet.
 void stop_in_order(const Application& application, StationWindow& window) {
   stop_in_order(application, window.window());
   QObject::connect(&window, &StationWindow::beginning, &application.stop_signals(), &StopSignals::take_over);
@@ -92,6 +96,22 @@ void show_preview(const desk::PreviewRequest& request) {
   const Application application;
   PreviewController controller(request);
   show_until_closed(application, "PreviewWindow.qml", QVariant::fromValue(&controller));
+}
+
+void show_design(const cli::DesignRequest& request) {
+  const std::filesystem::path file = request.file;
+  const bool exists = !request.file.empty() && std::filesystem::exists(file);
+  if (exists) text::read_text_file(request.file);  // refuses what is no file before a window opens
+  const Application application;
+  DesignController controller({file.parent_path().string(), request.rig, setup::shipped("protocols")});
+  if (exists) {
+    if (!controller.open(QString::fromStdString(request.file)))
+      throw std::runtime_error(controller.trouble().toStdString());
+  } else {
+    controller.startNew();
+    controller.suggest(QString::fromStdString(file.stem().string()));
+  }
+  show_until_closed(application, "DesignWindow.qml", QVariant::fromValue(&controller));
 }
 
 std::optional<calibration::PanelLatency> measure_latency(const maintenance::LatencyRequest& request) {

@@ -1,6 +1,7 @@
 #pragma once
 #include <optional>
 
+#include "station/cli/screens.hpp"
 #include "station/desk/preview.hpp"
 #include "station/maintenance/panel_latency.hpp"
 #include "station/session/session.hpp"
@@ -23,6 +24,9 @@ void run_station(const setup::StationRequest& request);
 
 /// Shows the scenes of a protocol with sliders for their factors.
 void show_preview(const desk::PreviewRequest& request);
+
+/// Shows forms in which a protocol file is made or changed.
+void show_design(const cli::DesignRequest& request);
 
 /// Measures the latency of the touch panel from taps, against the rig's reference line. Returns the result
 /// that the operator accepts; empty if the operator leaves the page.

@@ -14,6 +14,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "station/setup/places.hpp"
 #include "station/ui/platform/load_page.hpp"
 #include "station/ui/platform/screen.hpp"
 #include "station/ui/shared/operator_screen.hpp"
@@ -51,7 +52,7 @@ bool is_known(const std::string& database, const QString& code) {
   return std::find(known.begin(), known.end(), code.toStdString()) != known.end();
 }
 
-/// The operator's choices of language, theme and text size are kept in a file beside the database.
+/// Keeps the operator's choices of language, theme and text size in a file beside the database.
 void keep_screen_beside(QQmlEngine& engine, const std::string& database) {
   auto* screen = engine.singletonInstance<OperatorScreen*>(qmlTypeId("Turnpoint", 1, 0, "OperatorScreen"));
   if (screen == nullptr) throw std::logic_error("the module Turnpoint has no OperatorScreen");
@@ -71,6 +72,9 @@ StationWindow::StationWindow(const Place& place, const Operator& allowed, const 
     studies_ = std::make_unique<StudiesController>(request);
     sessions_ = std::make_unique<SessionsController>(request, allowed.disks);
     rig_ = std::make_unique<RigController>(request);
+    design_ = std::make_unique<DesignController>(
+        DesignPlace{desk::folder_for_studies(request.protocols, request.database), request.rig,
+                    setup::shipped("protocols")});
     connect(operating_, &OperatorController::chosen, this, &StationWindow::ask);
   }
   window_ = &load_page(engine_, "Main.qml",
@@ -82,6 +86,7 @@ StationWindow::StationWindow(const Place& place, const Operator& allowed, const 
                         {"studies", QVariant::fromValue(studies_.get())},
                         {"sessions", QVariant::fromValue(sessions_.get())},
                         {"rig", QVariant::fromValue(rig_.get())},
+                        {"design", QVariant::fromValue(design_.get())},
                         {"operatorLock", QVariant::fromValue(&lock_)},
                         {"locked", allowed.locked},
                         {"pixelsPerMm", place.pixels_per_mm},

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "station/desk/operator_code.hpp"
+#include "station/ui/operator/design_controller.hpp"
 #include "station/ui/operator/operator_controller.hpp"
 #include "station/ui/operator/operator_lock.hpp"
 #include "station/ui/operator/rig_controller.hpp"
@@ -66,6 +67,7 @@ class StationWindow : public QObject {
   std::unique_ptr<StudiesController> studies_;
   std::unique_ptr<SessionsController> sessions_;
   std::unique_ptr<RigController> rig_;
+  std::unique_ptr<DesignController> design_;
   session::Setup setup_;
   bool arm_ = false;
   SessionRunner runner_;

@@ -17,9 +17,9 @@ Rectangle {
     property bool danger: false
     /// If above 0, the button must be held for this number of milliseconds. It fills up in that time.
     property int holdMs: 0
-    /// True if the button acts when the finger comes down.
+    /// True if the button acts as soon as the finger comes down, not when it is lifted.
     property bool atOnce: false
-    /// What a screen reader says, for a button without a text.
+    /// What a screen reader says. Needed for a button without a text.
     property string label: text
     readonly property bool down: tap.pressed || keyHeld
     property bool keyHeld: false

@@ -1,8 +1,9 @@
 import QtQuick
 import Turnpoint
 
-// Asks before something that cannot be undone. It covers the page, says what will happen, and offers the safe
-// choice first. Its buttons are not where the button was that opened it, and they ignore taps for a moment.
+// Asks for confirmation of something that cannot be undone. It covers the page, says what will happen, and
+// offers the safe choice first. Its buttons are not at the place of the button that opened it, and they
+// ignore taps for a moment.
 Rectangle {
     id: root
     required property Theme theme

@@ -1,8 +1,8 @@
 import QtQuick
 import Turnpoint
 
-// A column in the middle of its place. If its content is too high, the whole column shrinks, so that nothing is
-// hidden under what stands below it.
+// A column in the middle of the area that it gets. If its content is too high, the whole column shrinks, so
+// that nothing is hidden under the items below it.
 Item {
     id: root
     required property Theme theme

@@ -1,13 +1,17 @@
 import QtQuick
 import Turnpoint
 
-// Letters and digits on the screen, for a station without a keyboard.
+// Letters and digits on the screen, for a station without a keyboard. `full` adds capitals and more signs, for
+// sentences.
 Column {
     id: root
     required property Theme theme
     signal typed(character: string)
     signal erased()
-    readonly property var rows: ["1234567890", "qwertyuiop", "asdfghjkl-", "zxcvbnm,. "]
+    property bool full: false
+    property bool capitals: false
+    readonly property var rows: full ? ["1234567890", "qwertyuiop", "asdfghjkl-", "zxcvbnm,. ", "?!'():/+*=_"]
+        : ["1234567890", "qwertyuiop", "asdfghjkl-", "zxcvbnm,. "]
     spacing: 0.4 * theme.unit
 
     Repeater {
@@ -27,8 +31,11 @@ Column {
                     quiet: true
                     width: (root.width - 11 * line.spacing) / 11.5
                     height: Math.min(root.theme.controlHeight, width)
-                    text: modelData === " " ? "␣" : modelData
-                    onActivated: root.typed(modelData)
+                    text: modelData === " " ? "␣" : root.capitals ? modelData.toUpperCase() : modelData
+                    onActivated: {
+                        root.typed(root.capitals ? modelData.toUpperCase() : modelData)
+                        root.capitals = false
+                    }
                 }
             }
             ActionButton {
@@ -41,6 +48,17 @@ Column {
                 height: Math.min(root.theme.controlHeight, width)
                 glyph: "backspace"
                 onActivated: root.erased()
+            }
+            ActionButton {
+                visible: root.full && line.index === 3
+                objectName: visible ? "capitals" : ""
+                theme: root.theme
+                primary: root.capitals
+                quiet: !root.capitals
+                width: 1.5 * (root.width - 11 * line.spacing) / 11.5
+                height: Math.min(root.theme.controlHeight, width)
+                text: "Aa"
+                onActivated: root.capitals = !root.capitals
             }
         }
     }

@@ -2,8 +2,9 @@ import QtQuick
 import Turnpoint
 
 // Sizes and colours of all pages. Sizes grow with the panel, but a control is never smaller than a finger
-// needs, nor a text smaller than an eye needs (in millimetres, from the panel's own density). Text and its
-// background have a contrast of 7:1 or more, borders and their background 3:1 or more.
+// needs, and a text never smaller than an eye needs. (These limits are in millimetres; the panel's own
+// density converts them to pixels.) Text and its background have a contrast of 7:1 or more, borders and their
+// background 3:1 or more.
 QtObject {
     required property real width
     required property real height

@@ -13,9 +13,9 @@ class Catalogue : public QObject {
 
   /// language of the texts on the screen, which decides `family`
   Q_PROPERTY(QString shown MEMBER shown_ NOTIFY shownChanged)
-  /// Family of fonts of all texts on the screen. Chinese, Japanese and Korean share characters that each
-  /// language draws in its own way, so each needs a family of its own. For other scripts the application's
-  /// fonts replace each other.
+  /// The font family of all texts on the screen. Chinese, Japanese and Korean share characters that each
+  /// language draws in its own way, so each of them needs its own family. For other scripts, the
+  /// application's fonts replace one another where a glyph is missing.
   Q_PROPERTY(QString family READ family NOTIFY shownChanged)
 
  public:

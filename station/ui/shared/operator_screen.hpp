@@ -26,8 +26,8 @@ class OperatorScreen : public QObject {
   void set_dark(bool dark);
   void set_text_percent(int percent);
 
-  /// Takes the choices from a file, and writes every later choice to it. A file that is missing, and any
-  /// value in it that is not allowed, leaves the defaults.
+  /// Reads the choices from a file, and writes every later choice to it. If the file is missing, or a value
+  /// in it is not allowed, the default stays.
   void keep_in(const QString& file);
 
  Q_SIGNALS:

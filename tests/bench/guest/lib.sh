@@ -57,7 +57,7 @@ level() { cat "$(line_of "$1")/value"; }
 keep_outputs() { echo "$1" >/sys/module/gpio_sim_bench/parameters/keep_outputs; }
 
 # rig_with DEVICE=URI... <RIG >RIG: copies a rig file and replaces the URIs of these devices. A sound output
-# also gets a long buffer, which does not run empty when the host pauses.
+# also gets a long buffer, which does not run empty while the host machine pauses the guest.
 rig_with() {
   local device script=
   for device in "$@"; do
@@ -77,7 +77,7 @@ calibrate_for_live() {
 }
 
 # loopback [PAIRS]: makes a simulated sound card. hw:Loopback,1 records exactly the samples that are played on
-# hw:Loopback,0. With two pairs, hw:Loopback,0,1 and hw:Loopback,1,1 are another such connection.
+# hw:Loopback,0. With two pairs, hw:Loopback,0,1 and hw:Loopback,1,1 are connected in the same way.
 loopback() { modprobe snd-aloop pcm_substreams="${1:-1}"; eventually 5 test -e /dev/snd/pcmC0D1c; }
 # record SECONDS FILE [RATE]: records raw S32_LE stereo in the background. $! is the recorder's process.
 record() { arecord -q -D hw:Loopback,1 -t raw -f S32_LE -c 2 -r "${3:-192000}" --period-size=9600 --buffer-size=192000 -d "$1" "$2" & }
@@ -117,7 +117,7 @@ screen_begin() {
 pixel() { kms_screen "$1" "$2"; }
 screenshot() { kms_screen | python3 "$BENCH_SOURCE/guest/screenshot.py" "$OUT/$1.png"; }
 # Functions for the participant's pages. `shows X Y` succeeds if the pixel has the colour of a button that can
-# be pressed. The other functions use it to recognise the page.
+# be pressed. The functions below use it to recognise pages.
 action=5c3d0f
 shows() { [ "$(pixel "$1" "$2")" = $action ]; }
 answers_open() { shows 60 400 && shows 740 400; }
@@ -136,5 +136,8 @@ unlock() {
   operator_code
   eventually 10 start_page
 }
+# begins_pilot: begins the session once the protocol's check has finished, until when the button cannot be pressed.
+can_begin() { shows 640 445; }
+begins_pilot() { eventually 60 can_begin; tap 706 445; }
 english() { shows 200 150; }
 goes_on() { eventually 30 continues; sleep 0.7; tap 400 390; }

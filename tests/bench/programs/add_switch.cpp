@@ -20,7 +20,7 @@ int add(const char* card_name, const char* name) {
   snd_ctl_elem_value_set_id(on, id);
   snd_ctl_elem_value_set_boolean(on, 0, 1);
   int error = snd_ctl_elem_add_boolean(card, id, 1);
-  // only this process could change a locked switch
+  // unlock the switch, because otherwise only this process could change it
   if (error >= 0) error = snd_ctl_elem_unlock(card, id);
   if (error >= 0) error = snd_ctl_elem_write(card, on);
   snd_ctl_close(card);

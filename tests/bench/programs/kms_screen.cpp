@@ -18,7 +18,7 @@
 
 namespace {
 
-/// The buffer of this card's first active output; its id is 0 if the card shows nothing.
+/// Returns the buffer of this card's first active output; its id is 0 if the card shows nothing.
 drm_mode_fb_cmd shown_by(int card) {
   std::array<std::uint32_t, 16> outputs{};
   drm_mode_card_res resources{};

@@ -39,8 +39,8 @@ Samples loudest(Samples x, std::size_t length) {
   return x.subspan(begin, length);
 }
 
-/// Hann-weighted Fourier component at this frequency (cycles per frame): a complex number with the peak
-/// amplitude and phase of the tone.
+/// Returns the Hann-weighted Fourier component at this frequency (cycles per frame): a complex number with
+/// the peak amplitude and phase of the tone.
 std::complex<double> component(Samples x, double cycles_per_frame) {
   const double turn = 2 * std::numbers::pi, n = static_cast<double>(x.size());
   const auto step = std::polar(1.0, -turn * cycles_per_frame), window_step = std::polar(1.0, turn / n);

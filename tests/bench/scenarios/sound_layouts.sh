@@ -1,7 +1,7 @@
 # proves: samples reach a sound card unchanged, as S32_LE on a card with 2 channels and as S24_3LE on 2 of 6 channels; a card that needs another layout is refused, with a message that names the layout; the doctor finds a converter that mutes itself, and its advice solves the problem
 # timeout: 900
 loopback
-# Each channel has a tone of its own, so that swapped channels are detected.
+# Each channel plays a tone with another frequency, so that swapped channels are detected.
 second='[[transducer]]\nname = "second"\nchannel = 1\nband_kHz = [60, 80]\num_per_full_scale = 4.0\n'
 rig() {  # rig FILE BITS [DEVICE_CHANNELS]: writes a rig file with this output format
   sed -e "s/^rate_Hz.*/&\nbits = $2\nperiod_frames = 1920\nperiods = 40${3:+\ndevice_channels = $3}/" -e "s/^\[output\]/$second\n&/" \

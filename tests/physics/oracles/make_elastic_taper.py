@@ -109,7 +109,8 @@ def edges(problem, f):
     fine = np.linspace(0, L * 0.99, 4000)
     a = np.array([value(s) for s in fine])
     last = max(i for i in range(1, len(a) - 1) if a[i] > a[i - 1] and a[i] >= a[i + 1] and a[i] > 0.02 * a.max())
-    # parabola through the nodes around the maximum: values inside one element have kinks at its ends
+    # Fit a parabola through the nodes around the maximum. (The values inside an element would not do, because
+    # they have kinks at its ends.)
     i = int(np.argmin(abs(x - fine[last])))
     c = np.polyfit(x[i - 3:i + 4] - fine[last], abs(v[i - 3:i + 4]), 4)
     peak = brentq(np.poly1d(np.polyder(c)), -2e-3, 2e-3) + fine[last]

@@ -40,7 +40,8 @@ class Taper:
             self.c = (w[:-1], m[:-1], (3 * d - 2 * m[:-1] - m[1:]) / h, (m[:-1] + m[1:] - 2 * d) / h**2)
 
     @staticmethod
-    def end(h0, h1, d0, d1):  # slope at an end of the table (Fritsch & Carlson), which only falls
+    # returns the slope at an end of the table (Fritsch & Carlson), for a table that only falls
+    def end(h0, h1, d0, d1):
         s = ((2 * h0 + h1) * d0 - h0 * d1) / (h0 + h1)
         return d0 / 3 if s >= 0 else max(s, 3 * d0)
 
@@ -100,7 +101,7 @@ def membrane(s, size):
     k2 = (k * (1 - (0.5j / s["q"] if s["q"] else 0))) ** 2
 
     @fe.BilinearForm
-    def stiffness(u, v, p):  # y = W eta
+    def stiffness(u, v, p):  # the coordinates are x and y = W eta
         ux, vx = (a.grad[0] - p.x[1] * p["slope"] / p["w"] * a.grad[1] for a in (u, v))
         return p["w"] * (ux * vx + u.grad[1] * v.grad[1] / p["w"] ** 2)
 
@@ -158,8 +159,10 @@ def clamped(s, size):
                             (2, b / w0 * (-np.sin(b * e) / np.cos(b) - np.sinh(b * e) / np.cosh(b)) / unit),
                             (5, (b / w0) ** 2 * (-np.cos(b * e) / np.cos(b) - np.cosh(b * e) / np.cosh(b)) / unit)):
             u[nodal[row, ends["drive"]]] = values
-    t = np.array([1, -s["taper"].numbers[1]]) / np.hypot(1, s["taper"].numbers[1])  # along the side
-    # Along a side u, its slopes and the second derivatives along it vanish. u_xx and u_xy follow from u_yy there.
+    # direction along the side
+    t = np.array([1, -s["taper"].numbers[1]]) / np.hypot(1, s["taper"].numbers[1])
+    # Along a side, u, its slopes and its second derivative along the side vanish. So u_xx and u_xy follow
+    # from u_yy there.
     held = [nodal[[0, 1, 2, 4, 5]][:, ends["drive"]].ravel(), facet[0, named.boundaries["drive"]],
             nodal[[0, 1, 2, 4, 5]][:, ends["end"]].ravel(), facet[0, named.boundaries["end"]],
             nodal[[0, 1, 2]][:, ends["side"]].ravel(), facet[0, named.boundaries["side"]],
@@ -167,7 +170,8 @@ def clamped(s, size):
     corner = np.intersect1d(ends["side"], np.union1d(ends["drive"], ends["end"]))
     held = np.unique(np.concatenate(held + [nodal[:, corner].ravel()]))
     u[nodal[:, corner]] = 0
-    # Second derivatives at the inner vertices of a side: g (n n^T), with one unknown g = u_yy / n_y^2
+    # At the inner vertices of a side, the second derivatives are g (n n^T), with the single unknown g = u_yy
+    # / n_y^2.
     inner = np.setdiff1d(ends["side"], corner)
     ny2, nx_ny, nx2 = t[0] ** 2, -t[0] * t[1], t[1] ** 2
     q = sp.identity(a.shape[0], format="lil")
@@ -253,7 +257,7 @@ def row(number):
         x = np.linspace(0, s["length"], 10001)
         turning = x[np.count_nonzero(s["taper"](x)[0] > cut)]
         if turning < 0.05 * s["length"]:
-            continue  # too near to the drive edge
+            continue  # the edge is too close to the drive edge to be used
         try:
             (a, _, peak_a, edge_a), (b, most, peak, edge) = (figures(solve(s, size), s["length"], turning)
                                                            for size in (0.85, 0.6))

@@ -34,7 +34,8 @@ def resonance(near):
 if __name__ == "__main__":
     x = 0.001 + 0.005 * np.arange(54)
     ramp, step = np.clip(1 - x / 0.25, 0, None), (x < 0.2) * 1.0
-    tail = np.exp(-((x - 0.262) / 0.004) ** 2)  # almost only where no tone of the band moves the surface
+    # a target that lies almost completely where no tone of the band moves the surface
+    tail = np.exp(-((x - 0.262) / 0.004) ** 2)
     for q, low, high, spacing in ((60, 8e3, 45e3, 1e3), (0, float(resonance(12e3) * (1 + mpf("1e-9"))), 44.9e3, 1370.0)):
         print(f"surface,{float(q)!r},{low!r},{high!r},{spacing!r}")
         columns = []

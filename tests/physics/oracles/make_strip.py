@@ -58,7 +58,7 @@ class Strip:
         b, c = (2 * m1 + self.t * m0) / m0, (m2 + self.t * m1) / m0 - (k**4 + self.t * k**2)
         root = sqrt(mpmathify(b**2 / 4 - c))
         e = [s * sqrt(mpmathify(b / 2 + r)) for r in (root, -root) for s in (1, -1)]
-        start = [self.length if mp.re(x) > 0 else 0 for x in e]  # where the exponential is one
+        start = [self.length if mp.re(x) > 0 else 0 for x in e]  # the end at which the exponential is one
         at = lambda x: [exp(one * (x - s)) for one, s in zip(e, start)]
         times = lambda values: [x * y for x, y in zip(e, values)]
         return at, matrix([at(0), times(at(0)), at(self.length), times(at(self.length))])
@@ -77,7 +77,8 @@ class Strip:
         return findroot(lambda t: self.response(t, n) / unit, (f, f + step), solver="anderson", tol=mpf("1e-55"), maxsteps=100)
 
     def field(self, f, q):
-        points = [self.length * mpf(float(i / 10.37)) for i in range(1, 10)]  # not at common nodes
+        # points that are not at nodes common to several functions
+        points = [self.length * mpf(float(i / 10.37)) for i in range(1, 10)]
         if self.kind == "clamped":
             at, conditions = self.clamped(f, q)
             c = lu_solve(conditions, matrix([1, 0, 0, 0]))

@@ -1,0 +1,61 @@
+#pragma once
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "station/text/toml.hpp"
+
+namespace turnpoint::design {
+
+/// What the JSON schema for editors says about one key of a protocol file.
+struct Rule {
+  enum class Kind {
+    text,
+    number,
+    integer,
+    boolean,
+    word,
+    expression,
+    numbers,
+    names,
+    texts,
+    table,
+    tables,
+    other
+  };
+  Kind kind = Kind::other;
+  std::vector<std::string> allowed;  ///< word and names: the words that the schema lists
+  std::optional<double> low, high;   ///< numbers: the limits, if the schema has them
+  std::string help;                  ///< the schema's description; "" if it has none
+  /// Keys of a table, or of each table of a list, in the order of the schema.
+  struct Key;
+  std::vector<Key> keys;
+  bool any_key =
+      false;  ///< a table whose keys are names, such as [scene]; `keys` has one, which stands for all
+};
+struct Rule::Key {
+  std::string name;
+  bool required = false;
+  const nlohmann::ordered_json* schema = nullptr;
+};
+
+/// The schema for editors (protocols/protocol.schema.json), which says what keys a protocol can have.
+class Schema {
+ public:
+  /// `source` is the text of the schema. Throws std::runtime_error if it is not a JSON object.
+  explicit Schema(const std::string& source);
+
+  Rule root() const { return rule(*json_); }
+  /// The rule of a key. If the schema allows several forms, `value` chooses the one that fits it; without a
+  /// value, the first one counts.
+  Rule rule(const nlohmann::ordered_json& schema, const text::Value* value = nullptr) const;
+
+ private:
+  const nlohmann::ordered_json& resolved(const nlohmann::ordered_json& schema) const;
+
+  std::unique_ptr<const nlohmann::ordered_json> json_;
+};
+
+}  // namespace turnpoint::design

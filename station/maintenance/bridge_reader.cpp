@@ -1,0 +1,231 @@
+#include <fmt/format.h>
+
+#include <chrono>
+#include <cmath>
+#include <stdexcept>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "station/drive/alsa_capture.hpp"
+#include "station/drive/engine.hpp"
+#include "station/maintenance/force_weights.hpp"
+#include "station/session/capture_feed.hpp"
+#include "station/session/simulated_room.hpp"
+#include "station/session/stage.hpp"
+#include "station/system/clocks.hpp"
+#include "station/terms/usage_error.hpp"
+
+namespace turnpoint::maintenance {
+
+namespace {
+
+constexpr double kSettle_s = 1, kRead_s = 1, kGlance_s = 0.12, kPatience_s = 5;
+constexpr double kLeastReference = 0.02;  // of full scale
+
+sensing::BridgeOptions bridge_options(const rig::Rig& rig, double reference_amplitude) {
+  const auto& capture = *rig.capture;
+  sensing::BridgeOptions options;
+  options.rate_Hz = rig.output.rate_Hz;
+  options.carrier_Hz = sensing::carriers_Hz.front();
+  options.channels = capture.channels;
+  options.reference = capture.reference;
+  options.bridges = {capture.bridges[0], capture.bridges[1], capture.bridges[2]};
+  options.reference_amplitude = reference_amplitude;
+  return options;
+}
+
+/// Means of the points that were captured in one step. The first reading fixes the amplitude of the
+/// reference, with which later ones are compared.
+class BridgeMean {
+ public:
+  explicit BridgeMean(const rig::Rig& rig) : rig_(rig) {}
+
+  BridgeReading of(const std::vector<std::int32_t>& samples) {
+    const auto options = bridge_options(rig_, reference_ > 0 ? reference_ : found_reference(samples));
+    sensing::BridgeDemodulator demodulator(options);
+    BridgeReading reading;
+    std::vector<sensing::BridgePoint> points;
+    demodulator.push({samples, options.channels, 0, options.rate_Hz}, [&](const sensing::BridgePoint& point) {
+      // the filter is filled after 17 ms
+      if (point.index >= 20) points.push_back(point);
+    });
+    if (points.empty()) throw std::runtime_error("force cells: nothing was captured");
+    for (const auto& point : points) {
+      check(point);
+      add(point, reading, 1.0 / static_cast<double>(points.size()));
+    }
+    for (const auto& point : points)
+      for (std::size_t cell = 0; cell < 3; ++cell)
+        reading.sd[cell] +=
+            std::pow(point.ratio[cell] - reading.ratio[cell], 2) / static_cast<double>(points.size());
+    for (double& sd : reading.sd) sd = std::sqrt(sd);
+    reference_ = reading.reference;
+    return reading;
+  }
+
+ private:
+  double found_reference(const std::vector<std::int32_t>& samples) const {
+    const auto options = bridge_options(rig_, 1);
+    sensing::BridgeDemodulator demodulator(options);
+    double amplitude = 0;
+    demodulator.push({samples, options.channels, 0, options.rate_Hz}, [&](const sensing::BridgePoint& point) {
+      if (point.index >= 20) amplitude = point.reference;
+    });
+    if (!(amplitude > kLeastReference))
+      throw std::runtime_error(fmt::format(
+          "the reference on captured channel {} carries no excitation; check the wire from output channel {}",
+          options.reference, rig_.capture->excitation_channel.value_or(0)));
+    return amplitude;
+  }
+
+  void check(const sensing::BridgePoint& point) const {
+    constexpr std::array<const char*, 3> cells{"a", "b", "lateral"};
+    const auto channel = rig_.capture->bridges[point.bridge];
+    switch (point.fault) {
+      case sensing::WireFault::none:
+        return;
+      case sensing::WireFault::reference:
+        throw std::runtime_error(
+            fmt::format("the reference on captured channel {} is {:.3g} of full scale instead of {:.3g}; "
+                        "check the wire of "
+                        "the excitation",
+                        rig_.capture->reference, point.reference, reference_));
+      case sensing::WireFault::quadrature:
+        throw std::runtime_error(fmt::format(
+            "cell {} on captured channel {}: a wire or a shield is off (quadrature {:.3g} of the excitation)",
+            cells[point.bridge], channel, point.quadrature[point.bridge]));
+      case sensing::WireFault::overload:
+        throw std::runtime_error(
+            fmt::format("cell {} on captured channel {}: a wire is off, or the cell is overloaded",
+                        cells[point.bridge], channel));
+    }
+  }
+
+  static void add(const sensing::BridgePoint& point, BridgeReading& sum, double share) {
+    for (std::size_t cell = 0; cell < 3; ++cell) {
+      sum.ratio[cell] += share * point.ratio[cell];
+      sum.quadrature[cell] += share * point.quadrature[cell];
+    }
+    sum.reference += share * point.reference;
+  }
+
+  const rig::Rig& rig_;
+  double reference_ = 0;
+};
+
+/// Puts the weights on the simulated surface.
+class SimulatedBridges : public BridgeReader {
+ public:
+  SimulatedBridges(const rig::Rig& rig, const std::function<void(plant::Setup&)>& laboratory)
+      : rig_(rig), room_(rig_, laboratory), mean_(rig_) {
+    auto config = session::session_stream(rig_);
+    config.output.uri = "null:";
+    stream_ = drive::open_synchronous(config);
+    stream_->listen([this](std::int64_t first_frame, std::span<const std::int32_t> played) {
+      const auto block = room_.advance(first_frame, played);
+      if (keep_) samples_.insert(samples_.end(), block.samples.begin(), block.samples.end());
+    });
+  }
+
+  BridgeReading read(const WeightStep& step) override {
+    constexpr double gravity_m_s2 = 9.81;
+    room_.plant().set_load(
+        {1e-3 * step.mass_g * gravity_m_s2, 1e-3 * step.pull_g * gravity_m_s2, 1e-3 * step.position_mm});
+    pass(kSettle_s);
+    return kept(kRead_s);
+  }
+  BridgeReading glance() override { return kept(kGlance_s); }
+
+ private:
+  BridgeReading kept(double seconds) {
+    samples_.clear();
+    keep_ = true;
+    pass(seconds);
+    keep_ = false;
+    return mean_.of(samples_);
+  }
+  void pass(double seconds) {
+    stream_->advance(std::llround(seconds * rig_.output.rate_Hz));
+    while (stream_->poll()) {
+    }
+  }
+
+  const rig::Rig rig_;
+  session::SimulatedRoom room_;
+  BridgeMean mean_;
+  std::unique_ptr<drive::SynchronousStream> stream_;
+  std::vector<std::int32_t> samples_;
+  bool keep_ = false;
+};
+
+/// Captures the bridges with the card that plays the carrier. Reference and bridges are captured together, so
+/// the delay from playback to capture does not matter.
+class CardBridges : public BridgeReader {
+ public:
+  CardBridges(const rig::Rig& rig, BridgeDevices devices)
+      : rig_(rig), devices_(std::move(devices)), mean_(rig_) {}
+
+  BridgeReading read(const WeightStep&) override {
+    collect(kSettle_s);
+    return mean_.of(collect(kRead_s));
+  }
+  BridgeReading glance() override { return mean_.of(collect(kGlance_s)); }
+
+ private:
+  std::vector<std::int32_t> collect(double seconds) {
+    auto& capture = *devices_.capture;
+    auto& stream = *devices_.stream;
+    const auto& uri = rig_.capture->uri;
+    std::vector<std::int32_t> samples;
+    while (capture.take(*block_)) {
+    }
+    const auto before = capture.counters();
+    const auto underruns = stream.counters().underruns;
+    const auto wanted = static_cast<std::size_t>(seconds * rig_.output.rate_Hz) *
+                        static_cast<std::size_t>(rig_.capture->channels);
+    const auto until_ns = system::monotonic_ns() + static_cast<std::int64_t>(1e9 * (seconds + kPatience_s));
+    while (samples.size() < wanted) {
+      if (system::monotonic_ns() > until_ns)
+        throw std::runtime_error(uri + ": the sound device captures nothing");
+      while (stream.poll()) {
+      }
+      bool taken = false;
+      while (capture.take(*block_)) {
+        const auto used = block_->used();
+        samples.insert(samples.end(), used.begin(), used.end());
+        taken = true;
+      }
+      if (!taken) devices_.pause();
+    }
+    const auto after = capture.counters();
+    if (!after.present) throw std::runtime_error(uri + ": the sound device was disconnected");
+    if (after.lost_frames != before.lost_frames || after.numbering != before.numbering ||
+        stream.counters().underruns != underruns)
+      throw std::runtime_error(uri + ": frames were lost");
+    return samples;
+  }
+
+  const rig::Rig rig_;
+  BridgeDevices devices_;
+  BridgeMean mean_;
+  std::unique_ptr<drive::CapturedBlock> block_ = std::make_unique<drive::CapturedBlock>();
+};
+
+}  // namespace
+
+std::unique_ptr<BridgeReader> card_bridges(const rig::Rig& rig, BridgeDevices devices) {
+  return std::make_unique<CardBridges>(rig, std::move(devices));
+}
+
+std::unique_ptr<BridgeReader> open_bridges(const rig::Rig& rig,
+                                           const std::function<void(plant::Setup&)>& laboratory) {
+  if (!rig.capture || rig.capture->bridges.empty())
+    throw terms::UsageError("the rig \"" + rig.name + "\" has no force cells; add bridges to its [capture]");
+  if (session::simulates_capture(rig)) return std::make_unique<SimulatedBridges>(rig, laboratory);
+  const auto card = session::card_capture_of(rig).value().device;
+  return card_bridges(rig, {drive::open_realtime(session::session_stream(rig)), drive::open_capture(card),
+                            [] { std::this_thread::sleep_for(std::chrono::milliseconds(2)); }});
+}
+
+}  // namespace turnpoint::maintenance

@@ -1,0 +1,327 @@
+#include "station/maintenance/force_weights.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <stdexcept>
+
+#include "station/calibration/apply.hpp"
+#include "station/maintenance/panel_latency.hpp"
+#include "station/system/write_file.hpp"
+#include "station/terms/usage_error.hpp"
+#include "station/text/number.hpp"
+
+namespace turnpoint::maintenance {
+
+namespace {
+
+constexpr double kGravity_m_s2 = 9.81, kRatedLoad_N = 10;
+constexpr double kMoved_N = 20e-3, kRestless_N = 2e-3;  // as for the tare before a trial
+constexpr double kRestlessShare = 10;  // a reading varies by more than this many times what the first one did
+constexpr double kRipple = 1e-4;       // of a reading: what the demodulation itself leaves
+constexpr double kDeaf_share = 0.01;   // a cell that changes by less than this share of the others
+constexpr double kOutlier = 4;         // deviations, see sensing::deviations()
+constexpr std::size_t kMostRepeats = 4, kFewest = 8;
+// Residuals that are so many times what places, masses and pulley explain are another kind of mistake.
+constexpr double kMostMisfit = 20;
+
+constexpr std::array<const char*, 3> kCells{"a", "b", "lateral"};
+
+double newtons(double grams) { return 1e-3 * grams * kGravity_m_s2; }
+
+/// A reading of a weight, and the tare before it.
+struct Weighed {
+  WeightStep step;
+  BridgeReading with, without;
+
+  double in_phase(std::size_t cell) const { return with.ratio[cell] - without.ratio[cell]; }
+  double across(std::size_t cell) const { return with.quadrature[cell] - without.quadrature[cell]; }
+};
+
+/// The phase of each bridge, from the weight that changes it most.
+std::array<double, 3> rotations(const std::vector<Weighed>& all) {
+  std::array<double, 3> rotation{}, largest{};
+  for (std::size_t cell = 0; cell < 3; ++cell)
+    for (const auto& one : all) {
+      const double size = std::hypot(one.in_phase(cell), one.across(cell));
+      if (size <= largest[cell]) continue;
+      largest[cell] = size;
+      // a bridge may be connected either way round, so only the line counts and not its direction
+      rotation[cell] = std::atan(one.across(cell) / one.in_phase(cell));
+    }
+  const double most = *std::max_element(largest.begin(), largest.end());
+  for (std::size_t cell = 0; cell < 3; ++cell)
+    if (!(largest[cell] > kDeaf_share * most))
+      throw terms::UsageError(fmt::format(
+          "cell {} does not respond to any weight; check its wires and its amplifier", kCells[cell]));
+  return rotation;
+}
+
+sensing::Readings rotated(const Weighed& one, const std::array<double, 3>& rotation) {
+  sensing::Readings readings{};
+  for (std::size_t cell = 0; cell < 3; ++cell)
+    readings[cell] =
+        one.in_phase(cell) * std::cos(rotation[cell]) + one.across(cell) * std::sin(rotation[cell]);
+  return readings;
+}
+
+/// The reading of each cell at its rated load: that of the weight that loads it most, scaled up.
+std::array<double, 3> rated_ratios(const std::vector<sensing::DeadWeight>& weights) {
+  std::array<double, 3> rated{};
+  double most_N = 0, most_pull_N = 0;
+  for (const auto& weight : weights) {
+    most_N = std::max(most_N, std::abs(weight.normal_N));
+    most_pull_N = std::max(most_pull_N, std::abs(weight.lateral_N));
+    for (std::size_t cell = 0; cell < 3; ++cell)
+      rated[cell] = std::max(rated[cell], std::abs(weight.readings[cell]));
+  }
+  for (std::size_t cell = 0; cell < 3; ++cell)
+    rated[cell] *= kRatedLoad_N / (cell == 2 ? most_pull_N : most_N);
+  return rated;
+}
+
+/// Fitted weights, in the order in which they were weighed.
+struct Fitted {
+  std::array<double, 3> rotation_rad{};
+  std::vector<sensing::DeadWeight> weights;
+};
+
+Fitted fitted(const std::vector<Weighed>& all) {
+  Fitted made{rotations(all), {}};
+  for (const auto& one : all)
+    made.weights.push_back({newtons(one.step.mass_g), newtons(one.step.pull_g), one.step.position_mm,
+                            rotated(one, made.rotation_rad)});
+  return made;
+}
+
+/// The readings of the cells under a load: the inverse of the matrix, by Cramer's rule.
+sensing::Readings readings_under(const sensing::ForceCalibration::Matrix& k,
+                                 const std::array<double, 3>& load) {
+  const auto determinant = [](const sensing::ForceCalibration::Matrix& m) {
+    return m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1]) -
+           m[0][1] * (m[1][0] * m[2][2] - m[1][2] * m[2][0]) +
+           m[0][2] * (m[1][0] * m[2][1] - m[1][1] * m[2][0]);
+  };
+  sensing::Readings readings{};
+  for (std::size_t row = 0; row < 3; ++row) {
+    auto with = k;
+    with[row] = load;
+    readings[row] = determinant(with) / determinant(k);
+  }
+  return readings;
+}
+
+sensing::WeightFit fit_of(const std::vector<sensing::DeadWeight>& weights) {
+  try {
+    return sensing::fit_weights(weights);
+  } catch (const terms::UsageError&) {
+    throw terms::UsageError(
+        "the readings do not tell normal force, lateral force and position apart; check the lateral cell, "
+        "and "
+        "that the string pulls at the surface");
+  }
+}
+
+/// Asks for the steps, and keeps what was read.
+class Weighing {
+ public:
+  Weighing(BridgeReader& bridges, const std::function<bool(const WeightStep&)>& ready,
+           const std::function<bool(const std::string&)>& failed)
+      : bridges_(bridges), ready_(ready), failed_(failed) {}
+
+  void take(const WeightStep& step) {
+    const auto reading = read(step);
+    if (!reading) return;
+    if (step.tare)
+      tares_.push_back(*reading);
+    else if (tares_.empty())
+      throw terms::UsageError("the first step, without a weight, cannot be left out");
+    else
+      all_.push_back({step, *reading, tares_.back()});
+  }
+
+  /// Weighs again what does not agree with the other weights.
+  void repeat_outliers() {
+    while (true) {
+      enough();
+      const auto weights = fitted(all_).weights;
+      static_cast<void>(fit_of(weights));
+      const auto deviations = sensing::deviations(weights);
+      const auto worst = std::max_element(deviations.begin(), deviations.end());
+      if (!(*worst > kOutlier)) return;
+      const auto index = static_cast<std::size_t>(worst - deviations.begin());
+      auto step = all_[index].step;
+      const auto found = found_without(weights, index);
+      if (!step.remark.empty() || repeated_.size() == kMostRepeats)
+        throw terms::UsageError(
+            fmt::format("{} does not agree with the other weights: {}. Check the weights, their places, and "
+                        "that the string "
+                        "pulls at the height of the surface; then start again",
+                        step.name(), found));
+      step.remark =
+          fmt::format("{} does not agree with the other weights: {}. Weigh it again.", step.name(), found);
+      repeated_.push_back(step);
+      all_.erase(all_.begin() + static_cast<std::ptrdiff_t>(index));
+      take({true, 0, 0, 0, step.remark});
+      take(step);
+    }
+  }
+
+  const std::vector<Weighed>& all() const { return all_; }
+  const std::vector<BridgeReading>& tares() const { return tares_; }
+  const std::vector<WeightStep>& repeated() const { return repeated_; }
+
+ private:
+  void enough() const {
+    if (all_.size() < kFewest)
+      throw terms::UsageError(
+          fmt::format("at least {} weights are needed for a calibration of the forces", kFewest));
+  }
+
+  std::optional<BridgeReading> read(const WeightStep& step) {
+    while (ready_(step)) try {
+        const auto reading = bridges_.read(step);
+        rests(reading);
+        return reading;
+      } catch (const terms::UsageError&) {
+        throw;
+      } catch (const std::runtime_error& error) {
+        if (!failed_(error.what())) throw;
+      }
+    return std::nullopt;
+  }
+
+  void rests(const BridgeReading& reading) const {
+    if (tares_.empty()) return;
+    for (std::size_t cell = 0; cell < 3; ++cell) {
+      const double before = tares_.front().sd[cell];
+      if (reading.sd[cell] > kRestlessShare * before + kRipple * std::abs(reading.ratio[cell]))
+        throw std::runtime_error(
+            fmt::format("cell {} did not rest: it varied {:.0f} times as much as in the first step; let the "
+                        "weight come to rest",
+                        kCells[cell], reading.sd[cell] / before));
+    }
+  }
+
+  /// What the other weights say about one of them.
+  static std::string found_without(std::vector<sensing::DeadWeight> weights, std::size_t index) {
+    const auto readings = weights[index].readings;
+    weights.erase(weights.begin() + static_cast<std::ptrdiff_t>(index));
+    const auto force = sensing::fit_weights(weights).calibration.force(readings);
+    const auto tenths = [](double value) { return text::number(std::round(10 * value) / 10 + 0.0, 5); };
+    const auto grams = [&](double force_N) { return tenths(1e3 * force_N / kGravity_m_s2); };
+    return fmt::format("they say {} g at {} mm with a pull of {} g", grams(force.normal_N),
+                       tenths(force.moment_Nmm / force.normal_N), grams(force.lateral_N));
+  }
+
+  BridgeReader& bridges_;
+  const std::function<bool(const WeightStep&)>& ready_;
+  const std::function<bool(const std::string&)>& failed_;
+  std::vector<Weighed> all_;
+  std::vector<BridgeReading> tares_;
+  std::vector<WeightStep> repeated_;
+};
+
+/// Refuses weights that do not agree with each other, and a zero that was shaken or moved.
+void check(const ForceResult& made, const std::vector<BridgeReading>& tares) {
+  constexpr std::array<const char*, 3> loads{"normal force", "pull along the surface", "place"};
+  for (std::size_t k = 0; k < 3; ++k)
+    if (!(made.misfit[k] < kMostMisfit))
+      throw terms::UsageError(
+          fmt::format("the weights do not agree with each other: the residuals of the {} are {} times what "
+                      "careful weights leave; check the masses, the places and the string",
+                      loads[k], text::number(made.misfit[k], 2)));
+  double shaken_N = 0;
+  for (const auto& tare : tares)
+    for (std::size_t cell = 0; cell < 3; ++cell)
+      shaken_N = std::max(shaken_N, kRatedLoad_N * tare.sd[cell] / made.cells.rated_ratio[cell]);
+  if (shaken_N > kRestless_N)
+    throw terms::UsageError(fmt::format(
+        "the cells do not rest without a weight: a cell varies by {} mN; a calibration needs less than {} mN",
+        text::number(1e3 * shaken_N, 2), text::number(1e3 * kRestless_N, 2)));
+  if (made.zero_moved_mN > 1e3 * kMoved_N)
+    throw terms::UsageError(fmt::format(
+        "the zero of the cells moved by {} mN between two readings without a weight; something lay "
+        "on the surface, or a cell is damaged",
+        text::number(made.zero_moved_mN, 3)));
+}
+
+}  // namespace
+
+std::string WeightStep::name() const {
+  using text::number;
+  if (tare) return "the empty surface";
+  auto said = fmt::format("{} g at {} mm", number(mass_g), number(position_mm, 4));
+  if (pull_g != 0)
+    said += fmt::format(" with a pull of {} g towards the {} edge", number(std::abs(pull_g)),
+                        pull_g > 0 ? "narrow" : "wide");
+  return said;
+}
+
+std::string WeightStep::text() const {
+  using text::number;
+  if (tare) return "Take everything off the surface.";
+  if (pull_g == 0)
+    return fmt::format("Put {} g at {} mm from the wide edge.", number(mass_g), number(position_mm, 4));
+  return fmt::format(
+      "Put {} g at {} mm from the wide edge, and hang {} g on the string that pulls towards the {} edge.",
+      number(mass_g), number(position_mm, 4), number(std::abs(pull_g)), pull_g > 0 ? "narrow" : "wide");
+}
+
+std::vector<WeightStep> weight_steps(double length_mm) {
+  std::vector<WeightStep> steps;
+  for (const double share : {0.1, 0.3, 0.5, 0.7, 0.9}) {
+    steps.push_back({true, 0, 0, 0});
+    for (const double mass_g : {20, 50, 100, 200}) steps.push_back({false, mass_g, share * length_mm, 0});
+  }
+  for (const double share : {0.3, 0.7}) {
+    steps.push_back({true, 0, 0, 0});
+    for (const double sign : {1, -1})
+      for (const double pull_g : {20, 50, 100})
+        steps.push_back({false, 200, share * length_mm, sign * pull_g});
+  }
+  return steps;
+}
+
+ForceResult weigh(const rig::Rig& rig, BridgeReader& bridges,
+                  const std::function<bool(const WeightStep&)>& ready,
+                  const std::function<bool(const std::string&)>& failed) {
+  Weighing weighing(bridges, ready, failed);
+  for (const auto& step : weight_steps(1e3 * rig.surface.length_m)) weighing.take(step);
+  weighing.repeat_outliers();
+  const auto [rotation_rad, weights] = fitted(weighing.all());
+  const auto fit = fit_of(weights);
+  ForceResult made;
+  for (const auto& one : weighing.all()) made.steps.push_back(one.step);
+  made.repeated = weighing.repeated();
+  made.residuals = fit.residuals;
+  made.misfit = fit.misfit;
+  made.cells.rotation_rad = rotation_rad;
+  made.cells.matrix = fit.calibration.matrix();
+  made.cells.changes = fit.calibration.changes();
+  made.cells.carrier_Hz = sensing::carriers_Hz.front();
+  const auto& tares = weighing.tares();
+  made.cells.reference_amplitude = tares.front().reference;
+  made.cells.rated_ratio = rated_ratios(weights);
+  const double middle_Nmm = 0.5 * 0.5e3 * rig.surface.length_m;
+  made.sd = fit.calibration.sd(readings_under(made.cells.matrix, {0.5, 0.25, middle_Nmm}));
+  for (std::size_t k = 1; k < tares.size(); ++k) {
+    const auto moved = fit.calibration.force(rotated({{}, tares[k], tares[k - 1]}, rotation_rad));
+    made.zero_moved_mN =
+        std::max(made.zero_moved_mN, 1e3 * std::max(std::abs(moved.normal_N), std::abs(moved.lateral_N)));
+  }
+  check(made, tares);
+  return made;
+}
+
+std::string write_forces(const rig::Rig& rig, const rig::ForceCells& cells, const std::string& path) {
+  auto made = known_calibration(rig);
+  made.forces = cells;
+  const auto out = path.empty() ? calibration::file_for(rig.path, calibration::today()) : path;
+  system::write_file(out, calibration::to_toml(made));
+  return out;
+}
+
+}  // namespace turnpoint::maintenance

@@ -1,0 +1,174 @@
+#include <algorithm>
+#include <set>
+
+#include "station/protocol/expression.hpp"
+#include "station/protocol/reading.hpp"
+#include "station/protocol/sources.hpp"
+#include "station/protocol/visits.hpp"
+
+namespace turnpoint::protocol {
+
+using text::TableReader;
+using text::Value;
+
+namespace {
+
+constexpr int most_sessions = 100, most_days = 366, most_groups = 100;
+
+std::vector<std::string> levels_of_groups(const Protocol& protocol) {
+  std::vector<std::string> names;
+  for (const auto& factor : protocol.factors)
+    for (const auto& level : is_group(factor) ? factor.levels : std::vector<FactorValue>{})
+      if (const auto* name = std::get_if<std::string>(&level)) names.push_back(*name);
+  return names;
+}
+
+void read_session_numbers(TableReader& reader, Audience& audience, const Reading& reading) {
+  const auto* list = reader.take("sessions");
+  if (!list) return;
+  const auto& plan = reading.protocol.sessions;
+  if (!plan)
+    return reader.problem("sessions", "\"sessions\" is set, but the file has no [sessions]",
+                          "add [sessions] with the number of sessions: count = 2");
+  for (const double number : reader.numbers("sessions", {1, static_cast<double>(plan->count)})) {
+    const int whole = static_cast<int>(number);
+    const auto& before = audience.sessions;
+    if (whole != number || std::find(before.begin(), before.end(), whole) != before.end())
+      reader.problem("sessions", "\"sessions\" must have whole numbers, each only once",
+                     "such as [1, " + std::to_string(plan->count) + "]");
+    audience.sessions.push_back(whole);
+  }
+}
+
+/// The sessions and groups that have this part as words, for messages.
+std::string visit_words(const Protocol& protocol, const Visit& visit) {
+  const auto words = in_words(protocol, visit);
+  return words.empty() ? "the session" : words;
+}
+
+/// Each session of each group needs a block.
+void check_blocks(const Reading& reading) {
+  const auto& protocol = reading.protocol;
+  for (const auto& visit : different_visits(protocol)) {
+    const auto mine = [&](const auto& part) { return is_for(block_of(part).audience, protocol, visit); };
+    if (protocol.plan.empty() || std::any_of(protocol.plan.begin(), protocol.plan.end(), mine)) continue;
+    return reading.findings.add(
+        protocol.sessions ? protocol.sessions->place : block_of(protocol.plan.front()).place,
+        visit_words(protocol, visit) + " has no block",
+        "give at least one block or sequence to each session of each group");
+  }
+}
+
+/// With one level in each session, there must be a session for each level.
+void check_sequences(const Reading& reading) {
+  const auto& protocol = reading.protocol;
+  for (const auto& part : protocol.plan) {
+    const auto* sequence = std::get_if<Sequence>(&part);
+    const auto* factor = sequence ? find_factor(protocol.factors, sequence->over) : nullptr;
+    if (!factor) continue;
+    const auto place = reading.places.of("sequence." + sequence->name + ".over");
+    if (is_group(*factor))
+      reading.findings.add(place, "each participant has only one level of \"" + factor->name + "\"",
+                           "use a factor whose \"draw\" is not \"per-participant\"");
+    if (!sequence->one_per_session) continue;
+    const auto& listed = sequence->block.audience.sessions;
+    const auto sessions = listed.empty() ? session_count(protocol) : static_cast<int>(listed.size());
+    if (sessions != static_cast<int>(factor->levels.size()))
+      reading.findings.add(reading.places.of("sequence." + sequence->name + ".each_session"),
+                           "\"" + factor->name + "\" has " + std::to_string(factor->levels.size()) +
+                               " levels, but the sequence has " + std::to_string(sessions) + " sessions",
+                           "there must be one session for each level");
+  }
+}
+
+/// Nothing else may set a factor of which each participant has one level.
+void check_group_factors(const Reading& reading) {
+  const auto& protocol = reading.protocol;
+  for (const auto& factor : protocol.factors) {
+    if (!is_group(factor)) continue;
+    for (const auto& source : sources_of(protocol))
+      if (source.sets.count(factor.name) > 0 && source.spec)
+        return reading.findings.add(source.block->place,
+                                    "in block \"" + source.block->name + "\", " + source.what + " sets \"" +
+                                        factor.name + "\", of which each participant has only one level",
+                                    "let nothing else set a factor that is drawn per participant");
+    if (factor.name != "instruction") continue;
+    for (const auto& level : factor.levels)
+      if (const auto* name = std::get_if<std::string>(&level); !name || !protocol.instructions.count(*name))
+        return reading.findings.add(factor.place, "not every level of \"instruction\" has a table",
+                                    "add [instructions.NAME] for each level of the factor \"instruction\"");
+  }
+}
+
+/// A rule can only ask for what the same session has.
+void check_rules(const Reading& reading) {
+  const auto& protocol = reading.protocol;
+  const auto audience_of = [&](const std::string& name) -> const Audience* {
+    for (const auto& part : protocol.plan)
+      if (block_of(part).name == name) return &block_of(part).audience;
+    for (const auto& interlude : protocol.interludes)
+      if (interlude.name == name) return &interlude.audience;
+    return nullptr;
+  };
+  const auto check = [&](const Interlude& interlude, const AnswerCondition& rule) {
+    const auto* needed = audience_of(rule.about.substr(0, rule.about.find('.')));
+    for (const auto& visit : different_visits(protocol))
+      if (needed && is_for(interlude.audience, protocol, visit) && !is_for(*needed, protocol, visit))
+        return reading.findings.add(rule.place,
+                                    "\"" + rule.source + "\" is about something that " +
+                                        visit_words(protocol, visit) + " does not have",
+                                    "give both the same \"sessions\" and \"groups\"");
+  };
+  for (const auto& interlude : protocol.interludes) {
+    for (const auto& rule : interlude.pass) check(interlude, rule);
+    for (const auto& item : interlude.items)
+      for (const auto& rule : item.when) check(interlude, rule);
+  }
+}
+
+}  // namespace
+
+void read_sessions(TableReader& file, Reading& reading) {
+  if (group_count(reading.protocol) > most_groups)
+    reading.findings.add(reading.protocol.factors.front().place,
+                         std::to_string(group_count(reading.protocol)) + " groups", "at most 100");
+  const auto* table = file.maybe_table("sessions");
+  if (!table) return;
+  TableReader reader(*table, "sessions", reading.findings);
+  SessionPlan plan;
+  plan.place = reader.place();
+  plan.count = reader.integer("count", 2, most_sessions);
+  plan.min_days = reader.integer("min_days", 0, most_days, 0);
+  plan.incomplete = reader.word("incomplete", {"repeat", "count"}, "repeat") == "count" ? Unfinished::count
+                                                                                        : Unfinished::repeat;
+  reader.finish();
+  reading.protocol.sessions = plan;
+}
+
+void read_audience(TableReader& reader, Audience& audience, const Reading& reading) {
+  read_session_numbers(reader, audience, reading);
+  audience.groups = reader.maybe_strings("groups");
+  const auto known = levels_of_groups(reading.protocol);
+  std::set<std::string> seen;
+  for (const auto& name : audience.groups) {
+    const auto count = std::count(known.begin(), known.end(), name);
+    if (count == 0)
+      reader.problem("groups", "there is no group \"" + name + "\"",
+                     known.empty() ? "name levels of a factor with draw = \"per-participant\""
+                                   : suggestion(name, known));
+    else if (count > 1)
+      reader.problem("groups", "two factors have the level \"" + name + "\"",
+                     "give the groups different names");
+    else if (!seen.insert(name).second)
+      reader.problem("groups", "\"" + name + "\" appears twice", "list each group only once");
+  }
+}
+
+void check_visits(const Reading& reading) {
+  check_blocks(reading);
+  check_sequences(reading);
+  check_group_factors(reading);
+  check_rules(reading);
+}
+
+}  // namespace turnpoint::protocol

@@ -1,0 +1,38 @@
+#pragma once
+#include <string>
+#include <vector>
+
+#include "station/text/problem.hpp"
+
+namespace turnpoint::protocol {
+
+/// What becomes of a planned session that was begun but not completed, and is not resumed.
+enum class Unfinished {
+  repeat,  ///< the participant's next session is the same planned session, from its beginning
+  count    ///< it counts: the next session is the next planned one
+};
+
+/// The sessions of each participant, on one day or on several.
+struct SessionPlan {
+  int count = 1;
+  /// The least number of calendar days from one session to the next; 0: sessions may be on the same day.
+  int min_days = 0;
+  Unfinished incomplete = Unfinished::repeat;
+  text::Place place;
+};
+
+/// For whom a part of the plan is. An empty list means: for all.
+struct Audience {
+  std::vector<int> sessions;        ///< numbers of planned sessions, from 1
+  std::vector<std::string> groups;  ///< levels of the factors that are drawn per participant
+};
+
+/// Whose session it is. A number alone is the place of a participant with one session.
+struct Visit {
+  Visit(int place_in_design = 0, int number = 1) : place(place_in_design), session(number) {}
+  int place;    ///< in the counterbalancing, from 0
+  int session;  ///< number of the planned session, from 1
+  bool operator==(const Visit&) const = default;
+};
+
+}  // namespace turnpoint::protocol

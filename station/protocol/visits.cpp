@@ -1,0 +1,72 @@
+#include "station/protocol/visits.hpp"
+
+#include <algorithm>
+
+#include "station/protocol/conditions.hpp"
+
+namespace turnpoint::protocol {
+
+bool is_group(const Factor& factor) { return factor.draw == FactorDraw::per_participant; }
+
+int group_count(const Protocol& protocol) {
+  std::size_t count = 1;
+  for (const auto& factor : protocol.factors)
+    if (is_group(factor)) count *= std::max<std::size_t>(1, factor.levels.size());
+  return static_cast<int>(count);
+}
+
+Factors group_of(const Protocol& protocol, int place) {
+  Factors group;
+  auto rest = static_cast<std::size_t>(place);
+  for (const auto& factor : protocol.factors) {
+    if (!is_group(factor) || factor.levels.empty()) continue;
+    group[factor.name] = factor.levels[rest % factor.levels.size()];
+    rest /= factor.levels.size();
+  }
+  return group;
+}
+
+std::vector<std::string> group_names(const Protocol& protocol) {
+  std::vector<std::string> names;
+  for (int place = 0; place < group_count(protocol); ++place) {
+    std::string name;
+    const auto group = group_of(protocol, place);
+    for (const auto& factor : protocol.factors)
+      if (const auto found = group.find(factor.name); found != group.end())
+        name += (name.empty() ? "" : ", ") + level_in_words(factor.name, found->second);
+    if (!name.empty()) names.push_back(name);
+  }
+  return names;
+}
+
+int session_count(const Protocol& protocol) { return protocol.sessions ? protocol.sessions->count : 1; }
+
+bool is_for(const Audience& audience, const Protocol& protocol, const Visit& visit) {
+  const auto& [sessions, groups] = audience;
+  if (!sessions.empty() && std::find(sessions.begin(), sessions.end(), visit.session) == sessions.end())
+    return false;
+  if (groups.empty()) return true;
+  const auto group = group_of(protocol, visit.place);
+  return std::any_of(group.begin(), group.end(), [&groups = groups](const auto& level) {
+    const auto* name = std::get_if<std::string>(&level.second);
+    return name && std::find(groups.begin(), groups.end(), *name) != groups.end();
+  });
+}
+
+std::vector<Visit> different_visits(const Protocol& protocol) {
+  std::vector<Visit> visits;
+  for (int session = 1; session <= session_count(protocol); ++session)
+    for (int place = 0; place < group_count(protocol); ++place) visits.emplace_back(place, session);
+  return visits;
+}
+
+std::string in_words(const Protocol& protocol, const Visit& visit) {
+  std::string words = protocol.sessions ? "session " + std::to_string(visit.session) : "";
+  const auto groups = group_names(protocol);
+  if (!groups.empty())
+    words += (words.empty() ? "group " : ", group ") +
+             groups[static_cast<std::size_t>(visit.place) % groups.size()];
+  return words;
+}
+
+}  // namespace turnpoint::protocol

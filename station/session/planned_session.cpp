@@ -1,0 +1,144 @@
+#include "station/session/planned_session.hpp"
+
+#include <fmt/format.h>
+#include <time.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <charconv>
+#include <chrono>
+#include <filesystem>
+#include <set>
+#include <utility>
+
+#include "station/store/open.hpp"
+#include "station/store/people.hpp"
+#include "station/store/read.hpp"
+
+namespace turnpoint::session {
+
+namespace {
+
+using std::chrono::sys_days;
+
+/// The day at the beginning of an ISO 8601 date; empty if there is none.
+std::optional<sys_days> day_of(const std::string& date) {
+  int year = 0;
+  unsigned month = 0, day = 0;
+  const auto read = [&](std::size_t from, std::size_t length, auto& number) {
+    if (date.size() < from + length) return false;
+    const auto* end = date.data() + from + length;
+    const auto [stopped, error] = std::from_chars(date.data() + from, end, number);
+    return error == std::errc() && stopped == end;
+  };
+  if (!read(0, 4, year) || !read(5, 2, month) || !read(8, 2, day)) return std::nullopt;
+  const std::chrono::year_month_day found{std::chrono::year(year), std::chrono::month(month),
+                                          std::chrono::day(day)};
+  return found.ok() ? std::optional(sys_days(found)) : std::nullopt;
+}
+
+std::string text_of(const sys_days& day) {
+  const std::chrono::year_month_day date(day);
+  return fmt::format("{:04}-{:02}-{:02}", static_cast<int>(date.year()), static_cast<unsigned>(date.month()),
+                     static_cast<unsigned>(date.day()));
+}
+
+/// True if this session counts as done.
+bool counts(const store::SessionRecord& session, const Setup& setup) {
+  if (session.start.run_mode != setup.run_mode || !session.start.planned_session) return false;
+  if (session.status == records::SessionStatus::completed) return true;
+  return setup.protocol.sessions->incomplete == protocol::Unfinished::count && session.trials > 0 &&
+         session.status != records::SessionStatus::running;
+}
+
+/// Refuses a session that comes too early after the last one.
+void check_days(const Setup& setup, const std::vector<const store::SessionRecord*>& done,
+                const std::string& today, NextSession& next) {
+  const int min_days = setup.protocol.sessions->min_days;
+  const auto now = day_of(today);
+  if (min_days == 0 || !now || setup.run_mode == terms::RunMode::simulated) return;
+  const store::SessionRecord* last = nullptr;
+  for (const auto* session : done)
+    if (!last || day_of(session->start.started_local) >= day_of(last->start.started_local)) last = session;
+  const auto before = last ? day_of(last->start.started_local) : std::nullopt;
+  if (!before) return;
+  const auto first = *before + std::chrono::days(min_days);
+  if (*now >= first) return;
+  auto problem = fmt::format(
+      "participant {} had session {} on {}, and the protocol asks for at least {} day{} between sessions: "
+      "session {} is allowed from {}",
+      setup.participant, last->start.planned_session.value_or(0), text_of(*before), min_days,
+      min_days == 1 ? "" : "s", next.number.value_or(0), text_of(first));
+  if (!setup.early.empty())
+    next.overruled = std::move(problem);
+  else
+    next.problem = std::move(problem),
+    next.allowed = "come back on that day, or give the reason to begin earlier with --early; it is stored";
+}
+
+}  // namespace
+
+protocol::Visit visit_of(const store::SessionRecord& session) {
+  return {session.sequence_index, session.start.planned_session.value_or(1)};
+}
+
+NextSession next_session(const Setup& setup, const std::vector<store::SessionRecord>& earlier,
+                         const std::string& today) {
+  NextSession next;
+  if (!setup.protocol.sessions) {
+    if (setup.planned_session || !setup.early.empty())
+      next.problem = "the protocol " + setup.protocol.id + " plans no sessions",
+      next.allowed = "leave out --planned-session and --early, or add [sessions] to the protocol";
+    return next;
+  }
+  const int count = setup.protocol.sessions->count;
+  std::vector<const store::SessionRecord*> done;
+  std::set<int> numbers;
+  for (const auto& session : earlier)
+    if (counts(session, setup)) done.push_back(&session), numbers.insert(*session.start.planned_session);
+  int number = 1;
+  while (numbers.count(number) > 0) ++number;
+  next.number = setup.planned_session.value_or(number);
+  if (*next.number > count) {
+    next.problem = setup.planned_session ? fmt::format("--planned-session {}: the protocol plans {} sessions",
+                                                       *next.number, count)
+                                         : fmt::format("participant {} has completed all {} sessions of {}",
+                                                       setup.participant, count, setup.protocol.id);
+    next.allowed = fmt::format("--planned-session, from 1 to {}, repeats a session", count);
+    return next;
+  }
+  check_days(setup, done, today, next);
+  return next;
+}
+
+NextSession next_session(const Setup& setup) {
+  std::vector<store::SessionRecord> earlier;
+  if (setup.protocol.sessions && std::filesystem::exists(setup.database)) {
+    auto database = store::open_reader(setup.database);
+    const auto mine = store::People(database).same_as({station_id(), setup.participant});
+    store::SessionFilter filter;
+    filter.protocol_id = setup.protocol.id;
+    for (auto& session : store::list_sessions(database, filter))
+      if (std::find(mine.begin(), mine.end(),
+                    store::Bearer{session.start.station_id, session.start.participant}) != mine.end())
+        earlier.push_back(std::move(session));
+  }
+  return next_session(setup, earlier, local_time());
+}
+
+std::string station_id() {
+  char name[256] = {};
+  ::gethostname(name, sizeof name - 1);
+  return name;
+}
+
+std::string local_time() {
+  const auto now = ::time(nullptr);
+  tm parts{};
+  ::localtime_r(&now, &parts);
+  char text[40];
+  const auto n = ::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%S%z", &parts);
+  return {text, n};
+}
+
+}  // namespace turnpoint::session

@@ -1,0 +1,39 @@
+#pragma once
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "station/protocol/protocol.hpp"
+#include "station/session/session.hpp"
+#include "station/store/session_log.hpp"
+
+namespace turnpoint::session {
+
+/// Whose session a stored session is.
+protocol::Visit visit_of(const store::SessionRecord& session);
+
+/// Which of the planned sessions a participant does next, and why not now.
+struct NextSession {
+  std::optional<int> number;  ///< empty if the protocol plans no sessions
+  std::string problem;        ///< why the session cannot begin; "" if it can
+  std::string allowed;        ///< what is possible instead
+  /// why it would be refused if the operator had not given a reason
+  std::string overruled;
+};
+
+/// Decides which session comes next. `earlier` are the participant's sessions with this protocol, and `today`
+/// is a date such as 2026-11-24. Only sessions of the same run mode count. The least number of days is not
+/// asked of simulated sessions.
+NextSession next_session(const Setup& setup, const std::vector<store::SessionRecord>& earlier,
+                         const std::string& today);
+
+/// The same, for the sessions in the setup's database and the current date.
+NextSession next_session(const Setup& setup);
+
+/// The station's name, under which its sessions are stored.
+std::string station_id();
+
+/// The current time in the station's time zone, in the form that is stored (ISO 8601).
+std::string local_time();
+
+}  // namespace turnpoint::session

@@ -1,0 +1,202 @@
+import QtQuick
+import Turnpoint
+
+// The tables of one page of the form, with their fields.
+Rectangle {
+    id: root
+    required property Theme theme
+    required property Texts texts
+    required property DesignController design
+    /// Tables of which all settings are shown, also those that the file does not have.
+    property var opened: ({})
+    property var pointed: null
+    signal editWanted(group: int, field: var)
+    signal copyWanted(group: int)
+
+    radius: theme.radius
+    color: theme.raised
+    border { color: theme.line; width: 1 }
+
+    function toggle(name: string) {
+        const next = Object.assign({}, opened)
+        next[name] = !next[name]
+        opened = next
+    }
+    function find(parent: Item, name: string) : Item {
+        for (let i = 0; i < parent.children.length; ++i) {
+            const found = parent.children[i].objectName === name ? parent.children[i] : find(parent.children[i], name)
+            if (found) return found
+        }
+        return null
+    }
+    /// Scrolls to a field, or to the table if the field is -1.
+    function point(group: int, field: int) {
+        const groups = design.groups
+        if (field >= 0 && !groups[group].fields[field].present) opened = Object.assign({}, opened, { [groups[group].kind + groups[group].name]: true })
+        pointed = { group: group, field: field }
+        const item = find(sheet, field < 0 ? "group" + group : "field" + group + "-" + field)
+        if (item) scrollTo(item.mapToItem(sheet, 0, 0).y - theme.controlHeight)
+    }
+    /// Shows the tables again if they have changed. The page stays where it was, unless another page was chosen.
+    property string last
+    property int section: -1
+    /// True while a mark is dragged. New fields would take it from under the finger.
+    property bool dragging: false
+    onDraggingChanged: follow()
+    function follow() {
+        const next = JSON.stringify(design.groups)
+        if (next === last || dragging) return
+        const y = section === design.section ? scroll.contentY : 0
+        last = next
+        section = design.section
+        tables.model = design.groups
+        settling.y = y
+        settling.place = null
+        settling.restart()
+    }
+    /// New fields have their places a moment later. The last wish counts.
+    Timer {
+        id: settling
+        property real y
+        /// {group, field} to point at, instead of going to y
+        property var place: null
+        interval: 1
+        onTriggered: {
+            if (place) root.point(place.group, place.field)
+            else root.scrollTo(y)
+        }
+    }
+    function scrollTo(y: real) { scroll.contentY = Math.max(0, Math.min(y, sheet.height - scroll.height)) }
+    Component.onCompleted: follow()
+    Connections {
+        target: root.design
+        function onChanged() { root.follow() }
+        function onReached(group: int, field: int) {
+            settling.place = { group: group, field: field }
+            settling.restart()
+        }
+    }
+    Flickable {
+        id: scroll
+        objectName: "formScroll"
+        anchors { fill: parent; margins: 1.2 * root.theme.unit }
+        contentHeight: sheet.height
+        boundsBehavior: Flickable.StopAtBounds
+        clip: true
+        Column {
+            id: sheet
+            width: scroll.width
+            spacing: 1.6 * root.theme.unit
+            DesignTimeline {
+                objectName: "timeline"
+                visible: root.design.sections[root.design.section]?.name === "timing" && parts.length > 0
+                width: sheet.width
+                theme: root.theme
+                texts: root.texts
+                design: root.design
+            }
+            Repeater {
+                id: tables
+                Column {
+                    id: table
+                    required property var modelData
+                    required property int index
+                    readonly property string key: modelData.kind + modelData.name
+                    readonly property bool all: root.opened[key] ?? false
+                    readonly property int absent: modelData.fields.filter(field => !field.present && !field.required).length
+                    objectName: "group" + index
+                    width: sheet.width
+                    spacing: 0.6 * root.theme.unit
+                    Item {
+                        width: parent.width
+                        height: Math.max(title.implicitHeight, tools.height)
+                        PlainText {
+                            id: title
+                            anchors { left: parent.left; right: tools.left; verticalCenter: parent.verticalCenter }
+                            text: root.design.label([table.modelData.kind], root.texts.language) + (table.modelData.name === "" ? "" : "  “" + table.modelData.name + "”")
+                            color: root.theme.action
+                            font { pixelSize: root.theme.textTitle; weight: Font.Bold }
+                            elide: Text.ElideRight
+                        }
+                        Row {
+                            id: tools
+                            anchors { right: parent.right; verticalCenter: parent.verticalCenter }
+                            spacing: 0.5 * root.theme.unit
+                            ActionButton {
+                                objectName: "copy" + table.index
+                                visible: table.modelData.copied
+                                theme: root.theme
+                                primary: false
+                                quiet: true
+                                text: root.texts.text("design.copy")
+                                onActivated: root.copyWanted(table.index)
+                            }
+                            ActionButton {
+                                objectName: "remove" + table.index
+                                visible: table.modelData.removable
+                                theme: root.theme
+                                primary: false
+                                quiet: true
+                                text: root.texts.text("design.remove")
+                                onActivated: root.design.remove(table.index)
+                            }
+                        }
+                    }
+                    Repeater {
+                        model: table.modelData.remarks
+                        PlainText {
+                            required property var modelData
+                            width: table.width
+                            text: (modelData.kind === "problem" ? "✗ " : "! ") + modelData.what + (modelData.hint === "" ? "" : " → " + modelData.hint)
+                            color: modelData.kind === "problem" ? root.theme.wrong : root.theme.quiet
+                            font.pixelSize: root.theme.textSmall
+                            wrapMode: Text.Wrap
+                        }
+                    }
+                    Loader {
+                        width: parent.width
+                        active: table.modelData.boundary >= 0 || table.modelData.zone >= 0
+                        visible: active
+                        sourceComponent: DesignStrip {
+                            objectName: "strip" + table.index
+                            theme: root.theme
+                            texts: root.texts
+                            surface: root.design.surface
+                            boundaryMm: table.modelData.boundary < 0 ? -1 : Number(table.modelData.fields[table.modelData.boundary].value)
+                            zoneMm: table.modelData.zone < 0 ? -1 : Number(table.modelData.fields[table.modelData.zone].value)
+                            onDraggedChanged: root.dragging = dragged
+                            profile: root.design.profiles[table.modelData.name]
+                            onMoved: (which, mm) => root.design.change(table.index, which === "zone" ? table.modelData.zone : table.modelData.boundary, mm.toFixed(1))
+                        }
+                    }
+                    Repeater {
+                        model: table.modelData.fields.filter(field => field.present || field.required || table.all || field.remarks.length > 0)
+                        DesignField {
+                            required property var modelData
+                            objectName: "field" + table.index + "-" + modelData.index
+                            width: table.width
+                            theme: root.theme
+                            texts: root.texts
+                            label: root.design.label(modelData.path, root.texts.language)
+                            field: modelData
+                            pointedAt: root.pointed !== null && root.pointed.group === table.index && root.pointed.field === modelData.index
+                            onEditWanted: root.editWanted(table.index, modelData)
+                            onPicked: word => root.design.change(table.index, modelData.index, word)
+                        }
+                    }
+                    ActionButton {
+                        objectName: "more" + table.index
+                        visible: table.absent > 0
+                        theme: root.theme
+                        primary: false
+                        quiet: true
+                        glyph: table.all ? "minus" : "plus"
+                        text: root.texts.text(table.all ? "design.fewer" : "design.more")
+                        onActivated: root.toggle(table.key)
+                    }
+                }
+            }
+        }
+    }
+    ScrollCue { theme: root.theme; place: scroll }
+}

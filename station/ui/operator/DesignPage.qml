@@ -1,0 +1,246 @@
+import QtQuick
+import Turnpoint
+
+// The designer of studies: first what to measure, then a form with several pages. Beside the form stand what the check
+// says and the text of the file; on a small screen they are two more pages.
+Rectangle {
+    id: root
+    required property DesignController design
+    required property real pixelsPerMm
+    readonly property bool wide: width > 150 * pixelsPerMm && width > 55 * look.textBody && width > height
+    /// What stands beside the form: check or text. On a small screen, "" if the form is shown.
+    property string beside: ""
+    readonly property string other: beside === "" && wide ? "check" : beside
+    property string goal
+    property var edited: null
+    signal closed()
+
+    color: look.paper
+    LayoutMirroring.enabled: texts.mirrored
+    LayoutMirroring.childrenInherit: true
+
+    Theme {
+        id: look
+        width: root.width
+        height: root.height
+        pixelsPerMm: root.pixelsPerMm
+        dense: true
+    }
+    Texts { id: texts; language: OperatorScreen.language }
+
+    function trouble() : string {
+        return design.trouble === "taken" ? texts.text("design.taken").arg(naming.typed) : design.trouble === "name" ? texts.text("design.name_of_study") : design.trouble
+    }
+    function nameIt(wish: string, title: string, text: string) {
+        naming.wish = wish
+        naming.title = texts.text(title)
+        naming.refused = ""
+        naming.open(text)
+    }
+    function leave() {
+        if (design.unsaved) leaving.open()
+        else closed()
+    }
+
+    DesignGoals {
+        anchors.fill: parent
+        visible: root.design.stage === "goals"
+        theme: look
+        texts: texts
+        goals: visible ? root.design.goals(OperatorScreen.language) : []
+        onClosed: root.closed()
+        onChosen: word => {
+            root.goal = word
+            root.nameIt("make", "design.name_of_study", root.design.suggested)
+        }
+    }
+    Item {
+        id: page
+        anchors { fill: parent; margins: look.margin }
+        visible: root.design.stage === "form"
+        PlainText {
+            id: title
+            anchors { left: parent.left; top: parent.top; right: buttons.left; rightMargin: look.unit }
+            height: 0.6 * look.controlHeight
+            text: root.design.name
+            color: look.ink
+            font { pixelSize: look.textTitle; weight: Font.Bold }
+            horizontalAlignment: Text.AlignLeft   // on the right in a mirrored page, though the name is Latin
+            verticalAlignment: Text.AlignVCenter
+            elide: Text.ElideRight
+        }
+        PlainText {
+            objectName: "designState"
+            anchors { left: title.left; right: title.right; top: title.bottom }
+            height: 0.4 * look.controlHeight
+            text: root.design.trouble !== "" && !naming.visible && !entry.visible ? root.trouble() : root.design.unsaved ? texts.text("design.unsaved")
+                : root.design.savedAs !== "" ? texts.text("design.saved").arg(root.design.savedAs) : ""
+            color: root.design.trouble !== "" ? look.wrong : look.quiet
+            font.pixelSize: look.textSmall
+            elide: Text.ElideMiddle
+        }
+        Row {
+            id: buttons
+            anchors { right: parent.right; top: parent.top }
+            spacing: 0.5 * look.unit
+            ActionButton { objectName: "undo"; theme: look; primary: false; quiet: true; enabled: root.design.canUndo; text: texts.text("design.undo"); onActivated: root.design.undo() }
+            ActionButton { objectName: "redo"; theme: look; primary: false; quiet: true; enabled: root.design.canRedo; text: texts.text("design.redo"); onActivated: root.design.redo() }
+            ActionButton { objectName: "saveAs"; theme: look; primary: false; text: texts.text("design.save_as"); onActivated: root.nameIt("save", "design.name_of_study", root.design.name) }
+            ActionButton { objectName: "save"; theme: look; enabled: root.design.unsaved; text: texts.text("design.save"); onActivated: root.design.save("") }
+            ActionButton { objectName: "closeDesign"; theme: look; primary: false; text: texts.close; onActivated: root.leave() }
+        }
+        Flickable {
+            id: tabs
+            anchors { left: parent.left; top: buttons.bottom; bottom: parent.bottom; topMargin: look.unit }
+            width: Math.max(11 * look.unit, 9 * look.textBody)
+            contentHeight: list.height
+            boundsBehavior: Flickable.StopAtBounds
+            clip: true
+            Column {
+                id: list
+                width: tabs.width
+                spacing: 0.4 * look.unit
+                Repeater {
+                    model: root.design.sections
+                    ActionButton {
+                        required property var modelData
+                        required property int index
+                        objectName: "section-" + modelData.name
+                        width: list.width
+                        theme: look
+                        readonly property bool shown: root.design.section === index && (root.wide || root.beside === "")
+                        primary: shown
+                        quiet: !shown
+                        danger: modelData.problems > 0
+                        text: (modelData.problems > 0 ? "✗ " : "") + root.sectionName(modelData.name)
+                        onActivated: {
+                            if (!root.wide) root.beside = ""
+                            root.design.show(index)
+                        }
+                    }
+                }
+                Repeater {
+                    model: root.wide ? [] : ["check", "text"]
+                    ActionButton {
+                        required property string modelData
+                        objectName: "side-" + modelData
+                        width: list.width
+                        theme: look
+                        primary: root.other === modelData
+                        quiet: root.other !== modelData
+                        text: texts.text(modelData === "check" ? "design.check" : "design.text")
+                        onActivated: root.beside = modelData
+                    }
+                }
+            }
+        }
+        DesignForm {
+            id: form
+            anchors { left: tabs.right; top: tabs.top; bottom: parent.bottom; leftMargin: look.unit }
+            visible: root.wide || root.beside === ""
+            width: (root.wide ? 0.6 : 1) * (page.width - tabs.width - look.unit)
+            theme: look
+            texts: texts
+            design: root.design
+            onEditWanted: (group, field) => {
+                root.edited = { group: group, field: field }
+                entry.refused = ""
+                entry.open(field.value)
+            }
+            onCopyWanted: group => {
+                root.edited = { group: group }
+                root.nameIt("copy", "design.name_of_copy", "")
+            }
+        }
+        Item {
+            id: side
+            anchors { left: root.wide ? form.right : tabs.right; right: parent.right; top: tabs.top; bottom: parent.bottom; leftMargin: look.unit }
+            visible: root.other !== ""
+            Row {
+                id: sides
+                visible: root.wide
+                height: visible ? look.controlHeight : 0
+                spacing: 0.5 * look.unit
+                Repeater {
+                    model: root.wide ? ["check", "text"] : []
+                    ChoiceButton {
+                        required property string modelData
+                        objectName: "side-" + modelData
+                        theme: look
+                        chosen: root.other === modelData
+                        text: texts.text(modelData === "check" ? "design.check" : "design.text")
+                        onActivated: root.beside = modelData
+                    }
+                }
+            }
+            DesignChecks {
+                anchors { fill: parent; topMargin: sides.visible ? sides.height + 0.5 * look.unit : 0 }
+                visible: root.other === "check"
+                theme: look
+                texts: texts
+                design: root.design
+                onRemarkChosen: index => {
+                    if (!root.wide) root.beside = ""
+                    root.design.goTo(index)
+                }
+            }
+            Loader {
+                anchors { fill: parent; topMargin: sides.visible ? sides.height + 0.5 * look.unit : 0 }
+                active: root.other === "text"
+                sourceComponent: DesignText { theme: look; design: root.design }
+            }
+        }
+    }
+    EntryDialog {
+        id: entry
+        objectName: "fieldEntry"
+        anchors.fill: parent
+        theme: look
+        title: root.edited?.field ? root.design.label(root.edited.field.path, texts.language) : ""
+        help: root.edited?.field?.help ?? ""
+        suggestions: root.edited?.field?.allowed ?? []
+        pick: suggestions.length > 0 && !list && root.edited.field.kind !== "expression"
+        list: root.edited?.field?.list ?? false
+        sentences: root.edited?.field ? root.edited.field.kind !== "number" : false
+        emptyAllowed: root.edited?.field ? !root.edited.field.required : false
+        keepText: texts.text("design.use")
+        cancelText: texts.text("operator.cancel")
+        onAccepted: text => {
+            if (root.design.change(root.edited.group, root.edited.field.index, text)) return
+            entry.refused = root.trouble()
+            entry.open(text)
+        }
+    }
+    EntryDialog {
+        id: naming
+        property string wish
+        property string typed
+        objectName: "naming"
+        anchors.fill: parent
+        theme: look
+        keepText: texts.text("design.use")
+        cancelText: texts.text("operator.cancel")
+        onAccepted: text => {
+            typed = text
+            if (wish === "make" ? root.design.make(root.goal, text) : wish === "save" ? root.design.save(text) : root.design.copy(root.edited.group, text)) return
+            refused = root.trouble()
+            open(text)
+        }
+    }
+    ConfirmDialog {
+        id: leaving
+        objectName: "leaving"
+        anchors.fill: parent
+        theme: look
+        title: texts.text("design.leave_title")
+        text: texts.text("design.leave_text")
+        keepText: texts.text("design.leave_keep")
+        confirmText: texts.text("design.leave_do")
+        onConfirmed: root.closed()
+    }
+
+    function sectionName(name: string) : string {
+        return name === "study" ? texts.text("design.study") : name === "question" ? texts.text("design.question") : name === "scenes" ? texts.text("design.scenes")
+            : name === "levels" ? texts.text("design.levels") : name === "blocks" ? texts.text("design.blocks") : name === "timing" ? texts.text("design.timing") : texts.text("design.other")
+    }
+}

@@ -1,0 +1,305 @@
+#include "station/ui/operator/design_controller.hpp"
+
+#include <QFileInfo>
+#include <QRegularExpression>
+#include <algorithm>
+#include <exception>
+#include <sstream>
+#include <utility>
+
+#include "station/design/goals.hpp"
+#include "station/desk/scene_figures.hpp"
+#include "station/desk/trial_timeline.hpp"
+#include "station/setup/prepare.hpp"
+#include "station/system/read_file.hpp"
+#include "station/system/write_file.hpp"
+#include "station/text/toml.hpp"
+#include "station/ui/operator/design_lists.hpp"
+#include "station/ui/operator/figure_view.hpp"
+
+namespace turnpoint::ui {
+
+namespace {
+
+rig::Rig rig_without_messages(const std::string& path) {
+  std::ostringstream messages;
+  return setup::calibrated_rig(path, "", messages);
+}
+
+bool is_name(const QString& name) {
+  static const QRegularExpression allowed("^[A-Za-z0-9_-]{1,64}$");
+  return allowed.match(name).hasMatch();
+}
+
+/// The first problem of a value that was refused, without the name of a file.
+QString reason(const text::BadInput& bad) {
+  const auto& problem = bad.problems().front();
+  return QString::fromStdString(problem.what + (problem.allowed.empty() ? "" : "; " + problem.allowed));
+}
+
+}  // namespace
+
+DesignController::DesignController(DesignPlace place, SourceChecker checker, QObject* parent)
+    : QObject(parent),
+      place_(std::move(place)),
+      checker_(std::move(checker)),
+      check_job_(*this),
+      profile_job_(*this) {}
+
+std::string DesignController::path_for(const std::string& name) const {
+  return place_.folder + (place_.folder.empty() ? "" : "/") + name + ".toml";
+}
+
+bool DesignController::refuse(const QString& trouble) {
+  trouble_ = trouble;
+  Q_EMIT changed();
+  return false;
+}
+
+void DesignController::startNew() {
+  draft_.reset();
+  stage_ = "goals";
+  trouble_.clear();
+  Q_EMIT changed();
+}
+
+void DesignController::close() {
+  draft_.reset();
+  check_job_.abandon();
+  profile_job_.abandon();
+  stage_.clear();
+  trouble_.clear();
+  Q_EMIT changed();
+}
+
+bool DesignController::make(const QString& goal, const QString& name) try {
+  const auto* chosen = design::find_goal(goal.toStdString());
+  if (chosen == nullptr) return false;
+  if (!is_name(name)) return refuse("name");
+  const auto path = path_for(name.toStdString());
+  if (QFileInfo::exists(QString::fromStdString(path))) return refuse("taken");
+  const auto source = system::read_file(place_.templates + "/" + chosen->file + ".toml");
+  saved_.clear();
+  begin(design::study_from(*chosen, source, name.toStdString()), path);
+  return true;
+} catch (const std::exception& error) {
+  return refuse(error.what());
+}
+
+bool DesignController::open(const QString& path) try {
+  const auto text = text::read_text_file(path.toStdString());
+  saved_ = text;
+  begin(text, path.toStdString());
+  return true;
+} catch (const std::exception& error) {
+  return refuse(error.what());
+}
+
+void DesignController::begin(std::string text, const std::string& path) {
+  if (!schema_) schema_.emplace(system::read_file(place_.templates + "/protocol.schema.json"));
+  if (surface_.isEmpty()) {
+    const auto outline = desk::outline_of(rig_without_messages(place_.rig));
+    surface_ = {{"lengthMm", outline.length_mm},
+                {"wideHalfWidthMm", outline.wide_half_width_mm},
+                {"narrowHalfWidthMm", outline.narrow_half_width_mm},
+                {"wideEndLeft", outline.wide_end_left}};
+  }
+  path_ = path;
+  name_ = QFileInfo(QString::fromStdString(path)).completeBaseName().toStdString();
+  draft_.emplace(std::move(text), path);
+  stage_ = "form";
+  section_ = 0;
+  trouble_.clear(), saved_as_.clear(), profiles_.clear();
+  form_.clear();
+  read_again();
+}
+
+void DesignController::take_change(std::string text) {
+  draft_->change(std::move(text));
+  trouble_.clear(), saved_as_.clear();
+  read_again();
+}
+
+/// Shows at once what the reader says about the text, and starts the check, which takes longer.
+void DesignController::read_again() {
+  remarks_.clear();
+  words_ = {};
+  checking_ = false;
+  timeline_.clear();
+  try {
+    timeline_ = to_list(desk::trial_timeline(protocol::parse(draft_->text(), path_)));
+    checking_ = true;
+  } catch (const text::BadInput& bad) {
+    for (const auto& problem : bad.problems()) remarks_.push_back({Kind::problem, problem});
+  }
+  make_form();
+  Q_EMIT changed();
+  if (!checking_) return check_job_.abandon();
+  start_check();
+  start_profiles();
+}
+
+void DesignController::make_form() {
+  // While the text is not valid TOML, the forms keep their last state, but nothing can be changed in them.
+  if (draft_->document() == nullptr) {
+    for (auto& section : form_)
+      for (auto& group : section.groups) {
+        group.remarks.clear();
+        for (auto& field : group.fields) field.remarks.clear();
+      }
+    return;
+  }
+  std::vector<text::Problem> problems;
+  for (const auto& remark : remarks_) problems.push_back(remark.problem);
+  form_ = design::form_of(*draft_->document(), *schema_, problems);
+}
+
+void DesignController::start_check() {
+  check_job_.start([this, source = draft_->text(), path = path_,
+                    rig = place_.rig](const std::stop_token& stop) -> std::function<void()> {
+    try {
+      return [this, check = checker_(source, path, rig, stop)] { take(check); };
+    } catch (const protocol::Abandoned&) {
+      return {};
+    } catch (const std::exception& error) {
+      simulation::Check failed;
+      failed.problems.push_back({{path, 0, 0}, error.what(), ""});
+      return [this, failed] { take(failed); };
+    }
+  });
+}
+
+void DesignController::start_profiles() {
+  profile_job_.start([this, source = draft_->text(), path = path_,
+                      rig = place_.rig](const std::stop_token& stop) -> std::function<void()> {
+    QVariantMap profiles;
+    try {
+      desk::Preview preview(protocol::parse(source, path), rig_without_messages(rig));
+      std::vector<std::string> assumed;
+      const auto factors = desk::factors_for(preview.protocol(), {}, assumed);
+      for (const auto& scene : preview.scenes()) {
+        if (stop.stop_requested()) return {};
+        const auto look = preview.look(scene, factors);
+        if (look.problem.empty())
+          profiles[QString::fromStdString(scene)] =
+              to_variant(desk::drawing_of(desk::profile_figure({look})));
+      }
+    } catch (const std::exception&) {
+      // The check says what is wrong; without a plan there is no profile to show.
+    }
+    return [this, profiles] {
+      profiles_ = profiles;
+      Q_EMIT profilesChanged();
+    };
+  });
+}
+
+void DesignController::take(const simulation::Check& check) {
+  checking_ = false;
+  words_ = desk::words_of(check);
+  remarks_.clear();
+  for (const auto& problem : check.problems) remarks_.push_back({Kind::problem, problem});
+  for (const auto& problem : check.warnings) remarks_.push_back({Kind::warning, problem});
+  for (const auto& problem : check.notes) remarks_.push_back({Kind::note, problem});
+  make_form();
+  Q_EMIT changed();
+}
+
+const design::Group* DesignController::group(int index) const {
+  if (!draft_ || draft_->document() == nullptr || section_ >= static_cast<int>(form_.size())) return nullptr;
+  const auto& groups = form_[static_cast<std::size_t>(section_)].groups;
+  return index >= 0 && index < static_cast<int>(groups.size()) ? &groups[static_cast<std::size_t>(index)]
+                                                               : nullptr;
+}
+
+void DesignController::show(int section) {
+  if (section < 0 || section >= static_cast<int>(form_.size()) || section == section_) return;
+  section_ = section;
+  Q_EMIT changed();
+}
+
+void DesignController::goTo(int remark) {
+  const auto has = [remark](const std::vector<std::size_t>& remarks) {
+    return std::find(remarks.begin(), remarks.end(), static_cast<std::size_t>(remark)) != remarks.end();
+  };
+  for (int s = 0; s < static_cast<int>(form_.size()); ++s) {
+    const auto& groups = form_[static_cast<std::size_t>(s)].groups;
+    for (int g = 0; g < static_cast<int>(groups.size()); ++g) {
+      const auto& group = groups[static_cast<std::size_t>(g)];
+      const auto field = std::find_if(group.fields.begin(), group.fields.end(),
+                                      [&](const design::Field& f) { return has(f.remarks); });
+      if (field == group.fields.end() && !has(group.remarks)) continue;
+      show(s);
+      return Q_EMIT reached(
+          g, field == group.fields.end() ? -1 : static_cast<int>(field - group.fields.begin()));
+    }
+  }
+}
+
+bool DesignController::change(int index, int field, const QString& typed) try {
+  const auto* in = group(index);
+  if (in == nullptr || field < 0 || field >= static_cast<int>(in->fields.size())) return false;
+  take_change(
+      design::changed(*draft_->document(), in->fields[static_cast<std::size_t>(field)], typed.toStdString()));
+  return true;
+} catch (const text::BadInput& bad) {
+  return refuse(reason(bad));
+}
+
+bool DesignController::copy(int index, const QString& name) try {
+  const auto* from = group(index);
+  if (from == nullptr) return false;
+  if (!is_name(name)) return refuse("name");
+  take_change(draft_->document()->with_copy(from->path, name.toStdString()));
+  return true;
+} catch (const text::BadInput& bad) {
+  return refuse(reason(bad));
+}
+
+void DesignController::remove(int index) {
+  if (const auto* gone = group(index); gone != nullptr) take_change(draft_->document()->without(gone->path));
+}
+
+void DesignController::undo() {
+  if (!can_undo()) return;
+  draft_->undo();
+  read_again();
+}
+
+void DesignController::redo() {
+  if (!can_redo()) return;
+  draft_->redo();
+  read_again();
+}
+
+void DesignController::setText(const QString& text) {
+  if (draft_) take_change(text.toStdString());
+}
+
+bool DesignController::save(const QString& name) try {
+  if (!draft_) return false;
+  auto path = path_;
+  if (!name.isEmpty() && name.toStdString() != name_) {
+    if (!is_name(name)) return refuse("name");
+    path = path_for(name.toStdString());
+    if (QFileInfo::exists(QString::fromStdString(path))) return refuse("taken");
+    if (draft_->document() == nullptr) return refuse(QString::fromStdString(draft_->problems().front().what));
+    take_change(draft_->document()->with({"protocol", "id"}, design::toml_string(name.toStdString())));
+  }
+  if (!place_.folder.empty()) system::make_folder(place_.folder);
+  system::write_file(path, draft_->text());
+  path_ = path;
+  name_ = QFileInfo(QString::fromStdString(path)).completeBaseName().toStdString();
+  saved_ = draft_->text();
+  saved_as_ = QString::fromStdString(path);
+  trouble_.clear();
+  Q_EMIT changed();
+  Q_EMIT saved();
+  return true;
+} catch (const std::exception& error) {
+  return refuse(error.what());
+}
+
+}  // namespace turnpoint::ui
+
+#include "moc_design_controller.cpp"

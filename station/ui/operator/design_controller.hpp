@@ -1,0 +1,157 @@
+#pragma once
+#include <QObject>
+#include <QQmlEngine>
+#include <QStringList>
+#include <QVariantList>
+#include <QVariantMap>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "station/design/draft.hpp"
+#include "station/design/form.hpp"
+#include "station/desk/choices.hpp"
+#include "station/desk/preview.hpp"
+#include "station/ui/operator/check_protocol.hpp"
+#include "station/ui/platform/newest_job.hpp"
+
+namespace turnpoint::ui {
+
+/// What the designer of studies needs to know of the station.
+struct DesignPlace {
+  std::string folder;     ///< where new studies are saved
+  std::string rig;        ///< the rig on which a study is checked
+  std::string templates;  ///< folder with the shipped protocols and their schema
+};
+
+/// A protocol file that somebody makes or changes in forms. Each change is made in the text of the file,
+/// which is then read and checked again; the forms, the text and the remarks always show the same state.
+/// Checks run on a separate thread. GUI thread only.
+class DesignController : public QObject {
+  Q_OBJECT
+  QML_ELEMENT
+  QML_UNCREATABLE("made by the program")
+  /// goals (what to measure?), form, or "" if there is nothing to do
+  Q_PROPERTY(QString stage READ stage NOTIFY changed)
+  Q_PROPERTY(QString name READ name NOTIFY changed)
+  /// a name for a new study, from the command line
+  Q_PROPERTY(QString suggested READ suggested NOTIFY changed)
+  /// pages of the form as {name, problems}
+  Q_PROPERTY(QVariantList sections READ sections NOTIFY changed)
+  Q_PROPERTY(int section READ section NOTIFY changed)
+  /// tables of the chosen page, with their fields; see group_of() in design_lists.cpp
+  Q_PROPERTY(QVariantList groups READ groups NOTIFY changed)
+  /// what the check says as {kind: problem | warning | note, line, what, hint}
+  Q_PROPERTY(QVariantList remarks READ remarks NOTIFY changed)
+  Q_PROPERTY(QVariantList facts READ facts NOTIFY changed)
+  Q_PROPERTY(QVariantList cues READ cues NOTIFY changed)
+  /// checking, good, warned or bad
+  Q_PROPERTY(QString verdict READ verdict NOTIFY changed)
+  Q_PROPERTY(QString text READ text NOTIFY changed)
+  Q_PROPERTY(bool canUndo READ can_undo NOTIFY changed)
+  Q_PROPERTY(bool canRedo READ can_redo NOTIFY changed)
+  Q_PROPERTY(bool unsaved READ unsaved NOTIFY changed)
+  /// why the last request was not carried out: taken, name, or what a file or a value did not allow; "" if it
+  /// was
+  Q_PROPERTY(QString trouble READ trouble NOTIFY changed)
+  Q_PROPERTY(QString savedAs READ saved_as NOTIFY changed)
+  /// outline of the rig's surface: {lengthMm, wideHalfWidthMm, narrowHalfWidthMm, wideEndLeft}
+  Q_PROPERTY(QVariantMap surface READ surface NOTIFY changed)
+  /// parts of a typical trial as {kind: pause | interval | gap | answer, from, to} in seconds; empty while
+  /// the study cannot be read
+  Q_PROPERTY(QVariantList timeline READ timeline NOTIFY changed)
+  /// profile of displacement and friction of each scene, by name
+  Q_PROPERTY(QVariantMap profiles READ profiles NOTIFY profilesChanged)
+
+ public:
+  explicit DesignController(DesignPlace place, SourceChecker checker = check_source,
+                            QObject* parent = nullptr);
+
+  QString stage() const { return stage_; }
+  QString name() const { return QString::fromStdString(name_); }
+  QVariantList sections() const;
+  QString suggested() const { return suggested_; }
+  void suggest(const QString& name) { suggested_ = name; }
+  int section() const { return section_; }
+  QVariantList groups() const;
+  QVariantList remarks() const;
+  QVariantList facts() const;
+  QVariantList cues() const;
+  QString verdict() const;
+  QString text() const;
+  bool can_undo() const { return draft_ && draft_->can_undo(); }
+  bool can_redo() const { return draft_ && draft_->can_redo(); }
+  bool unsaved() const { return draft_ && draft_->text() != saved_; }
+  QString trouble() const { return trouble_; }
+  QString saved_as() const { return saved_as_; }
+  QVariantMap surface() const { return surface_; }
+  QVariantList timeline() const { return timeline_; }
+  QVariantMap profiles() const { return profiles_; }
+
+  /// Asks what the new study is to measure.
+  Q_INVOKABLE void startNew();
+  /// Goals in a language of the station, as {word, says}.
+  Q_INVOKABLE static QVariantList goals(const QString& language);
+  /// Makes a study for a goal. Returns false, with `trouble`, if it cannot have this name.
+  Q_INVOKABLE bool make(const QString& goal, const QString& name);
+  Q_INVOKABLE bool open(const QString& path);
+  /// Forgets the study.
+  Q_INVOKABLE void close();
+
+  Q_INVOKABLE void show(int section);
+  /// Shows the page with the field that a remark is about, and then emits reached().
+  Q_INVOKABLE void goTo(int remark);
+  /// Gives a field of the chosen page a value, as a person types it. An empty text removes the key.
+  Q_INVOKABLE bool change(int group, int field, const QString& typed);
+  Q_INVOKABLE bool copy(int group, const QString& name);
+  Q_INVOKABLE void remove(int group);
+  Q_INVOKABLE void undo();
+  Q_INVOKABLE void redo();
+  Q_INVOKABLE void setText(const QString& text);
+  /// Saves the study under its name, or under another name as a study of its own.
+  Q_INVOKABLE bool save(const QString& name);
+
+  /// The text for a key of the file, such as "Zone · from (mm)".
+  Q_INVOKABLE static QString label(const QStringList& path, const QString& language);
+
+ Q_SIGNALS:
+  void changed();
+  void profilesChanged();
+  void reached(int group, int field);
+  void saved();
+
+ private:
+  using Kind = desk::CheckWords::Remark::Kind;
+  struct Remark {
+    Kind kind = Kind::problem;
+    text::Problem problem;
+  };
+  void begin(std::string text, const std::string& path);
+  void take_change(std::string text);
+  void read_again();
+  void start_check();
+  void start_profiles();
+  void take(const simulation::Check& check);
+  void make_form();
+  bool refuse(const QString& trouble);
+  std::string path_for(const std::string& name) const;
+  const design::Group* group(int index) const;
+
+  DesignPlace place_;
+  SourceChecker checker_;
+  std::optional<design::Schema> schema_;
+  std::optional<design::Draft> draft_;
+  std::string name_, path_, saved_;
+  std::vector<design::Section> form_;
+  std::vector<Remark> remarks_;
+  desk::CheckWords words_;
+  QString stage_, trouble_, saved_as_, suggested_;
+  QVariantMap surface_, profiles_;
+  QVariantList timeline_;
+  int section_ = 0;
+  bool checking_ = false;
+  // The last members, so that their threads end before the objects that they use are destroyed.
+  NewestJob check_job_, profile_job_;
+};
+
+}  // namespace turnpoint::ui

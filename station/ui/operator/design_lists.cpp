@@ -1,0 +1,113 @@
+#include "station/ui/operator/design_lists.hpp"
+
+#include <cstddef>
+#include <string>
+
+#include "station/ui/operator/facts.hpp"
+
+namespace turnpoint::ui {
+
+namespace {
+
+using RuleKind = design::Rule::Kind;
+
+QString kind_name(RuleKind kind) {
+  switch (kind) {
+    case RuleKind::number:
+    case RuleKind::integer:
+    case RuleKind::numbers:
+      return "number";
+    case RuleKind::boolean:
+      return "boolean";
+    case RuleKind::word:
+      return "word";
+    case RuleKind::expression:
+      return "expression";
+    case RuleKind::names:
+      return "names";
+    default:
+      return "text";
+  }
+}
+
+QVariantList chosen(const std::vector<std::size_t>& indices, const QVariantList& remarks) {
+  QVariantList list;
+  for (const auto index : indices) list += remarks.value(static_cast<qsizetype>(index));
+  return list;
+}
+
+/// The limits in words, after the help of the schema.
+QString help_of(const design::Field& field) {
+  auto help = QString::fromStdString(field.help);
+  const auto add = [&help](const QString& more) { help += (help.isEmpty() ? "" : "   ·   ") + more; };
+  if (field.low && field.high)
+    add(QString("%1 … %2").arg(*field.low).arg(*field.high));
+  else if (field.low)
+    add(QString("≥ %1").arg(*field.low));
+  else if (field.high)
+    add(QString("≤ %1").arg(*field.high));
+  return help;
+}
+
+QVariantMap field_of(const design::Group& group, int index, const QVariantList& remarks) {
+  const auto& field = group.fields[static_cast<std::size_t>(index)];
+  QStringList path;
+  for (auto i = group.path.size(); i < field.path.size(); ++i) path += QString::fromStdString(field.path[i]);
+  const bool boolean = field.kind == RuleKind::boolean;
+  return {{"index", index},
+          {"path", path},
+          {"kind", kind_name(field.kind)},
+          {"value", QString::fromStdString(field.value)},
+          {"allowed", boolean ? QStringList{"true", "false"} : to_list(field.allowed)},
+          {"list", field.kind == RuleKind::names},
+          {"present", field.present},
+          {"required", field.required},
+          {"help", help_of(field)},
+          {"remarks", chosen(field.remarks, remarks)}};
+}
+
+}  // namespace
+
+QVariantMap to_map(desk::CheckWords::Remark::Kind kind, const text::Problem& problem) {
+  using Kind = desk::CheckWords::Remark::Kind;
+  return {{"kind", kind == Kind::problem   ? "problem"
+                   : kind == Kind::warning ? "warning"
+                                           : "note"},
+          {"line", problem.place.line},
+          {"what", QString::fromStdString(problem.what)},
+          {"hint", QString::fromStdString(problem.allowed)}};
+}
+
+QVariantList to_list(const std::vector<desk::TrialPart>& parts) {
+  static constexpr const char* kinds[] = {"pause", "interval", "gap", "answer"};
+  QVariantList list;
+  for (const auto& part : parts)
+    list += QVariantMap{
+        {"kind", kinds[static_cast<std::size_t>(part.kind)]}, {"from", part.from_s}, {"to", part.to_s}};
+  return list;
+}
+
+QVariantMap group_of(const design::Group& group, const QVariantList& remarks) {
+  QVariantList fields;
+  int boundary = -1, zone = -1;
+  for (int i = 0; i < static_cast<int>(group.fields.size()); ++i) {
+    const auto& field = group.fields[static_cast<std::size_t>(i)];
+    fields += field_of(group, i, remarks);
+    bool number = false;
+    QString::fromStdString(field.value).toDouble(&number);
+    if (group.path.front() != "scene" || !field.present || !number) continue;
+    if (field.path.size() == 3 && field.path.back() == "boundary_mm") boundary = i;
+    if (field.path.size() == 4 && field.path.back() == "from_mm") zone = i;
+  }
+  return {{"kind", QString::fromStdString(group.path.front())},
+          {"name", QString::fromStdString(group.name)},
+          {"present", group.present},
+          {"copied", group.copied},
+          {"removable", group.removable},
+          {"remarks", chosen(group.remarks, remarks)},
+          {"fields", fields},
+          {"boundary", boundary},
+          {"zone", zone}};
+}
+
+}  // namespace turnpoint::ui

@@ -1,0 +1,90 @@
+// What the designer's controller shows: its state in a form for QML.
+#include <algorithm>
+#include <vector>
+
+#include "station/design/goals.hpp"
+#include "station/texts/texts.hpp"
+#include "station/ui/operator/design_controller.hpp"
+#include "station/ui/operator/design_lists.hpp"
+#include "station/ui/operator/facts.hpp"
+
+namespace turnpoint::ui {
+
+QVariantList DesignController::goals(const QString& language) {
+  QVariantList list;
+  for (const auto& goal : design::goals())
+    list += QVariantMap{{"word", goal.word},
+                        {"says", QString::fromStdString(design::describe(goal, language.toStdString()))}};
+  return list;
+}
+
+QString DesignController::label(const QStringList& path, const QString& language) {
+  QString all;
+  const auto& known = texts::catalogue("en");
+  for (const auto& name : path) {
+    const auto key = "design.keys." + name.toStdString();
+    bool number = false;
+    const int index = name.toInt(&number);
+    const auto said = known.count(key) > 0 ? QString::fromStdString(texts::text(key, language.toStdString()))
+                      : number             ? QString::number(index + 1)
+                                           : name;
+    all += (all.isEmpty() ? "" : number ? " " : " · ") + said;
+  }
+  return all;
+}
+
+QVariantList DesignController::sections() const {
+  QVariantList list;
+  for (const auto& section : form_) {
+    std::vector<std::size_t> all;
+    for (const auto& group : section.groups) {
+      all.insert(all.end(), group.remarks.begin(), group.remarks.end());
+      for (const auto& field : group.fields)
+        all.insert(all.end(), field.remarks.begin(), field.remarks.end());
+    }
+    const auto problems = std::count_if(all.begin(), all.end(),
+                                        [this](std::size_t i) { return remarks_[i].kind == Kind::problem; });
+    list +=
+        QVariantMap{{"name", QString::fromStdString(section.name)}, {"problems", static_cast<int>(problems)}};
+  }
+  return list;
+}
+
+QVariantList DesignController::groups() const {
+  QVariantList list;
+  if (section_ >= static_cast<int>(form_.size())) return list;
+  const auto all = remarks();
+  for (const auto& group : form_[static_cast<std::size_t>(section_)].groups) list += group_of(group, all);
+  return list;
+}
+
+QVariantList DesignController::remarks() const {
+  QVariantList list;
+  for (const auto& remark : remarks_) list += to_map(remark.kind, remark.problem);
+  return list;
+}
+
+QVariantList DesignController::facts() const { return to_list(words_.facts); }
+
+QVariantList DesignController::cues() const {
+  QVariantList list;
+  for (const auto& cue : words_.cues)
+    if (cue.leaks)
+      list += QVariantMap{{"name", QString::fromStdString(cue.name)},
+                          {"says", QString::fromStdString(cue.says)},
+                          {"advice", QString::fromStdString(cue.advice)}};
+  return list;
+}
+
+QString DesignController::verdict() const {
+  if (checking_) return "checking";
+  const auto has = [this](Kind kind) {
+    return std::any_of(remarks_.begin(), remarks_.end(),
+                       [kind](const auto& remark) { return remark.kind == kind; });
+  };
+  return has(Kind::problem) ? "bad" : has(Kind::warning) ? "warned" : "good";
+}
+
+QString DesignController::text() const { return draft_ ? QString::fromStdString(draft_->text()) : QString(); }
+
+}  // namespace turnpoint::ui

@@ -1,0 +1,43 @@
+#pragma once
+#include <condition_variable>
+#include <functional>
+#include <mutex>
+#include <optional>
+#include <stop_token>
+#include <string>
+
+#include "station/maintenance/force_weights.hpp"
+
+namespace turnpoint::ui {
+
+/// The conversation between a page and a calibration with dead weights, which runs on another thread.
+class Weighing {
+ public:
+  enum class Answer { read, leave_out, stop };
+
+  /// What the page shows while it waits for an answer.
+  struct Shown {
+    std::string ask;      ///< what the operator is asked to do; "" while the cells are read
+    std::string reading;  ///< what the cells read now
+    bool failed = false;  ///< a reading failed, so the step cannot be left out
+  };
+  using Show = std::function<void(Shown)>;
+
+  /// Answers what is asked now. For any thread.
+  void answer(Answer answer);
+
+  /// Asks for all weights. Returns nothing if the operator or `stop` ended it. Throws what
+  /// maintenance::weigh() throws.
+  std::optional<maintenance::ForceResult> run(const rig::Rig& rig, const Show& show,
+                                              const std::stop_token& stop);
+
+ private:
+  Answer await(maintenance::BridgeReader& bridges, Shown shown, const Show& show,
+               const std::stop_token& stop);
+
+  std::mutex mutex_;
+  std::condition_variable_any changed_;
+  std::optional<Answer> answer_;
+};
+
+}  // namespace turnpoint::ui

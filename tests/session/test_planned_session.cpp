@@ -1,0 +1,198 @@
+// Sessions on several days: which one comes next, when it is refused, and what is stored.
+#include <time.h>
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "station/session/planned_session.hpp"
+#include "station/setup/prepare.hpp"
+#include "station/store/read.hpp"
+#include "station/terms/usage_error.hpp"
+#include "station/text/problem.hpp"
+#include "tests/session/live_room.hpp"
+#include "tests/support/catch.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+using namespace turnpoint;
+using records::SessionStatus;
+
+namespace {
+
+const std::string kRoot = TURNPOINT_SOURCE_DIR;
+
+setup::RunRequest training_for(const std::string& participant, const std::string& database) {
+  setup::RunRequest request;
+  request.protocol = kRoot + "/protocols/friction-training.toml";
+  request.rig = kRoot + "/tests/support/thin_plate.toml";
+  request.participant = participant;
+  request.database = database;
+  request.observer = "sim";
+  request.seed = 7;
+  return request;
+}
+
+session::Summary run(const setup::RunRequest& request) {
+  session::Inputs inputs;
+  return session::run(setup::prepare(request), nullptr, inputs);
+}
+
+/// A setup for a pilot session of the training, without a database.
+session::Setup training(int min_days, protocol::Unfinished incomplete = protocol::Unfinished::repeat) {
+  session::Setup setup;
+  setup.protocol = protocol::load(kRoot + "/protocols/friction-training.toml");
+  setup.protocol.sessions->min_days = min_days;
+  setup.protocol.sessions->incomplete = incomplete;
+  setup.participant = "P01";
+  return setup;
+}
+
+store::SessionRecord on_day(const std::string& date, int number,
+                            SessionStatus status = SessionStatus::completed,
+                            terms::RunMode mode = terms::RunMode::pilot) {
+  store::SessionRecord session;
+  session.start.started_local = date + "T23:59:59+0100";
+  session.start.planned_session = number;
+  session.start.run_mode = mode;
+  session.status = status;
+  session.trials = 10;
+  return session;
+}
+
+std::vector<std::string> blocks_of(const std::string& database, const std::string& id) {
+  std::vector<std::string> names;
+  for (const auto& block : store::read_session(database, id).blocks) names.push_back(block.start.name);
+  return names;
+}
+
+}  // namespace
+
+TEST_CASE("the next session is the first one that was not completed", "[session]") {
+  const auto setup = training(0);
+  const auto next = [&](const std::vector<store::SessionRecord>& earlier) {
+    return next_session(setup, earlier, "2026-11-24").number;
+  };
+  CHECK(next({}) == 1);
+  CHECK(next({on_day("2026-11-01", 1)}) == 2);
+  CHECK(next({on_day("2026-11-01", 1, SessionStatus::interrupted)}) == 1);
+  CHECK(next({on_day("2026-11-01", 1), on_day("2026-11-02", 2, SessionStatus::stopped)}) == 2);
+  CHECK(next({on_day("2026-11-01", 2)}) == 1);  // the first one was left out
+  CHECK(next({on_day("2026-11-01", 1, SessionStatus::completed, terms::RunMode::simulated)}) == 1);
+  const auto over = next_session(
+      setup, {on_day("2026-11-01", 1), on_day("2026-11-02", 2), on_day("2026-11-03", 3)}, "2026-11-24");
+  CHECK(over.problem == "participant P01 has completed all 3 sessions of friction-training");
+
+  const auto counted = training(0, protocol::Unfinished::count);
+  CHECK(next_session(counted, {on_day("2026-11-01", 1, SessionStatus::interrupted)}, "2026-11-24").number ==
+        2);
+  auto empty = on_day("2026-11-01", 1, SessionStatus::abandoned);
+  empty.trials = 0;
+  CHECK(next_session(counted, {empty}, "2026-11-24").number == 1);
+}
+
+TEST_CASE("a session that comes too early is refused with the date from which it is allowed", "[session]") {
+  auto setup = training(2);
+  const std::vector<store::SessionRecord> earlier{on_day("2024-02-27", 1)};  // a leap year
+  for (const auto* day : {"2024-02-27", "2024-02-28"}) {
+    const auto refused = next_session(setup, earlier, day);
+    CHECK(refused.number == 2);
+    CHECK(refused.problem ==
+          "participant P01 had session 1 on 2024-02-27, and the protocol asks for at least 2 days between "
+          "sessions: "
+          "session 2 is allowed from 2024-02-29");
+    CHECK(refused.allowed.find("--early") != std::string::npos);
+  }
+  CHECK(next_session(setup, earlier, "2024-02-29").problem.empty());
+  CHECK(next_session(setup, {on_day("2023-12-31", 1)}, "2024-01-01").problem.find("2024-01-02") !=
+        std::string::npos);
+  CHECK(next_session(setup, {on_day("2024-02-20", 1), on_day("2024-02-27", 2)}, "2024-02-28").number == 3);
+  CHECK_FALSE(
+      next_session(setup, {on_day("2024-02-27", 2), on_day("2024-02-20", 1)}, "2024-02-28").problem.empty());
+
+  setup.early = "leaves the country";
+  const auto overruled = next_session(setup, earlier, "2024-02-28");
+  CHECK(overruled.problem.empty());
+  CHECK(overruled.overruled.find("allowed from 2024-02-29") != std::string::npos);
+  CHECK(next_session(setup, earlier, "2024-02-29").overruled.empty());
+
+  setup.early.clear();
+  setup.run_mode = terms::RunMode::simulated;
+  const auto simulated = on_day("2024-02-27", 1, SessionStatus::completed, terms::RunMode::simulated);
+  CHECK(next_session(setup, {simulated}, "2024-02-27").problem.empty());
+  CHECK(next_session(setup, {simulated}, "2024-02-27").number == 2);
+}
+
+TEST_CASE("the operator can choose another session", "[session]") {
+  auto setup = training(0);
+  setup.planned_session = 3;
+  CHECK(next_session(setup, {}, "2026-11-24").number == 3);
+  setup.planned_session = 4;
+  CHECK(next_session(setup, {}, "2026-11-24").problem ==
+        "--planned-session 4: the protocol plans 3 sessions");
+  setup.planned_session = 1;
+  setup.protocol.sessions.reset();
+  CHECK(next_session(setup, {}, "2026-11-24").problem == "the protocol friction-training plans no sessions");
+}
+
+TEST_CASE("two participants of two groups go through their sessions, and group and number are stored",
+          "[session]") {
+  TemporaryFolder folder;
+  const auto db = folder / "lab.sqlite";
+  using Names = std::vector<std::string>;
+  for (int number = 1; number <= 3; ++number)
+    for (const std::string code : {"A", "B"}) {
+      const auto summary = run(training_for(code, db));
+      CHECK(summary.status == SessionStatus::completed);
+      const auto stored = store::read_session(db, summary.session_id).session;
+      CHECK(stored.start.planned_session == number);
+      const std::string group = code == "A" ? "feedback" : "none";
+      CHECK(stored.start.group == group);
+      const auto training = code == "A" ? "training-with-feedback" : "training-without-feedback";
+      CHECK(blocks_of(db, summary.session_id) == (number == 1   ? Names{"practice", "before", training}
+                                                  : number == 2 ? Names{training}
+                                                                : Names{training, "after"}));
+      for (const auto& block : store::read_session(db, summary.session_id).blocks)
+        for (const auto& trial : block.trials)
+          for (const auto& [name, value] : trial.factors)
+            if (name == "training") CHECK(std::get<std::string>(value) == group);
+    }
+  CHECK_THROWS_AS(run(training_for("A", db)), text::BadInput);
+  // whose code is typed later is refused when the session begins, before anything is stored
+  auto setup = setup::prepare([&] {
+    auto request = training_for(setup::kCodeToCome, db);
+    return request;
+  }());
+  setup.participant = "A";
+  session::Inputs inputs;
+  CHECK_THROWS_AS(session::run(setup, nullptr, inputs), terms::UsageError);
+  CHECK(store::list_sessions(db).size() == 6);
+}
+
+TEST_CASE("a live session on the same day is refused, unless the operator gives a reason, which is stored",
+          "[session]") {
+  const TemporaryFolder folder;
+  auto setup = live_room::live_setup(folder / "a.sqlite");
+  setup.protocol.sessions = protocol::SessionPlan{2, 1, protocol::Unfinished::repeat, {}};
+  const auto meet = [&] {
+    live_room::Room room;
+    room.reacts = [&room](const session::Page& page) { room.cooperate(page); };
+    return session::run(setup, &room, room.inputs, room.devices());
+  };
+  CHECK(meet().status == SessionStatus::completed);
+  auto now = ::time(nullptr);
+  tm tomorrow{};
+  ::localtime_r(&now, &tomorrow);
+  ++tomorrow.tm_mday;
+  now = ::mktime(&tomorrow);
+  char date[20];
+  ::strftime(date, sizeof date, "%Y-%m-%d", &tomorrow);
+  CHECK_THROWS_WITH(meet(), Catch::Contains(std::string("session 2 is allowed from ") + date));
+  CHECK(store::list_sessions(setup.database).size() == 1);  // nothing was stored
+
+  setup.early = "only in town today";
+  const auto second = store::read_session(setup.database, meet().session_id).session;
+  CHECK(second.start.planned_session == 2);
+  REQUIRE(second.annotations.size() == 1);
+  CHECK(second.annotations.front().starts_with(
+      "begun early (only in town today): participant P01 had session 1"));
+}

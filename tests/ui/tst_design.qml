@@ -1,0 +1,255 @@
+import QtQuick
+import QtTest
+import Turnpoint
+
+// The designer of studies in the whole program, operated by taps. `taps` counts them.
+Item {
+    id: stage
+    width: 1280
+    height: 800
+
+    TestCase {
+        name: "Design"
+        when: windowShown
+        property int taps: 0
+
+        function init() {
+            taps = 0
+            room.open("1234")
+        }
+        function cleanup() { room.close() }
+
+        function find(parent, name) {
+            for (let i = 0; parent && i < parent.children.length; ++i) {
+                const child = parent.children[i]
+                if (!child.visible) continue
+                const found = child.objectName === name ? child : find(child, name)
+                if (found) return found
+            }
+            return null
+        }
+        function says(wanted, parent = room.screen) {
+            for (let i = 0; i < parent.children.length; ++i) {
+                const child = parent.children[i]
+                if (!child.visible) continue
+                if ((child.text ?? "").toString().includes(wanted) || says(wanted, child)) return true
+            }
+            return false
+        }
+        function shown(name) { return find(room.screen, name) !== null }
+        function appears(name) {
+            tryVerify(() => shown(name) && find(room.screen, name).enabled && find(room.screen, name).armed !== false, 20000, name)
+            return find(room.screen, name)
+        }
+        /// Brings an item of the form into view, as a person does with a finger. This is not counted as a tap.
+        function reveal(item) {
+            const scroll = find(room.screen, "formScroll")
+            if (!scroll) return
+            const y = item.mapToItem(scroll.contentItem, 0, 0).y
+            let inside = item
+            while (inside && inside !== scroll) inside = inside.parent
+            if (inside) scroll.contentY = Math.max(0, Math.min(y - 100, scroll.contentHeight - scroll.height))
+        }
+        function tap(name) {
+            appears(name)
+            wait(40)
+            reveal(appears(name))
+            wait(20)
+            const item = appears(name)
+            mouseClick(item, item.width / 2, Math.min(item.height / 2, 20))
+            ++taps
+        }
+        /// The field of the shown page with this key: its name within its table, such as "stop.trials".
+        function field(key, table = 0) {
+            const groups = designPage().design.groups
+            const found = groups[table].fields.find(one => one.path.join(".") === key)
+            return "field" + table + "-" + found.index
+        }
+        function valueOf(key, table = 0) {
+            return designPage().design.groups[table].fields.find(one => one.path.join(".") === key).value
+        }
+        function designPage() { return appears("designPage") }
+        function tapField(key, table = 0) {
+            wait(40)
+            reveal(appears(field(key, table)))
+            wait(20)
+            const item = appears(field(key, table))
+            mouseClick(item, 0.8 * item.width, 15)
+            ++taps
+        }
+        function keys(text) { for (const letter of text) tap("letter" + letter) }
+        function type(text) {
+            keys(text)
+            tap("keepEntry")
+        }
+        function erase(count) { for (let i = 0; i < count; ++i) tap("erase") }
+        function begin(goal, name) {
+            tap("bar-studies")
+            tap("newStudy")
+            tap("goal-" + goal)
+            type(name)
+            appears("section-timing")
+        }
+        function saved(name) { return room.startOf("protocols", name + ".toml", 100000) }
+
+        function test_a_jnd_study_from_nothing_to_a_passing_check_in_at_most_60_taps() {
+            begin("contrast", "jnd")
+            tap("section-question")
+            tapField("question.en")
+            erase(1)                                   // "... more slippery?" becomes "... more slippery today?"
+            keys(" today?")
+            tap("keepEntry")
+            tap("section-scenes")
+            const area = appears("strip0")
+            wait(50)
+            const strip = find(area, "dragArea")
+            const mark = find(area, "zoneMark")
+            const from = mark.x + mark.width / 2
+            mousePress(strip, from, strip.height / 2)
+            mouseMove(strip, from + 20, strip.height / 2)
+            mouseRelease(strip, from + 20, strip.height / 2)
+            ++taps
+            tap("section-levels")
+            tapField("stop.trials", 1)
+            erase(2)
+            type("64")
+            tap("section-timing")
+            compare(appears("timeline").end, 8)
+            tapField("deadline_s")
+            erase(3)
+            type("4")
+            compare(appears("timeline").end, 9)
+            tap("section-blocks")
+            tapField("trials")
+            erase(1)
+            type("8")
+            tap(field("feedback") + "-block")
+            tap("save")
+            tryVerify(() => ["good", "warned"].includes(designPage().design.verdict), 60000)
+            tap("closeDesign")
+            tryVerify(() => find(room.screen, "runStudy")?.enabled ?? false, 60000)
+            verify(taps <= 60, taps)
+            const text = saved("jnd")
+            for (const line of ['id = "jnd"', 'en = "In which interval was it more slippery today?"', "stop = { trials = 64,", "deadline_s = 4\n", "trials = 8\n", 'feedback = "block"\npractice'])
+                verify(text.includes(line), line)
+            verify(text.includes("de = \"In welchem Durchgang war es glatter?\""))
+            verify(text.includes("# 20 log10(friction difference / friction of the reference)"))
+            verify(!text.includes("from_mm = 60.0") && /zone = \{ from_mm = \d+\.0, friction = 0\.75, tones = 3 \}/.test(text))
+        }
+
+        function test_undo_and_redo_lead_through_all_changes_and_the_text_follows() {
+            begin("contrast", "u")
+            const before = designPage().design.text
+            tap("side-text")
+            tryCompare(appears("designText"), "text", before)
+            tap("section-blocks")
+            tapField("trials")
+            erase(1)
+            type("9")
+            tap("copy1")
+            type("more")
+            tap("remove0")
+            const after = designPage().design.text
+            verify(after.includes('name = "more"') && !after.includes('name = "practice"'))
+            tryCompare(appears("designText"), "text", after)
+            for (let i = 0; i < 3; ++i) tap("undo")
+            compare(designPage().design.text, before)
+            tryCompare(appears("designText"), "text", before)
+            compare(find(room.screen, "undo").enabled, false)
+            for (let i = 0; i < 3; ++i) tap("redo")
+            compare(designPage().design.text, after)
+        }
+
+        function test_what_is_typed_in_the_text_appears_in_the_form_and_a_broken_text_locks_it() {
+            begin("contrast", "t")
+            tap("section-timing")
+            tap("side-text")
+            const edit = appears("designText")
+            edit.forceActiveFocus()
+            edit.cursorPosition = edit.text.indexOf("deadline_s = 3.0") + "deadline_s = 3.0".length
+            room.pressKey(Qt.Key_5)
+            room.releaseKey(Qt.Key_5)
+            tryVerify(() => valueOf("deadline_s") === "3.05", 5000)
+            room.pressKey(Qt.Key_A)
+            room.releaseKey(Qt.Key_A)
+            tap("side-check")
+            tryVerify(() => designPage().design.verdict === "bad", 5000)
+            verify(says("not valid TOML"))
+            tap("undo")
+            tryVerify(() => designPage().design.verdict !== "bad", 5000)
+        }
+
+        function test_every_problem_is_one_tap_from_its_field() {
+            begin("contrast", "p")
+            tap("section-timing")
+            tapField("deadline_s")
+            erase(3)
+            tap("keepEntry")
+            tryVerify(() => shown("designRemark0"), 20000)
+            compare(designPage().design.verdict, "bad")
+            tap("section-study")
+            tap("designRemark0")
+            appears(field("deadline_s"))
+            tryVerify(() => find(room.screen, field("deadline_s")).pointedAt, 5000)
+            verify(says("✗ ", find(room.screen, field("deadline_s"))))
+            tapField("deadline_s")
+            type("2.5")
+            tryVerify(() => !shown("designRemark0") || designPage().design.verdict !== "bad", 20000)
+        }
+
+        function test_a_value_that_is_not_possible_is_refused_with_the_reason() {
+            begin("contrast", "r")
+            tap("section-blocks")
+            tapField("trials")
+            keys(".5")
+            tap("keepEntry")
+            verify(says("a whole number"))
+            tap("cancelEntry")
+            compare(valueOf("trials"), "6")
+        }
+
+        function test_a_name_that_exists_or_is_no_name_is_refused() {
+            tap("bar-studies")
+            tap("newStudy")
+            tap("goal-boundary")
+            type("short")
+            verify(says("short exists already"))
+            erase(5)
+            type("a.b")
+            verify(shown("keepEntry"))
+            tap("cancelEntry")
+            compare(room.filesIn("protocols"), ["short.toml"])
+        }
+
+        function test_a_study_is_changed_and_nothing_is_lost_by_leaving() {
+            const before = saved("short")
+            tap("bar-studies")
+            tap("changeStudy")
+            appears("section-timing")
+            verify(!find(room.screen, "save").enabled)
+            tap("section-timing")
+            tapField("deadline_s")
+            type("1")
+            tap("closeDesign")
+            appears("leaving")
+            tap("keep")
+            tap("bar-run")
+            tap("bar-studies")
+            verify(designPage().design.unsaved)
+            tap("save")
+            verify(saved("short") !== before)
+            compare(saved("short").split("\n").filter((line, i) => line !== before.split("\n")[i]).length, 1)
+            tap("closeDesign")
+            appears("studiesPage")
+        }
+
+        function test_a_screen_reader_finds_every_control_with_a_name() {
+            begin("contrast", "a")
+            for (const section of ["study", "question", "scenes", "levels", "blocks", "timing", "other"]) {
+                tap("section-" + section)
+                wait(50)
+                compare(inspector.unnamedControls(room.screen), [], section)
+            }
+        }
+    }
+}
