@@ -121,7 +121,8 @@ screenshot() { kms_screen | python3 "$BENCH_SOURCE/guest/screenshot.py" "$OUT/$1
 action=5c3d0f
 shows() { [ "$(pixel "$1" "$2")" = $action ]; }
 answers_open() { shows 60 400 && shows 740 400; }
-continues() { shows 290 390 && ! shows 60 400; }
+start_page() { shows 112 440; }
+continues() { shows 290 390 && ! shows 60 400 && ! start_page; }
 
 # Functions for the installed kiosk on its panel of 800 x 480: `tap X Y` taps, `hold X Y` presses for 1.2 s,
 # and `unlock` enters the operator's code 2580.
@@ -129,7 +130,6 @@ tap() { touch_do tap "$1" "$2"; sleep 0.2; }
 hold() { touch_do down 0 "$1" "$2"; touch_do sleep 1200; touch_do up 0; sleep 1.6; }
 keypad() { shows 280 90 && shows 397 90; }
 operator_code() { eventually 10 keypad; sleep 0.3; tap 397 107; tap 397 188; tap 397 269; tap 397 349; tap 519 349; }
-start_page() { shows 112 440; }
 unlock() {
   eventually 30 keypad
   ! start_page || fail "the start page is shown without the operator's code"
