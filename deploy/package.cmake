@@ -5,9 +5,11 @@ if(TURNPOINT_UI)
   install(TARGETS turnpoint-ui RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT station)
 endif()
 install(DIRECTORY protocols deploy/rigs DESTINATION ${CMAKE_INSTALL_DATADIR}/turnpoint COMPONENT station)
+install(PROGRAMS protocols/programs/one_up_two_down.py protocols/programs/careful_observer.py protocols/programs/right_answers.py
+  DESTINATION ${CMAKE_INSTALL_DATADIR}/turnpoint/protocols/programs COMPONENT station)
 # Keep the folder structure of the manuals, so that the links between them work.
 file(GLOB drawings RELATIVE ${CMAKE_SOURCE_DIR} CONFIGURE_DEPENDS deploy/drawings/*.svg)
-foreach(manual README.md LICENSE deploy/README.md deploy/boards.md deploy/to-measure.md deploy/rigs/README.md ${drawings} physics/README.md protocols/README.md protocols/a-study-in-an-afternoon.md protocols/coming-from-psychopy.md
+foreach(manual README.md LICENSE deploy/README.md deploy/boards.md deploy/to-measure.md deploy/rigs/README.md ${drawings} physics/README.md protocols/README.md protocols/a-study-in-an-afternoon.md protocols/coming-from-psychopy.md protocols/programs.md
         station/store/README.md station/collector/README.md station/python/README.md tests/README.md)
   cmake_path(GET manual PARENT_PATH folder)
   install(FILES ${manual} DESTINATION ${CMAKE_INSTALL_DOCDIR}/${folder} COMPONENT station)

@@ -7,6 +7,7 @@
 #include "station/cli/json.hpp"
 #include "station/cli/shared_options.hpp"
 #include "station/procedure/trace.hpp"
+#include "station/programs/programs.hpp"
 #include "station/protocol/protocol.hpp"
 #include "station/text/number.hpp"
 #include "station/trial/orders.hpp"
@@ -48,9 +49,11 @@ procedure::Context context_of(const protocol::Protocol& protocol, const procedur
 void trace(const Options& options, Context& context) {
   const auto protocol = protocol::load(options.protocol);
   const auto& spec = find(protocol, options.procedure);
-  const auto result =
-      procedure::trace(spec, context_of(protocol, spec), options.answers,
-                       {options.seed ? options.seed : protocol.seed.value_or(0), {}, 0, 0, 0});
+  programs::Programs programs(protocol.path);
+  auto around = context_of(protocol, spec);
+  around.programs = &programs;
+  const auto result = procedure::trace(
+      spec, around, options.answers, {options.seed ? options.seed : protocol.seed.value_or(0), {}, 0, 0, 0});
   if (context.json) {
     Json estimates = Json::object();
     for (const auto& [parameter, e] : result.estimates)

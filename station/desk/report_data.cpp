@@ -1,7 +1,11 @@
 #include "station/desk/report_data.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <map>
+#include <set>
+#include <string>
 
 #include "station/protocol/protocol.hpp"
 #include "station/report/stored_trials.hpp"
@@ -202,6 +206,18 @@ std::vector<analysis::FrictionCurve> curves_of(const session::AlongStrip& along)
   return curves;
 }
 
+/// Adds the separate programs that took part, each version once.
+void add_programs(const std::vector<records::EventRow>& events, report::SessionData& data) {
+  std::set<std::string> told;
+  for (const auto& event : events)
+    for (const auto& program : event.programs) {
+      auto fact = fmt::format("{} {}, SHA-256 {}", program.program, program.version, program.sha256);
+      const auto name =
+          program.procedure.empty() ? "Program of the observer" : "Program of " + program.procedure;
+      if (told.insert(name + fact).second) data.facts.emplace_back(name, std::move(fact));
+    }
+}
+
 report::SessionData report_data(const std::string& database, const std::string& session_id) {
   const auto stored = store::read_session(database, session_id);
   const auto& start = stored.session.start;
@@ -228,6 +244,8 @@ report::SessionData report_data(const std::string& database, const std::string& 
           answer.answer);
   data.seed = start.seed;
   report::add_trials(stored.blocks, protocol, data);
+  report::add_program_estimates(stored.blocks, stored.events, data);
+  add_programs(stored.events, data);
   add_health(stored, data);
   data.measured = measured_trials(stored.blocks);
   add_strip(database, stored, data);

@@ -1,5 +1,6 @@
 #pragma once
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 #include <utility>
@@ -166,6 +167,19 @@ class Observer {
   double value(const Question& question, random::Draws& draws) const;
   int confidence(const Question& question, int choice, random::Draws& draws) const;
   Parameters parameters_;
+};
+
+/// Who answers in a simulated session: an Observer, or a separate program (station/programs), whose functions
+/// may throw terms::ProgramFailed.
+struct Respondent {
+  std::function<Reply(const Question&)> answer;
+  std::function<Setting(const Adjustment&)> adjust;
+
+  Respondent(std::function<Reply(const Question&)> answers, std::function<Setting(const Adjustment&)> adjusts)
+      : answer(std::move(answers)), adjust(std::move(adjusts)) {}
+  Respondent(const Observer& observer)
+      : answer([observer](const Question& question) { return observer.answer(question); }),
+        adjust([observer](const Adjustment& adjustment) { return observer.adjust(adjustment); }) {}
 };
 
 }  // namespace turnpoint::observer

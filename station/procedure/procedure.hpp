@@ -34,6 +34,8 @@ struct Estimate {
   std::string basis;
 };
 
+class Programs;
+
 /// What constant stimuli need to know about the protocol: the number of levels of each balanced factor, and
 /// the right answer at a level (-1 if no answer is right). The right answer is needed to limit runs of equal
 /// right answers.
@@ -43,13 +45,19 @@ struct Context {
   /// true if the deadline is part of the design: unanswered trials then count as presented and are not
   /// repeated
   bool unanswered_are_data = false;
+  /// starts the programs of procedures that are programs; may be null if there are none
+  Programs* programs = nullptr;
 };
 
 /// Chooses the next level. Pure: it uses no clock and no file, and the same key and answers give the same
-/// levels. next() returns the same proposal until the next call of record().
+/// levels. next() returns the same proposal until the next call of record(). A procedure that is a separate
+/// program (procedure/program.hpp) is the exception: it may not be ready yet, and next() may throw
+/// terms::ProgramFailed.
 class Procedure {
  public:
   virtual ~Procedure() = default;
+  /// true if next() would not wait for a program
+  virtual bool ready() const { return true; }
   /// returns the next level to present; empty when the procedure is done
   virtual std::optional<Proposal> next() const = 0;
   /// records the answer to the proposal of next(); must not be called when the procedure is done

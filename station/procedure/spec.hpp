@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "station/terms/psychometric.hpp"
+#include "station/text/toml.hpp"
 
 namespace turnpoint::procedure {
 
@@ -22,7 +23,8 @@ enum class Kind {
   best_pest,
   adjustment,
   accelerated_stochastic_approximation,
-  limits
+  limits,
+  program
 };
 using terms::Function;
 enum class Scale { linear, log10, dB };
@@ -67,6 +69,14 @@ struct SeriesStarts {
   bool empty() const { return values.empty() && !uniform; }
   /// The lowest and the highest level; must not be called if it is empty.
   std::pair<double, double> ends() const;
+};
+
+/// A separate program that chooses the levels (station/programs).
+struct Program {
+  std::string file;           ///< as written in the protocol: absolute, or as seen from the protocol's folder
+  text::Place place;          ///< of the key "program"
+  double limit_s = 2;         ///< longest time from a question to the program to its reply
+  text::Value settings = {};  ///< a table that the program gets as it is
 };
 
 /// The content of a [[procedure]] table, including the keys that it copies from another procedure. Members
@@ -115,6 +125,8 @@ struct Spec {
   /// nuisance parameters (psi-marginal): the posterior is summed over them before the entropy is computed
   std::vector<std::string> nuisance;
   Select select = Select::min_expected_entropy;
+
+  Program program;  ///< only for programs, which also use `min` and `max`
 
   Stop stop;
 };

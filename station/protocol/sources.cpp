@@ -134,6 +134,11 @@ const procedure::Spec* find_procedure(const Protocol& protocol, const std::strin
   return nullptr;
 }
 
+bool is_program(const Protocol& protocol, const std::string& name) {
+  const auto* spec = find_procedure(protocol, name);
+  return spec != nullptr && spec->kind == procedure::Kind::program;
+}
+
 const Block& block_of(const std::variant<Block, Sequence>& part) {
   const auto* block = std::get_if<Block>(&part);
   return block ? *block : std::get<Sequence>(part).block;

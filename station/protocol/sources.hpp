@@ -41,6 +41,8 @@ Factors any_factors(const Protocol& protocol);
 std::vector<FactorValue> drawn_values(const Factor& factor);
 
 const procedure::Spec* find_procedure(const Protocol& protocol, const std::string& name);
+/// True if this is the name of a procedure whose levels a separate program chooses.
+bool is_program(const Protocol& protocol, const std::string& name);
 const Block& block_of(const std::variant<Block, Sequence>& part);
 
 /// The blocks of all participants: a sequence gives one block for each level of its factor.

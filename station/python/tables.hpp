@@ -16,7 +16,7 @@ struct MemoryTable {
 /// The tables that export_data() would write for one protocol.
 struct ProtocolTables {
   std::string protocol_id;
-  MemoryTable trials, intervals, events, sessions, self_tests, answers, friction_tables;
+  MemoryTable trials, intervals, events, sessions, self_tests, answers, friction_tables, programs, estimates;
 };
 
 /// Reads into memory what store::export_data() would write with the format csv. Texts that are empty count as

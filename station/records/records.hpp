@@ -102,6 +102,24 @@ struct FrictionLevelRow {
   double low = 0, high = 1;              ///< 95 % interval of relative_friction
 };
 
+/// A separate program that took part in a session, whenever it was started.
+struct ProgramRow {
+  std::string role;              ///< "procedure" or "observer"
+  std::string procedure;         ///< name of the procedure; "" for an observer
+  std::string program, version;  ///< as the program says itself
+  std::string path, sha256;      ///< of the file that was started
+  bool operator==(const ProgramRow&) const = default;
+};
+
+/// An estimate that the program of a procedure gave at the end of a block.
+struct EstimateRow {
+  int block_index = 0, attempt = 0;  ///< of the block
+  std::string procedure, parameter;
+  double mean = 0;
+  std::optional<double> sd;
+  std::string basis;  ///< the data from which the program computed it, in words; may be ""
+};
+
 struct BlockStart {
   int block_index = 0;  ///< from 0, in the order in which blocks are run
   int attempt = 0;      ///< counts the restarts of the same block, from 0
@@ -227,7 +245,14 @@ struct EventRow {
   std::vector<AnswerRow> answers = {};  ///< the answer, for an event of the kind questionnaire
   /// The levels of a friction table, for an event of the kind friction_table.
   std::vector<FrictionLevelRow> friction_levels = {};
+  std::vector<ProgramRow> programs =
+      {};  ///< the programs that were started, for an event of the kind program
+  std::vector<EstimateRow> estimates = {};  ///< for an event of the kind estimates
 };
+
+/// Kinds of events that belong to separate programs.
+inline constexpr const char* kProgramEvent = "program";
+inline constexpr const char* kEstimatesEvent = "estimates";
 
 /// Kinds of events around the trials: an answer; the withdrawal of an answer by the Back button, whose value
 /// names questionnaire and occasion; and the end of a questionnaire, consent, explanation or screening.

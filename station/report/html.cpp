@@ -261,12 +261,13 @@ std::string detection_section(const Summary& summary) {
 
 /// Says why a procedure's own estimate differs from the fit.
 std::string why_estimates_differ(const SessionData& data) {
-  bool posterior = false, track = false, series = false;
+  bool posterior = false, track = false, series = false, program = false;
   std::set<std::string> settles_at;
   for (const auto& estimate : data.estimates) {
     posterior |= estimate.choice == procedure::Choice::posterior;
     track |= estimate.choice == procedure::Choice::track;
     series |= estimate.choice == procedure::Choice::series;
+    program |= estimate.choice == procedure::Choice::program;
     if (estimate.choice == procedure::Choice::track && estimate.settles_at)
       settles_at.insert(number(100 * *estimate.settles_at) + " %");
   }
@@ -277,6 +278,10 @@ std::string why_estimates_differ(const SessionData& data) {
         "the protocol. The fit uses the same answers, but a prior of its own, which is nearly flat, and "
         "shows medians. The fewer answers there are, the further the two are apart. ";
   if (track) why += "A staircase estimates from the last levels that it tried; the fit uses all answers. ";
+  if (program)
+    why +=
+        "A separate program estimated by its own method; the fit uses the same answers as the protocol's "
+        "analysis says. ";
   if (series)
     why +=
         "The method of limits takes the middle between the last level with the old answer and the first "

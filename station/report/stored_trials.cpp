@@ -4,6 +4,9 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <string>
+#include <tuple>
+#include <utility>
 
 #include "station/analysis/psychometric_posterior.hpp"
 #include "station/procedure/description.hpp"
@@ -246,7 +249,7 @@ std::size_t place_in_block(const procedure::Spec& spec, const std::string& block
 void add_estimates(const std::vector<const records::BlockRecord*>& blocks, const protocol::Protocol& protocol,
                    report::SessionData& data) {
   for (const auto& spec : protocol.procedures) {
-    if (!procedure::follows_answers(spec)) continue;
+    if (!procedure::follows_answers(spec) || spec.kind == procedure::Kind::program) continue;
     const auto& kind = procedure::description(spec.kind);
     const bool posterior = kind.choice == procedure::Choice::posterior;
     const double least = spec.tracks.empty() ? 1.0 / data.alternatives : 0;
@@ -321,6 +324,43 @@ void add_trials(const std::vector<records::BlockRecord>& blocks, const protocol:
   data.show = protocol.analysis.show;
   data.exclusion = {protocol.analysis.exclude_below_s, protocol.analysis.exclude_mad};
   add_estimates(counted, protocol, data);
+}
+
+void add_program_estimates(const std::vector<records::BlockRecord>& blocks,
+                           const std::vector<records::EventRow>& events, report::SessionData& data) {
+  // The newest event about a block counts: an interrupted session may have ended the block twice.
+  std::map<std::tuple<int, std::string, std::string>, std::pair<int, records::EstimateRow>> newest;
+  for (const auto& event : events)
+    for (const auto& row : event.estimates)
+      newest.insert_or_assign({row.block_index, row.procedure, row.parameter}, std::pair(row.attempt, row));
+  for (const auto& [key, found] : newest)
+    for (const auto& block : blocks) {
+      if (block.start.block_index != std::get<0>(key) || block.start.attempt != found.first ||
+          block.start.practice)
+        continue;
+      const auto& row = found.second;
+      data.estimates.push_back({block.start.name,
+                                row.procedure,
+                                row.parameter,
+                                row.mean,
+                                row.sd,
+                                row.basis,
+                                procedure::Choice::program,
+                                {}});
+    }
+}
+
+void add_estimator(const std::string& program, const std::map<std::string, procedure::Estimate>& estimates,
+                   report::SessionData& data) {
+  for (const auto& [parameter, estimate] : estimates)
+    data.estimates.push_back({"all blocks",
+                              program,
+                              parameter,
+                              estimate.mean,
+                              estimate.sd,
+                              estimate.basis,
+                              procedure::Choice::program,
+                              {}});
 }
 
 }  // namespace turnpoint::report

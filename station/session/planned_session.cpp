@@ -72,7 +72,7 @@ void check_days(const Setup& setup, const std::vector<const store::SessionRecord
   if (!setup.early.empty())
     next.overruled = std::move(problem);
   else
-    next.problem = std::move(problem),
+    next.problem = std::move(problem), next.too_early = true,
     next.allowed = "come back on that day, or give the reason to begin earlier with --early; it is stored";
 }
 

@@ -17,6 +17,8 @@ struct NextSession {
   std::optional<int> number;  ///< empty if the protocol plans no sessions
   std::string problem;        ///< why the session cannot begin; "" if it can
   std::string allowed;        ///< what is possible instead
+  /// true if the problem is only that too few days have passed, so that a reason overrules it
+  bool too_early = false;
   /// why it would be refused if the operator had not given a reason
   std::string overruled;
 };

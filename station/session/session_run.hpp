@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "station/limits/finger_account.hpp"
+#include "station/programs/programs.hpp"
 #include "station/sensing/friction_table.hpp"
 #include "station/sensing/phase_drift.hpp"
 #include "station/session/guidance.hpp"
@@ -27,9 +28,10 @@ namespace turnpoint::session {
 class SessionRun {
  public:
   /// `director` must be in the state that corresponds to the log, and to `earlier`, which is empty for a new
-  /// session.
+  /// session. `programs` starts the separate programs of the session; null if it has none.
   SessionRun(const Setup& setup, trial::Director director, store::SessionLog log, const Earlier& earlier,
-             std::unique_ptr<Stage> stage, limits::FingerAccount account, Display* display, Monitor* monitor);
+             std::unique_ptr<Stage> stage, limits::FingerAccount account, Display* display, Monitor* monitor,
+             programs::Programs* programs = nullptr);
 
   /// Runs until the last block has ended or somebody stops the session.
   Summary run();
@@ -65,6 +67,12 @@ class SessionRun {
   Flow rest_if_due(int trials_in_block);
   int trial_index() const { return log_.session().trials; }
   void finish(records::SessionStatus status, const std::string& reason);
+
+  // Procedures and observers that are separate programs (session_run_programs.cpp).
+  std::optional<trial::TrialSpec> next_trial();
+  void plan_ahead();
+  void log_programs();
+  void log_estimates();
 
   // One trial (session_run_trial.cpp).
   Flow run_trial(const trial::TrialSpec& spec);
@@ -118,6 +126,9 @@ class SessionRun {
   limits::FingerAccount account_;
   Display* display_;
   Monitor* monitor_;
+  programs::Programs* programs_;
+  /// why a program failed while the next trial was being planned; next_trial() deals with it
+  std::optional<std::string> failed_program_;
   PlanAhead plans_;
   trial::Director director_;
   Pages pages_;

@@ -93,7 +93,7 @@ class Stage {
   virtual std::string missing() const = 0;
 
   /// Asks a simulated observer to answer this question. Times count from `zero_ns`. A real stage does
-  /// nothing.
+  /// nothing. Throws terms::ProgramFailed if the observer is a program that fails.
   virtual void question(const observer::Question& question, std::int64_t zero_ns) = 0;
 
   /// Asks a simulated observer to set this slider and press Done. Times count from `zero_ns`. A real stage
@@ -141,7 +141,7 @@ std::unique_ptr<Stage> real_stage(const drive::StreamConfig& stream, Devices dev
 /// arms a simulated amplifier, and presses Continue when nothing else is left to do. `inputs` must outlive
 /// the stage. Of `inputs`, only a stop has an effect, and only between trials. With a `room`, stimuli are
 /// computed sample by sample, and the surface is measured.
-std::unique_ptr<Stage> virtual_stage(const drive::StreamConfig& stream, observer::Observer observer,
+std::unique_ptr<Stage> virtual_stage(const drive::StreamConfig& stream, observer::Respondent observer,
                                      Inputs& inputs, std::unique_ptr<SimulatedRoom> room = nullptr,
                                      const TriggerSetup& triggers = {});
 

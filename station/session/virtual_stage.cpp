@@ -13,7 +13,7 @@ namespace {
 
 class VirtualStage : public Stage {
  public:
-  VirtualStage(const drive::StreamConfig& config, observer::Observer observer, Inputs& inputs,
+  VirtualStage(const drive::StreamConfig& config, observer::Respondent observer, Inputs& inputs,
                std::unique_ptr<SimulatedRoom> room, const TriggerSetup& triggers)
       : stream_(drive::open_synchronous(config)),
         triggers_(triggers, *stream_, nullptr),
@@ -271,7 +271,7 @@ class VirtualStage : public Stage {
   std::optional<TriggerCapture> capture_;
   const bool simulated_sync_;
   std::int64_t sync_due_ns_ = 0;
-  observer::Observer observer_;
+  observer::Respondent observer_;
   Inputs& inputs_;
   std::int64_t now_ns_ = 0;
   std::int64_t quiet_ns_ = 0;  ///< time at which the surface will be silent
@@ -290,7 +290,7 @@ class VirtualStage : public Stage {
 
 }  // namespace
 
-std::unique_ptr<Stage> virtual_stage(const drive::StreamConfig& stream, observer::Observer observer,
+std::unique_ptr<Stage> virtual_stage(const drive::StreamConfig& stream, observer::Respondent observer,
                                      Inputs& inputs, std::unique_ptr<SimulatedRoom> room,
                                      const TriggerSetup& triggers) {
   return std::make_unique<VirtualStage>(stream, std::move(observer), inputs, std::move(room), triggers);

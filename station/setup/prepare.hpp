@@ -4,8 +4,10 @@
 #include <optional>
 #include <stop_token>
 #include <string>
+#include <utility>
 
 #include "station/session/session.hpp"
+#include "station/text/problem.hpp"
 
 namespace turnpoint::setup {
 
@@ -31,6 +33,13 @@ struct RunRequest {
   std::string early;  ///< reason to begin before the least number of days has passed; "" if there is none
   records::Conditions conditions;
   std::string cleaned;  ///< whether the surface was cleaned just before: yes or no; "" if not stated
+};
+
+/// Thrown by prepare() if a session is possible, except that too few days have passed since the participant's
+/// last one. RunRequest::early overrules that.
+class TooEarly : public text::BadInput {
+ public:
+  explicit TooEarly(text::Problem problem) : BadInput({std::move(problem)}) {}
 };
 
 /// Loads and checks everything that a session needs, and applies the calibration to the rig. Throws

@@ -228,6 +228,7 @@ Check check(const std::string& protocol_path, const std::string& rig_path, const
     const auto texts = protocol::undrawable(*protocol, options.drawable);
     check.problems.insert(check.problems.end(), texts.begin(), texts.end());
   }
+  if (check.problems.empty() && options.try_programs) check.problems = options.try_programs(*protocol);
   if (!check.problems.empty()) return check;
   check.id = protocol->id, check.title = protocol->title, check.rig_name = rig->name;
   check.protocol_defaults = protocol->defaults_used;

@@ -78,6 +78,8 @@ struct CheckOptions {
   /// says whether a character can be drawn on this machine (see protocol::undrawable); empty: not checked
   std::function<bool(char32_t character)> drawable = {};
   Steps steps = {};
+  /// starts the separate programs of the protocol and returns their problems; empty: they are not started
+  std::function<std::vector<text::Problem>(const protocol::Protocol&)> try_programs = {};
   /// reads the protocol file; a caller that has its text applies it here
   std::function<protocol::Protocol(const std::string& path)> load_protocol = protocol::load;
 };

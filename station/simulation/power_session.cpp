@@ -140,6 +140,17 @@ void require_possible(const protocol::Protocol& protocol, const PowerOptions& op
     throw terms::UsageError(protocol.path +
                             ": ratings have no threshold, so there is nothing to estimate; simulate sessions "
                             "with `turnpoint run --observer sim` and analyse their export");
+  // A study simulates thousands of sessions at once, and would have to start a program for each of their
+  // blocks.
+  std::vector<text::Problem> problems;
+  for (const auto& spec : protocol.procedures)
+    if (spec.kind == procedure::Kind::program)
+      problems.push_back(
+          {spec.program.place,
+           "procedure \"" + spec.name + "\" is a separate program, which a power study does not run",
+           "use a procedure of another kind for the study, or simulate sessions with "
+           "`turnpoint run --observer sim` and analyse their export"});
+  if (!problems.empty()) throw text::BadInput(problems);
 }
 
 }  // namespace

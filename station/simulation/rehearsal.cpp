@@ -5,6 +5,7 @@
 #include <optional>
 #include <stdexcept>
 
+#include "station/procedure/program.hpp"
 #include "station/trial/machine.hpp"
 #include "station/trial/question.hpp"
 #include "station/trial/rows.hpp"
@@ -136,7 +137,8 @@ Doing done_by(const Rehearser& rehearser, const TrialSpec& spec, const protocol:
 Rehearsal rehearse(const protocol::Protocol& protocol, const protocol::Visit& visit, std::uint64_t seed,
                    const Rehearser& rehearser) {
   Rehearsal rehearsal;
-  trial::Director director(protocol, visit, seed);
+  procedure::StandIns programs;
+  trial::Director director(protocol, visit, seed, &programs);
   std::int64_t now_ns = 0;
   while (const auto* block = director.block()) {
     auto& record = rehearsal.blocks.emplace_back();

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "station/procedure/description.hpp"
+#include "station/procedure/program.hpp"
 #include "station/protocol/sources.hpp"
 #include "station/protocol/visits.hpp"
 
@@ -47,7 +48,8 @@ bool begins_unlike_it_goes_on(const Protocol& protocol, const Block& block) {
 template <typename Count>
 void run_session(const Protocol& protocol, const protocol::Visit& visit, std::uint64_t seed,
                  const Answers& answers, Count&& count) {
-  trial::Director director(protocol, visit, seed);
+  procedure::StandIns programs;
+  trial::Director director(protocol, visit, seed, &programs);
   while (const auto* block = director.block()) {
     int trials = 0;
     while (const auto trial = director.next()) {

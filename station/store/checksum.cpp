@@ -75,6 +75,11 @@ class Encoder {
     if (encoding_ >= 5)
       add(hash, friction_, friction_level_table(), "event_index", "event_index, level_index", from.event,
           to.event);
+    if (encoding_ >= 5)
+      add(hash, program_, program_table(), "event_index", "event_index, program_index", from.event, to.event);
+    if (encoding_ >= 5)
+      add(hash, estimate_, estimate_table(), "event_index", "event_index, estimate_index", from.event,
+          to.event);
   }
 
   Extent extent() {
@@ -126,7 +131,7 @@ class Encoder {
   std::string schema_, id_;
   std::int64_t encoding_;
   std::optional<Statement> segment_, block_, trial_, tone_, signal_, event_, check_, answer_, friction_,
-      extent_;
+      program_, estimate_, extent_;
 };
 
 namespace {

@@ -35,14 +35,15 @@ SelectedSessions select_for_export(const std::string& database, const std::strin
 
 /// The columns of the tables of a protocol.
 struct CsvColumns {
-  ExportColumns trials, intervals, events, sessions, self_tests, answers, friction_tables;
+  ExportColumns trials, intervals, events, sessions, self_tests, answers, friction_tables, programs,
+      estimates;
 };
 CsvColumns csv_columns(const ProtocolSelection& selection);
 
 /// Receives the rows of these tables one by one.
 struct CsvRows {
   std::function<void(const std::vector<Cell>&)> trials, intervals, events, sessions, self_tests, answers,
-      friction_tables;
+      friction_tables, programs, estimates;
 };
 void for_each_row(Database& database, const ProtocolSelection& selection, const CsvColumns& columns,
                   const CsvRows& rows);

@@ -45,6 +45,8 @@ struct ExportRow {
   std::optional<StimulusSpan> span = {};    ///< time span of the trial's stimuli
   const CheckRow* check = nullptr;          ///< a check of the self-test in `event`
   const FrictionLevelRow* level = nullptr;  ///< a level of the friction table in `event`
+  const ProgramRow* program = nullptr;      ///< a separate program in `event`
+  const EstimateRow* estimate = nullptr;    ///< an estimate in `event`
   const AnswerRow* answer = nullptr;        ///< the answer in `event`
   const EventRow* self_test = nullptr;      ///< the newest self-test of the session; null if there was none
 };
@@ -66,6 +68,8 @@ ExportColumns session_columns();
 ExportColumns self_test_columns();
 ExportColumns answer_columns();
 ExportColumns friction_columns();
+ExportColumns program_columns();
+ExportColumns estimate_columns();
 
 /// The newest self-test of a session; null if there was none.
 const EventRow* newest_self_test(const StoredSession& stored);

@@ -116,6 +116,35 @@ const Table<FrictionLevelRow>& friction_level_table() {
   return table;
 }
 
+const Table<ProgramRow>& program_table() {
+  using P = ProgramRow;
+  static const Table<P> table{
+      "program",
+      {"session_id", "event_index", "program_index"},
+      {field<&P::role>({"role", "role", "What the program did in the session", "", "procedure | observer"}),
+       field<&P::procedure>({"procedure", "procedure", "Procedure whose levels the program chose"}),
+       field<&P::program>({"name", "program", "Name of the program, as it says itself"}),
+       field<&P::version>({"version", "version", "Version of the program, as it says itself"}),
+       field<&P::path>({"path", "path", "File that was started"}),
+       field<&P::sha256>({"sha256", "sha256", "Hash of the file"})}};
+  return table;
+}
+
+const Table<EstimateRow>& estimate_table() {
+  using E = EstimateRow;
+  static const Table<E> table{
+      "estimate",
+      {"session_id", "event_index", "estimate_index"},
+      {field<&E::block_index>({"block_index", "block_index", "Number of the block, from 0"}),
+       field<&E::attempt>({"attempt", "attempt", "Number of earlier attempts at this block"}),
+       field<&E::procedure>({"procedure", "procedure", "Procedure whose program gave the estimate"}),
+       field<&E::parameter>({"parameter", "parameter", "What was estimated: threshold, ..."}),
+       field<&E::mean>({"mean", "mean", "Estimate of the program at the end of the block"}),
+       field<&E::sd>({"sd", "sd", "Standard deviation of the estimate, as the program gave it"}),
+       field<&E::basis>({"basis", "basis", "Data from which the program computed it, in its own words"})}};
+  return table;
+}
+
 const Table<SessionRecord>& session_table() {
   using R = SessionRecord;
   using S = SessionStart;

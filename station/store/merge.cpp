@@ -47,6 +47,8 @@ const std::vector<Part>& parts() {
       {"self_test", "session_id,event_index,check_index", "", kBySession},
       {"answer", "session_id,event_index,answer_index", "", kBySession},
       {"friction_level", "session_id,event_index,level_index", "", kBySession},
+      {"program", "session_id,event_index,program_index", "", kBySession},
+      {"estimate", "session_id,event_index,estimate_index", "", kBySession},
       {"link", "session_id,link_index", "", kBySession},
       {"unsealed", "session_id", "", kBySession},
       {"annotation", "annotation_id", "", kBySession},

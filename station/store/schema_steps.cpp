@@ -377,7 +377,8 @@ CREATE TRIGGER session_keeps_its_provenance BEFORE UPDATE OF session_id, partici
 // kind questionnaire. The places in the counterbalancing that a collector has leased to this station, and
 // whether the place of a session is one of them. The number of a planned session, and the group of its
 // participant. Friction over all strokes of a trial. Friction tables that were measured in a session: the
-// levels of a table belong to an event of the kind friction_table.
+// levels of a table belong to an event of the kind friction_table. Separate programs that took part in a
+// session, and the estimates that they gave: they belong to events of the kinds program and estimates.
 const char* const kStep8 = R"sql(
 CREATE TABLE answer (
   session_id TEXT NOT NULL,
@@ -434,6 +435,47 @@ CREATE TRIGGER friction_level_is_never_changed BEFORE UPDATE ON friction_level
 CREATE TRIGGER friction_level_is_never_deleted BEFORE DELETE ON friction_level
   WHEN NOT EXISTS (SELECT 1 FROM tombstone WHERE session_id = OLD.session_id)
   BEGIN SELECT RAISE(ABORT, 'friction_level is append-only'); END;
+
+CREATE TABLE program (
+  session_id TEXT NOT NULL,
+  event_index INTEGER NOT NULL,
+  program_index INTEGER NOT NULL,
+  role TEXT NOT NULL CHECK (role <> ''),
+  procedure TEXT NOT NULL,
+  name TEXT NOT NULL CHECK (name <> ''),
+  version TEXT NOT NULL CHECK (version <> ''),
+  path TEXT NOT NULL CHECK (path <> ''),
+  sha256 TEXT NOT NULL CHECK (length(sha256) = 64),
+  PRIMARY KEY (session_id, event_index, program_index),
+  FOREIGN KEY (session_id, event_index) REFERENCES event (session_id, event_index)
+) STRICT, WITHOUT ROWID;
+
+CREATE TRIGGER program_is_never_changed BEFORE UPDATE ON program
+  BEGIN SELECT RAISE(ABORT, 'program is append-only'); END;
+CREATE TRIGGER program_is_never_deleted BEFORE DELETE ON program
+  WHEN NOT EXISTS (SELECT 1 FROM tombstone WHERE session_id = OLD.session_id)
+  BEGIN SELECT RAISE(ABORT, 'program is append-only'); END;
+
+CREATE TABLE estimate (
+  session_id TEXT NOT NULL,
+  event_index INTEGER NOT NULL,
+  estimate_index INTEGER NOT NULL,
+  block_index INTEGER NOT NULL CHECK (block_index >= 0),
+  attempt INTEGER NOT NULL CHECK (attempt >= 0),
+  procedure TEXT NOT NULL CHECK (procedure <> ''),
+  parameter TEXT NOT NULL CHECK (parameter <> ''),
+  mean REAL NOT NULL,
+  sd REAL CHECK (sd >= 0),
+  basis TEXT NOT NULL,
+  PRIMARY KEY (session_id, event_index, estimate_index),
+  FOREIGN KEY (session_id, event_index) REFERENCES event (session_id, event_index)
+) STRICT, WITHOUT ROWID;
+
+CREATE TRIGGER estimate_is_never_changed BEFORE UPDATE ON estimate
+  BEGIN SELECT RAISE(ABORT, 'estimate is append-only'); END;
+CREATE TRIGGER estimate_is_never_deleted BEFORE DELETE ON estimate
+  WHEN NOT EXISTS (SELECT 1 FROM tombstone WHERE session_id = OLD.session_id)
+  BEGIN SELECT RAISE(ABORT, 'estimate is append-only'); END;
 )sql";
 
 }  // namespace

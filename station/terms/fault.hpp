@@ -30,6 +30,7 @@ enum class FaultKind {
   vibration,        ///< the pick-up says that the surface did not move as planned
   capture,          ///< what the surface does cannot be measured: no capture device, or no pilot heard
   self_test,        ///< a check of the self-test before the session failed
+  program,          ///< the program of a procedure died, was late, or wrote what it must not write
 };
 
 inline constexpr std::array fault_kinds{FaultKind::other,           FaultKind::converter_gone,
@@ -41,7 +42,8 @@ inline constexpr std::array fault_kinds{FaultKind::other,           FaultKind::c
                                         FaultKind::touch_gone,      FaultKind::disk_full,
                                         FaultKind::disarmed,        FaultKind::limits,
                                         FaultKind::stimulus_missed, FaultKind::vibration,
-                                        FaultKind::capture,         FaultKind::self_test};
+                                        FaultKind::capture,         FaultKind::self_test,
+                                        FaultKind::program};
 
 /// Returns the kind's name for the log: "converter_gone", ...
 const char* name(FaultKind kind);

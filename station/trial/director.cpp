@@ -62,6 +62,7 @@ procedure::Context Director::State::context_for(const procedure::Spec& spec) con
     return correct_choice(protocol.task, factors).value_or(-1);
   };
   context.unanswered_are_data = timeouts_are_data();
+  context.programs = programs;
   return context;
 }
 
@@ -97,8 +98,9 @@ int Director::State::block_expected(const Block& b) const {
   return static_cast<int>(std::lround(trials * (1 + (b.catch_trials ? b.catch_trials->rate : 0))));
 }
 
-Director::Director(const protocol::Protocol& protocol, const protocol::Visit& visit, std::uint64_t seed)
-    : state_(std::make_unique<State>(protocol, visit, seed)) {}
+Director::Director(const protocol::Protocol& protocol, const protocol::Visit& visit, std::uint64_t seed,
+                   procedure::Programs* programs)
+    : state_(std::make_unique<State>(protocol, visit, seed, programs)) {}
 Director::~Director() = default;
 Director::Director(Director&&) noexcept = default;
 
@@ -106,6 +108,11 @@ const Block* Director::block() const { return state_->now(); }
 int Director::block_index() const { return static_cast<int>(state_->block); }
 int Director::attempt() const { return state_->attempt; }
 int Director::blocks() const { return static_cast<int>(state_->blocks.size()); }
+
+bool Director::ready() const {
+  const auto ready = [](const auto& procedure) { return procedure->ready(); };
+  return state_->current || std::ranges::all_of(state_->procedures, ready);
+}
 
 std::optional<TrialSpec> Director::next() {
   if (!state_->current) state_->current = state_->make();

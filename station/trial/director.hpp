@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "station/procedure/program.hpp"
 #include "station/protocol/protocol.hpp"
 #include "station/records/records.hpp"
 #include "station/trial/slider.hpp"
@@ -62,7 +63,10 @@ std::string in_words(const ProcedureEstimate& estimate);
 /// session is resumed by replaying its stored results through a director.
 class Director {
  public:
-  Director(const protocol::Protocol& protocol, const protocol::Visit& visit, std::uint64_t seed);
+  /// `programs` starts the programs of procedures that are programs; null if the protocol has none. It must
+  /// outlive the director.
+  Director(const protocol::Protocol& protocol, const protocol::Visit& visit, std::uint64_t seed,
+           procedure::Programs* programs = nullptr);
   ~Director();
   Director(Director&&) noexcept;
 
@@ -72,8 +76,11 @@ class Director {
   int attempt() const;
   int blocks() const;
 
-  /// Returns the next trial of this block. After a void trial, returns the same trial again. Empty when the
-  /// block is done.
+  /// True if next() would not wait for the program of a procedure.
+  bool ready() const;
+  /// Returns the next trial of this block. Waits for procedures that are programs, and throws
+  /// terms::ProgramFailed if one has failed; it may then be called again. After a void trial, returns the
+  /// same trial again. Empty when the block is done.
   std::optional<TrialSpec> next();
   /// Records the result of the trial that next() returned last.
   void record(const TrialEnd& end);

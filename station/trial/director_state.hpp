@@ -15,6 +15,7 @@ struct Director::State {
 
   const protocol::Protocol& protocol;
   std::uint64_t seed;
+  procedure::Programs* programs;
   std::vector<protocol::Block> blocks;
   std::size_t block = 0;
   /// number of the current attempt at the block, and of the first attempt since the session was started or
@@ -33,8 +34,9 @@ struct Director::State {
   std::optional<TrialSpec> current;
   int current_procedure = no_procedure;
 
-  State(const protocol::Protocol& p, const protocol::Visit& visit, std::uint64_t s)
-      : protocol(p), seed(s), blocks(protocol::block_order(p, visit)) {
+  State(const protocol::Protocol& p, const protocol::Visit& visit, std::uint64_t s,
+        procedure::Programs* starts)
+      : protocol(p), seed(s), programs(starts), blocks(protocol::block_order(p, visit)) {
     enter_block();
   }
 

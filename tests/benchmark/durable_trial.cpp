@@ -86,6 +86,8 @@ struct Bare {
     create_bare(check_table());
     create_bare(answer_table());
     create_bare(friction_level_table());
+    create_bare(program_table());
+    create_bare(estimate_table());
     rows = std::make_unique<RowWriter>(database);
     begin = std::make_unique<Statement>(database, "BEGIN IMMEDIATE");
     commit = std::make_unique<Statement>(database, "COMMIT");

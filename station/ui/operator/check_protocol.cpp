@@ -2,6 +2,7 @@
 
 #include <sstream>
 
+#include "station/programs/programs.hpp"
 #include "station/setup/prepare.hpp"
 #include "station/system/fonts.hpp"
 
@@ -20,6 +21,7 @@ simulation::CheckOptions options() {
     return setup::calibrated_rig(path, "", messages);
   };
   options.drawable = system::drawable;
+  options.try_programs = programs::problems_of;
   return options;
 }
 
