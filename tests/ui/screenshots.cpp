@@ -300,6 +300,13 @@ int shoot_operator(const QString& out, const QStringList& sizes, const QStringLi
   ui::OperatorController operating({source + "/protocols", "plate.toml", "lab.sqlite"});
   operating.select(9);
   wait_for([&] { return !operating.checking(); });
+  ui::OperatorController early({source + "/protocols", "plate.toml", ui::today_exhibit(".")});
+  for (int i = 0; i < early.protocols().size(); ++i)
+    if (early.protocols()[i].toMap()["id"] == "friction-training") early.select(i);
+  wait_for([&] { return !early.checking(); });
+  early.enterParticipant("P01");
+  early.begin();
+  wait_for([&] { return !early.preparing(); });
   const int places = shoot_places(out, sizes, languages, operating);
   ui::PreviewController preview(
       {source + "/protocols/demo.toml", source + "/tests/support/thin_plate.toml", "", {}});
@@ -315,6 +322,7 @@ int shoot_operator(const QString& out, const QStringList& sizes, const QStringLi
   for (const auto& size : sizes) {
     OperatorCamera camera(out, panel_of(size), size + "-operator-");
     camera.shoot("OperatorPage.qml", "start", {{"operating", QVariant::fromValue(&operating)}});
+    camera.shoot("OperatorPage.qml", "early", {{"operating", QVariant::fromValue(&early)}});
     camera.shoot("OperatorPage.qml", "participant",
                  {{"operating", QVariant::fromValue(&operating)}, {"typing", true}});
     camera.shoot_live(live, "live");

@@ -172,6 +172,36 @@ Rectangle {
                                 }
                             }
                         }
+                        // The session is refused, but the operator may overrule that with a reason.
+                        Row {
+                            visible: root.operating.tooEarly !== ""
+                            width: sheet.width
+                            spacing: 0.8 * look.unit
+                            Glyph {
+                                id: earlySign
+                                height: 1.4 * look.textBody
+                                name: "alert"
+                                color: look.wrong
+                            }
+                            PlainText {
+                                width: parent.width - earlySign.width - parent.spacing
+                                text: root.operating.tooEarly
+                                color: look.wrong
+                                font { pixelSize: look.textSmall; weight: Font.DemiBold }
+                                wrapMode: Text.Wrap
+                            }
+                        }
+                        ActionButton {
+                            objectName: "beginEarly"
+                            visible: root.operating.tooEarly !== ""
+                            theme: look
+                            enabled: root.operating.mayBegin
+                            primary: false
+                            danger: true
+                            holdMs: 900
+                            text: texts.text("operator.hold_early")
+                            onActivated: early.open("")
+                        }
                         FactTable {
                             width: parent.width
                             theme: look
@@ -342,6 +372,18 @@ Rectangle {
         }
     }
     ScrollCue { theme: look; place: wholePage }
+    EntryDialog {
+        id: early
+        objectName: "early"
+        anchors.fill: parent
+        theme: look
+        sentences: true
+        title: texts.text("operator.early_title")
+        help: root.operating.tooEarly
+        keepText: texts.text("operator.begin_early")
+        cancelText: texts.text("operator.cancel")
+        onAccepted: text => root.operating.beginEarly(text)
+    }
 
     Rectangle {
         visible: root.typing
