@@ -19,6 +19,12 @@ inline Json json_number(const std::optional<double>& value, double factor = 1) {
   return value ? json_number(*value * factor) : Json(nullptr);
 }
 
+/// The ends of an interval, or null.
+inline Json json_interval(const std::optional<std::pair<double, double>>& interval) {
+  if (!interval) return nullptr;
+  return {{"low", json_number(interval->first)}, {"high", json_number(interval->second)}};
+}
+
 inline Json json_numbers(const std::vector<double>& values, double factor = 1) {
   Json list = Json::array();
   for (const double value : values) list.push_back(json_number(value * factor));

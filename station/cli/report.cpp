@@ -67,9 +67,12 @@ void report_session(Options options, Context& context) {
   fmt::print(context.out, "{}: session {} of {}, {}, {} trials\n", options.out, data.session_id,
              data.participant, data.title, summary.outcomes.presented);
   for (const auto& estimate : data.estimates)
-    fmt::print(context.out, "  {}: {} {}{}\n", estimate.procedure, estimate.parameter,
+    fmt::print(context.out, "  {}: {} {}{}{}\n", estimate.procedure, estimate.parameter,
                text::number(estimate.mean, 4),
-               estimate.sd ? fmt::format(" (SD {})", text::number(*estimate.sd, 3)) : "");
+               estimate.sd ? fmt::format(" (SD {})", text::number(*estimate.sd, 3)) : "",
+               estimate.interval ? fmt::format(", 95 % {} to {}", text::number(estimate.interval->low, 3),
+                                               text::number(estimate.interval->high, 3))
+                                 : "");
 }
 
 /// The file trials.csv, written participant by participant.

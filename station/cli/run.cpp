@@ -35,6 +35,7 @@ Json to_json(const session::Summary& summary) {
                          {"parameter", e.parameter},
                          {"mean", json_number(e.mean)},
                          {"sd", json_number(e.sd)},
+                         {"interval", json_interval(e.interval)},
                          {"basis", e.basis.empty() ? Json(nullptr) : Json(e.basis)}});
   return {{"session_id", summary.session_id},
           {"participant", summary.participant},

@@ -60,20 +60,24 @@ void trace(const Options& options, Context& context) {
       estimates[parameter] = {{"mode", json_number(e.mode)},
                               {"mean", json_number(e.mean)},
                               {"sd", json_number(e.sd)},
+                              {"interval", json_interval(e.interval)},
                               {"basis", e.basis.empty() ? Json(nullptr) : Json(e.basis)}};
-    context.out << Json{{"levels", json_numbers(result.levels)},
-                        {"next", json_number(result.next)},
-                        {"estimates", estimates},
-                        {"entropy_nats", json_number(result.entropy_nats)},
-                        {"reversals", json_numbers(result.reversals)}}
-                       .dump(2)
-                << "\n";
+    Json json{{"levels", json_numbers(result.levels)},
+              {"next", json_number(result.next)},
+              {"estimates", estimates},
+              {"entropy_nats", json_number(result.entropy_nats)},
+              {"reversals", json_numbers(result.reversals)}};
+    if (spec.second)
+      json["second"] = json_numbers(result.second), json["next_second"] = json_number(result.next_second);
+    context.out << json.dump(2) << "\n";
     return;
   }
   for (std::size_t i = 0; i < result.levels.size(); ++i)
-    fmt::print(context.out, "{:>4} {:>10} {}\n", i + 1, text::number(result.levels[i]), options.answers[i]);
-  fmt::print(context.out, "next {}\n",
-             result.next ? text::number(*result.next) : "none, because the procedure has stopped");
+    fmt::print(context.out, "{:>4} {:>10} {}{}\n", i + 1, text::number(result.levels[i]),
+               spec.second ? fmt::format("{:>10} ", text::number(result.second[i])) : "", options.answers[i]);
+  fmt::print(context.out, "next {}{}\n",
+             result.next ? text::number(*result.next) : "none, because the procedure has stopped",
+             result.next_second ? ", " + spec.second->level + " " + text::number(*result.next_second) : "");
   for (const auto& [parameter, e] : result.estimates)
     fmt::print(context.out, "{}: mode {}, mean {}{}{}\n", parameter, text::number(e.mode),
                text::number(e.mean), e.sd ? ", SD " + text::number(*e.sd) : "",

@@ -120,8 +120,28 @@ double rating_criterion(double centre, int rating, int ratings) {
 
 }  // namespace
 
+/// The threshold at the trial's value of the second dimension.
+double Observer::threshold(const Question& q) const {
+  double at = parameters_.threshold.value_or(q.default_threshold);
+  if (q.decides == Decides::side) return at;
+  const double rise = parameters_.gradient * q.second;
+  if (q.log_step != 0)
+    at *= random::exp(std::clamp(q.log_step * rise, -600.0, 600.0));
+  else
+    at += rise;
+  if (parameters_.floor) at = std::max(at, *parameters_.floor);
+  // a threshold cannot fall to 0, except for levels in dB
+  return q.decibel || rise == 0 ? at : std::max(at, 1e-9);
+}
+
+/// The bias at the trial's value of the second dimension.
+double Observer::bias(const Question& q) const {
+  const double at = parameters_.bias + parameters_.gradient * q.second;
+  return parameters_.floor ? std::max(at, *parameters_.floor) : at;
+}
+
 double Observer::strength(const Question& q, double from) const {
-  const double threshold = parameters_.threshold.value_or(q.default_threshold);
+  const double threshold = this->threshold(q);
   const auto capped = [](double exponent) { return random::exp(std::min(exponent, kLogStrongest)); };
   if (q.decibel) return capped((q.level - threshold) * 0.11512925464970228 * parameters_.slope);
   const double ratio = std::fabs(q.level - from) / std::fabs(threshold);
@@ -138,7 +158,7 @@ double Observer::sensitivity(const Question& q) const {
     case Middle::bias:
       break;
   }
-  return (q.level < parameters_.bias ? -2 : 2) * kZ75 * strength(q, parameters_.bias);
+  return (q.level < bias(q) ? -2 : 2) * kZ75 * strength(q, bias(q));
 }
 
 /// The sensation in the middle of a rating scale, in SDs from the mean of noise.
@@ -186,8 +206,8 @@ double Observer::drift(const Question& q) const {
       half_logit = 0.5 * random::log(2 * random::exp(kLn2 * strength(q, 0)) - 1);
       break;
     case Decides::side:
-      half_logit = half_logit_of_normal(kZ75 * strength(q, parameters_.bias));
-      if (q.level < parameters_.bias) half_logit = -half_logit;
+      half_logit = half_logit_of_normal(kZ75 * strength(q, bias(q)));
+      if (q.level < bias(q)) half_logit = -half_logit;
       break;
     case Decides::presence:
       half_logit = half_logit_of_normal(sensitivity(q) - parameters_.criterion);
@@ -342,8 +362,10 @@ void check(const Parameters& p) {
 
 Parameters parse(const std::string& text) {
   Parameters p;
-  double threshold = 0;
+  double threshold = 0, floor = 0;
   const std::map<std::string, double*> known{{"threshold", &threshold},
+                                             {"gradient", &p.gradient},
+                                             {"floor", &floor},
                                              {"slope", &p.slope},
                                              {"lapse", &p.lapse},
                                              {"bias", &p.bias},
@@ -357,7 +379,8 @@ Parameters parse(const std::string& text) {
                                              {"residual_range", &p.residual_range_s},
                                              {"anticipation", &p.anticipation}};
   const std::string allowed =
-      "sim, or sim: and threshold, slope, lapse, bias, criterion, scatter, bound, residual, travel, "
+      "sim, or sim: and threshold, gradient, floor, slope, lapse, bias, criterion, scatter, bound, residual, "
+      "travel, "
       "drift_sd, start_range, residual_range, anticipation with numbers, as in sim:threshold=6,slope=1.2";
   const auto colon = text.find(':');
   if (text.substr(0, colon) != "sim") throw terms::UsageError("--observer " + text + ": " + allowed);
@@ -374,6 +397,7 @@ Parameters parse(const std::string& text) {
       throw terms::UsageError("--observer: \"" + part + "\" is not understood; write " + allowed);
     *found->second = value;
     if (found->first == "threshold") p.threshold = value;
+    if (found->first == "floor") p.floor = value;
     at = end;
   }
   check(p);

@@ -28,6 +28,10 @@ struct Parameters {
   /// distance from the bias. For yes/no, d' is 1.349 at the threshold, which gives 75 % right answers with
   /// the default criterion. If empty: the middle of the levels that the protocol presents.
   std::optional<double> threshold;
+  /// Change of the threshold (of the bias, if the sign of the level decides) for each unit of a procedure's
+  /// second dimension; Question::log_step says in which unit it is.
+  double gradient = 0;
+  std::optional<double> floor;  ///< the threshold never falls below it
   double slope = 1;  ///< exponent of level / threshold; for levels in dB, exponent of the amplitude ratio
   double lapse = 0.02;
   double bias = 0;  ///< the level at which a signed task seems balanced
@@ -89,6 +93,11 @@ enum class Middle { criterion, threshold, bias };
 struct Question {
   double level = 0;
   bool decibel = false;  ///< true if the level is in dB, that is, 20 log10 of a strength
+  /// how far the trial's value of the second dimension is above its origin; 0 if there is no second dimension
+  double second = 0;
+  /// 0: gradient * second is added to the threshold; otherwise the threshold is multiplied by
+  /// exp(log_step * gradient * second)
+  double log_step = 0;
   Decides decides = Decides::right_answer;
   /// for `side`: the answer that is right for levels above zero; for `presence` with two answers: "yes"
   int positive = 1;
@@ -159,6 +168,8 @@ class Observer {
   /// Returns the probability that the evidence decides for the upper boundary.
   double upper(const Question& question, double drift) const;
   double latency_s(const Question& question) const;
+  double threshold(const Question& question) const;
+  double bias(const Question& question) const;
   double strength(const Question& question, double from) const;
   double drift(const Question& question) const;
   double sensitivity(const Question& question) const;

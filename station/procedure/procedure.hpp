@@ -16,8 +16,9 @@ namespace turnpoint::procedure {
 /// A level to present. For constant stimuli, a proposal also contains the level of each balanced factor.
 struct Proposal {
   double level = 0;
+  std::optional<double> second = {};  ///< value of the second dimension, if the procedure has one
   /// pairs of a factor and the index of its level
-  std::vector<std::pair<std::string, std::size_t>> balanced;
+  std::vector<std::pair<std::string, std::size_t>> balanced = {};
 };
 
 /// The answer to a proposal. The procedure learns nothing from a trial without an answer (timeout,
@@ -30,8 +31,16 @@ struct Estimate {
   double mode = 0, mean = 0;
   /// standard deviation of the estimate; empty if the estimate is a single number
   std::optional<double> sd;
+  /// central 95 % credible interval, if the estimate comes from a posterior
+  std::optional<std::pair<double, double>> interval;
   /// for a track: the data from which the estimate was computed, "reversals 5 to 12 of 12"; otherwise ""
   std::string basis;
+};
+
+/// The estimate of the threshold at one value of the second dimension.
+struct ThresholdAt {
+  double second = 0;
+  Estimate estimate;
 };
 
 class Programs;
@@ -68,6 +77,8 @@ class Procedure {
   /// total number of trials; an estimate if a stopping rule decides when the procedure ends
   virtual int expected() const = 0;
   virtual std::map<std::string, Estimate> estimates() const { return {}; }
+  /// the threshold at each value of the second dimension, if the procedure has one
+  virtual std::vector<ThresholdAt> thresholds() const { return {}; }
   virtual std::optional<double> entropy_nats() const { return std::nullopt; }
   virtual std::vector<double> reversals() const { return {}; }
   /// hash of the discrete state (counters and indices), to check whether two procedures are in the same state

@@ -1,4 +1,5 @@
 #pragma once
+#include <array>
 #include <cstddef>
 #include <map>
 #include <optional>
@@ -51,6 +52,13 @@ struct Grid {
 struct Prior {
   std::optional<std::pair<double, double>> normal;  ///< mean and sd of a normal distribution
   std::vector<double> weights;                      ///< one weight for each value of the grid
+};
+
+/// The second dimension of the stimuli of a procedure with a posterior: another factor that it sets.
+struct Second {
+  std::string level;  ///< the factor
+  Grid stimuli;       ///< its values; each is combined with each level
+  double origin = 0;  ///< the value of the factor at which the threshold is that of `grid.threshold`
 };
 
 struct Stop {
@@ -118,10 +126,15 @@ struct Spec {
   int n_change = 1;  ///< a series ends when the new answer has come this many times in a row
   Directions directions = Directions::alternate;
 
-  // The following members are for procedures with a posterior.
+  // The following members are for procedures with a posterior. The grids of gradient and floor are only used
+  // if there is a second dimension, and the grid of the criterion only if there is a criterion.
   Function function = Function::weibull;
-  Grid stimuli, threshold, slope, guess, lapse;
-  Prior prior_threshold, prior_slope, prior_guess, prior_lapse;
+  /// true for function = "signal-detection": the answers follow from d' and a criterion (detection_rate());
+  /// `function` is then not used
+  bool signal_detection = false;
+  std::optional<Second> second;
+  Grid stimuli, threshold, gradient, floor, slope, criterion, guess, lapse;
+  Prior prior_threshold, prior_gradient, prior_floor, prior_slope, prior_criterion, prior_guess, prior_lapse;
   /// nuisance parameters (psi-marginal): the posterior is summed over them before the entropy is computed
   std::vector<std::string> nuisance;
   Select select = Select::min_expected_entropy;
@@ -130,6 +143,24 @@ struct Spec {
 
   Stop stop;
 };
+
+/// A parameter of a procedure with a posterior: its name, and its grid and prior in a specification.
+struct ParameterKeys {
+  const char* name;
+  Grid Spec::*grid;
+  Prior Spec::*prior;
+};
+
+/// All parameters, in the order in which Posterior counts its grid points. The first three determine the
+/// threshold at each stimulus, the next two the shape of the function, and the last two its asymptotes.
+inline constexpr std::array<ParameterKeys, 7> kParameters{
+    {{"threshold", &Spec::threshold, &Spec::prior_threshold},
+     {"gradient", &Spec::gradient, &Spec::prior_gradient},
+     {"floor", &Spec::floor, &Spec::prior_floor},
+     {"slope", &Spec::slope, &Spec::prior_slope},
+     {"criterion", &Spec::criterion, &Spec::prior_criterion},
+     {"guess", &Spec::guess, &Spec::prior_guess},
+     {"lapse", &Spec::lapse, &Spec::prior_lapse}}};
 
 /// True if the rule `right` of `of_last` is set and met. `answer_at(i)` says whether the i-th of `answers`
 /// answers was 1.

@@ -12,6 +12,9 @@ namespace turnpoint::procedure {
 struct Trace {
   std::vector<double> levels;  ///< the level to which each answer was given
   std::optional<double> next;  ///< the next level; empty if the procedure has stopped
+  /// if the procedure has a second dimension: its value at each answer, and the next one
+  std::vector<double> second;
+  std::optional<double> next_second;
   std::map<std::string, Estimate> estimates;
   std::optional<double> entropy_nats;
   std::vector<double> reversals;

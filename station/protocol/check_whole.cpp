@@ -109,6 +109,31 @@ void check_limits(const Reading& reading) {
   }
 }
 
+// Checks procedures with a criterion, which need a task of yes and no, and follow "yes".
+void check_detection(const Reading& reading) {
+  const auto& protocol = reading.protocol;
+  const auto& task = protocol.task;
+  for (const auto& spec : protocol.procedures) {
+    if (!spec.signal_detection || task.choices.empty()) continue;
+    const auto rule = answer_rule(protocol, spec.level);
+    const bool scored = !task.correct_answer.empty();
+    if (task.kind != TaskKind::single_interval || (scored && rule.kind != AnswerKind::presence)) {
+      reading.findings.add(
+          reading.places.of(key_of(spec, "function")),
+          "procedure \"" + spec.name +
+              "\": signal detection needs a task in which people say whether there was a signal",
+          "use kind = \"single-interval\" in [task], with one answer that is right at level 0 and "
+          "another that is right above");
+      continue;
+    }
+    const auto& yes = task.choices.at(static_cast<std::size_t>(rule.positive)).id;
+    if (scored && spec.tracks != yes)
+      reading.findings.add(reading.places.of(key_of(spec, "tracks")),
+                           "procedure \"" + spec.name + "\": the answer \"" + spec.tracks + "\" means \"no\"",
+                           "tracks = \"" + yes + "\"");
+  }
+}
+
 void check_adjustment(const Reading& reading) {
   const auto& protocol = reading.protocol;
   const bool adjusting = protocol.task.kind == TaskKind::adjustment;
@@ -206,6 +231,7 @@ void check_whole(text::TableReader& file, Reading& reading) {
   check_timing(file, reading);
   check_scored(file, reading);
   check_limits(reading);
+  check_detection(reading);
   check_adjustment(reading);
   const auto sources = sources_of(reading.protocol);
   const auto needed = factors_used(reading.protocol);

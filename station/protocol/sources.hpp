@@ -16,6 +16,9 @@ struct Source {
   std::string level;  ///< name of the factor whose levels the source presents
   /// values that this factor can take; for a staircase or slider, evenly spaced samples
   std::vector<double> levels;
+  /// name of the factor of the procedure's second dimension, and its values; "" if there is none
+  std::string second = {};
+  std::vector<double> seconds = {};
   /// names of all factors that the source or its block sets; the values of other factors are drawn at random
   std::set<std::string> sets;
   const procedure::Spec* spec = nullptr;

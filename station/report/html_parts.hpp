@@ -28,6 +28,11 @@ std::string picture(const std::optional<plot::Figure>& figure);
 /// The name of a condition, or "all trials" if there is only one.
 std::string name_of(const std::string& condition);
 
+/// The section on the procedures' own estimates; "" if there are none.
+std::string estimate_section(const SessionData& data);
+/// The section on the threshold along the second dimension of the stimuli; "" if there is none.
+std::string threshold_curve_section(const Summary& summary);
+
 /// The section on accuracy at the response signal; "" if there was none.
 std::string signal_section(const Summary& summary);
 

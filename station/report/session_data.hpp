@@ -40,9 +40,30 @@ struct ProcedureEstimate {
   double mean = 0;           ///< the estimate; a threshold is in the unit of the level
   std::optional<double> sd;  ///< SD of the posterior or of the averaged reversals, or a standard error
   std::string basis;         ///< the data from which it was computed, such as "reversals 5 to 12 of 12"
+  std::string unit;          ///< unit of the estimate; "" if it has none
+  /// central 95 % credible interval, if the estimate comes from a posterior
+  std::optional<analysis::Interval> interval;
   procedure::Choice choice = procedure::Choice::track;  ///< how the procedure chose its levels
   /// the proportion of right (or tracked) answers at the level on which the procedure converges, if known
   std::optional<double> settles_at;
+};
+
+/// The threshold along the second dimension of a procedure in one block, and the answers that it was learned
+/// from.
+struct ThresholdCurve {
+  struct Point {
+    double second = 0, threshold = 0;
+    analysis::Interval interval;  ///< central 95 % credible interval
+  };
+  struct Trial {
+    double second = 0, level = 0;
+    bool one = false;  ///< the answer was right, or the tracked answer
+  };
+  std::string block, procedure;
+  std::string label;    ///< name and unit of the second dimension, for an axis: "Boundary (mm)"
+  bool ratios = false;  ///< true if thresholds are compared by their ratio (the procedure's scale)
+  std::vector<Point> points;
+  std::vector<Trial> trials;
 };
 
 /// A name and its text, for the head or the health table of a report.
@@ -80,6 +101,10 @@ struct SessionData {
   /// parts of the report that the protocol chooses; if empty, the report has all parts that suit the design
   std::optional<std::vector<std::string>> show;
   std::vector<ProcedureEstimate> estimates;
+  std::vector<ThresholdCurve> threshold_curves;  ///< empty if no procedure has a second dimension
+  /// True if the threshold differs between the trials of one condition, because a procedure has a second
+  /// dimension. No psychometric function is fitted then.
+  bool thresholds_differ = false;
   std::vector<analysis::TrialRecord> trials;
   /// answered trials in which force cells recorded, without practice; empty if the rig has none
   std::vector<analysis::FingerTrial> finger;

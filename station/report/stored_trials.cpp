@@ -13,6 +13,7 @@
 #include "station/protocol/answers.hpp"
 #include "station/protocol/conditions.hpp"
 #include "station/protocol/sources.hpp"
+#include "station/report/stored_estimates.hpp"
 #include "station/text/number.hpp"
 
 namespace turnpoint::report {
@@ -158,6 +159,7 @@ void choose_function(const protocol::Protocol& protocol, report::SessionData& da
   data.scale = rises && positive && !decibel ? analysis::Scale::log10 : analysis::Scale::linear;
   for (const auto& spec : protocol.procedures) {
     if (procedure::description(spec.kind).choice != procedure::Choice::posterior) continue;
+    if (spec.signal_detection) continue;  // the fit has no criterion, but a rate of false alarms
     // A Weibull function needs levels above 0, or levels in dB.
     if (spec.function != terms::Function::weibull || decibel || positive) data.function = spec.function;
     return;
@@ -205,7 +207,7 @@ std::optional<analysis::Prior> prior_of(const protocol::Protocol& protocol, cons
   for (const auto& spec : protocol.procedures) {
     if (!procedure::follows_answers(spec)) continue;
     widen(levels, levels_of(spec, protocol));
-    if (same_function(spec, data))
+    if (same_function(spec, data) && !spec.signal_detection)
       for (const double slope : spec.slope.values) widen(slopes, {slope, slope});
   }
   if (!levels) return std::nullopt;
@@ -229,55 +231,8 @@ void set_level_words(const std::string& level, report::SessionData& data) {
     for (auto& trial : data.trials)
       if (trial.level) trial.level = std::fabs(*trial.level);
   }
-  if (name[0] >= 'a' && name[0] <= 'z') name[0] = static_cast<char>(name[0] - 'a' + 'A');
   data.level_unit = words.unit;
-  data.level_label = name + " (" + (words.unit.empty() ? "no unit" : words.unit) + ")";
-}
-
-/// Returns the place of a procedure among those of its block, which is part of the key of its draws.
-std::size_t place_in_block(const procedure::Spec& spec, const std::string& block,
-                           const protocol::Protocol& protocol) {
-  for (const auto& part : protocol.plan) {
-    const auto& names = protocol::block_of(part).procedures;
-    if (protocol::block_of(part).name == block)
-      return static_cast<std::size_t>(std::find(names.begin(), names.end(), spec.name) - names.begin());
-  }
-  return 0;
-}
-
-/// Recomputes the final estimates of adaptive procedures from the stored answers.
-void add_estimates(const std::vector<const records::BlockRecord*>& blocks, const protocol::Protocol& protocol,
-                   report::SessionData& data) {
-  for (const auto& spec : protocol.procedures) {
-    if (!procedure::follows_answers(spec) || spec.kind == procedure::Kind::program) continue;
-    const auto& kind = procedure::description(spec.kind);
-    const bool posterior = kind.choice == procedure::Choice::posterior;
-    const double least = spec.tracks.empty() ? 1.0 / data.alternatives : 0;
-    for (const auto* block : blocks) {
-      if (block->start.practice) continue;
-      const auto key =
-          procedure::key_of(data.seed, block->start.block_index,
-                            place_in_block(spec, block->start.name, protocol), block->start.attempt);
-      const auto replayed = procedure::make_procedure(spec, {}, key);
-      for (const auto& row : block->trials) {
-        if (row.procedure != spec.name || row.type != terms::TrialType::experimental ||
-            row.outcome == terms::Outcome::fault || row.outcome == terms::Outcome::aborted ||
-            !replayed->next())
-          continue;
-        if (row.outcome != terms::Outcome::answered) {
-          replayed->record(procedure::Answer::none);
-          continue;
-        }
-        const bool one = spec.tracks.empty() ? row.correct.value_or(false) : row.response == spec.tracks;
-        replayed->record(one ? procedure::Answer::one : procedure::Answer::zero);
-      }
-      if (replayed->recorded() == 0) continue;
-      for (const auto& [parameter, estimate] : replayed->estimates())
-        data.estimates.push_back({block->start.name, spec.name, parameter, estimate.mean, estimate.sd,
-                                  posterior ? "mean of its posterior" : estimate.basis, kind.choice,
-                                  kind.settles_at(spec, least, 1)});
-    }
-  }
+  data.level_label = axis_label(name, words.unit);
 }
 
 }  // namespace
@@ -323,6 +278,11 @@ void add_trials(const std::vector<records::BlockRecord>& blocks, const protocol:
   data.conditions = protocol::conditions(protocol);
   data.show = protocol.analysis.show;
   data.exclusion = {protocol.analysis.exclude_below_s, protocol.analysis.exclude_mad};
+  data.thresholds_differ =
+      std::any_of(protocol.procedures.begin(), protocol.procedures.end(), [&](const procedure::Spec& spec) {
+        const auto& by = protocol.analysis.by;
+        return spec.second && std::find(by.begin(), by.end(), spec.second->level) == by.end();
+      });
   add_estimates(counted, protocol, data);
 }
 

@@ -131,6 +131,7 @@ std::vector<analysis::Detection> detections_of(const SessionData& data) {
 }  // namespace
 
 std::vector<NamedFit> fits_of(const SessionData& data) {
+  if (data.thresholds_differ) return {};
   const auto instructions = analysis::conditions_of(data.trials, data.conditions);
   if (instructions.size() < 2) return {fit_of(data, "", data.trials, 0)};
   std::vector<NamedFit> fits;

@@ -36,9 +36,9 @@ class Truths {
          const std::vector<SessionOutcome>& outcomes) {
     const observer::Observer observer(options.observer);
     for (const auto& spec : protocol.procedures)
-      if (const auto level = settled_level(protocol, spec, observer))
+      for (const auto& [parameter, value] : true_parameters(protocol, spec, observer))
         for (int number = 1; number <= protocol::session_count(protocol); ++number)
-          add("procedure " + spec.name + session_suffix(protocol, number), "threshold", *level);
+          add("procedure " + spec.name + session_suffix(protocol, number), parameter, value);
     for (const auto& spec : protocol.procedures)
       if (spec.kind == procedure::Kind::adjustment)
         for (const auto& condition : with_none(protocol::conditions(protocol)))

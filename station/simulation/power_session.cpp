@@ -5,7 +5,9 @@
 
 #include "station/analysis/trade.hpp"
 #include "station/protocol/answers.hpp"
+#include "station/protocol/sources.hpp"
 #include "station/protocol/visits.hpp"
+#include "station/report/stored_estimates.hpp"
 #include "station/report/stored_trials.hpp"
 #include "station/report/summary.hpp"
 #include "station/simulation/parallel.hpp"
@@ -21,14 +23,19 @@ std::optional<analysis::Interval> interval_of(const std::optional<analysis::Para
   return found ? std::optional(found->interval) : std::nullopt;
 }
 
-/// Adds the procedures' own threshold estimates; of the method of limits also those of each direction. A
-/// report prints no intervals for them.
-void add_estimates(const Rehearsal& rehearsal, const std::string& session, const std::string& unit,
+/// Adds the procedures' own threshold estimates; of the method of limits also those of each direction. Of a
+/// procedure with a second dimension or a criterion, which no fit has, adds the estimates of all parameters.
+void add_estimates(const Rehearsal& rehearsal, const protocol::Protocol& protocol, const std::string& session,
                    std::vector<Finding>& findings) {
-  for (const auto& estimate : rehearsal.estimates)
-    if (estimate.parameter.starts_with("threshold"))
-      findings.push_back(
-          {"procedure " + estimate.procedure + session, estimate.parameter, unit, estimate.mean, {}});
+  for (const auto& estimate : rehearsal.estimates) {
+    const auto* spec = protocol::find_procedure(protocol, estimate.procedure);
+    if (!spec || (!estimate.parameter.starts_with("threshold") && !has_parameters_of_its_own(*spec)))
+      continue;
+    std::optional<analysis::Interval> interval;
+    if (estimate.interval) interval = {estimate.interval->first, estimate.interval->second, 0.95};
+    findings.push_back({"procedure " + estimate.procedure + session, estimate.parameter,
+                        report::unit_of(estimate.parameter, *spec), estimate.mean, interval});
+  }
 }
 
 /// Distance between the seeds of a participant's sessions: larger than any number of observers.
@@ -193,7 +200,7 @@ SessionOutcome simulate_session(const protocol::Protocol& protocol, const PowerO
   data.replicates = session < options.interval_sessions ? options.replicates : 0;
   const auto& unit = data.level_unit;
   for (std::size_t i = 0; i < sessions.size(); ++i) {
-    add_estimates(sessions[i], session_suffix(protocol, static_cast<int>(i) + 1), unit, outcome.findings);
+    add_estimates(sessions[i], protocol, session_suffix(protocol, static_cast<int>(i) + 1), outcome.findings);
     outcome.presented += sessions[i].trials;
     outcome.duration_s += sessions[i].duration_s;
   }

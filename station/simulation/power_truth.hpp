@@ -18,6 +18,15 @@ namespace turnpoint::simulation {
 std::optional<double> settled_level(const protocol::Protocol& protocol, const procedure::Spec& spec,
                                     const observer::Observer& observer);
 
+/// True if no fit of the report has the parameters that the procedure estimates: it has a second dimension or
+/// a criterion.
+bool has_parameters_of_its_own(const procedure::Spec& spec);
+
+/// The true values of the parameters of a procedure with a posterior, as far as the observer has them. The
+/// slope and the criterion are only included if the observer's function is of the procedure's family.
+std::map<std::string, double> true_parameters(const protocol::Protocol& protocol, const procedure::Spec& spec,
+                                              const observer::Observer& observer);
+
 /// The true values for a fit; empty if the observer has no such value.
 struct FitTruth {
   std::optional<double> threshold, slope, level_75;

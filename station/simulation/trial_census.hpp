@@ -19,10 +19,11 @@ class TrialCensus {
   explicit TrialCensus(const protocol::Protocol& protocol);
 
   void add(const protocol::Block& block, const trial::TrialSpec& trial);
-  /// Adds `trials` trials of a procedure, with each of `levels` equally often. Without a procedure (`spec` is
-  /// null), the levels are the block's fixed levels.
+  /// Adds `trials` trials of a procedure, with each of `levels` equally often, combined with each of
+  /// `seconds` if the procedure has a second dimension. Without a procedure (`spec` is null), the levels are
+  /// the block's fixed levels.
   void add(const protocol::Block& block, const procedure::Spec* spec, const std::vector<double>& levels,
-           double trials);
+           const std::vector<double>& seconds, double trials);
   void add(const TrialCensus& other);
 
   /// The number of trials of each kind (cell). A cell is identified by the factors that the block, procedure

@@ -196,7 +196,7 @@ std::vector<ProcedureEstimate> Director::estimates() const {
   std::vector<ProcedureEstimate> all;
   for (std::size_t i = 0; i < state_->procedures.size(); ++i)
     for (const auto& [parameter, e] : state_->procedures[i]->estimates())
-      all.push_back({state_->specs[i]->name, parameter, e.mean, e.sd, e.basis});
+      all.push_back({state_->specs[i]->name, parameter, e.mean, e.sd, e.basis, e.interval});
   return all;
 }
 

@@ -3,6 +3,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "station/procedure/program.hpp"
@@ -52,7 +53,9 @@ struct ProcedureEstimate {
   std::string procedure, parameter;
   double mean = 0;
   std::optional<double> sd;  ///< empty if the estimate is a single number
-  std::string basis;
+  std::string basis = {};
+  /// central 95 % credible interval, if the estimate comes from a posterior
+  std::optional<std::pair<double, double>> interval = {};
 };
 /// Formats an estimate with its SD and basis, if known: `-12.3 (SD 1.25, reversals 5 to 12 of 12)`.
 std::string in_words(const ProcedureEstimate& estimate);

@@ -160,6 +160,8 @@ TrialSpec Director::State::warmup_trial() const {
   if (!specs.empty()) {
     factor = specs.front()->level;
     for (const auto& [name, value] : specs.front()->with) spec.factors[name] = value;
+    if (const auto& second = specs.front()->second)
+      spec.factors[second->level] = second->stimuli.values[second->stimuli.values.size() / 2];
     levels = specs.front()->values.empty() ? specs.front()->stimuli.values : specs.front()->values;
     if (levels.empty() && specs.front()->start) levels = {*specs.front()->start};
     if (levels.empty() && specs.front()->min && specs.front()->max)
@@ -220,6 +222,7 @@ TrialSpec Director::State::procedure_trial(int index) const {
   spec.procedure = from.name;
   spec.level = proposal->level;
   spec.factors[from.level] = proposal->level;
+  if (proposal->second) spec.factors[from.second->level] = *proposal->second;
   for (const auto& [name, value] : from.with) spec.factors[name] = value;
   for (const auto& [name, level] : proposal->balanced)
     for (const auto& factor : protocol.factors)

@@ -304,3 +304,27 @@ TEST_CASE("at a response signal the observer answers from what it has found out 
   question.signal_s.reset();
   CHECK(last == Approx(observer.share(question, 0)).margin(0.01));
 }
+
+TEST_CASE("the threshold moves along the second dimension by the gradient, and not below the floor",
+          "[observer]") {
+  const Observer observer(parse("sim:threshold=-16,gradient=0.2,floor=-18,lapse=0"));
+  const auto right = [&](double level, double second) {
+    auto question = at_level(level);
+    question.decibel = true, question.second = second;
+    return observer.share(question, 0);
+  };
+  CHECK(right(-16, 0) == Approx(0.75));
+  CHECK(right(-12, 20) == Approx(0.75));
+  CHECK(right(-17, -5) == Approx(0.75));
+  CHECK(right(-18, -40) == Approx(0.75));  // without the floor, the threshold would be -24 dB
+  CHECK(right(-16, 20) < 0.7);
+  const Observer ratios(parse("sim:threshold=0.1,gradient=0.02,lapse=0,criterion=0"));
+  auto question = at_level(0.1 * std::pow(10, 0.4));
+  question.decides = Decides::presence, question.second = 20, question.log_step = std::log(10.0);
+  CHECK(ratios.share(question, 1) == Approx(random::normal_cdf(1.3489795)).epsilon(1e-6));
+  question.log_step = std::log(10.0) / 20, question.level = 0.1 * std::pow(10, 0.02);
+  CHECK(ratios.share(question, 1) == Approx(random::normal_cdf(1.3489795)).epsilon(1e-6));
+  question.decides = Decides::side, question.log_step = 0, question.level = 0.4;
+  const Observer sides(parse("sim:threshold=0.1,gradient=0.02,lapse=0"));
+  CHECK(sides.share(question, 1) == Approx(0.5));
+}

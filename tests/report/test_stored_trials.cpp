@@ -370,3 +370,53 @@ TEST_CASE("settings are reported by the side from which the slider started", "[r
   const auto html = report::to_html(report::summarise(data_of(shipped_file)));
   CHECK(html.find("from below (9 settings)") != std::string::npos);
 }
+
+TEST_CASE("the threshold along the second dimension is reported, and no curve over all trials", "[report]") {
+  const auto source = shipped("friction-boundary-2d");
+  const auto data = data_of(source, "sim:threshold=-16,gradient=0.1,lapse=0");
+  CHECK(data.thresholds_differ);
+  REQUIRE(data.threshold_curves.size() == 1);
+  const auto& curve = data.threshold_curves[0];
+  CHECK(curve.label == "End (mm)");
+  CHECK(curve.trials.size() == 96);
+  REQUIRE(curve.points.size() == 7);
+  CHECK(curve.points.front().second == 120);
+  const double rise = curve.points.back().threshold - curve.points.front().threshold;
+  for (const auto& point : curve.points)
+    CHECK((point.interval.low < point.threshold && point.threshold < point.interval.high));
+  const auto json = report_of(data);
+  CHECK(json["fits"].empty());
+  CHECK(json["threshold_curves"][0]["points"].size() == 7);
+  bool gradient = false;
+  for (const auto& estimate : json["estimates"])
+    if (estimate["parameter"] == "gradient") {
+      gradient = true;
+      CHECK(estimate["unit"] == "dB/mm");
+      CHECK(estimate["interval"]["low"] < estimate["mean"]);
+      CHECK(estimate["interval"]["high"] > estimate["mean"]);
+      // without a floor, the mean threshold rises by the mean gradient, over 60 mm
+      CHECK(rise == Approx(60 * estimate["mean"].get<double>()).margin(1e-9));
+    }
+  CHECK(gradient);
+  const auto html = report::to_html(report::summarise(data));
+  CHECK(html.find("Threshold along the second dimension") != std::string::npos);
+  CHECK(html.find("gradient (dB/mm)") != std::string::npos);
+  CHECK(html.find("<h2>Psychometric function</h2>") == std::string::npos);
+  // by the levels of the second factor there is one curve for each of them
+  const auto by = data_of(source + "\n[analysis]\nby = \"end_mm\"\n");
+  CHECK_FALSE(by.thresholds_differ);
+  CHECK(report_of(by)["fits"].size() > 1);
+}
+
+TEST_CASE("a procedure with a criterion is reported with it, beside the analysis of yes and no", "[report]") {
+  const auto data = data_of(shipped("friction-yes-no"), "sim:threshold=0.1,criterion=1,lapse=0");
+  CHECK(data.design == report::Design::yes_no);
+  CHECK(data.function == terms::Function::weibull);
+  const auto json = report_of(data);
+  REQUIRE(json["fits"].size() == 1);
+  double criterion = -10;
+  for (const auto& estimate : json["estimates"])
+    if (estimate["parameter"] == "criterion") criterion = estimate["mean"];
+  CHECK(criterion == Approx(1).margin(0.6));
+  CHECK_FALSE(json["detection"].empty());
+}

@@ -279,3 +279,47 @@ TEST_CASE(
   for (const auto& entry : three.recoveries) rows += entry.source == "answers";
   CHECK(rows == 1);
 }
+
+TEST_CASE("a procedure over two dimensions recovers the observer's threshold and gradient", "[power]") {
+  const auto power = simulation::power(shipped("friction-boundary-2d"),
+                                       options("sim:threshold=-16,gradient=0.08,slope=1.3,lapse=0.02", 30));
+  const std::string source = "procedure surface";
+  const auto& threshold = find(power, source, "threshold");
+  // where the observer's Weibull function has the value 1 - 1/e of the way between its asymptotes
+  CHECK(*threshold.truth == Approx(-16 + 20 / 1.3 * std::log10(1 / std::log(2.0))).margin(1e-6));
+  CHECK(*find(power, source, "gradient").truth == 0.08);
+  CHECK(find(power, source, "gradient").unit == "dB/mm");
+  CHECK(*find(power, source, "slope").truth == 1.3);
+  CHECK(*find(power, source, "lapse").truth == Approx(0.01));
+  for (const auto* parameter : {"threshold", "gradient"}) {
+    const auto& found = find(power, source, parameter);
+    INFO(parameter << ": " << found.mean << ", truth " << *found.truth);
+    CHECK(std::fabs(*found.bias) < 4 * found.sd / std::sqrt(30.0) + 0.1 * std::fabs(*found.truth));
+    REQUIRE(found.coverage);
+    CHECK(found.coverage->trials == 30);
+    CHECK(found.coverage->right >= 25);
+  }
+  // one psychometric function cannot describe trials whose threshold differs
+  for (const auto& recovery : power.recoveries) CHECK_FALSE(recovery.source.starts_with("fit"));
+}
+
+TEST_CASE("a procedure with a criterion recovers the observer's criterion, wherever it lies", "[power]") {
+  for (const double criterion : {0.3, 1.5}) {
+    const auto power = simulation::power(
+        shipped("friction-yes-no"),
+        options("sim:threshold=0.1,slope=1.4,lapse=0.02,criterion=" + std::to_string(criterion), 30));
+    const std::string source = "procedure detection";
+    CHECK(*find(power, source, "criterion").truth == Approx(criterion));
+    // d' is 1.349 at the observer's threshold
+    CHECK(*find(power, source, "threshold").truth ==
+          Approx(0.1 * std::pow(1.3489795, -1 / 1.4)).epsilon(1e-5));
+    CHECK(*find(power, source, "lapse").truth == Approx(0.01));
+    for (const auto* parameter : {"threshold", "criterion"}) {
+      const auto& found = find(power, source, parameter);
+      INFO(parameter << ": " << found.mean << ", truth " << *found.truth);
+      CHECK(std::fabs(*found.bias) < 4 * found.sd / std::sqrt(30.0) + 0.1 * std::fabs(*found.truth));
+      CHECK(found.coverage->right >= 25);
+    }
+    CHECK(find(power, "fit", "threshold").estimates.size() > 20);
+  }
+}
