@@ -28,11 +28,16 @@ std::string why_estimates_differ(const SessionData& data) {
       settles_at.insert(number(100 * *estimate.settles_at) + " %");
   }
   std::string why;
-  if (posterior)
+  if (posterior) {
     why +=
         "A procedure with a posterior estimates the mean of that posterior, with the prior and the grid of "
-        "the protocol. The fit uses the same answers, but a prior of its own, which is nearly flat, and "
-        "shows medians. The fewer answers there are, the further the two are apart. ";
+        "the protocol; its 95 % intervals are central. ";
+    if (!data.thresholds_differ)
+      why +=
+          "The fit uses the same answers, but a prior of its own, which is nearly flat, and shows medians. "
+          "The "
+          "fewer answers there are, the further the two are apart. ";
+  }
   if (track) why += "A staircase estimates from the last levels that it tried; the fit uses all answers. ";
   if (program)
     why +=
