@@ -7,15 +7,20 @@ namespace turnpoint::report {
 
 namespace {
 
+/// The two answers to a stimulus are drawn beside each other, this share of the axis apart.
+constexpr double kApart = 0.014;
+
 /// One marker for all trials with the same stimulus and answer; its area shows how many they are.
 plot::Points trials_of(const ThresholdCurve& curve, bool logarithmic) {
+  const double apart = kApart * (curve.points.back().second - curve.points.front().second);
   std::map<std::pair<std::pair<double, double>, bool>, int> counts;
   for (const auto& trial : curve.trials)
     if (!logarithmic || trial.level > 0) ++counts[{{trial.second, trial.level}, trial.one}];
   plot::Points points;
   points.series = plot::kNeutral;
   for (const auto& [what, count] : counts) {
-    points.x.push_back(what.first.first), points.y.push_back(what.first.second);
+    points.x.push_back(what.first.first + (what.second ? -0.5 : 0.5) * apart),
+        points.y.push_back(what.first.second);
     points.open.push_back(!what.second);
     points.weight.push_back(count);
   }
