@@ -235,6 +235,11 @@ void set_level_words(const std::string& level, report::SessionData& data) {
   data.level_label = axis_label(name, words.unit);
 }
 
+/// Unit of a parameter that a separate program estimated: that of the level for thresholds.
+std::string unit_of_program(const std::string& parameter, const report::SessionData& data) {
+  return parameter.starts_with("threshold") || parameter == "pse" ? data.level_unit : "";
+}
+
 }  // namespace
 
 std::vector<analysis::Deciding> deciding_in(protocol::TaskKind kind) {
@@ -305,6 +310,8 @@ void add_program_estimates(const std::vector<records::BlockRecord>& blocks,
                                 row.mean,
                                 row.sd,
                                 row.basis,
+                                unit_of_program(row.parameter, data),
+                                std::nullopt,
                                 procedure::Choice::program,
                                 {}});
     }
@@ -319,6 +326,8 @@ void add_estimator(const std::string& program, const std::map<std::string, proce
                               estimate.mean,
                               estimate.sd,
                               estimate.basis,
+                              unit_of_program(parameter, data),
+                              std::nullopt,
                               procedure::Choice::program,
                               {}});
 }
