@@ -36,7 +36,7 @@ install(FILES station/collector/queries.sql DESTINATION ${CMAKE_INSTALL_DATADIR}
 install(FILES deploy/system/turnpoint.bash-completion DESTINATION share/bash-completion/completions RENAME turnpoint COMPONENT station)
 install(FILES deploy/system/turnpoint.bash-completion DESTINATION share/bash-completion/completions RENAME turnpoint-ui COMPONENT station)
 install(FILES deploy/system/turnpoint.zsh-completion DESTINATION share/zsh/vendor-completions RENAME _turnpoint COMPONENT station)
-install(FILES deploy/system/watchdog.conf DESTINATION share/turnpoint/system COMPONENT station)
+install(FILES deploy/system/watchdog.conf deploy/system/iio.conf DESTINATION share/turnpoint/system COMPONENT station)
 install(FILES deploy/system/turnpoint.udev DESTINATION lib/udev/rules.d RENAME 60-turnpoint.rules COMPONENT station)
 install(FILES deploy/system/turnpoint.sysusers DESTINATION lib/sysusers.d RENAME turnpoint.conf COMPONENT station)
 install(FILES deploy/system/turnpoint.tmpfiles DESTINATION lib/tmpfiles.d RENAME turnpoint.conf COMPONENT station)

@@ -220,8 +220,10 @@ std::unique_ptr<BridgeReader> card_bridges(const rig::Rig& rig, BridgeDevices de
 
 std::unique_ptr<BridgeReader> open_bridges(const rig::Rig& rig,
                                            const std::function<void(plant::Setup&)>& laboratory) {
-  if (!rig.capture || rig.capture->bridges.empty())
-    throw terms::UsageError("the rig \"" + rig.name + "\" has no force cells; add bridges to its [capture]");
+  if (!rig::has_force_cells(rig))
+    throw terms::UsageError("the rig \"" + rig.name +
+                            "\" has no force cells; add bridges to its [capture], or [force_cells]");
+  if (rig.capture->converter) return converter_bridges(*rig.capture->converter);
   if (session::simulates_capture(rig)) return std::make_unique<SimulatedBridges>(rig, laboratory);
   const auto card = session::card_capture_of(rig).value().device;
   return card_bridges(rig, {drive::open_realtime(session::session_stream(rig)), drive::open_capture(card),

@@ -301,9 +301,9 @@ ForceResult weigh(const rig::Rig& rig, BridgeReader& bridges,
   made.cells.rotation_rad = rotation_rad;
   made.cells.matrix = fit.calibration.matrix();
   made.cells.changes = fit.calibration.changes();
-  made.cells.carrier_Hz = sensing::carriers_Hz.front();
   const auto& tares = weighing.tares();
   made.cells.reference_amplitude = tares.front().reference;
+  if (tares.front().reference > 0) made.cells.carrier_Hz = sensing::carriers_Hz.front();
   made.cells.rated_ratio = rated_ratios(weights);
   const double middle_Nmm = 0.5 * 0.5e3 * rig.surface.length_m;
   made.sd = fit.calibration.sd(readings_under(made.cells.matrix, {0.5, 0.25, middle_Nmm}));

@@ -8,6 +8,7 @@
 #include "station/calibration/calibration.hpp"
 #include "station/drive/alsa_capture.hpp"
 #include "station/drive/engine.hpp"
+#include "station/iio/converter.hpp"
 #include "station/plant/setup.hpp"
 #include "station/rig/rig.hpp"
 #include "station/sensing/force_calibration.hpp"
@@ -33,8 +34,9 @@ std::vector<WeightStep> weight_steps(double length_mm);
 
 /// Means of the bridges while nothing moved.
 struct BridgeReading {
-  std::array<double, 3> ratio{}, quadrature{}, sd{};  ///< bridge / reference
-  double reference = 0;                               ///< amplitude; 1 is full scale
+  /// Bridge / reference; from a converter with a clock of its own, the reading in the unit of its driver.
+  std::array<double, 3> ratio{}, quadrature{}, sd{};
+  double reference = 0;  ///< amplitude; 1 is full scale, 0: a converter with a clock of its own
 };
 
 /// Reads the bridges of a rig: with a card, or in the simulated laboratory, where it also puts the weights on
@@ -56,7 +58,12 @@ struct BridgeDevices {
 };
 std::unique_ptr<BridgeReader> card_bridges(const rig::Rig& rig, BridgeDevices devices);
 
-/// Opens the reader for the rig's [capture]. Only the carrier is played, and the amplifier stays off.
+/// Reads cells on a converter with a clock of its own. `open` opens it.
+std::unique_ptr<BridgeReader> converter_bridges(
+    const rig::CellConverter& converter,
+    const std::function<std::unique_ptr<iio::Converter>(const iio::Config&)>& open = iio::open);
+
+/// Opens the reader for the rig's force cells. Only the carrier is played, and the amplifier stays off.
 /// `laboratory` changes the simulated laboratory; for tests. Throws terms::UsageError for a rig without force
 /// cells.
 std::unique_ptr<BridgeReader> open_bridges(const rig::Rig& rig,

@@ -339,7 +339,7 @@ void check_triggers(const Protocol& protocol, const rig::Rig& rig, Survey& surve
 
 void check_sensing(const Protocol& protocol, const rig::Rig& rig, Survey& survey) {
   if (!protocol.sensing) return;
-  if (rig.capture && !rig.capture->bridges.empty()) {
+  if (rig::has_force_cells(rig)) {
     if (rig.capture->uri != "sim:" && !rig.capture->forces)
       survey.problems.push_back(
           {protocol.sensing->place,
@@ -347,9 +347,9 @@ void check_sensing(const Protocol& protocol, const rig::Rig& rig, Survey& survey
            "calibrate them with `turnpoint calibrate --forces`, or leave out [sensing]"});
     return;
   }
-  survey.problems.push_back({protocol.sensing->place,
-                             "the rig has no force cells, so the finger's movement is not known",
-                             "leave out [sensing], or use a rig with \"bridges\" in [capture]"});
+  survey.problems.push_back(
+      {protocol.sensing->place, "the rig has no force cells, so the finger's movement is not known",
+       "leave out [sensing], or use a rig with \"bridges\" in [capture] or with [force_cells]"});
 }
 
 /// Plans the strongest trials of friction tables.

@@ -134,10 +134,23 @@ struct ForceCells {
   Matrix matrix{};
   /// changes of the matrix if one source of error changes by one standard deviation
   std::vector<Matrix> changes;
-  double carrier_Hz = 0;           ///< the calibration holds only for this carrier
+  double carrier_Hz = 0;  ///< the calibration holds only for this carrier; 0: a converter with its own clock
   double reference_amplitude = 0;  ///< amplitude of the reference during the calibration; 1 is full scale
   std::array<double, 3> rotation_rad{};  ///< phase of each bridge against the reference
   std::array<double, 3> rated_ratio{};   ///< ratio of bridge to reference at the rated load of each cell
+};
+
+/// Force cells on a converter with a clock of its own, which the kernel offers as a device of its subsystem
+/// IIO.
+struct CellConverter {
+  std::string uri;  ///< `iio:DEVICE`, with the name or label of the device
+  /// names of the channels of two cells below the surface (the first nearer to the wide edge) and of the
+  /// lateral one
+  std::array<std::string, 3> channels;
+  double rate_Hz = 1000;                          ///< samples of each channel per second
+  std::optional<double> sampling_frequency = {};  ///< what is written to the attribute of the driver
+  std::string trigger = {};                       ///< name of the trigger; "": the one that the device has
+  double delay_s = 0;                             ///< by how much the converter's filter delays the samples
 };
 
 /// What the station captures of its own output: `sim:` (a simulated plate; only in simulated sessions) or
@@ -155,6 +168,8 @@ struct Capture {
   /// captured channels of the force cells: two below the surface (the first nearer to the wide edge) and the
   /// lateral one; empty without force cells
   std::vector<int> bridges = {};
+  /// force cells that are not captured by the card; `bridges` is then empty
+  std::optional<CellConverter> converter = {};
   std::optional<ForceCells> forces = {};  ///< empty without a calibration of the force cells
 };
 
@@ -220,6 +235,9 @@ struct Rig {
   Limits limits;
   std::vector<std::string> defaults_used;  ///< `key = value` for each default that was used
 };
+
+/// True if the rig has force cells, calibrated or not.
+bool has_force_cells(const Rig& rig);
 
 /// Returns the transducers whose vibration cannot be proven: the rig captures with a card, but the
 /// calibration contains no response of a pick-up to them.

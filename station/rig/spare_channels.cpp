@@ -157,13 +157,57 @@ Capture read_capture(const text::Value& table, const Rig& rig, text::Findings& f
   return capture;
 }
 
+/// A name of the kernel, which may not contain what separates names in messages and files.
+void check_name(TableReader& reader, const std::string& key, const std::string& name) {
+  if (name.find_first_of(" \t/,\"") == std::string::npos) return;
+  reader.problem(key, "\"" + name + "\" is not the name of a channel or trigger",
+                 "a name without spaces, slashes and commas, such as \"voltage0-voltage1\"");
+}
+
+CellConverter read_converter(const text::Value& table, Rig& rig, text::Findings& findings) {
+  TableReader reader(table, "force_cells", findings);
+  CellConverter converter;
+  converter.uri = read_uri(reader, {"iio:*"}, "\"iio:DEVICE\", with the name or label of an IIO device");
+  const std::array keys{"a", "b", "lateral"};
+  for (std::size_t k = 0; k < keys.size(); ++k) {
+    auto& name = converter.channels[k];
+    name = reader.string(keys[k], "the name of a channel, such as \"voltage0-voltage1\"");
+    check_name(reader, keys[k], name);
+    for (std::size_t other = 0; other < k; ++other)
+      if (!name.empty() && converter.channels[other] == name)
+        reader.problem(keys[k], "channel \"" + name + "\" is also that of \"" + keys[other] + "\"",
+                       "a channel of its own for each cell");
+  }
+  // Below 80 samples a second the contact of a finger is not seen in time; the grid has 1000 points a second.
+  converter.rate_Hz = reader.number("rate_Hz", {80, 1000, Range::Ends::closed, "Hz"});
+  converter.sampling_frequency = reader.maybe_number("sampling_frequency", {0, 1e9, Range::Ends::open_low});
+  converter.trigger = reader.maybe_string("trigger").value_or("");
+  check_name(reader, "trigger", converter.trigger);
+  converter.delay_s = 1e-3 * reader.number("delay_ms", {0, 1000, Range::Ends::closed, "ms"}, 0);
+  reader.finish();
+  if (!rig.capture || !rig.capture->uri.starts_with("alsa:"))
+    reader.problem("uri", "force cells on a converter need pick-ups on the card that plays",
+                   "add [capture] with uri = \"alsa:NAME\"");
+  else if (!rig.capture->bridges.empty())
+    reader.problem("uri", "[capture] already has force cells", "leave out \"bridges\" or [force_cells]");
+  return converter;
+}
+
 }  // namespace
+
+bool has_force_cells(const Rig& rig) {
+  return rig.capture && (!rig.capture->bridges.empty() || rig.capture->converter);
+}
 
 void read_spare_channels(TableReader& file, Rig& rig) {
   if (const auto* table = file.maybe_table("marker")) rig.marker = read_marker(*table, rig, file.findings());
   if (const auto* table = file.maybe_table("noise")) rig.noise = read_noise(*table, rig, file.findings());
   if (const auto* table = file.maybe_table("capture"))
     rig.capture = read_capture(*table, rig, file.findings());
+  if (const auto* table = file.maybe_table("force_cells")) {
+    const auto converter = read_converter(*table, rig, file.findings());
+    if (rig.capture) rig.capture->converter = converter;
+  }
   if (const auto* table = file.maybe_table("sync")) rig.sync = read_sync(*table, rig, file.findings());
 }
 

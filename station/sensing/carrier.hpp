@@ -61,6 +61,9 @@ struct BridgeOptions {
   std::array<double, bridge_count> rotation_rad{};
 };
 
+/// A reading above this many times the one at the rated load is an overload.
+inline constexpr double overload_share = 1.5;
+
 /// The reason why a point must not be used. `none` means that it may be used.
 enum class WireFault {
   none,

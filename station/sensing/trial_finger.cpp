@@ -69,6 +69,18 @@ void TrialFinger::push(const CaptureBlock& block) {
   keep_from(points_.back().index - points_in(intervals_.empty() ? idle_s : longest_s));
 }
 
+void TrialFinger::push(const BridgePoint& point) {
+  if (!points_.empty() && point.index <= points_.back().index) return;
+  if (!points_.empty() && point.index > points_.back().index + points_in(idle_s)) points_.clear();
+  while (!points_.empty() && points_.back().index + 1 < point.index) {
+    BridgePoint lost{.index = points_.back().index + 1};
+    lost.ratio.fill(std::numeric_limits<double>::quiet_NaN());
+    points_.push_back(lost);
+  }
+  points_.push_back(point);
+  keep_from(point.index - points_in(intervals_.empty() ? idle_s : longest_s));
+}
+
 std::int64_t TrialFinger::known_at() const {
   if (intervals_.empty()) return std::numeric_limits<std::int64_t>::min();
   return intervals_.back().end_frame + static_cast<std::int64_t>(tail_s * setup_.bridges.rate_Hz);

@@ -19,6 +19,9 @@ struct FingerSetup {
   ForceCalibration calibration{{}, {}};
   MovementWindow window;
   double length_mm = 0;  ///< length of the strip, in which a step of friction is looked for
+  /// The cells have a converter with a clock of its own, whose points are pushed; otherwise they are captured
+  /// by the card that plays.
+  bool own_clock = false;
 };
 
 /// Whether the forces of a trial are known.
@@ -53,7 +56,7 @@ struct FingerNow {
 };
 
 /// Measures the finger in one trial after another from captured frames, which must have the numbers at which
-/// they were played. Not thread-safe; allocates.
+/// they were played, or from points (`FingerSetup::own_clock`). Not thread-safe; allocates.
 class TrialFinger {
  public:
   /// The cells are read for this long before the trial, without a finger on the surface.
@@ -74,6 +77,9 @@ class TrialFinger {
   /// not take place.
   void cut(std::int64_t frame);
   void push(const CaptureBlock& block);
+  /// Takes a point of cells that have a clock of their own. Points that were left out count as lost; points
+  /// that were already received are ignored.
+  void push(const BridgePoint& point);
 
   /// The playback frame before which the result of the expected trial is not known.
   std::int64_t known_at() const;

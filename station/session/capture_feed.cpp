@@ -37,10 +37,9 @@ std::optional<CardCapture> card_capture_of(const rig::Rig& rig) {
   plan.setup.channels = rig.capture->channels;
   plan.setup.pick_ups = calibrated_pick_ups(*rig.capture);
   plan.pilot = pilot_of(rig);
-  if (!rig.capture->bridges.empty()) {
-    plan.pilot.carrier_Hz = sensing::carriers_Hz.front();
-    plan.setup.finger = calibrated_finger(rig);
-  }
+  if (!rig.capture->bridges.empty()) plan.pilot.carrier_Hz = sensing::carriers_Hz.front();
+  plan.setup.finger = calibrated_finger(rig);
+  plan.cells = cell_plan_of(rig);
   plan.reference = rig.capture->reference;
   plan.triggers = trigger_setup_of(rig);
   return plan;

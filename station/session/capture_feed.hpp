@@ -8,6 +8,7 @@
 #include "station/drive/alsa_capture.hpp"
 #include "station/rig/rig.hpp"
 #include "station/sensing/pilot.hpp"
+#include "station/session/cell_feed.hpp"
 #include "station/session/triggers.hpp"
 #include "station/session/vibration_watch.hpp"
 
@@ -20,6 +21,7 @@ struct CardCapture {
   sensing::Pilot pilot;
   int reference = 0;  ///< captured channel on which the pilot comes back
   TriggerSetup triggers;
+  std::optional<CellPlan> cells = {};  ///< calibrated force cells that the card does not capture
 };
 
 /// Returns nothing unless the rig's [capture] is `alsa:`.

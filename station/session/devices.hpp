@@ -5,6 +5,7 @@
 #include "station/drive/alsa_capture.hpp"
 #include "station/drive/amplifier.hpp"
 #include "station/drive/engine.hpp"
+#include "station/iio/converter.hpp"
 #include "station/lines/buttons.hpp"
 #include "station/lines/sync_line.hpp"
 #include "station/lines/trigger_lines.hpp"
@@ -15,7 +16,7 @@
 namespace turnpoint::session {
 
 /// The devices of a real session. `buttons` is null if the rig has neither buttons nor contact. Tests may
-/// replace the stream, the capture and the clocks.
+/// replace the stream, the capture, the converter of the force cells and the clocks.
 struct Devices {
   std::unique_ptr<drive::Amplifier> amplifier;
   std::unique_ptr<lines::Buttons> buttons;
@@ -25,6 +26,7 @@ struct Devices {
       drive::open_realtime;
   std::function<std::unique_ptr<drive::Capture>(const drive::OutputConfig&)> open_capture =
       drive::open_capture;
+  std::function<std::unique_ptr<iio::Converter>(const iio::Config&)> open_cells = iio::open;
   std::function<system::Clocks()> clocks = system::read_clocks;
 };
 

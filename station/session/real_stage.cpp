@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
 #include <cstring>
 #include <deque>
@@ -33,6 +34,8 @@ constexpr std::int64_t kMeasured_ns = 1'000'000'000;  // longest wait for what w
 constexpr std::int64_t kExpected_ns = 50'000'000;
 // time from the end of the last stimulus to switching the amplifier off
 constexpr std::int64_t kTail_ns = 20'000'000;
+// longest wait for a converter of force cells that was connected again
+constexpr std::int64_t kConverter_ns = 1'500'000'000;
 
 class RealStage : public Stage {
  public:
@@ -47,6 +50,7 @@ class RealStage : public Stage {
     reference_ = capture->reference;
     has_cells_ = capture->setup.finger.has_value();
     feed_ = std::make_unique<CaptureFeed>(devices_.open_capture(capture->device), *capture);
+    if (capture->cells) cells_ = std::make_unique<CellFeed>(*capture->cells, devices_.open_cells);
   }
 
   std::int64_t now_ns() override { return system::monotonic_ns(); }
@@ -140,6 +144,7 @@ class RealStage : public Stage {
 
   Refusal open_amplifier() override {
     if (const auto refusal = align()) return refusal;
+    if (const auto refusal = await_cells()) return refusal;
     closing_ = false;
     if (amplifier() == drive::AmplifierState::enabled) return std::nullopt;
     opened_ns_ = now_ns();
@@ -200,13 +205,32 @@ class RealStage : public Stage {
                              pilot_.channel, reference_)};
   }
 
+  /// Waits for the converter of the force cells, if it has one of its own and was disconnected. A device that
+  /// is connected again is found within a second.
+  Refusal await_cells() {
+    if (!cells_ || cells_->problem().empty()) return std::nullopt;
+    closing_ = true;
+    const auto until_ns = now_ns() + kConverter_ns;
+    wait_for([&] { return cells_->problem().empty() || now_ns() > until_ns; });
+    if (auto problem = cells_->problem(); !problem.empty())
+      return Fault{FaultKind::capture, std::move(problem)};
+    await_tare();
+    return std::nullopt;
+  }
+
+  /// The playback frame before which everything has been measured that is measured at all.
+  std::int64_t measured_until() const {
+    const auto captured = feed_->end_frame();
+    return cells_ && cells_->problem().empty() ? std::min(captured, cells_->end_frame()) : captured;
+  }
+
   /// The force cells are read before each trial, which needs captured frames since the pilot.
   void await_tare() {
     const auto rate_Hz = stream_->config().output.rate_Hz;
     const auto until_ns = now_ns() + static_cast<std::int64_t>(1e9 * feed_->longest_wait_s());
     const auto wanted = stream_->frame_at(now_ns()).value_or(0) +
                         static_cast<std::int64_t>(kTare_s * static_cast<double>(rate_Hz));
-    wait_for([&] { return feed_->end_frame() >= wanted || !feed_->aligned() || now_ns() > until_ns; });
+    wait_for([&] { return measured_until() >= wanted || !feed_->aligned() || now_ns() > until_ns; });
   }
 
   /// Reports the intervals whose samples have been captured: first the measurements of an interval, then that
@@ -216,7 +240,7 @@ class RealStage : public Stage {
       const auto [interval, limit_ns] = unmeasured_.front();
       auto& watch = feed_->watch();
       const auto index = static_cast<std::size_t>(interval);
-      if (feed_->aligned() && feed_->end_frame() < watch.known_at(index) && now < limit_ns) return;
+      if (feed_->aligned() && measured_until() < watch.known_at(index) && now < limit_ns) return;
       unmeasured_.pop_front();
       Input input;
       input.time_ns = now;
@@ -246,6 +270,7 @@ class RealStage : public Stage {
       closing_ = false;
     }
     while (const auto event = stream_->poll()) hear(*event, now);
+    if (cells_) follow_cells(now);
     measure(now);
     if (feed_) take_captured();
     look_at_samples();
@@ -304,6 +329,15 @@ class RealStage : public Stage {
     push(InputKind::notice, now,
          fmt::format("the capture has lost {} frames in {} overruns, and has had {} gaps of unknown length",
                      counters.lost_frames, counters.overruns, counters.unknown_gaps));
+  }
+
+  /// Passes on what the converter of the force cells has sent. Samples that it has lost make the forces of a
+  /// trial unknown only if the trial needs them.
+  void follow_cells(std::int64_t now) {
+    auto playback = stream_->clock();
+    playback.time_ns += std::llround(1e9 * stream_->config().converter_delay_s);
+    cells_->follow(playback, feed_->watch());
+    for (auto& news : cells_->news()) push(InputKind::notice, now, std::move(news));
   }
 
   /// Returns the time of the frame that comes `frames` after an onset.
@@ -390,6 +424,7 @@ class RealStage : public Stage {
   std::optional<Triggers> triggers_;
   bool has_cells_ = false;
   std::unique_ptr<CaptureFeed> feed_;  ///< null if nothing is captured
+  std::unique_ptr<CellFeed> cells_;    ///< null unless the force cells have a converter of their own
   sensing::Pilot pilot_;
   int reference_ = 0;
   /// An interval that was played, and how long to wait for its captured samples.

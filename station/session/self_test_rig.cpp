@@ -183,9 +183,8 @@ class StageRig : public SelfTestRig {
   std::vector<CellReading> read_cells() override {
     CellReading reading;
     if (!parts_.capture || !parts_.capture->finger) {
-      const auto& rig = *parts_.rig;
-      reading.missing = rig.capture && !rig.capture->bridges.empty() ? "the force cells are not calibrated"
-                                                                     : "the rig has no force cells";
+      reading.missing = rig::has_force_cells(*parts_.rig) ? "the force cells are not calibrated"
+                                                          : "the rig has no force cells";
       return {reading};
     }
     std::vector<CellReading> readings;
@@ -197,7 +196,7 @@ class StageRig : public SelfTestRig {
       } else {
         reading.fault = forces_ && forces_->state == sensing::ForcesState::wire
                             ? "a wire of the bridges or of the reference is off"
-                            : "captured frames were missing";
+                            : "samples of the cells were missing";
       }
       readings.push_back(reading);
     }

@@ -61,6 +61,8 @@ class VibrationWatch {
   /// True if one of the expected intervals needs captured frames from this range.
   bool needs(std::int64_t first_frame, std::int64_t end_frame) const;
   void push(const sensing::CaptureBlock& block);
+  /// A point of force cells that have a clock of their own.
+  void push(const sensing::BridgePoint& point);
 
   /// Returns the captured frame after which the result of an interval is known.
   std::int64_t known_at(std::size_t interval) const;

@@ -106,7 +106,7 @@ void RigController::open() {
   if (busy_.isEmpty()) errors_.clear();
   try {
     const auto rig = rig::load(rig_);
-    has_cells_ = rig.capture && !rig.capture->bridges.empty();
+    has_cells_ = rig::has_force_cells(rig);
     const auto file = calibration::newest_for(rig.path);
     if (!file.empty()) {
       const auto made = calibration::load(file);

@@ -20,6 +20,9 @@ struct Stopped {};
 std::string live(maintenance::BridgeReader& bridges) {
   try {
     const auto now = bridges.glance();
+    if (now.reference == 0)
+      return fmt::format("a {:.5g}, b {:.5g}, lateral {:.5g} (in the unit of the converter)", now.ratio[0],
+                         now.ratio[1], now.ratio[2]);
     const auto shown = [&](std::size_t cell) { return std::round(1e5 * now.ratio[cell]) / 100 + 0.0; };
     return fmt::format("a {:.2f}, b {:.2f}, lateral {:.2f} (thousandths of the excitation)", shown(0),
                        shown(1), shown(2));
