@@ -1,10 +1,20 @@
+#include <algorithm>
 #include <array>
 #include <atomic>
+#include <cerrno>
 #include <cmath>
+#include <cstdint>
+#include <functional>
+#include <memory>
 #include <numbers>
+#include <stdexcept>
+#include <string>
 #include <system_error>
 #include <thread>
+#include <vector>
 
+#include "station/calibration/apply.hpp"
+#include "station/calibration/calibration.hpp"
 #include "station/maintenance/force_weights.hpp"
 #include "station/session/cell_feed.hpp"
 #include "tests/session/card_session.hpp"
@@ -238,4 +248,35 @@ TEST_CASE("the calibration of cells on a converter names a wire that is off and 
                       "iio:cells sends 909.1 samples a second, and rate_Hz in [force_cells] is 1000");
     CHECK(session::wrong_rate("cells", 1000, 1010).empty());
   }
+}
+
+TEST_CASE(
+    "a calibration of cells on a converter is written and read, and does not fit cells that a card captures",
+    "[card][forces][converter]") {
+  const TemporaryFolder folder;
+  CardSession card;
+  card.add_capture(37);
+  auto& rig = card.setup.rig;
+  rig.surface.length_m = 1e-3 * converter_length_mm;
+  rig.capture->converter = converter_in_rig();
+  const auto made = weighed_cells(rig);
+  const auto read = calibration::load(maintenance::write_forces(rig, made, folder / "made.toml"));
+  const auto used = calibration::applied(read, rig);
+  CHECK(used.capture.value().forces.value().matrix == made.matrix);
+  CHECK(used.capture->forces->changes == made.changes);
+  CHECK(used.capture->forces->rated_ratio == made.rated_ratio);
+  CHECK(used.capture->forces->carrier_Hz == 0);
+  auto captured = rig;
+  captured.capture->converter.reset();
+  captured.capture->bridges = {2, 3, 4};
+  CHECK_THROWS_WITH(
+      calibration::applied(read, captured),
+      "the force cells of the calibration were on a converter with a clock of its own, those of the "
+      "rig are captured by the card; calibrate them again");
+  auto with_carrier = read;
+  with_carrier.forces->carrier_Hz = 10'525;
+  with_carrier.forces->reference_amplitude = 0.4;
+  CHECK_THROWS_WITH(calibration::applied(with_carrier, rig),
+                    "the force cells of the calibration were captured by the card, those of the rig are on a "
+                    "converter with a clock of its own; calibrate them again");
 }
