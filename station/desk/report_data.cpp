@@ -5,10 +5,12 @@
 #include <algorithm>
 #include <map>
 #include <set>
+#include <stdexcept>
 #include <string>
 
 #include "station/protocol/protocol.hpp"
 #include "station/report/stored_trials.hpp"
+#include "station/session/planned_session.hpp"
 #include "station/store/open.hpp"
 #include "station/store/stored_signals.hpp"
 #include "station/text/number.hpp"
@@ -243,6 +245,12 @@ report::SessionData report_data(const std::string& database, const std::string& 
               (answer.occasion > 0 ? " (after block " + std::to_string(answer.occasion) + ")" : ""),
           answer.answer);
   data.seed = start.seed;
+  try {
+    data.earlier = session::earlier_trials(database, protocol, stored.session);
+  } catch (const std::runtime_error&) {
+    // The earlier sessions cannot be repeated by this program. The report then has no estimates of procedures
+    // that continue.
+  }
   report::add_trials(stored.blocks, protocol, data);
   report::add_program_estimates(stored.blocks, stored.events, data);
   add_programs(stored.events, data);

@@ -97,6 +97,8 @@ struct Spec {
   Scale scale = Scale::linear;
   /// the values that some factors have in all trials of this procedure
   std::map<std::string, std::variant<double, std::string>> with;
+  /// true if the procedure goes on from its state in the participant's earlier sessions
+  bool continues = false;
   /// name of the table from which `for_each` has made this procedure; "" if it was not made by `for_each`
   std::string family;
 

@@ -222,6 +222,7 @@ Spec read_procedure(const Value& table, const Reading& reading, text::Findings& 
   check_tracks(reader, spec, reading);
   check_balance(reader, spec, reading);
   read_with(reader, spec, reading, findings);
+  if (reader.take("continues")) spec.continues = reader.boolean("continues", "false");
   reader.take("for_each");
   if (factor && !is_broken(*factor)) check_levels(reader, spec, *factor);
   if (findings.problems.empty()) check_spec(table, spec, findings);

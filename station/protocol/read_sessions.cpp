@@ -1,6 +1,8 @@
 #include <algorithm>
 #include <set>
 
+#include "station/procedure/description.hpp"
+#include "station/protocol/advice_list.hpp"
 #include "station/protocol/expression.hpp"
 #include "station/protocol/reading.hpp"
 #include "station/protocol/sources.hpp"
@@ -126,6 +128,47 @@ void check_rules(const Reading& reading) {
   }
 }
 
+/// On each day, at most one block may run the procedure, and it must limit the trials: otherwise the first
+/// day would finish it.
+template <class Report>
+void check_days_of(const procedure::Spec& spec, const Protocol& protocol, const Report& report) {
+  for (const auto& visit : different_visits(protocol)) {
+    int blocks = 0;
+    for (const auto& block : block_order(protocol, visit)) {
+      if (std::find(block.procedures.begin(), block.procedures.end(), spec.name) == block.procedures.end())
+        continue;
+      if (block.practice)
+        return report("block \"" + block.name + "\" is practice", "use it in a block that is no practice");
+      if (!block.trials)
+        return report("block \"" + block.name + "\" does not say how many trials a day has",
+                      "add \"trials\" to the block");
+      if (++blocks > 1)
+        return report(visit_words(protocol, visit) + " has two blocks with it",
+                      "use it in one block of a session");
+    }
+  }
+}
+
+/// A procedure that continues needs a session in which to continue, and a block that ends before it is done.
+void check_continuing(const Reading& reading) {
+  const auto& protocol = reading.protocol;
+  for (const auto& spec : protocol.procedures) {
+    if (!spec.continues) continue;
+    const auto report = [&](const std::string& what, const std::string& allowed) {
+      reading.findings.add(reading.places.of(key_of(spec, "continues")),
+                           "procedure \"" + spec.name + "\" continues on another day, but " + what, allowed);
+    };
+    const auto choice = procedure::description(spec.kind).choice;
+    if (choice != procedure::Choice::track && choice != procedure::Choice::posterior)
+      report("this kind of procedure does not follow from its answers alone",
+             "use a staircase, QUEST+ or another procedure with a posterior");
+    else if (!protocol.sessions)
+      report("the file plans no sessions", "add [sessions]");
+    else
+      check_days_of(spec, protocol, report);
+  }
+}
+
 }  // namespace
 
 void read_sessions(TableReader& file, Reading& reading) {
@@ -169,6 +212,7 @@ void check_visits(const Reading& reading) {
   check_sequences(reading);
   check_group_factors(reading);
   check_rules(reading);
+  check_continuing(reading);
 }
 
 }  // namespace turnpoint::protocol

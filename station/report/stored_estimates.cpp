@@ -1,9 +1,11 @@
 #include "station/report/stored_estimates.hpp"
 
 #include <algorithm>
+#include <optional>
 #include <string>
 #include <utility>
 
+#include "station/procedure/continuation.hpp"
 #include "station/procedure/description.hpp"
 #include "station/protocol/conditions.hpp"
 #include "station/protocol/sources.hpp"
@@ -29,14 +31,17 @@ struct Learned {
   bool one;
 };
 
-/// Gives the procedure the answers of its trials in a block. Returns those from which it has learned.
-std::vector<Learned> replay(const std::vector<records::TrialRow>& trials, const procedure::Spec& spec,
-                            procedure::Procedure& replayed) {
+/// Gives the procedure the answers of its trials in a block. Returns those from which it has learned; nothing
+/// if a procedure that continues would have presented other levels, because its earlier sessions are not
+/// known.
+std::optional<std::vector<Learned>> replay(const std::vector<records::TrialRow>& trials,
+                                           const procedure::Spec& spec, procedure::Procedure& replayed) {
   std::vector<Learned> learned;
   for (const auto& row : trials) {
     if (row.procedure != spec.name || row.type != terms::TrialType::experimental ||
         row.outcome == terms::Outcome::fault || row.outcome == terms::Outcome::aborted || !replayed.next())
       continue;
+    if (spec.continues && replayed.next()->level != row.level) return std::nullopt;
     if (row.outcome != terms::Outcome::answered) {
       replayed.record(procedure::Answer::none);
       continue;
@@ -84,14 +89,16 @@ void add_estimates(const std::vector<const records::BlockRecord*>& blocks, const
           procedure::key_of(data.seed, block->start.block_index,
                             place_in_block(spec, block->start.name, protocol), block->start.attempt);
       const auto replayed = procedure::make_procedure(spec, {}, key);
+      if (const auto before = data.earlier.find(spec.name); spec.continues && before != data.earlier.end())
+        procedure::continue_from(before->second, spec, *replayed);
       const auto learned = replay(block->trials, spec, *replayed);
-      if (replayed->recorded() == 0) continue;
+      if (replayed->recorded() == 0 || !learned) continue;
       for (const auto& [parameter, estimate] : replayed->estimates())
         data.estimates.push_back({block->start.name, spec.name, parameter, estimate.mean, estimate.sd,
                                   posterior ? "mean of its posterior" : estimate.basis,
                                   unit_of(parameter, spec), interval_of(estimate), kind.choice,
                                   kind.settles_at(spec, least, 1)});
-      add_curve(block->start.name, spec, *replayed, learned, data);
+      add_curve(block->start.name, spec, *replayed, *learned, data);
     }
   }
 }

@@ -6,6 +6,7 @@
 #include "station/protocol/protocol.hpp"
 #include "station/session/session.hpp"
 #include "station/store/session_log.hpp"
+#include "station/trial/earlier_trials.hpp"
 
 namespace turnpoint::session {
 
@@ -29,7 +30,18 @@ struct NextSession {
 NextSession next_session(const Setup& setup, const std::vector<store::SessionRecord>& earlier,
                          const std::string& today);
 
-/// The same, for the sessions in the setup's database and the current date.
+/// Returns the trials of the participant's earlier planned sessions, for procedures of the protocol that
+/// continue. `session` is the session that is about to begin or was begun: its participant, station, run
+/// mode, planned session and session_index count. Throws terms::UsageError if an earlier session was made
+/// with another version of the protocol, and std::runtime_error if a procedure could not have presented its
+/// trials.
+procedure::EarlierTrials earlier_trials(const std::string& database, const protocol::Protocol& protocol,
+                                        const store::SessionRecord& session);
+
+/// The same for the session of this setup, which has not begun.
+procedure::EarlierTrials earlier_trials(const Setup& setup, const NextSession& next);
+
+/// The next session of this setup, for the sessions in its database and the current date.
 NextSession next_session(const Setup& setup);
 
 /// The station's name, under which its sessions are stored.

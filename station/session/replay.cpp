@@ -131,7 +131,8 @@ const records::ProgramRow* as_recorded(const records::ProgramRow& program,
 
 trial::Director replayed(const Setup& setup, const store::StoredSession& stored,
                          programs::Programs& programs) {
-  trial::Director director(setup.protocol, visit_of(stored.session), stored.session.start.seed, &programs);
+  trial::Director director(setup.protocol, visit_of(stored.session), stored.session.start.seed, &programs,
+                           earlier_trials(setup.database, setup.protocol, stored.session));
   const auto observer =
       setup.observer.empty() ? std::nullopt : std::optional(programs.respondent(setup.observer));
   for (const auto& block : stored.blocks) {

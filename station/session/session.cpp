@@ -156,6 +156,7 @@ struct Begun {
 Begun begin(const Setup& setup, Stage& stage, programs::Programs& programs) {
   const auto next = next_session(setup);
   if (!next.problem.empty()) throw terms::UsageError(next.problem + "; " + next.allowed);
+  auto earlier = earlier_trials(setup, next);
   // With one seed for all participants, the planned sessions still have different orders.
   const auto stated =
       setup.protocol.seed
@@ -166,7 +167,7 @@ Begun begin(const Setup& setup, Stage& stage, programs::Programs& programs) {
       store::SessionLog::begin(setup.database, start_of(setup, seed, stage.realtime_rights(), next.number),
                                segment("start", stage.now_ns()));
   if (!next.overruled.empty()) log.annotate("begun early (" + setup.early + "): " + next.overruled);
-  trial::Director director(setup.protocol, visit_of(log.session()), seed, &programs);
+  trial::Director director(setup.protocol, visit_of(log.session()), seed, &programs, std::move(earlier));
   return {std::move(log), std::move(director), {}};
 }
 

@@ -193,6 +193,12 @@ session::Setup prepare(const RunRequest& request, const std::stop_token& stop) {
   const auto next =
       request.participant != kCodeToCome ? session::next_session(setup) : session::NextSession{};
   if (!next.problem.empty() && !next.too_early) problems.push_back({{}, next.problem, next.allowed});
+  try {
+    if (problems.empty()) session::earlier_trials(setup, next);
+  } catch (const terms::UsageError& refused) {
+    problems.push_back(
+        {{}, refused.what(), "use the file with that version for the participant's other sessions"});
+  }
   if (problems.empty()) problems = programs::problems_of(setup.protocol);
   if (problems.empty() && next.too_early) throw TooEarly({{}, next.problem, next.allowed});
   if (next.too_early) problems.push_back({{}, next.problem, next.allowed});

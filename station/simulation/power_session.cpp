@@ -14,6 +14,7 @@
 #include "station/simulation/rehearsal.hpp"
 #include "station/terms/usage_error.hpp"
 #include "station/text/number.hpp"
+#include "station/trial/earlier_trials.hpp"
 
 namespace turnpoint::simulation {
 
@@ -193,9 +194,12 @@ SessionOutcome simulate_session(const protocol::Protocol& protocol, const PowerO
   report::SessionData data;
   data.seed = seed;
   std::vector<Rehearsal> sessions;
-  for (int number = 1; number <= protocol::session_count(protocol); ++number)
+  procedure::EarlierTrials earlier;
+  for (int number = 1; number <= protocol::session_count(protocol); ++number) {
     sessions.push_back(rehearse(protocol, {session, number},
-                                seed + static_cast<std::uint64_t>(number - 1) * kSeedStep, sits));
+                                seed + static_cast<std::uint64_t>(number - 1) * kSeedStep, sits, earlier));
+    trial::add_earlier_trials(protocol, sessions.back().blocks, earlier);
+  }
   report::add_trials(joined(sessions), protocol, data);
   data.replicates = session < options.interval_sessions ? options.replicates : 0;
   const auto& unit = data.level_unit;

@@ -135,10 +135,10 @@ Doing done_by(const Rehearser& rehearser, const TrialSpec& spec, const protocol:
 }  // namespace
 
 Rehearsal rehearse(const protocol::Protocol& protocol, const protocol::Visit& visit, std::uint64_t seed,
-                   const Rehearser& rehearser) {
+                   const Rehearser& rehearser, const procedure::EarlierTrials& earlier) {
   Rehearsal rehearsal;
   procedure::StandIns programs;
-  trial::Director director(protocol, visit, seed, &programs);
+  trial::Director director(protocol, visit, seed, &programs, earlier);
   std::int64_t now_ns = 0;
   while (const auto* block = director.block()) {
     auto& record = rehearsal.blocks.emplace_back();

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
+#include <utility>
 
 #include "station/procedure/description.hpp"
 #include "station/procedure/state_hash.hpp"
@@ -28,6 +29,8 @@ void Director::State::enter_block() {
     specs.push_back(find_spec(name));
     const auto key = procedure::key_of(seed, static_cast<int>(block), procedures.size(), attempt);
     procedures.push_back(procedure::make_procedure(*specs.back(), context_for(*specs.back()), key));
+    if (const auto before = earlier.find(name); specs.back()->continues && before != earlier.end())
+      procedure::continue_from(before->second, *specs.back(), *procedures.back());
   }
   strokes.erase(block);
   if (b->kind == protocol::BlockKind::friction_table)
@@ -99,8 +102,8 @@ int Director::State::block_expected(const Block& b) const {
 }
 
 Director::Director(const protocol::Protocol& protocol, const protocol::Visit& visit, std::uint64_t seed,
-                   procedure::Programs* programs)
-    : state_(std::make_unique<State>(protocol, visit, seed, programs)) {}
+                   procedure::Programs* programs, procedure::EarlierTrials earlier)
+    : state_(std::make_unique<State>(protocol, visit, seed, programs, std::move(earlier))) {}
 Director::~Director() = default;
 Director::Director(Director&&) noexcept = default;
 

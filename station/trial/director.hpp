@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "station/procedure/continuation.hpp"
 #include "station/procedure/program.hpp"
 #include "station/protocol/protocol.hpp"
 #include "station/records/records.hpp"
@@ -67,9 +68,10 @@ std::string in_words(const ProcedureEstimate& estimate);
 class Director {
  public:
   /// `programs` starts the programs of procedures that are programs; null if the protocol has none. It must
-  /// outlive the director.
+  /// outlive the director. `earlier` are the trials of the participant's earlier sessions, for procedures
+  /// that continue.
   Director(const protocol::Protocol& protocol, const protocol::Visit& visit, std::uint64_t seed,
-           procedure::Programs* programs = nullptr);
+           procedure::Programs* programs = nullptr, procedure::EarlierTrials earlier = {});
   ~Director();
   Director(Director&&) noexcept;
 

@@ -3,6 +3,7 @@
 #include <map>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "station/procedure/procedure.hpp"
@@ -16,6 +17,7 @@ struct Director::State {
   const protocol::Protocol& protocol;
   std::uint64_t seed;
   procedure::Programs* programs;
+  procedure::EarlierTrials earlier;
   std::vector<protocol::Block> blocks;
   std::size_t block = 0;
   /// number of the current attempt at the block, and of the first attempt since the session was started or
@@ -35,8 +37,12 @@ struct Director::State {
   int current_procedure = no_procedure;
 
   State(const protocol::Protocol& p, const protocol::Visit& visit, std::uint64_t s,
-        procedure::Programs* starts)
-      : protocol(p), seed(s), programs(starts), blocks(protocol::block_order(p, visit)) {
+        procedure::Programs* starts, procedure::EarlierTrials before)
+      : protocol(p),
+        seed(s),
+        programs(starts),
+        earlier(std::move(before)),
+        blocks(protocol::block_order(p, visit)) {
     enter_block();
   }
 
