@@ -381,7 +381,7 @@ class Report(Folder):
             self.assertEqual(status, 0, err)
             self.assertTrue(out.startswith(f"page.html: session {sessions[person]} of {person}, "), out)
         _, out, _ = run(["report", "--db", "lab.sqlite"], self.folder)
-        self.assertRegex(out, r"\n  threshold: threshold -?[0-9.]+ \(SD [0-9.]+\)\n")
+        self.assertRegex(out, r"\n  threshold: threshold -?[0-9.]+ \(SD [0-9.]+\), 95 % -?[0-9.]+ to -?[0-9.]+\n")
 
 
 class Readme(Folder):
