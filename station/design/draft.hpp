@@ -8,6 +8,9 @@
 
 namespace turnpoint::design {
 
+/// The version after this one: its last number raised by one, such as "2" after "1" and "1.3" after "1.2".
+std::string next_version(const std::string& version);
+
 /// A protocol file while somebody edits it: its present text, which may be invalid for a while, and the
 /// earlier texts, to which the editor can return.
 class Draft {

@@ -21,25 +21,6 @@ std::string section_of(const std::string& table) {
   return found == sections.end() ? "other" : found->second;
 }
 
-/// The table whose names a key refers to; "" if it refers to none.
-std::string referred(const std::string& key) {
-  static const std::map<std::string, std::string> tables{{"base", "scene"},
-                                                         {"intervals", "scene"},
-                                                         {"standard", "scene"},
-                                                         {"target", "scene"},
-                                                         {"scene", "scene"},
-                                                         {"level", "factor"},
-                                                         {"adjusts", "factor"},
-                                                         {"over", "factor"},
-                                                         {"balance", "factor"},
-                                                         {"by", "factor"},
-                                                         {"procedures", "procedure"},
-                                                         {"copy", "procedure"},
-                                                         {"instruction", "instructions"}};
-  const auto found = tables.find(key);
-  return found == tables.end() ? "" : found->second;
-}
-
 std::string name_in(const Document& document, const Part& table) {
   const auto* name = table.find("name");
   if (name == nullptr || name->kind != Part::Kind::scalar) return "";
@@ -179,7 +160,7 @@ class Maker {
       field.kind = RuleKind::other;
     if (part != nullptr)
       field.value = field.kind == RuleKind::other ? document_.written(path) : shown(document_, *part);
-    if (const auto table = referred(path.back()); !table.empty() && rule.allowed.empty())
+    if (const auto table = referred_table(path.back()); !table.empty() && rule.allowed.empty())
       field.allowed = names_of(document_, table);
     return field;
   }
@@ -283,6 +264,24 @@ std::string toml_lines(const std::string& text) {
 }
 
 }  // namespace
+
+std::string referred_table(const std::string& key) {
+  static const std::map<std::string, std::string> tables{{"base", "scene"},
+                                                         {"intervals", "scene"},
+                                                         {"standard", "scene"},
+                                                         {"target", "scene"},
+                                                         {"scene", "scene"},
+                                                         {"level", "factor"},
+                                                         {"adjusts", "factor"},
+                                                         {"over", "factor"},
+                                                         {"balance", "factor"},
+                                                         {"by", "factor"},
+                                                         {"procedures", "procedure"},
+                                                         {"copy", "procedure"},
+                                                         {"instruction", "instructions"}};
+  const auto found = tables.find(key);
+  return found == tables.end() ? "" : found->second;
+}
 
 std::vector<Section> form_of(const Document& document, const Schema& schema,
                              const std::vector<text::Problem>& remarks) {

@@ -46,6 +46,9 @@ struct Section {
 std::vector<Section> form_of(const Document& document, const Schema& schema,
                              const std::vector<text::Problem>& remarks);
 
+/// The table whose names the values of a key refer to, such as "scene" for "base"; "" if they refer to none.
+std::string referred_table(const std::string& key);
+
 /// Writes what a person has typed into a field as TOML. Throws text::BadInput with what is allowed if the
 /// field cannot have this value.
 std::string encoded(const Field& field, const std::string& typed);

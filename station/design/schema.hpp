@@ -51,8 +51,11 @@ class Schema {
   /// The rule of a key. If the schema allows several forms, `value` chooses the one that fits it; without a
   /// value, the first one counts.
   Rule rule(const nlohmann::ordered_json& schema, const text::Value* value = nullptr) const;
+  /// The rules of all forms that the schema allows for a key.
+  std::vector<Rule> forms(const nlohmann::ordered_json& schema) const;
 
  private:
+  Rule rule_of(const nlohmann::ordered_json& given, const nlohmann::ordered_json& form) const;
   const nlohmann::ordered_json& resolved(const nlohmann::ordered_json& schema) const;
 
   std::unique_ptr<const nlohmann::ordered_json> json_;

@@ -169,6 +169,17 @@ Rectangle {
                             onMoved: (which, mm) => root.design.change(table.index, which === "zone" ? table.modelData.zone : table.modelData.boundary, mm.toFixed(1))
                         }
                     }
+                    Loader {
+                        width: parent.width
+                        active: table.modelData.kind === "scene" && table.modelData.present
+                        visible: active
+                        sourceComponent: DesignFeel {
+                            theme: root.theme
+                            texts: root.texts
+                            feeling: root.design.feeling
+                            scene: table.modelData.name
+                        }
+                    }
                     Repeater {
                         model: table.modelData.fields.filter(field => field.present || field.required || table.all || field.remarks.length > 0)
                         DesignField {

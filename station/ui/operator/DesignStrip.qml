@@ -102,8 +102,10 @@ Item {
         id: picture
         visible: root.profile !== undefined
         anchors { left: parent.left; right: parent.right; top: strip.bottom; topMargin: 0.5 * root.theme.unit }
-        height: Math.max(18 * root.theme.unit, 9 * root.theme.textSmall)
+        height: Math.max(18 * root.theme.unit, 13 * root.theme.textSmall)
         textPixels: 0.8 * root.theme.textSmall
+        dark: root.theme.dark
+        paper: root.theme.raised
         picture: root.profile
     }
 }

@@ -12,7 +12,11 @@
 #include "station/design/form.hpp"
 #include "station/desk/choices.hpp"
 #include "station/desk/preview.hpp"
+#include "station/rig/rig.hpp"
 #include "station/ui/operator/check_protocol.hpp"
+#include "station/ui/operator/feeling.hpp"
+#include "station/ui/operator/pages_preview.hpp"
+#include "station/ui/operator/precision.hpp"
 #include "station/ui/platform/newest_job.hpp"
 
 namespace turnpoint::ui {
@@ -51,8 +55,8 @@ class DesignController : public QObject {
   Q_PROPERTY(bool canUndo READ can_undo NOTIFY changed)
   Q_PROPERTY(bool canRedo READ can_redo NOTIFY changed)
   Q_PROPERTY(bool unsaved READ unsaved NOTIFY changed)
-  /// why the last request was not carried out: taken, name, or what a file or a value did not allow; "" if it
-  /// was
+  /// why the last request was not carried out: taken, name, on_disk (the file was changed by somebody else
+  /// meanwhile), or what a file or a value did not allow; "" if it was
   Q_PROPERTY(QString trouble READ trouble NOTIFY changed)
   Q_PROPERTY(QString savedAs READ saved_as NOTIFY changed)
   /// outline of the rig's surface: {lengthMm, wideHalfWidthMm, narrowHalfWidthMm, wideEndLeft}
@@ -62,6 +66,10 @@ class DesignController : public QObject {
   Q_PROPERTY(QVariantList timeline READ timeline NOTIFY changed)
   /// profile of displacement and friction of each scene, by name
   Q_PROPERTY(QVariantMap profiles READ profiles NOTIFY profilesChanged)
+  /// What follows the draft beside the forms.
+  Q_PROPERTY(turnpoint::ui::PagesPreview* pages READ pages CONSTANT)
+  Q_PROPERTY(turnpoint::ui::Precision* precision READ precision CONSTANT)
+  Q_PROPERTY(turnpoint::ui::Feeling* feeling READ feeling CONSTANT)
 
  public:
   explicit DesignController(DesignPlace place, SourceChecker checker = check_source,
@@ -87,6 +95,9 @@ class DesignController : public QObject {
   QVariantMap surface() const { return surface_; }
   QVariantList timeline() const { return timeline_; }
   QVariantMap profiles() const { return profiles_; }
+  PagesPreview* pages() { return &pages_; }
+  Precision* precision() { return &precision_; }
+  Feeling* feeling() { return &feeling_; }
 
   /// Asks what the new study is to measure.
   Q_INVOKABLE void startNew();
@@ -108,8 +119,15 @@ class DesignController : public QObject {
   Q_INVOKABLE void undo();
   Q_INVOKABLE void redo();
   Q_INVOKABLE void setText(const QString& text);
-  /// Saves the study under its name, or under another name as a study of its own.
+  /// Saves the study under its name, or under another name as a study of its own. The first save of a study
+  /// that existed before raises its version. Returns false, with `trouble`, if the file was changed by
+  /// somebody else since it was read; overwrite() and reload() decide then.
   Q_INVOKABLE bool save(const QString& name);
+  Q_INVOKABLE bool overwrite();
+  Q_INVOKABLE bool reload();
+  /// What can be written at a place of the text, as {from, words: [{word, insert, help}]}. Places count in
+  /// characters as QML does.
+  Q_INVOKABLE QVariantMap complete(const QString& text, int at) const;
 
   /// The text for a key of the file, such as "Zone · from (mm)".
   Q_INVOKABLE static QString label(const QStringList& path, const QString& language);
@@ -134,6 +152,9 @@ class DesignController : public QObject {
   void take(const simulation::Check& check);
   void make_form();
   bool refuse(const QString& trouble);
+  bool write_to(const std::string& path);
+  bool changed_on_disk() const;
+  void raise_version();
   std::string path_for(const std::string& name) const;
   const design::Group* group(int index) const;
 
@@ -142,6 +163,8 @@ class DesignController : public QObject {
   std::optional<design::Schema> schema_;
   std::optional<design::Draft> draft_;
   std::string name_, path_, saved_;
+  std::optional<rig::Rig> rig_;
+  std::string old_version_;  ///< of a study that existed before, until a save has raised it
   std::vector<design::Section> form_;
   std::vector<Remark> remarks_;
   desk::CheckWords words_;
@@ -150,6 +173,9 @@ class DesignController : public QObject {
   QVariantList timeline_;
   int section_ = 0;
   bool checking_ = false;
+  PagesPreview pages_{this};
+  Precision precision_{this};
+  Feeling feeling_{this};
   // The last members, so that their threads end before the objects that they use are destroyed.
   NewestJob check_job_, profile_job_;
 };

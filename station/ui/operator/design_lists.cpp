@@ -1,5 +1,6 @@
 #include "station/ui/operator/design_lists.hpp"
 
+#include <QRegularExpression>
 #include <cstddef>
 #include <string>
 
@@ -67,6 +68,11 @@ QVariantMap field_of(const design::Group& group, int index, const QVariantList& 
 }
 
 }  // namespace
+
+bool is_name(const QString& name) {
+  static const QRegularExpression allowed("^[A-Za-z0-9_-]{1,64}$");
+  return allowed.match(name).hasMatch();
+}
 
 QVariantMap to_map(desk::CheckWords::Remark::Kind kind, const text::Problem& problem) {
   using Kind = desk::CheckWords::Remark::Kind;

@@ -10,6 +10,9 @@
 
 namespace turnpoint::ui {
 
+/// True if a study or a table can have this name.
+bool is_name(const QString& name);
+
 /// One remark for QML, as {kind: problem | warning | note, line, what, hint}.
 QVariantMap to_map(desk::CheckWords::Remark::Kind kind, const text::Problem& problem);
 

@@ -1,4 +1,5 @@
 #pragma once
+#include <array>
 #include <condition_variable>
 #include <functional>
 #include <mutex>
@@ -17,9 +18,14 @@ class Weighing {
 
   /// What the page shows while it waits for an answer.
   struct Shown {
-    std::string ask;      ///< what the operator is asked to do; "" while the cells are read
-    std::string reading;  ///< what the cells read now
-    bool failed = false;  ///< a reading failed, so the step cannot be left out
+    /// what the operator is asked to do; empty while the cells are read
+    std::optional<maintenance::WeightStep> step;
+    std::string trouble;            ///< why a reading failed; the step can then not be left out
+    /// what the cells read now: in thousandths of the excitation, or in the unit of a converter that has no
+    /// excitation to compare with
+    std::array<double, 3> cells{};
+    bool converter = false;
+    std::string unread;             ///< why they cannot be read now; usually ""
   };
   using Show = std::function<void(Shown)>;
 
@@ -32,6 +38,7 @@ class Weighing {
                                               const std::stop_token& stop);
 
  private:
+  /// Waits for an answer, and shows the reading of the cells meanwhile.
   Answer await(maintenance::BridgeReader& bridges, Shown shown, const Show& show,
                const std::stop_token& stop);
 

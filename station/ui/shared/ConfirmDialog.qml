@@ -12,6 +12,7 @@ Rectangle {
     property string keepText
     property string confirmText
     signal confirmed()
+    signal kept()
 
     function open() { visible = true }
 
@@ -58,7 +59,10 @@ Rectangle {
             theme: root.theme
             armed: !arming.running
             text: root.keepText
-            onActivated: root.visible = false
+            onActivated: {
+                root.visible = false
+                root.kept()
+            }
         }
         ActionButton {
             id: confirm
