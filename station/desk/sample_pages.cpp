@@ -6,6 +6,7 @@
 #include <tuple>
 #include <utility>
 
+#include "station/procedure/program.hpp"
 #include "station/protocol/answers.hpp"
 #include "station/protocol/interludes.hpp"
 #include "station/session/pages.hpp"
@@ -22,7 +23,9 @@ using trial::Phase;
 class Sampler {
  public:
   Sampler(const protocol::Protocol& protocol, const rig::Rig& rig, const std::string& language)
-      : setup_(setup_for(protocol, rig, language)), pages_(setup_), director_(setup_.protocol, {}, 1) {}
+      : setup_(setup_for(protocol, rig, language)),
+        pages_(setup_),
+        director_(setup_.protocol, {}, 1, &programs_) {}
 
   std::vector<SamplePage> make() {
     const auto& blocks = director_.all_blocks();
@@ -75,7 +78,7 @@ class Sampler {
     if (!blocks_.insert(told).second) return;
     auto alone = setup_.protocol;
     alone.plan = {block};
-    trial::Director director(alone, {}, 1);
+    trial::Director director(alone, {}, 1, &programs_);
     const auto spec = director.next();
     if (!spec) return;
     auto page = pages_.instructions(block, director);
@@ -135,6 +138,7 @@ class Sampler {
 
   const session::Setup setup_;
   const session::Pages pages_;
+  procedure::StandIns programs_;  // no separate program is started
   const trial::Director director_;
   std::vector<SamplePage> all_;
   std::set<std::string> interludes_;
