@@ -1,4 +1,5 @@
-# Where `cmake --install` puts the files, and the Debian package (run `cpack -G DEB` in the build folder).
+# Says where `cmake --install` puts the files, and describes the Debian packages (run `cpack -G DEB` in the build
+# folder).
 install(DIRECTORY station/report/scripts/ DESTINATION ${CMAKE_INSTALL_DATADIR}/turnpoint/study COMPONENT station)
 install(TARGETS turnpoint RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT station)
 if(TURNPOINT_UI)
@@ -63,7 +64,7 @@ file(READ deploy/debian/description CPACK_DEBIAN_STATION_DESCRIPTION)
 set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
 set(CPACK_COMPONENTS_ALL station)
 if(TURNPOINT_PYTHON)
-  # python3-turnpoint, for the minor version of Python for which the modules were compiled
+  # The package python3-turnpoint, which works only with the minor version of Python for which its modules were compiled
   list(APPEND CPACK_COMPONENTS_ALL python)
   math(EXPR next_minor "${Python_VERSION_MINOR} + 1")
   set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-turnpoint)
@@ -80,7 +81,8 @@ if(TURNPOINT_PYTHON)
   install(FILES deploy/debian/python-lintian-overrides DESTINATION share/lintian/overrides RENAME python3-turnpoint COMPONENT python)
 endif()
 if(TURNPOINT_SITE)
-  # turnpoint-doc: the pages with pictures. They are made whenever the package is made, so they show this program.
+  # The package turnpoint-doc: the manual pages as a site with pictures. Each build of the package makes the pictures
+  # anew, so they show the program as it is now.
   list(APPEND CPACK_COMPONENTS_ALL documentation)
   set(site ${CMAKE_BINARY_DIR}/site)
   add_custom_target(site COMMAND ${CMAKE_SOURCE_DIR}/deploy/site/make ${CMAKE_BINARY_DIR} ${site} USES_TERMINAL

@@ -284,7 +284,7 @@ void add_check(CommandLine& app, Context& context) {
   command
       ->add_option("--sessions", options->sessions,
                    "Number of sessions to simulate in order to predict trials and duration; 0 for none; by "
-                   "default 1000, or 200 if its procedures need long")
+                   "default 1000, or 200 if the protocol's procedures take long")
       ->check(range(0, 1000));
   add_progress(*command, options->progress);
   add_json(*command, context);

@@ -9,7 +9,7 @@
 
 namespace turnpoint::cli {
 
-/// Keys keep the order in which they were written.
+/// JSON whose keys keep the order in which they were written.
 using Json = nlohmann::ordered_json;
 
 /// JSON has no NaN and no infinity; they become null.

@@ -75,7 +75,7 @@ void report_session(Options options, Context& context) {
                                  : "");
 }
 
-/// The file trials.csv, written participant by participant.
+/// The file trials.csv, which --tables asks for. It is written participant by participant.
 class TrialFile {
  public:
   explicit TrialFile(const std::string& folder) {
@@ -175,10 +175,9 @@ void add_report(CommandLine& app, Context& context) {
                       "Report the newest session of this participant: CODE or CODE@STATION");
   command->add_option("--protocol", options->filter.protocol_id,
                       "Report the newest session of this protocol, or the study with this protocol");
-  command->add_flag(
-      "--study", options->study,
-      "Report all participants of a protocol together, without those whom its [exclusion] leaves "
-      "out");
+  command->add_flag("--study", options->study,
+                    "Report all participants of a protocol together, except those whom its [exclusion] "
+                    "excludes");
   command->add_option("--protocol-version", options->protocol_version,
                       "With --study: only sessions with this version of the protocol, or with a protocol "
                       "text whose SHA-256 begins with this");

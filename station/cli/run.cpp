@@ -122,7 +122,7 @@ void add_conditions(Command& command, setup::RunRequest& request) {
       .add_option("--temperature", conditions.room_temperature_C,
                   "Temperature of the room, in degrees Celsius")
       ->check(between(-20, 60));
-  command.add_option("--cleaned", request.cleaned, "Whether the surface was cleaned just before")
+  command.add_option("--cleaned", request.cleaned, "Whether the surface was cleaned just before the session")
       ->check(one_of({"yes", "no"}));
   command.add_option("--finger", conditions.finger, "Hand and finger on the surface, such as right-index")
       ->check(one_of({terms::fingers.begin(), terms::fingers.end()}));
@@ -157,7 +157,7 @@ std::shared_ptr<setup::RunRequest> add_run_options(Command& command) {
       "--consent", request->consent_version,
       "Version of the consent form; the screen asks the participant to confirm having signed it");
   command.add_flag("--headless", request->headless, "No screen");
-  command.add_flag("--fullscreen", request->fullscreen, "Fill the screen, on a desktop too");
+  command.add_flag("--fullscreen", request->fullscreen, "Fill the screen, even on a desktop computer");
   command.add_flag(
       "--buttons-only", request->buttons_only,
       "Run without a screen: a person answers with the rig's buttons, and the operator types commands");
@@ -183,9 +183,10 @@ void add_run(CommandLine& app, Context& context) {
   add_json(*command, context);
   command->footer(
       "Example: turnpoint run demo --participant P01 --db lab.sqlite --observer sim\n"
-      "Without --observer a person answers: on the screen, or with the rig's buttons and --buttons-only.\n"
-      "Ctrl-C or SIGTERM ends a session without a screen cleanly, so that it can be resumed; a second one "
-      "kills it.");
+      "Without --observer a person answers, on the screen or, with --buttons-only, by the rig's buttons.\n"
+      "If there is no screen, Ctrl-C or SIGTERM ends the session cleanly, so that it can be resumed; a "
+      "second "
+      "one kills it.");
   command->callback([request, &context] {
     const bool person = request->observer.empty();
     request->self_test = request->self_test || person;

@@ -31,7 +31,7 @@ const procedure::Spec& find(const protocol::Protocol& protocol, const std::strin
       fmt::format("--procedure {}: the protocol has no such procedure; its procedures are {}", name, known));
 }
 
-/// Returns the context in which the procedure runs. Every factor has its first level.
+/// Returns the factors and levels with which the procedure runs. Every factor has its first level.
 procedure::Context context_of(const protocol::Protocol& protocol, const procedure::Spec& spec) {
   procedure::Context context;
   protocol::Factors factors;

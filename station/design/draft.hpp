@@ -21,7 +21,7 @@ class Draft {
   const std::string& file() const { return file_; }
   /// The document made from the text; nullptr while the text is not valid TOML.
   const Document* document() const { return document_ ? &*document_ : nullptr; }
-  /// Why the text is not valid TOML.
+  /// The reasons why the text is not valid TOML; empty if it is.
   const std::vector<text::Problem>& problems() const { return problems_; }
 
   /// Replaces the whole text. Does nothing if the new text equals the old one.

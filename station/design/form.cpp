@@ -43,7 +43,7 @@ std::vector<std::string> languages_of(const Document& document) {
   return languages;
 }
 
-/// A scalar as a person writes it.
+/// Returns a value as a person writes it: without quotes and brackets.
 std::string shown(const Document& document, const Part& part) {
   if (part.kind == Part::Kind::array) {
     std::string all;
@@ -83,7 +83,7 @@ class Maker {
   }
 
  private:
-  /// Groups for [[block]], or for [scene.NAME]. There are none if the file has none.
+  /// Adds a group for each table [[block]], or [scene.NAME], that the file has.
   void add_tables(const std::string& name, const Rule& rule, std::vector<Group>& groups) {
     const auto* list = document_.find({name});
     if (list == nullptr) return;
@@ -138,7 +138,7 @@ class Maker {
                                needed && (part != nullptr || key.required)));
       }
     } else if (rule.kind == RuleKind::table) {
-      // A table that the file does not have is offered key by key, but not the tables below it.
+      // If the file does not have this table, offer its keys, but not the tables below it.
       if (part != nullptr || absent == 0)
         add_fields(path, rule, part, fields, part == nullptr ? absent + 1 : absent, needed && key.required);
     } else if (rule.kind == RuleKind::tables) {
@@ -183,8 +183,8 @@ bool begins_with(const Path& path, const Path& start) {
   return start.size() <= path.size() && std::equal(start.begin(), start.end(), path.begin());
 }
 
-/// The field that a remark is about: the longest path that leads to the place. A remark about a table belongs
-/// to the key that it names, if the table does not have this key.
+/// Returns the form field that a remark is about: the field with the longest path that begins the path of the
+/// remark. If the remark says that a table lacks a key, returns the field of this missing key.
 Field* field_for(Group& group, const Path& place, const std::string& what) {
   Field* best = nullptr;
   for (auto& field : group.fields) {

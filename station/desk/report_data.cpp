@@ -27,7 +27,8 @@ std::string late_frames(const std::vector<records::EventRow>& events) {
   return frames == 0 ? "none" : std::to_string(frames) + " in " + std::to_string(trials) + " trials";
 }
 
-/// Describes the largest model error and the largest uncertainty of the tones that were presented.
+/// Describes the largest model error and the largest uncertainty of the boundaries of the tones that were
+/// presented.
 std::string boundary_errors(const std::vector<store::BlockRecord>& blocks) {
   double bound_mm = 0, uncertainty_mm = 0;
   for (const auto& block : blocks)
@@ -60,7 +61,8 @@ std::string proofs(const std::vector<store::BlockRecord>& blocks) {
   return text.empty() ? "none" : text;
 }
 
-/// Says in how many trials the forces are known, and why they are not known in others: "57 ok, 2 wire".
+/// Says in how many trials the forces are known, and why they are not known in others, such as "57 ok, 2
+/// wire" for a broken wire.
 std::string forces(const std::vector<store::BlockRecord>& blocks) {
   std::map<std::string, int> counts;
   for (const auto& block : blocks)
@@ -106,7 +108,7 @@ std::string self_test(const std::vector<records::EventRow>& events) {
          " not possible";
 }
 
-/// Lists what was stated about room, surface and finger.
+/// Lists what was stated before the session about room, surface and finger.
 std::string conditions(const records::Conditions& stated) {
   std::string text;
   const auto add = [&text](const std::string& part) { text += (text.empty() ? "" : ", ") + part; };
@@ -177,7 +179,8 @@ void add_health(const store::StoredSession& stored, report::SessionData& data) {
                  {"Software", start.software_version}};
 }
 
-/// Adds friction along the strip, from the stored signals of the trials that count.
+/// Adds friction along the strip, from the stored signals of those trials that the report's section on the
+/// finger uses.
 void add_strip(const std::string& path, const store::StoredSession& stored, report::SessionData& data) {
   if (data.finger.empty()) return;
   std::map<int, const records::TrialRow*> rows;

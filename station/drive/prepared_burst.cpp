@@ -100,7 +100,7 @@ void prepare_changes(const Burst& burst, const Format& format, const SynthLimits
   out.change_count = burst.change_count;
 }
 
-// Each code must end, and be followed by its silent bits, before the next one begins.
+// Prepares the trigger codes. Each code and the silent bits after it must end before the next code begins.
 void prepare_codes(const Marker& marker, const Burst& burst, PreparedMarker& out) {
   const std::int64_t code = trigger_bits * marker.frames, quiet = trigger_quiet_bits * marker.frames;
   if (marker.frames % 2 != 0)
@@ -152,7 +152,7 @@ void low_pass(double frequency_Hz, const Format& format, double (&out)[5]) {
 
 void high_pass(double frequency_Hz, const Format& format, double (&out)[5]) {
   low_pass(frequency_Hz, format, out);
-  const double b = (1 - out[3] + out[4]) / 4;  // unit gain at half the sampling rate
+  const double b = (1 - out[3] + out[4]) / 4;  // makes the gain 1 at half the sampling rate
   out[0] = b;
   out[1] = -2 * b;
   out[2] = b;

@@ -65,7 +65,7 @@ struct PreparedNoise {
   std::int32_t channel = 0;
   double gain = 0;
   std::uint64_t seed = 0;
-  double high_pass[5] = {};  ///< b0 b1 b2 a1 a2
+  double high_pass[5] = {};  ///< filter coefficients b0 b1 b2 a1 a2
   double low_pass[5] = {};
 };
 
@@ -92,7 +92,8 @@ struct PreparedBurst {
   PreparedMarker marker;
   PreparedNoise noise;
   std::array<double, max_channels>
-      peak{};  ///< largest sample of each channel (or an upper limit of it, if that is allowed)
+      /// largest sample of each channel (or an upper limit of it, if that is below the allowed peak)
+      peak{};
 };
 
 static_assert(std::is_trivially_copyable_v<PreparedBurst>);

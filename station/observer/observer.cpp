@@ -12,9 +12,10 @@ namespace turnpoint::observer {
 namespace {
 
 constexpr double kLogStrongest = 4.6;         // ln 99: at 99 times the threshold nobody makes errors
-constexpr double kZ75 = 0.67448975019608171;  // z of 75 % in the normal distribution
+constexpr double kZ75 = 0.67448975019608171;  // the 75 % quantile of the standard normal distribution
 constexpr double kLn2 = 0.69314718055994531;
-// largest |z|: beyond it the tail of the normal distribution is below 1e-9, and its logarithm loses precision
+// largest |z| that is used: beyond it the tail of the normal distribution is below 1e-9, and its logarithm
+// loses precision
 constexpr double kSurest_sd = 6;
 constexpr double kRatingStep_sd = 0.5;  // distance between the criteria of neighbouring ratings
 constexpr double kLinePoints = 9;
@@ -34,8 +35,9 @@ double half_logit_of_normal(double x) {
   return inside < 0 ? -half : half;
 }
 
-/// Returns the proportion correct of the largest of `answers` observations, one of which is d' higher: the
-/// integral of phi(x) Phi(x + d')^(answers - 1), by the trapezoidal rule.
+/// Returns the proportion correct of an observer who chooses the largest of `answers` noisy observations, of
+/// which the right one is d' higher on average. It is the integral of phi(x) Phi(x + d')^(answers - 1), where
+/// phi and Phi are the normal density and distribution function, by the trapezoidal rule.
 double largest_is_right(double d_prime, int answers) {
   constexpr double step = 0.125;
   double sum = 0;
@@ -48,9 +50,9 @@ double largest_is_right(double d_prime, int answers) {
   return sum * step * kNormalPeak;
 }
 
-/// Returns the proportion correct in ABX by differencing (Macmillan & Creelman 2005, eq. 9.7). A negative d'
-/// means that the difference is felt the wrong way round; then the proportion correct with two intervals is
-/// returned.
+/// Returns the proportion correct in ABX of an observer who chooses the smaller difference (Macmillan &
+/// Creelman 2005, eq. 9.7). A negative d' means that the difference is felt the wrong way round; then the
+/// proportion correct with two intervals is returned.
 double nearest_is_right(double d_prime, double of_two) {
   if (d_prime <= 0) return of_two;
   const double apart = random::normal_cdf(d_prime / kSqrt2), beside = random::normal_cdf(d_prime / kSqrt6);
@@ -89,8 +91,8 @@ double mean_over_drift(double drift, double sd, Function function) {
   return sum / weights;
 }
 
-/// Returns the range of felt levels for which the observer gives this answer: from halfway to the lower
-/// neighbour to halfway to the upper one. At the ends the range is infinite.
+/// Returns the range of felt levels for which the observer gives this answer: it ends halfway to the levels
+/// of the neighbouring answers. For the lowest and the highest answer, the range has no outer end.
 std::pair<double, double> ends_of_category(const Question& q, int choice) {
   const double own = q.categories.at(static_cast<std::size_t>(choice));
   double low = -std::numeric_limits<double>::infinity(), high = -low;
@@ -109,8 +111,8 @@ int category_of(const Question& q, double level) {
   return choice;
 }
 
-/// Returns the criterion between rating `rating` and the next higher one, in SDs from the mean of noise. The
-/// criteria of the ratings lie symmetrically around `centre`.
+/// Returns the criterion between rating `rating` and the next higher one, in SDs from the mean sensation
+/// without a signal. The criteria of the ratings lie symmetrically around `centre`.
 double rating_criterion(double centre, int rating, int ratings) {
   return centre + kRatingStep_sd * (rating - 0.5 * (ratings - 2));
 }
@@ -158,7 +160,7 @@ double Observer::sensitivity(const Question& q) const {
   return (q.level < bias(q) ? -2 : 2) * kZ75 * strength(q, bias(q));
 }
 
-/// The sensation in the middle of a rating scale, in SDs from the mean of noise.
+/// The sensation in the middle of a rating scale, in SDs from the mean sensation without a signal.
 double Observer::centre(const Question& q) const {
   return q.middle == Middle::criterion ? parameters_.criterion : 0;
 }
@@ -168,8 +170,8 @@ double Observer::category_sd(const Question& q) const {
   return std::fabs(parameters_.threshold.value_or(q.default_threshold)) / (2 * kZ75);
 }
 
-/// Returns the number that the observer gives as answer. On a line, it scatters as on a scale of kLinePoints
-/// points.
+/// Returns the number that the observer gives as answer. A place on a line scatters as much as a rating on a
+/// scale of kLinePoints points.
 double Observer::value(const Question& q, random::Draws& draws) const {
   const auto& v = *q.value;
   double value = 0;
@@ -193,9 +195,9 @@ int Observer::confidence(const Question& q, int choice, random::Draws& draws) co
   return 1 + std::min(q.confidence - 1, static_cast<int>(felt * q.confidence));
 }
 
-/// Returns the drift (1 / square root of a second). A positive drift leads to the right answer
-/// (right_answer), to the answer for levels above the bias (side), to "yes" (presence), or away from the
-/// nearest end of the category (category).
+/// Returns the drift in s^-1/2. What a positive drift leads to depends on q.decides: the right answer
+/// (right_answer), the answer that is right for levels above the observer's bias (side), "yes" (presence), or
+/// the category that contains the level rather than its nearest neighbour (category).
 double Observer::drift(const Question& q) const {
   double half_logit = 0;
   switch (q.decides) {

@@ -208,10 +208,10 @@ std::vector<double> Posterior::predictives() const {
   return all;
 }
 
-/// Returns the expected entropy of the answer at each stimulus if the kept parameters were known. It groups
-/// grid points with the same kept parameters, averages the probability of the answer within each group (over
-/// the nuisance parameters), and returns the weighted mean of the groups' entropies. A group's weight, and
-/// the part of its probability that comes from guessing, do not depend on the stimulus.
+/// Returns the expected entropy of the answer at each stimulus if the kept parameters (all but the nuisance
+/// parameters) were known. It groups grid points with the same kept parameters, averages the probability of
+/// the answer within each group, and returns the weighted mean of the groups' entropies. A group's weight,
+/// and the part of its probability that comes from guessing, do not depend on the stimulus.
 std::vector<double> Posterior::kept_entropies() const {
   std::vector<double> weight(groups_), guess_part(groups_), entropies;
   for (std::size_t i = 0; i < size();)

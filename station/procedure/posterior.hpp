@@ -44,7 +44,8 @@ class Posterior {
   /// Returns the threshold of largest weight, summed over the other parameters. If several are equal, as
   /// before the first answer, returns their mean.
   double most_likely_threshold() const;
-  /// Returns the mutual information (nats) of each stimulus.
+  /// Returns for each stimulus the mutual information (nats) between its answer and the parameters that are
+  /// not nuisance parameters.
   std::vector<double> information() const;
   /// Returns the posterior predictive probability of answer 1 at this stimulus.
   double predictive(std::size_t stimulus) const;

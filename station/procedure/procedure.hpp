@@ -21,11 +21,13 @@ struct Proposal {
   std::vector<std::pair<std::string, std::size_t>> balanced = {};
 };
 
-/// The answer to a proposal. The procedure learns nothing from a trial without an answer (timeout,
-/// anticipation).
-/// one: the answer was right, or, if the procedure tracks an answer, it was that answer; zero: any other
-/// answer
-enum class Answer { one, zero, none };
+/// How the participant answered at the level that the procedure proposed.
+enum class Answer {
+  one,   ///< the answer was right; or, if the procedure measures how often one answer is given, it was that
+         ///< one
+  zero,  ///< any other answer
+  none   ///< no valid answer (timeout, anticipation), from which the procedure learns nothing
+};
 
 struct Estimate {
   double mode = 0, mean = 0;
@@ -73,7 +75,7 @@ class Procedure {
   virtual void record(Answer answer) = 0;
   /// Records the setting of an adjustment. Other kinds of procedures throw std::logic_error.
   virtual void record_setting(double setting);
-  virtual int recorded() const = 0;  ///< number of recorded trials that count
+  virtual int recorded() const = 0;  ///< number of recorded trials that count towards the total
   /// total number of trials; an estimate if a stopping rule decides when the procedure ends
   virtual int expected() const = 0;
   virtual std::map<std::string, Estimate> estimates() const { return {}; }
@@ -85,8 +87,8 @@ class Procedure {
   virtual std::uint64_t state_hash() const = 0;
 };
 
-/// The key of a procedure in a session. `block` is the number of the block, `place` that of the procedure
-/// within it, so that interleaved procedures draw different numbers.
+/// The key of a procedure in a session. `block` is the number of the block, and `place` is the position of
+/// the procedure in the block's list, so that interleaved procedures draw different numbers.
 random::Key key_of(std::uint64_t seed, int block, std::size_t place, int attempt);
 
 /// Makes the procedure. Throws std::invalid_argument with the first problem of validate(). `key` needs seed,

@@ -28,7 +28,7 @@ class QuestPlus : public Procedure {
 
  private:
   bool done() const;
-  std::size_t chosen() const;  ///< index of the next stimulus
+  std::size_t chosen() const;  ///< index of the stimulus to present next
 
   Spec spec_;
   Posterior posterior_;

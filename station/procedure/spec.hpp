@@ -109,8 +109,8 @@ struct Spec {
   Shuffle shuffle = Shuffle::within_repeat;
   std::optional<int> max_run;
 
-  // The following members are for procedures that move one level. The first three are starting level and
-  // limits.
+  // The following members are for procedures that move one level up and down. `start` is the first level; the
+  // level stays between `min` and `max`.
   std::optional<double> start, min, max;
   /// sizes of the steps; each reversal switches to the next size, until the last size is reached
   std::vector<double> step, step_down, step_up;
@@ -121,11 +121,12 @@ struct Spec {
   std::optional<int> initial_down;
   int discard_reversals = 0;  ///< number of reversals at the start that the estimate leaves out
 
-  // The first two members are also used by adjustments: the starts from below and from above. The rest is for
-  // the method of limits, which also uses `step` (one step), `min` and `max`.
+  // The following members are for the method of limits, which also uses `step` (one step), `min` and `max`.
+  // Adjustments use the first two, for the starts from below and from above.
   SeriesStarts ascending, descending;
-  int series = 0;    ///< number of series in both directions together
-  int n_change = 1;  ///< a series ends when the new answer has come this many times in a row
+  int series = 0;  ///< number of series in both directions together
+  /// a series ends when the answer that differs from its first ones has come this many times in a row
+  int n_change = 1;
   Directions directions = Directions::alternate;
 
   // The following members are for procedures with a posterior. The grids of gradient and floor are only used

@@ -71,7 +71,7 @@ void check_scored(text::TableReader& file, const Reading& reading) {
   }
   for (const auto& part : protocol.plan) {
     const auto& block = block_of(part);
-    // such blocks judge movements, so they need no correct answers
+    // blocks of strokes judge movements, so they need no correct answers
     if (block.kind != BlockKind::trials) continue;
     for (const auto* key : {"pass", "feedback"})
       if (key == std::string("pass") ? block.pass.has_value() : block.feedback != Feedback::none)
@@ -160,8 +160,8 @@ bool has_change(const Task& task) {
                      [](const auto& scenes) { return scenes.size() > 1; });
 }
 
-// Returns the name of a block without a deadline, if any. Each block uses the deadline of its instruction, or
-// else that of [timing].
+// Returns the name of a block without a deadline, if any. A block uses the deadline of its instruction or, if
+// that has none, the deadline of [timing].
 std::optional<std::string> block_without_deadline(const Protocol& protocol) {
   for (const auto& block : all_blocks(protocol)) {
     const auto fixed = block.fixed.find("instruction");

@@ -42,13 +42,13 @@ void read_session_numbers(TableReader& reader, Audience& audience, const Reading
   }
 }
 
-/// The sessions and groups that have this part as words, for messages.
+/// Returns the session and the group of a visit in words, for messages.
 std::string visit_words(const Protocol& protocol, const Visit& visit) {
   const auto words = in_words(protocol, visit);
   return words.empty() ? "the session" : words;
 }
 
-/// Each session of each group needs a block.
+/// Reports a planned session in which a group has no block.
 void check_blocks(const Reading& reading) {
   const auto& protocol = reading.protocol;
   for (const auto& visit : different_visits(protocol)) {
@@ -61,7 +61,8 @@ void check_blocks(const Reading& reading) {
   }
 }
 
-/// With one level in each session, there must be a session for each level.
+/// Reports sequences over a factor of which each participant has only one level, and sequences with one level
+/// per session if the number of sessions differs from the number of levels.
 void check_sequences(const Reading& reading) {
   const auto& protocol = reading.protocol;
   for (const auto& part : protocol.plan) {
@@ -83,7 +84,8 @@ void check_sequences(const Reading& reading) {
   }
 }
 
-/// Nothing else may set a factor of which each participant has one level.
+/// Checks factors with one level for each participant: nothing else may set them, and each level of
+/// "instruction" needs a table.
 void check_group_factors(const Reading& reading) {
   const auto& protocol = reading.protocol;
   for (const auto& factor : protocol.factors) {
@@ -102,7 +104,7 @@ void check_group_factors(const Reading& reading) {
   }
 }
 
-/// A rule can only ask for what the same session has.
+/// Reports rules about an answer or a score that the same session does not have.
 void check_rules(const Reading& reading) {
   const auto& protocol = reading.protocol;
   const auto audience_of = [&](const std::string& name) -> const Audience* {

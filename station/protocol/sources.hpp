@@ -39,8 +39,9 @@ std::vector<std::string> scenes_used(const Protocol& protocol);
 /// Returns a value for each factor: its first level or, if it has no levels, the middle of its range.
 Factors any_factors(const Protocol& protocol);
 
-/// The values that a factor takes if nothing sets it: its levels, or evenly spaced values of the range from
-/// which it is drawn. Empty if it is not drawn.
+/// Values that stand for all that a factor can be where it is drawn at random, that is, where neither a
+/// procedure nor a block sets it: its levels, or evenly spaced values of its range. Empty if it is never
+/// drawn.
 std::vector<FactorValue> drawn_values(const Factor& factor);
 
 const procedure::Spec* find_procedure(const Protocol& protocol, const std::string& name);

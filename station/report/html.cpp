@@ -76,7 +76,7 @@ std::string fit_table(const NamedFit& named, const SessionData& data) {
   return html + notes(named.fit.statements) + notes(named.intervals.statements);
 }
 
-/// Rows for the settings by the side from which the slider started.
+/// Returns table rows with the settings, separately for sliders that started from below and from above.
 std::string side_rows(const analysis::Settings& settings, const SessionData& data) {
   std::string html;
   for (const auto& [name, side] :

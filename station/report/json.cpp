@@ -177,7 +177,7 @@ Json confusion_json(const analysis::Confusion& confusion, const SessionData& dat
     entry["stimulus"] =
         row.stimulus ? Json(data.choices.at(static_cast<std::size_t>(*row.stimulus))) : Json(nullptr);
     entry["level"] = value(row.level);
-    entry["answers"] = row.answers;  // in the order of "choices"
+    entry["answers"] = row.answers;  // the number of each answer, in the order of "choices"
     entry["trials"] = row.trials;
     entry["correct"] = proportion_json(row.right);
     json["rows"].push_back(std::move(entry));

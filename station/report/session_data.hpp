@@ -94,8 +94,8 @@ struct SessionData {
   terms::Function function = terms::Function::weibull;
   analysis::Scale scale = analysis::Scale::linear;
   std::string level_label;           ///< name and unit, for an axis: "Contrast (dB)"
-  std::string level_unit;            ///< "" for a level without a unit
-  std::vector<std::string> choices;  ///< ids in the order of their indices
+  std::string level_unit;            ///< unit of the level; "" if it has none
+  std::vector<std::string> choices;  ///< ids of the choices, in the order of their indices
   int positive = 1;                  ///< if has_noise(): the choice that means "yes"
   /// false for a single-interval task without right answers, such as ratings; the report then leaves out
   /// accuracy
@@ -110,11 +110,15 @@ struct SessionData {
   /// dimension. No psychometric function is fitted then.
   bool thresholds_differ = false;
   std::vector<analysis::TrialRecord> trials;
-  /// answered trials in which force cells recorded, without practice; empty if the rig has none
+  /// answered trials, without practice, in which force cells recorded data; empty if the rig has no force
+  /// cells
   std::vector<analysis::FingerTrial> finger;
-  std::vector<analysis::FrictionCurve> strip;     ///< empty if no force cells recorded
-  std::vector<analysis::RepeatedTrials> repeats;  ///< by level; empty if the protocol repeats no trials
-  std::vector<MeasuredTrial> measured;            ///< empty if no pick-up measured the surface
+  /// friction along the strip; empty if no force cells recorded data
+  std::vector<analysis::FrictionCurve> strip;
+  /// trials repeated because of the finger's movement, by level; empty if the protocol repeats none
+  std::vector<analysis::RepeatedTrials> repeats;
+  /// measured vibration of each trial; empty if no pick-up measured the surface
+  std::vector<MeasuredTrial> measured;
   /// Set if the answers determined the levels: the intervals then come from the posterior under this prior.
   /// Empty if the levels were fixed before the session: the intervals then come from bootstraps.
   std::optional<analysis::Prior> prior;

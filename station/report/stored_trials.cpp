@@ -74,7 +74,7 @@ analysis::TrialRecord record_of(const records::TrialRow& row, const records::Blo
   return record;
 }
 
-/// Adds what force cells measured in a trial, if the trial counts.
+/// Adds what force cells measured in a trial, unless the trial is practice or was not answered.
 void add_finger(const records::TrialRow& row, const analysis::TrialRecord& trial, report::SessionData& data) {
   const auto& finger = row.finger;
   if (finger.sensing.empty() || trial.type == terms::TrialType::practice ||
@@ -83,7 +83,7 @@ void add_finger(const records::TrialRow& row, const analysis::TrialRecord& trial
   analysis::FingerTrial added;
   added.trial_index = row.trial_index;
   added.condition = trial.instruction;
-  // this cannot be seen from `sensing`, which may also say that the finger moved too fast
+  // `sensing` does not show whether forces were measured: it may also say that the finger moved too fast
   added.measured = finger.contact_s.has_value();
   added.normal_N = finger.normal_N;
   added.speed_mm_s = finger.speed_mm_s;
@@ -95,7 +95,7 @@ void add_finger(const records::TrialRow& row, const analysis::TrialRecord& trial
   data.finger.push_back(std::move(added));
 }
 
-/// True for blocks of strokes, in which nothing is asked.
+/// True for a block in which the finger only strokes the surface and no question is asked.
 bool nothing_asked(const protocol::Protocol& protocol, const std::string& block) {
   return std::any_of(protocol.plan.begin(), protocol.plan.end(), [&](const auto& part) {
     return protocol::block_of(part).name == block &&
@@ -197,8 +197,8 @@ bool same_function(const procedure::Spec& spec, const report::SessionData& data)
   return linear == (data.scale == analysis::Scale::linear) && spec.function == data.function;
 }
 
-/// Returns the prior for the posterior intervals. It depends only on the levels that the protocol can
-/// present, never on the answers. Empty if no procedure is adaptive.
+/// Returns the prior for the intervals that are computed from a posterior. It depends only on the levels that
+/// the protocol can present, never on the answers. Empty if no procedure is adaptive.
 std::optional<analysis::Prior> prior_of(const protocol::Protocol& protocol, const report::SessionData& data) {
   std::optional<Range> levels, slopes;
   const auto widen = [](std::optional<Range>& range, const Range& by) {

@@ -78,7 +78,7 @@ void read_loop(TableReader& reader, const Rig& rig, Capture& capture) {
   check_spare(reader, "excitation_channel", *capture.excitation_channel, rig);
 }
 
-/// A captured channel that nothing else uses.
+/// Reports a captured channel that does not exist or that is used for something else.
 void check_captured(TableReader& reader, const std::string& key, int channel, const Capture& capture) {
   const auto& pick_ups = capture.pick_ups;
   const auto what = "channel " + std::to_string(channel);
@@ -97,8 +97,9 @@ void read_bridges(TableReader& reader, Capture& capture) {
     const int channel = static_cast<int>(number);
     const auto same = std::count(channels.begin(), channels.end(), number);
     if (channels.size() != 3 || number != channel || same > 1) {
-      reader.problem("bridges", "needs the channels of three cells",
-                     "three different whole numbers: two cells below the surface, and the lateral cell");
+      reader.problem(
+          "bridges", "\"bridges\" needs the channels of three cells",
+          "write three different whole numbers: two cells below the surface, and the lateral cell");
       return;
     }
     check_captured(reader, "bridges", channel, capture);
@@ -143,7 +144,7 @@ Capture read_capture(const text::Value& table, const Rig& rig, text::Findings& f
   for (const double channel : reader.numbers("pickups", {0, 31, Range::Ends::closed})) {
     if (channel != std::floor(channel) || channel >= capture.channels || !seen.insert(channel).second)
       reader.problem("pickups", "channel " + text::number(channel) + " is not a captured channel of its own",
-                     "different whole numbers from 0 to " + std::to_string(capture.channels - 1));
+                     "write different whole numbers from 0 to " + std::to_string(capture.channels - 1));
     capture.pick_ups.push_back(static_cast<int>(channel));
   }
   const bool has_bridges = reader.has("bridges");

@@ -20,8 +20,8 @@ namespace turnpoint::session {
 struct Devices {
   std::unique_ptr<drive::Amplifier> amplifier;
   std::unique_ptr<lines::Buttons> buttons;
-  std::unique_ptr<lines::TriggerLines> triggers;  ///< null if the rig has no lines for codes
-  std::unique_ptr<lines::SyncLine> sync;          ///< null if the rig has no line for pulses
+  std::unique_ptr<lines::TriggerLines> triggers;  ///< null if the rig has no lines for trigger codes
+  std::unique_ptr<lines::SyncLine> sync;          ///< null if the rig has no line for pulses of other devices
   std::function<std::unique_ptr<drive::Stream>(const drive::StreamConfig&)> open_stream =
       drive::open_realtime;
   std::function<std::unique_ptr<drive::Capture>(const drive::OutputConfig&)> open_capture =
@@ -30,9 +30,9 @@ struct Devices {
   std::function<system::Clocks()> clocks = system::read_clocks;
 };
 
-/// Opens the rig's devices. Lines are found by name; the amplifier is disarmed and off. With `sim:`, the same
-/// guard works on lines that exist only in memory. Throws lines::LineError, std::system_error or
-/// terms::UsageError.
+/// Opens the rig's devices. Lines are found by name; the amplifier is disarmed and off. If the rig's
+/// amplifier is `sim:`, the same guard works on lines that exist only in memory. Throws lines::LineError,
+/// std::system_error or terms::UsageError.
 Devices open_devices(const rig::Rig& rig, Inputs& inputs);
 
 /// Returns handlers that pass presses, contacts and faults of the buttons to a session, with the kernel's

@@ -25,7 +25,7 @@ namespace {
 
 using std::chrono::sys_days;
 
-/// The day at the beginning of an ISO 8601 date; empty if there is none.
+/// Returns the day of an ISO 8601 date or date and time; empty if the text does not begin with one.
 std::optional<sys_days> day_of(const std::string& date) {
   int year = 0;
   unsigned month = 0, day = 0;

@@ -10,10 +10,11 @@
 
 namespace turnpoint::session {
 
-/// Whose session a stored session is.
+/// Returns the participant's place in the counterbalancing, and the number of the planned session, of a
+/// stored session.
 protocol::Visit visit_of(const store::SessionRecord& session);
 
-/// Which of the planned sessions a participant does next, and why not now.
+/// The planned session that a participant does next, or the reason why it cannot begin now.
 struct NextSession {
   std::optional<int> number;  ///< empty if the protocol plans no sessions
   std::string problem;        ///< why the session cannot begin; "" if it can
@@ -25,8 +26,8 @@ struct NextSession {
 };
 
 /// Decides which session comes next. `earlier` are the participant's sessions with this protocol, and `today`
-/// is a date such as 2026-11-24. Only sessions of the same run mode count. The least number of days is not
-/// asked of simulated sessions.
+/// is a date such as 2026-11-24. Only sessions of the same run mode count. Simulated sessions need not keep
+/// the protocol's minimum number of days between sessions.
 NextSession next_session(const Setup& setup, const std::vector<store::SessionRecord>& earlier,
                          const std::string& today);
 

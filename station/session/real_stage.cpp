@@ -17,20 +17,20 @@ namespace turnpoint::session {
 
 namespace {
 
-constexpr std::int64_t kPoll_ns = 5'000'000;        // interval between two polls of drive and guard
+constexpr std::int64_t kPoll_ns = 5'000'000;        // time between two polls of drive and amplifier guard
 constexpr std::int64_t kClocks_ns = 1'000'000'000;  // interval between two comparisons of the clocks
 // time from switching the amplifier on to the first stimulus
 constexpr std::int64_t kSettle_ns = 50'000'000;
 constexpr std::int64_t kFirstBlocks_ns = 500'000'000;
-// longest wait for the first position of a restarted device
+// longest wait until a restarted sound device reports its position
 constexpr std::int64_t kFirstPosition_ns = 500'000'000;
 // longest wait for the report that an interval was played completely
 constexpr std::int64_t kHeard_ns = 1'000'000'000;
-constexpr std::int64_t kPilot_ns = 1'000'000'000;               // longer than a pilot can take to come back
-constexpr double kTare_s = sensing::TrialFinger::tare_s + 0.1;  // the filter needs the rest
-constexpr std::int64_t kMeasured_ns = 1'000'000'000;  // longest wait for what was captured of an interval
-// A proof needs captured frames from before the onset, so expect() must be called at least this long before
-// the onset.
+constexpr std::int64_t kPilot_ns = 1'000'000'000;               // longest wait for the captured pilot
+constexpr double kTare_s = sensing::TrialFinger::tare_s + 0.1;  // 0.1 s longer than the tare, for the filter
+constexpr std::int64_t kMeasured_ns = 1'000'000'000;  // longest wait for the captured frames of an interval
+// The measurement of an interval (its proof) needs captured frames from before the onset, so expect() must be
+// called at least this long before the onset.
 constexpr std::int64_t kExpected_ns = 50'000'000;
 // time from the end of the last stimulus to switching the amplifier off
 constexpr std::int64_t kTail_ns = 20'000'000;
@@ -285,7 +285,8 @@ class RealStage : public Stage {
     if (now >= clocks_due_ns_) look_at_clocks(now);
   }
 
-  /// Collects the trigger codes that were read back, and reports pulses of other devices that were captured.
+  /// Passes on the trigger codes that were found in the captured signal, and reports the captured pulses of
+  /// other devices.
   void take_captured() {
     const auto news = feed_->triggers().take();
     triggers_->captured(news);
@@ -295,7 +296,7 @@ class RealStage : public Stage {
     }
   }
 
-  /// A pulse on a GPIO line has only a time; adds the playback frame at that time.
+  /// Adds the playback frame to a pulse on a GPIO line, for which only the time is known.
   Input with_frame(Input input) {
     if (input.kind == InputKind::sync && input.text.empty())
       if (const auto frame = stream_->frame_at(input.time_ns)) input.text = fmt::format("frame {}", *frame);
@@ -427,7 +428,7 @@ class RealStage : public Stage {
   std::unique_ptr<CellFeed> cells_;    ///< null unless the force cells have a converter of their own
   sensing::Pilot pilot_;
   int reference_ = 0;
-  /// An interval that was played, and how long to wait for its captured samples.
+  /// An interval that was played, and the time until which to wait for its captured samples.
   struct Unmeasured {
     int interval = 0;
     std::int64_t limit_ns = 0;
@@ -435,16 +436,16 @@ class RealStage : public Stage {
   std::deque<Unmeasured> unmeasured_;
   std::vector<Presented> presented_;
   Onset first_onset_;        ///< onset of the trial's first interval
-  std::size_t unheard_ = 0;  ///< number of intervals for which no `heard` report has come yet
+  std::size_t unheard_ = 0;  ///< number of intervals not yet reported as played
   /// time at which the converter was lost during a trial; the surface has been silent since then
   std::optional<std::int64_t> lost_ns_;
   drive::UnderrunLimit underruns_;
   system::ClockWatch clocks_;
   std::int64_t clocks_due_ns_ = 0;
-  std::int64_t quiet_ns_ = 0;   ///< time from which the surface is silent
+  std::int64_t quiet_ns_ = 0;   ///< time from which the surface no longer vibrates
   std::int64_t opened_ns_ = 0;  ///< time at which the amplifier was enabled
   bool closing_ = false, fault_told_ = false;
-  std::uint32_t numbering_ = 0;  ///< the capture's `numbering` when a gap was last reported
+  std::uint32_t numbering_ = 0;  ///< the capture's `numbering` at the last reported loss of frames
   std::int64_t saturated_ = 0;   ///< number of samples clipped so far
   /// set if the converter runs at the wrong rate, until the device has been reopened
   Refusal wrong_rate_;

@@ -17,8 +17,8 @@ namespace turnpoint::session {
 
 namespace {
 
-/// Advances the director to a block that the log contains. Finishes its current block first, or repeats the
-/// recorded restart of the block or session.
+/// Advances the director to a block that the log contains. For this, finishes the director's current block,
+/// or repeats a restart of the block or session that is in the log.
 void enter_stored(trial::Director& director, const records::BlockStart& block) {
   const auto here = [&] {
     return director.block_index() == block.block_index && director.attempt() == block.attempt;

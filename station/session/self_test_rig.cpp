@@ -25,7 +25,8 @@ void require(const std::optional<Fault>& refusal, const char* what) {
   if (refusal) throw std::runtime_error(std::string(what) + ": " + terms::describe(*refusal));
 }
 
-/// Its destructor starts the heartbeat again and switches the amplifier off, even after an exception.
+/// Enables the amplifier. The destructor starts the heartbeat again and switches the amplifier off, even
+/// after an exception.
 class GateOpened {
  public:
   explicit GateOpened(drive::Amplifier& amplifier) : amplifier_(amplifier) {
@@ -116,8 +117,8 @@ class StageRig : public SelfTestRig {
       amplifier.hold_heartbeat();
       const auto held_ns = system::monotonic_ns();
       if (!until([&] { return amplifier.gate() == false; }, kGate_ns)) return reading;
-      // The external monitor must have shut the gate. After a fault the guard shuts it too, and the reading
-      // would say nothing about the monitor.
+      // Make sure that the external monitor has shut the gate. If the guard shut it after a fault, the
+      // reading would say nothing about the monitor.
       if (amplifier.state() == drive::AmplifierState::faulted)
         throw std::runtime_error("the amplifier was switched off for another reason: " +
                                  terms::describe(amplifier.fault()));

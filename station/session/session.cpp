@@ -128,7 +128,7 @@ drive::StreamConfig simulated_stream(const rig::Rig& rig) {
   config.virtual_lead_frames = std::int64_t{config.output.periods} * config.output.period_frames;
   const bool hardware = config.output.uri.starts_with("alsa:") && config.output.allow_plugin.empty();
   if (hardware) config.output.uri = "null:";
-  // Without a reader, skip the computation of samples: half an hour has 300 million frames.
+  // If nothing reads the samples, do not compute them: half an hour has 300 million frames.
   if (config.output.uri == "null:" && !simulates_capture(rig)) config.samples = drive::Samples::passed;
   return config;
 }

@@ -225,7 +225,7 @@ void SessionRun::perform(const std::vector<trial::Action>& actions, Running& tri
 void SessionRun::present(std::int64_t earliest_ns, Running& trial) {
   const auto& bursts = plans_.take(trial.spec).bursts;
   trial.onsets = stage_->present(bursts, earliest_ns);
-  if (trial.onsets.empty()) return;  // a fault among the inputs gives the reason
+  if (trial.onsets.empty()) return;  // the stage has added a fault with the reason to the inputs
   const auto times = trial::interval_times(setup_.protocol, trial.spec);
   for (std::size_t i = 0; i < bursts.size(); ++i) {
     const auto on_ns = trial.onsets[i].time_ns;

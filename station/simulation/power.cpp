@@ -72,7 +72,8 @@ class Truths {
     return names;
   }
 
-  /// Adds the true d' of each model: the d' at which the model has the observer's own proportion correct.
+  /// Adds the true d' of each model: the value of d' at which the model gives the simulated observer's true
+  /// proportion correct.
   void add_d_primes(const protocol::Protocol& protocol, const GeneratingValues& generating,
                     const observer::Observer& observer) {
     std::set<double> levels;

@@ -39,7 +39,8 @@ void add_estimates(const Rehearsal& rehearsal, const protocol::Protocol& protoco
   }
 }
 
-/// Distance between the seeds of a participant's sessions: larger than any number of observers.
+/// The seeds of one participant's sessions differ by multiples of this number. It is larger than any number
+/// of observers, so sessions of different participants never have the same seed.
 constexpr std::uint64_t kSeedStep = std::uint64_t{1} << 40U;
 
 /// The blocks of all sessions of one participant, numbered as if they were one session.
@@ -113,7 +114,7 @@ void add_fits(const report::SessionData& data, const std::string& unit, SessionO
   }
 }
 
-/// Adds d' in each condition over all trials and, if the levels are fixed, at each level.
+/// Adds the estimates of d' for each condition: over all trials and, if the levels are fixed, at each level.
 void add_discriminations(const protocol::Protocol& protocol, const report::SessionData& data,
                          std::vector<Finding>& findings) {
   if (data.deciding.empty() || !report::shows(data, "dprime")) return;

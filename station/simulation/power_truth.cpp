@@ -53,7 +53,8 @@ std::optional<double> crossing(const std::function<double(double)>& share, doubl
   return physics::bisect({high, low}, [&](double level) { return !below(level); }).middle();
 }
 
-/// A range of levels that is wide enough, in any unit, to reach both asymptotes.
+/// A range of levels that is wide enough, in any unit, to reach both asymptotes of the observer's
+/// psychometric function.
 struct Reach {
   double low = 0, high = 0;
 };

@@ -40,10 +40,10 @@ class GeneratingValues {
            const observer::Question& question, const observer::Observer& observer);
   void add(const GeneratingValues& other);
 
-  /// Sums over the trials of one condition. Sums of several sessions can be added. The questions are not part
-  /// of them.
+  /// Sums over the trials of one condition. Sums of several sessions can be added. They do not contain the
+  /// questions that were asked.
   struct Sum {
-    double deadline_s = 0;  ///< deadline of the first trial
+    double deadline_s = 0;  ///< deadline of the condition's first trial
     bool one_deadline = true;
     int trials = 0;
     double correct = 0;
@@ -52,7 +52,8 @@ class GeneratingValues {
   static GeneratingValues of_sums(const std::map<std::string, Sum>& sums);
   /// Copies from `other` the observer's questions for the conditions that both objects have.
   void take_questions(const GeneratingValues& other);
-  bool has_all_of(const GeneratingValues& other) const;  ///< true if this has each of the other's conditions
+  /// true if all conditions of `other` are also in this object
+  bool has_all_of(const GeneratingValues& other) const;
 
   /// Returns the true values that a fit with these options should find in the answers of this condition (""
   /// means all trials). The slope is set only if the observer's function is of the same family as the fitted
@@ -64,7 +65,7 @@ class GeneratingValues {
   /// easy the right answer is to find.
   std::optional<double> share_correct_at(const std::string& condition, double level,
                                          const observer::Observer& observer) const;
-  /// EZ's boundary separation for s = 0.1.
+  /// The true boundary separation of the EZ diffusion model (with the scaling parameter s = 0.1).
   std::optional<double> boundary(const std::string& condition, const observer::Observer& observer) const;
 
  private:

@@ -116,7 +116,7 @@ Doing done_by(const Rehearser& rehearser, const TrialSpec& spec, const protocol:
               std::uint64_t seed) {
   if (spec.strokes) {
     Doing doing;
-    doing.reply.choice = 0;  // the movement is the one that the protocol asks for
+    doing.reply.choice = 0;  // 0: the finger moves as the protocol asks
     return doing;
   }
   if (!spec.slider) return {rehearser.answer(spec, trial::question_of(spec, protocol, seed)), {}};

@@ -32,7 +32,7 @@ double trials_of(const Protocol& protocol, const Block& block) {
 }
 
 // True if the first trials of this block differ, on average, from the later ones. In a shuffled list they do
-// not, because every part of it has the same trials on average.
+// not differ, because every part of the list has the same trials on average.
 bool begins_unlike_it_goes_on(const Protocol& protocol, const Block& block) {
   if (block.practice || !block.trials || *block.trials >= trials_of(protocol, block)) return false;
   bool unlike = block.procedures.size() > 1;

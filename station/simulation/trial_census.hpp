@@ -46,11 +46,11 @@ bool levels_follow_right_answers(const protocol::Protocol& protocol);
 /// Simulates one session in which the participant passes practice, and counts its trials.
 TrialCensus census_of_session(const protocol::Protocol& protocol, std::uint64_t seed, const Answers& answers);
 
-/// The average content of a session, computed exactly from the protocol. If a procedure chooses levels from
-/// the answers, each level that it can present counts equally often. One case is sampled instead of computed:
-/// a block that has fewer trials than its procedures provide, and whose first trials differ from the rest
-/// (several procedures, no shuffling, or `max_run`). For such a block, sessions with 40 000 trials in total
-/// are counted. The standard error of each proportion is then at most 0.25 %.
+/// Returns the average number of trials of each kind in a session, computed exactly from the protocol. If a
+/// procedure chooses levels from the answers, each level that it can present counts equally often. One case
+/// is sampled instead of computed: a block that has fewer trials than its procedures provide, and whose first
+/// trials differ from the rest (several procedures, no shuffling, or `max_run`). For such a block, sessions
+/// with 40 000 trials in total are counted. The standard error of each proportion is then at most 0.25 %.
 TrialCensus census_of(const protocol::Protocol& protocol);
 
 }  // namespace turnpoint::simulation

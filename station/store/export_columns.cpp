@@ -84,7 +84,7 @@ ExportColumn stimulus_duration() {
 }
 
 ExportColumn last_model() {
-  return {{"model", "Physical model that planned the scene presented last in the trial", "", ""},
+  return {{"model", "Physical model with which the scene presented last in the trial was planned", "", ""},
           [](const ExportRow& row) {
             const auto& tones = row.trial->tones;
             return tones.empty() ? Cell{} : cell(tones.back().model);

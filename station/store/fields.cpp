@@ -12,7 +12,7 @@ Field<SessionRecord> start(const About& about) {
   return field<&SessionRecord::start, Member>(about);
 }
 
-/// Describes the database column that stores one of the conditions of a session.
+/// Describes the database column that stores one of a session's conditions, such as the humidity.
 template <auto Member>
 Field<SessionRecord> condition(const About& about) {
   return since(4, field<&SessionRecord::start, &SessionStart::conditions, Member>(about));
@@ -90,9 +90,10 @@ const Table<AnswerRow>& answer_table() {
        field<&A::occasion>({"occasion", "occasion",
                             "Number of blocks before the questionnaire; distinguishes repeated uses of the "
                             "same questionnaire"}),
-       field<&A::answer>({"answer", "answer", "Id of the choice, or the number"}),
-       field<&A::response_time_s>(
-           {"response_time_s", "response_time", "Time from the appearance of the question", "s"})}};
+       field<&A::answer>({"answer", "answer",
+                          "Id of the chosen answer or, if the question asks for a number, that number"}),
+       field<&A::response_time_s>({"response_time_s", "response_time",
+                                   "Time from the appearance of the question to the answer", "s"})}};
   return table;
 }
 
@@ -193,9 +194,10 @@ const Table<SessionRecord>& session_table() {
                                               "Moisture of the fingertip, as a moisture meter read it before "
                                               "the session, in the meter's unit"}),
        since(5, field<&R::leased_place>({"leased_place"})),
-       since(5, start<&S::planned_session>(
-                    {"planned_session", "planned_session",
-                     "Which of the sessions that the protocol plans it is, from 1; n/a if it plans none"})),
+       since(5,
+             start<&S::planned_session>(
+                 {"planned_session", "planned_session",
+                  "Number of this session in the protocol's plan of sessions, from 1; n/a without a plan"})),
        since(5, start<&S::group>(
                     {"participant_group", "participant_group",
                      "Group of the participant: a level of the factor that is drawn per participant"})),

@@ -174,7 +174,7 @@ void refuse_changed(Database& database, const std::string& source) {
                       source, session.session_id, session.participant, session.problems.front(), source));
 }
 
-/// Gives a session the status from `source`, whose rows of this session are newer.
+/// Copies a session's status from `source`. Call this if the rows of the session in `source` are newer.
 void take_status(Database& database, const std::string& id) {
   Statement(
       database,

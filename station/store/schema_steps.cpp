@@ -235,8 +235,8 @@ CREATE TRIGGER session_stays_gone BEFORE INSERT ON session
 )sql";
 
 // Version 3 adds a chain of checksums to each session (checksum.hpp). Sessions of earlier releases have no
-// chain until they are resumed. They are listed here, because otherwise they would look as if somebody had
-// removed their chain.
+// chain until they are resumed. They are listed in the table `unsealed`, because otherwise they would look as
+// if somebody had removed their chain.
 const char* const kStep3 = R"sql(
 CREATE TABLE link (
   session_id TEXT NOT NULL REFERENCES session (session_id),
@@ -262,9 +262,10 @@ CREATE TRIGGER link_is_never_deleted BEFORE DELETE ON link
   BEGIN SELECT RAISE(ABORT, 'link is append-only'); END;
 )sql";
 
-// Version 4. A code belongs to the station that assigned it. Two codes belong to one person only if a row
-// says so. A tombstone names the station of its code; '' in older tombstones means any station. A tombstone
-// without a hash withdraws a single session and leaves the code in use.
+// Version 4 lets several stations assign the same code. A code belongs to the station that assigned it, and
+// two codes belong to one person only if a row of `same_person` says so. A tombstone names the station of its
+// code; '' in older tombstones means any station. A tombstone without a hash withdraws a single session and
+// leaves the code in use.
 const char* const kStep4 = R"sql(
 CREATE TABLE same_person (
   station_a TEXT NOT NULL,
@@ -279,7 +280,8 @@ CREATE TABLE same_person (
 ALTER TABLE tombstone ADD COLUMN station_id TEXT NOT NULL DEFAULT '';
 )sql";
 
-// Version 5. What a pick-up on the surface measured during a trial. Earlier trials are unproven.
+// Version 5 stores what a pick-up on the surface measured during a trial. Trials stored by earlier versions
+// are unproven.
 const char* const kStep5 = R"sql(
 ALTER TABLE trial ADD COLUMN proof TEXT NOT NULL DEFAULT 'unproven'
   CHECK (proof IN ('unproven', 'ok', 'flagged', 'refused', 'stopped', 'lost'));
@@ -291,8 +293,8 @@ ALTER TABLE tone ADD COLUMN measured_dB REAL;
 ALTER TABLE tone ADD COLUMN measured_phase_deg REAL;
 )sql";
 
-// Version 6. How sure the participant was of an answer, if the task asks. What force sensors measured of the
-// finger: a summary in each trial, and the signals themselves.
+// Version 6 stores how sure the participant was of an answer, if the task asks, and what force sensors
+// measured: a summary in each trial, and the signals themselves.
 const char* const kStep6 = R"sql(
 ALTER TABLE trial ADD COLUMN confidence INTEGER
   CHECK (confidence IS NULL OR (confidence >= 1 AND outcome = 'answered'));
@@ -336,8 +338,8 @@ CREATE TRIGGER signal_is_never_deleted BEFORE DELETE ON signal
   BEGIN SELECT RAISE(ABORT, 'signal is append-only'); END;
 )sql";
 
-// Version 7. The self-test before a session: its checks belong to an event of the kind self_test. The
-// conditions of a session in the room.
+// Version 7 stores the checks of the self-test before a session (they belong to an event of the kind
+// self_test), and the conditions of a session, such as the temperature of the room.
 const char* const kStep7 = R"sql(
 ALTER TABLE session ADD COLUMN humidity_percent REAL CHECK (humidity_percent BETWEEN 0 AND 100);
 ALTER TABLE session ADD COLUMN room_temperature_C REAL CHECK (room_temperature_C BETWEEN -20 AND 60);

@@ -4,12 +4,12 @@
 
 namespace turnpoint::terms {
 
-/// Everything that can go wrong in the room. The part of the station that finds a fault (amplifier guard,
-/// audio stream, panel, store) chooses its kind. The kind is passed on unchanged to the page that explains
-/// the fault. Each kind has its own page.
+/// The kinds of faults that can occur during a session. The part of the station that finds a fault (amplifier
+/// guard, audio stream, panel, store) chooses its kind. The kind is passed on unchanged to the page that
+/// explains the fault. Each kind has its own page.
 enum class FaultKind {
   other,                ///< a fault without a kind of its own; see the detail
-  converter_gone,       ///< the converter was unplugged, or its driver gave up
+  converter_gone,       ///< the converter (sound device) was unplugged, or its driver failed
   converter_rate,       ///< the converter does not run at the rate that it reports
   converter_saturated,  ///< samples beyond full scale were clipped, so the stimulus was wrong
   audio_silent,         ///< the audio thread no longer reports to the amplifier guard

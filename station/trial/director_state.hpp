@@ -1,4 +1,4 @@
-// Shared by director.cpp and director_trials.cpp; not for other files.
+// The state of a Director, shared by director.cpp and director_trials.cpp. Other files must not include it.
 #pragma once
 #include <map>
 #include <memory>
@@ -23,7 +23,7 @@ struct Director::State {
   /// number of the current attempt at the block, and of the first attempt since the session was started or
   /// restarted
   int attempt = 0, first_attempt = 0;
-  /// number of trials of the block so far that count; part of the key of the next trial's draws
+  /// number of trials of the block so far that count; part of the key of the next trial's random draws
   int trial = 0;
   int shown = 0, right = 0;
   int warmups = 0, warmups_given = 0;
@@ -32,7 +32,8 @@ struct Director::State {
   std::vector<const procedure::Spec*> specs;
   std::vector<std::unique_ptr<procedure::Procedure>> procedures;
   std::vector<double> practice_levels;
-  std::map<std::size_t, std::vector<Stroke>> strokes;  ///< trials of friction tables, by block
+  /// trials of the blocks that measure a friction table, by block
+  std::map<std::size_t, std::vector<Stroke>> strokes;
   std::optional<TrialSpec> current;
   int current_procedure = no_procedure;
 

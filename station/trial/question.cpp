@@ -12,8 +12,8 @@ namespace turnpoint::trial {
 
 namespace {
 
-/// Returns the name of the factor that the trial's level sets: the factor of the trial's procedure or, if it
-/// has none, that of the first trials in the protocol that have a level.
+/// Returns the name of the factor that the trial's level sets: the factor of the trial's procedure or, if the
+/// trial has no procedure, the level factor of the first trials in the protocol that have one.
 std::string level_factor(const TrialSpec& spec, const protocol::Protocol& protocol) {
   if (const auto* procedure = protocol::find_procedure(protocol, spec.procedure)) return procedure->level;
   if (!protocol.procedures.empty()) return protocol.procedures.front().level;

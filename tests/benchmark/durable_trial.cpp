@@ -124,7 +124,7 @@ double at_quantile(std::vector<double> values, double q) {
   return values[static_cast<std::size_t>(q * static_cast<double>(values.size() - 1))];
 }
 
-/// A folder that is always removed at the end.
+/// A folder that is removed when this object is destroyed.
 struct Folder {
   std::string path;
   ~Folder() {

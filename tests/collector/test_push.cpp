@@ -72,7 +72,7 @@ TEST_CASE("a push sends each session once, and a continued session is extended",
     auto log = store::SessionLog::resume(db, second, sample::segment("resume"));
     log.begin_block(sample::block());
     log.append(sample::answered(7));
-    // A session that runs is not sent, and its earlier part stays on the server.
+    // A running session is not sent. What the server has of it from before the resume stays.
     const auto meanwhile = collector::push(options);
     CHECK(meanwhile.running == 1);
     CHECK(count("trial") == 19);
@@ -149,7 +149,7 @@ TEST_CASE("the server calculates each checksum from what it stored", "[collector
   store::annotate(db, id, "a note");
   auto server = postgres.admin();
   server.query("GRANT USAGE ON SCHEMA public TO turnpoint_owner");
-  // Makes a server that stores something other than what arrives.
+  // Each of these changes makes the server store something other than what arrives.
   const std::pair<std::string, std::string> changes[] = {{"trial", "NEW.\"threshold_sd\" := 1.25"},
                                                          {"tone", "NEW.\"friction\" := NULL"},
                                                          {"signal", "NEW.data := NEW.data || '\\x00'"},

@@ -140,7 +140,8 @@ TEST_CASE("yes and no are separated by the criterion", "[observer]") {
   question.decides = Decides::presence;
   for (const double criterion : {-0.5, 0.2, 1.5}) {
     const Observer observer(parse("sim:threshold=3,lapse=0,criterion=" + std::to_string(criterion)));
-    // The inverse of the normal distribution, by bisection on another implementation of it.
+    // The inverse of the normal distribution function, found by bisection. The distribution is computed here
+    // without the program's code.
     const auto z = [&](double p) {
       double low = -9, high = 9;
       for (int i = 0; i < 80; ++i) {
@@ -195,7 +196,7 @@ TEST_CASE("a deadline lowers the bound so that few decisions come too late", "[o
 }
 
 TEST_CASE("non-decision times vary within their range", "[observer]") {
-  // At 99 times the threshold, a decision takes a few hundredths of a second.
+  // At 100 times the threshold, a decision takes a few hundredths of a second.
   const Observer observer(parse("sim:threshold=1,slope=4,bound=0.01,residual=0.5,residual_range=0.4"));
   auto question = at_level(100);
   std::vector<double> times;
@@ -226,7 +227,8 @@ TEST_CASE(
   question.answers = 4;
   question.default_threshold = 10;
   const Observer observer(parse("sim:lapse=0"));
-  // Of two categories one threshold apart, 75 % are told apart: z(0.75) = 0.67449, so the SD is 7.41301.
+  // Two categories that differ by the threshold of 10 are told apart in 75 % of trials. The border is 5 from
+  // each, and z(0.75) = 0.67449, so the SD of the noise is 5 / 0.67449 = 7.41301.
   const auto below = [](double x, double level) {
     return 0.5 * std::erfc((level - x) / 7.41301 / std::sqrt(2.0));
   };

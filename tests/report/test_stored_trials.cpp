@@ -221,7 +221,7 @@ TEST_CASE("ratings and numbers are reported by level, and right and wrong are le
   const auto line = report_of(data_of(shipped("smoothness-line")));
   REQUIRE(line["judgements"].size() == 1);
   REQUIRE(line["judgements"][0]["levels"].size() == 5);
-  CHECK(line["judgements"][0]["levels"][0]["answers"] == 8);  // trials of practice are not counted
+  CHECK(line["judgements"][0]["levels"][0]["answers"] == 8);  // practice trials are not counted
   CHECK(line["judgements"][0]["levels"][4]["mean"]["value"] >
         line["judgements"][0]["levels"][0]["mean"]["value"]);
   CHECK(line["judgements"][0]["exponent"].is_null());
@@ -243,7 +243,7 @@ TEST_CASE("identification is reported as a confusion matrix, without a curve and
   REQUIRE(rows.size() == 5);
   for (std::size_t i = 0; i < 5; ++i) {
     CHECK(rows[i]["stimulus"] == std::to_string(i + 1));
-    CHECK(rows[i]["trials"] == 15);  // trials of practice are not counted
+    CHECK(rows[i]["trials"] == 15);  // practice trials are not counted
     CHECK(rows[i]["answers"][i] == rows[i]["correct"]["right"]);
   }
   CHECK(report["confusion"][0]["correct"]["trials"] == 75);
@@ -260,7 +260,7 @@ TEST_CASE("identification is reported as a confusion matrix, without a curve and
 TEST_CASE("d' of three intervals and of ABX is reported by model, and the guess rate is known", "[report]") {
   const auto three = report_of(data_of(shipped("friction-3ifc"), "sim:lapse=0"));
   CHECK(three["fits"][0]["guess"].get<double>() == Approx(1.0 / 3));
-  REQUIRE(three["discrimination"].size() == 1);  // an adaptive procedure presents too many levels
+  REQUIRE(three["discrimination"].size() == 1);  // one row for all adaptive levels together
   CHECK(three["discrimination"][0]["d_prime"][0]["model"] == "largest of m");
   CHECK(three["confusion"][0]["rows"].size() == 3);
   CHECK(three["detection"].empty());
@@ -362,7 +362,7 @@ TEST_CASE("settings are reported by the side from which the slider started", "[r
                above = settings["from_above"]["mean"]["value"];
   CHECK(settings["mean"]["value"].get<double>() == Approx(0.5 * (below + above)));
   CHECK(settings["side_difference"]["value"].get<double>() == Approx(below - above));
-  // one list of starts has the same sides
+  // a single list of starting values is divided in the same way into starts below and above
   const auto list = replaced(shipped_file, "start_below = [-20.0]", "start = [-20.0, 20.0]");
   CHECK(sides(replaced(list, "start_above", "# start_above")) == settings);
   const auto one = replaced(shipped_file, "start_below = [-20.0]", "start = [-20.0]");

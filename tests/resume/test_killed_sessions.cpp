@@ -26,7 +26,7 @@ struct Case {
   std::string file;
   std::vector<std::pair<std::string, std::string>> edits = {};
   int kills = 2;
-  std::optional<int> planned_session = {};  ///< of a protocol that plans several
+  std::optional<int> planned_session = {};  ///< number of the session, if the protocol plans several
 };
 
 int kills_wanted(const Case& wanted) { return kLong != nullptr ? std::atoi(kLong) : wanted.kills; }

@@ -196,8 +196,9 @@ TEST_CASE("a rig names the captured channels of its pick-ups", "[rig]") {
   CHECK(rig.capture->channels == 4);
   CHECK(rig.capture->pick_ups == std::vector<int>{3, 1});
   CHECK_FALSE(rig::load(simulated).capture);
-  CHECK(contains(with("uri = \"sim:\"\nchannels = 2\npickups = [2]"),
-                 "channel 2 is not a captured channel of its own; different whole numbers from 0 to 1"));
+  CHECK(
+      contains(with("uri = \"sim:\"\nchannels = 2\npickups = [2]"),
+               "channel 2 is not a captured channel of its own; write different whole numbers from 0 to 1"));
   CHECK(contains(with("uri = \"sim:\"\nchannels = 2\npickups = [1, 1]"), "channel 1"));
   CHECK(contains(with("uri = \"sim:\"\nchannels = 2\npickups = [0.5]"), "channel 0.5"));
   CHECK(contains(with("uri = \"usb:\"\nchannels = 2\npickups = [0]"), "allowed: \"sim:\" or \"alsa:NAME\""));

@@ -1,4 +1,5 @@
-// Sessions on several days: which one comes next, when it is refused, and what is stored.
+// Tests studies with sessions on several days: which session comes next, when it is refused, and what is
+// stored.
 #include <time.h>
 
 #include <fstream>
@@ -84,7 +85,7 @@ TEST_CASE("the next session is the first one that was not completed", "[session]
   CHECK(next({on_day("2026-11-01", 1)}) == 2);
   CHECK(next({on_day("2026-11-01", 1, SessionStatus::interrupted)}) == 1);
   CHECK(next({on_day("2026-11-01", 1), on_day("2026-11-02", 2, SessionStatus::stopped)}) == 2);
-  CHECK(next({on_day("2026-11-01", 2)}) == 1);  // the first one was left out
+  CHECK(next({on_day("2026-11-01", 2)}) == 1);  // the first session was left out, so it comes next
   CHECK(next({on_day("2026-11-01", 1, SessionStatus::completed, terms::RunMode::simulated)}) == 1);
   const auto over = next_session(
       setup, {on_day("2026-11-01", 1), on_day("2026-11-02", 2), on_day("2026-11-03", 3)}, "2026-11-24");
@@ -100,7 +101,7 @@ TEST_CASE("the next session is the first one that was not completed", "[session]
 
 TEST_CASE("a session that comes too early is refused with the date from which it is allowed", "[session]") {
   auto setup = training(2);
-  const std::vector<store::SessionRecord> earlier{on_day("2024-02-27", 1)};  // a leap year
+  const std::vector<store::SessionRecord> earlier{on_day("2024-02-27", 1)};  // 2024 is a leap year
   for (const auto* day : {"2024-02-27", "2024-02-28"}) {
     const auto refused = next_session(setup, earlier, day);
     CHECK(refused.number == 2);
@@ -165,7 +166,7 @@ TEST_CASE("two participants of two groups go through their sessions, and group a
             if (name == "training") CHECK(std::get<std::string>(value) == group);
     }
   CHECK_THROWS_AS(run(training_for("A", db)), text::BadInput);
-  // whose code is typed later is refused when the session begins, before anything is stored
+  // A participant whose code is typed later is refused when the session begins, before anything is stored.
   auto setup = setup::prepare([&] {
     auto request = training_for(setup::kCodeToCome, db);
     return request;

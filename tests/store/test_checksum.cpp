@@ -316,7 +316,8 @@ TEST_CASE("the encoding of a session, which determines its checksums, never chan
   sample::session(db, 2, start);
   auto database = unguarded(db);
   // Gives fixed values to everything that differs between runs: random values, clock times, and data from
-  // zlib, which depend on its version. Removes what the sample contains only since the checksum was recorded.
+  // zlib, which depend on its version. Removes what was added to the sample after the expected checksum had
+  // been recorded.
   database.execute(
       "UPDATE session SET session_id = '00000000-0000-4000-8000-000000000000';"
       "UPDATE trial SET session_id = (SELECT session_id FROM session), recorded_realtime_ns = 5;"

@@ -1,5 +1,5 @@
-// Rows that belong to an event (answers, checks of a self-test, levels of a friction table) are stored with
-// the event, survive a merge, and are covered by the checksum.
+// Tests that rows that belong to an event (answers, checks of a self-test, levels of a friction table) are
+// stored with the event, survive a merge, and are covered by the checksum.
 #include "station/store/merge.hpp"
 #include "station/store/read.hpp"
 #include "station/store/verify.hpp"

@@ -248,7 +248,7 @@ TEST_CASE("without repetition, each level comes once before any comes again", "[
     director.record(answered(*spec, true));
   }
   CHECK(order.empty());
-  CHECK(orders.size() > 10);  // the block has 24 rounds
+  CHECK(orders.size() > 10);  // the 24 rounds of the block must have more than 10 different orders
 }
 
 TEST_CASE("a procedure over two dimensions sets both factors of a trial, and the observer feels both",

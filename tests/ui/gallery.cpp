@@ -308,7 +308,7 @@ void add_faults(std::vector<Exhibit>& all, const Words& words) {
     page.to_do = text.to_do;
     page.detail = detail;
     if (kind == FaultKind::disarmed) page.amplifier = "disarmed";
-    // With these faults, the amplifier stays armed.
+    // These faults do not put the amplifier into the state "faulted".
     const auto armed = {FaultKind::disarmed,  FaultKind::limits,          FaultKind::touch_gone,
                         FaultKind::disk_full, FaultKind::stimulus_missed, FaultKind::vibration,
                         FaultKind::capture,   FaultKind::self_test,       FaultKind::program,

@@ -2,7 +2,7 @@ import QtQuick
 import QtTest
 import Turnpoint
 
-// The designer of studies in the whole program, operated by taps. `taps` counts them.
+// Tests the designer of studies in the whole program, operated by taps. `taps` counts the taps.
 Item {
     id: stage
     width: 1280
@@ -59,7 +59,8 @@ Item {
             mouseClick(item, item.width / 2, Math.min(item.height / 2, 20))
             ++taps
         }
-        /// The field of the shown page with this key: its name within its table, such as "stop.trials".
+        /// Returns the name of the item that shows a key, such as "stop.trials", of a table on the shown
+        /// page.
         function field(key, table = 0) {
             const groups = designPage().design.groups
             const found = groups[table].fields.find(one => one.path.join(".") === key)

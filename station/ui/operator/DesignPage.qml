@@ -2,8 +2,8 @@ import QtQuick
 import QtQuick.Window
 import Turnpoint
 
-// The designer of studies: first what to measure, then a form with several pages. Beside the form stand what the check
-// says and the text of the file; on a small screen they are two more pages.
+// The designer of studies. It asks what to measure, and then shows a form with several pages. Beside the form it shows
+// the result of the check or the text of the protocol file; on a small screen these are two more pages.
 Rectangle {
     id: root
     required property DesignController design

@@ -38,7 +38,7 @@ Rectangle {
         font.pixelSize: look.textBody
         verticalAlignment: Text.AlignVCenter
     }
-    // Large text on a small screen needs more height than there is; the page then scrolls.
+    // Large text on a small screen may not fit into the height of the page; the page then scrolls.
     Flickable {
         id: wholePage
         anchors.fill: parent
@@ -47,7 +47,8 @@ Rectangle {
         boundsBehavior: Flickable.StopAtBounds
         Item {
             id: page
-            /// Height of everything but the list and the summary, which need about five lines each.
+            /// Height of everything except the list of protocols and the summary, which need about five lines
+            /// each.
             readonly property real fixed: header.height + interrupted.height + footer.height + 2 * look.margin + 4 * root.gap
             width: wholePage.width
             height: Math.max(root.height, fixed + (root.tall ? 16 : 8) * look.textBody)
@@ -319,7 +320,8 @@ Rectangle {
                     }
                     Item {
                         id: last
-                        /// True if everything of the last row fits beside the button that begins.
+                        /// True if the last row has room for all its items beside the button that begins the
+                        /// session.
                         readonly property bool wide: mode.implicitWidth + arm.implicitWidth + begin.width + 4 * root.gap <= width
                         width: parent.width
                         height: wide ? look.controlHeight : ready.height + root.gap + begin.height

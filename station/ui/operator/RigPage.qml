@@ -1,8 +1,8 @@
 import QtQuick
 import Turnpoint
 
-// The operator's page about the rig: its calibration, the findings of the doctor and the self-test, and
-// settings for how the operator's pages look.
+// The operator's page about the rig: its calibration, the findings of `turnpoint doctor` and of the
+// self-test, and settings for how the operator's pages look.
 Rectangle {
     id: root
     required property RigController rig
@@ -196,7 +196,8 @@ Rectangle {
                 required property int index
                 readonly property string state: modelData.status ?? modelData.verdict
                 objectName: "finding" + index
-                // The findings are in English, so they are not mirrored.
+                // The findings are in English, so they are not mirrored on a page that is read from right to
+                // left.
                 LayoutMirroring.enabled: false
                 LayoutMirroring.childrenInherit: true
                 width: results.inner
@@ -221,7 +222,7 @@ Rectangle {
                         font { pixelSize: look.textBody; weight: Font.Bold }
                     }
                 }
-                // A bar for the reading, from 0 to its limit.
+                // A bar that shows the check's reading on a scale from 0 to its limit.
                 Rectangle {
                     objectName: visible ? "gauge" + finding.index : ""
                     visible: (finding.modelData.share ?? -1) >= 0

@@ -122,7 +122,7 @@ void DesignController::take_change(std::string text) {
   read_again();
 }
 
-/// Shows at once what the reader says about the text, and starts the check, which takes longer.
+/// Reads the text, shows the reader's remarks at once, and starts the check, which takes longer.
 void DesignController::read_again() {
   remarks_.clear();
   words_ = {};
@@ -191,7 +191,7 @@ void DesignController::start_profiles() {
               to_variant(desk::drawing_of(desk::profile_figure({look})));
       }
     } catch (const std::exception&) {
-      // The check says what is wrong; without a plan there is no profile to show.
+      // A scene that cannot be planned has no profile. The check reports what is wrong.
     }
     return [this, profiles] {
       profiles_ = profiles;

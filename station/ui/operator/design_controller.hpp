@@ -21,7 +21,7 @@
 
 namespace turnpoint::ui {
 
-/// What the designer of studies needs to know of the station.
+/// The files and folders that the designer of studies uses.
 struct DesignPlace {
   std::string folder;     ///< where new studies are saved
   std::string rig;        ///< the rig on which a study is checked
@@ -35,7 +35,7 @@ class DesignController : public QObject {
   Q_OBJECT
   QML_ELEMENT
   QML_UNCREATABLE("made by the program")
-  /// goals (what to measure?), form, or "" if there is nothing to do
+  /// what the page shows: goals (the choice of what to measure), form, or "" if no study is open
   Q_PROPERTY(QString stage READ stage NOTIFY changed)
   Q_PROPERTY(QString name READ name NOTIFY changed)
   /// a name for a new study, from the command line
@@ -45,11 +45,11 @@ class DesignController : public QObject {
   Q_PROPERTY(int section READ section NOTIFY changed)
   /// tables of the chosen page, with their fields; see group_of() in design_lists.cpp
   Q_PROPERTY(QVariantList groups READ groups NOTIFY changed)
-  /// what the check says as {kind: problem | warning | note, line, what, hint}
+  /// remarks of the check as {kind: problem | warning | note, line, what, hint}
   Q_PROPERTY(QVariantList remarks READ remarks NOTIFY changed)
   Q_PROPERTY(QVariantList facts READ facts NOTIFY changed)
   Q_PROPERTY(QVariantList cues READ cues NOTIFY changed)
-  /// checking, good, warned or bad
+  /// state of the check: checking, good, warned or bad
   Q_PROPERTY(QString verdict READ verdict NOTIFY changed)
   Q_PROPERTY(QString text READ text NOTIFY changed)
   Q_PROPERTY(bool canUndo READ can_undo NOTIFY changed)
@@ -101,18 +101,19 @@ class DesignController : public QObject {
 
   /// Asks what the new study is to measure.
   Q_INVOKABLE void startNew();
-  /// Goals in a language of the station, as {word, says}.
+  /// Returns the goals that a new study can have, as {word (for make()), says (the text to show)}, in one of
+  /// the station's languages.
   Q_INVOKABLE static QVariantList goals(const QString& language);
-  /// Makes a study for a goal. Returns false, with `trouble`, if it cannot have this name.
+  /// Makes a study for a goal. Returns false and sets `trouble` if the study cannot have this name.
   Q_INVOKABLE bool make(const QString& goal, const QString& name);
   Q_INVOKABLE bool open(const QString& path);
-  /// Forgets the study.
+  /// Closes the study without saving it.
   Q_INVOKABLE void close();
 
   Q_INVOKABLE void show(int section);
   /// Shows the page with the field that a remark is about, and then emits reached().
   Q_INVOKABLE void goTo(int remark);
-  /// Gives a field of the chosen page a value, as a person types it. An empty text removes the key.
+  /// Sets a field of the chosen page to what a person typed. An empty text removes the key from the file.
   Q_INVOKABLE bool change(int group, int field, const QString& typed);
   Q_INVOKABLE bool copy(int group, const QString& name);
   Q_INVOKABLE void remove(int group);
@@ -129,7 +130,7 @@ class DesignController : public QObject {
   /// characters as QML does.
   Q_INVOKABLE QVariantMap complete(const QString& text, int at) const;
 
-  /// The text for a key of the file, such as "Zone · from (mm)".
+  /// Returns the label for a key of the file, such as "Zone · from (mm)".
   Q_INVOKABLE static QString label(const QStringList& path, const QString& language);
 
  Q_SIGNALS:

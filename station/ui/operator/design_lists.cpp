@@ -37,7 +37,7 @@ QVariantList chosen(const std::vector<std::size_t>& indices, const QVariantList&
   return list;
 }
 
-/// The limits in words, after the help of the schema.
+/// Returns the help text that the schema has for a field, followed by the field's limits in words.
 QString help_of(const design::Field& field) {
   auto help = QString::fromStdString(field.help);
   const auto add = [&help](const QString& more) { help += (help.isEmpty() ? "" : "   ·   ") + more; };

@@ -37,7 +37,8 @@ class OperatorController : public QObject {
   Q_PROPERTY(int selected READ selected NOTIFY changed)
   Q_PROPERTY(bool checking READ checking NOTIFY changed)
   Q_PROPERTY(QVariantList facts READ facts NOTIFY changed)
-  /// cues of the checked protocol as {name, says, leaks}
+  /// cues that could give the right answer away, as {name, says (the finding in words), leaks (whether it
+  /// does)}
   Q_PROPERTY(QVariantList cues READ cues NOTIFY changed)
   Q_PROPERTY(QStringList problems READ problems NOTIFY changed)
   /// why the chosen session would begin too early, although a reason of the operator can overrule that; "" if
@@ -54,7 +55,7 @@ class OperatorController : public QObject {
   Q_PROPERTY(bool armed READ armed NOTIFY changed)
   /// description of the interrupted session; "" if there is none
   Q_PROPERTY(QString interrupted READ interrupted NOTIFY changed)
-  /// age of the last backup as {state: none | recent | old | ahead, hours}
+  /// age of the last backup as {state: none | recent | old | ahead (its time is in the future), hours}
   Q_PROPERTY(QVariantMap backup READ backup NOTIFY changed)
   Q_PROPERTY(bool mayBegin READ may_begin NOTIFY changed)
   Q_PROPERTY(bool preparing READ preparing NOTIFY changed)

@@ -19,7 +19,7 @@ namespace turnpoint::ui {
 
 namespace {
 
-/// The page warns that a calibration ends soon from this number of days before its end.
+/// The page warns that a calibration will expire, from this number of days before it does.
 constexpr int kSoon_days = 14;
 
 QVariantMap fact(const char* label, const QString& value, const char* text = "") {
@@ -67,7 +67,7 @@ const char* word(session::Request::Kind kind) {
                                       : "press_button";
 }
 
-/// The uncertainty, and each weight with its residual.
+/// Returns rows for the page: the uncertainty of the force calibration, and each weight with its residual.
 QVariantList weights_of(const maintenance::ForceResult& result, const std::string& file) {
   QVariantList list;
   const auto add = [&list](const std::string& name, const char* verdict, const std::string& what) {
@@ -161,7 +161,7 @@ void RigController::run(const QString& what, NewestJob::Job job) {
 void RigController::examine() {
   findings_.clear();
   run("doctor", [this](const std::stop_token&) -> std::function<void()> {
-    std::ostringstream messages;  // the page shows the calibration elsewhere
+    std::ostringstream messages;  // not shown, because the page shows the calibration elsewhere
     auto findings = maintenance::examine(setup::calibrated_rig(rig_, "", messages), data_folder_);
     return [this, findings = std::move(findings)] { findings_ = findings; };
   });

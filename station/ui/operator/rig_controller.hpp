@@ -17,9 +17,9 @@
 
 namespace turnpoint::ui {
 
-/// The page of the rig: its calibration and how old this is, the doctor, and the self-test with its readings.
-/// The doctor and the self-test run on a separate thread, one at a time, and use the devices of the rig; no
-/// session may begin meanwhile. GUI thread only.
+/// The page about the rig: its calibration and the calibration's age, the doctor (a check of devices and
+/// settings), and the self-test with its readings. The doctor and the self-test run on a separate thread, one
+/// at a time, and use the devices of the rig; no session may begin meanwhile. GUI thread only.
 class RigController : public QObject {
   Q_OBJECT
   QML_ELEMENT
@@ -32,7 +32,7 @@ class RigController : public QObject {
   Q_PROPERTY(QString calibrationState READ calibration_state NOTIFY changed)
   Q_PROPERTY(QString busy READ busy NOTIFY changed)  ///< doctor, self_test, weights or ""
   Q_PROPERTY(bool hasCells READ has_cells NOTIFY changed)
-  /// weights after a calibration of the force cells, like `checks`
+  /// results of a calibration of the force cells, one row for each weight; the fields are those of `checks`
   Q_PROPERTY(QVariantList weights READ weights NOTIFY changed)
   /// what the operator is asked to do with the weights, as {tare, grams, mm, pull, remark, trouble, converter}. A pull
   /// is in grams, and negative towards the wide edge. `remark` says why a step is repeated, and `trouble` why
@@ -45,7 +45,8 @@ class RigController : public QObject {
   /// checks of the self-test as {name, verdict, what, share}. The verdict is ok, failed or absent (not
   /// possible); `share` is the reading as a share of its limit, or -1 for a check without a number.
   Q_PROPERTY(QVariantList checks READ checks NOTIFY changed)
-  /// what the self-test or the weights wait for: press_stop, release_stop, press_button, weight, repair or ""
+  /// what the operator has to do before the self-test or the calibration with weights goes on: press_stop,
+  /// release_stop, press_button, weight, repair or ""
   Q_PROPERTY(QString asked READ asked NOTIFY changed)
   Q_PROPERTY(QString askedButton READ asked_button NOTIFY changed)
   Q_PROPERTY(QStringList errors READ errors NOTIFY changed)
@@ -76,7 +77,7 @@ class RigController : public QObject {
   /// Runs the self-test, which arms the amplifier and plays quiet tones. The page therefore makes the
   /// operator hold a button to start it.
   Q_INVOKABLE void selfTest();
-  /// Calibrates the force cells with dead weights. `answer` is read, leave_out or stop.
+  /// Calibrates the force cells with dead weights. The operator replies by answer(): read, leave_out or stop.
   Q_INVOKABLE void weigh();
   Q_INVOKABLE void answer(const QString& answer);
 

@@ -10,9 +10,9 @@ namespace turnpoint::ui {
 
 namespace {
 
-constexpr std::chrono::milliseconds kGlance{250};  // between two live readings
+constexpr std::chrono::milliseconds kGlance{250};  // time between two live readings
 
-/// Thrown through maintenance::weigh() when the operator ends it.
+/// Thrown out of maintenance::weigh() when the operator ends the calibration.
 struct Stopped {};
 
 void read(maintenance::BridgeReader& bridges, Weighing::Shown& shown) {

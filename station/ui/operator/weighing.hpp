@@ -11,7 +11,8 @@
 
 namespace turnpoint::ui {
 
-/// The conversation between a page and a calibration with dead weights, which runs on another thread.
+/// Passes questions and answers between a page and the calibration of the force cells with dead weights,
+/// which runs on another thread.
 class Weighing {
  public:
   enum class Answer { read, leave_out, stop };
@@ -29,11 +30,11 @@ class Weighing {
   };
   using Show = std::function<void(Shown)>;
 
-  /// Answers what is asked now. For any thread.
+  /// Answers the current question. May be called on any thread.
   void answer(Answer answer);
 
-  /// Asks for all weights. Returns nothing if the operator or `stop` ended it. Throws what
-  /// maintenance::weigh() throws.
+  /// Runs the calibration, which asks for each weight in turn. Returns nothing if the operator or `stop`
+  /// ended it. Throws what maintenance::weigh() throws.
   std::optional<maintenance::ForceResult> run(const rig::Rig& rig, const Show& show,
                                               const std::stop_token& stop);
 

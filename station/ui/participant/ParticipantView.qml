@@ -94,7 +94,8 @@ Rectangle {
         BackButton {
             id: back
             visible: root.page.back
-            // opposite the pause button, which is not mirrored either
+            // The Back button is opposite the pause button. Neither is mirrored for languages read from right
+            // to left.
             anchors { left: undefined; verticalCenter: parent.verticalCenter }
             x: root.leftHanded ? parent.width - width : 0
             theme: theme

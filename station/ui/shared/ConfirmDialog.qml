@@ -46,7 +46,7 @@ Rectangle {
             wrapMode: Text.Wrap
         }
     }
-    // The buttons are stacked, so that neither is where a row of buttons was.
+    // The buttons are stacked, so that they are not at the places of a row of buttons on the page below.
     Column {
         id: buttons
         anchors { horizontalCenter: parent.horizontalCenter; bottom: parent.bottom; bottomMargin: root.theme.controlHeight + 2 * root.theme.targetGap }
