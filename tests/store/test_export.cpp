@@ -137,7 +137,7 @@ std::string session_of_unlike_values(const std::string& db) {
 
 }  // namespace
 
-TEST_CASE("each value in the seven tables is in its own column", "[store]") {
+TEST_CASE("each value of each table is in its own column", "[store]") {
   TemporaryFolder folder;
   const auto db = folder / "a.sqlite";
   const auto id = session_of_unlike_values(db);
