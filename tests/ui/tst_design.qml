@@ -70,7 +70,10 @@ Item {
             return designPage().design.groups[table].fields.find(one => one.path.join(".") === key).value
         }
         function designPage() { return appears("designPage") }
+        /// Waits for the check, whose remarks rebuild the form. A press during that moment would be lost.
+        function checked() { tryVerify(() => designPage().design.verdict !== "checking", 60000) }
         function tapField(key, table = 0) {
+            checked()
             wait(40)
             reveal(appears(field(key, table)))
             wait(20)
@@ -101,10 +104,13 @@ Item {
             keys(" today?")
             tap("keepEntry")
             tap("section-scenes")
-            const area = appears("strip0")
             tryVerify(() => Object.keys(designPage().design.profiles).length > 0, 20000)
+            checked()
+            const area = appears("strip0")
             const strip = find(area, "dragArea")
             const mark = find(area, "zoneMark")
+            tryVerify(() => mark.x > 0)                // the strip has its width
+            wait(50)
             const from = mark.x + mark.width / 2
             mousePress(strip, from, strip.height / 2)
             mouseMove(strip, from + 20, strip.height / 2)

@@ -122,7 +122,7 @@ action=5c3d0f
 shows() { [ "$(pixel "$1" "$2")" = $action ]; }
 answers_open() { shows 60 400 && shows 740 400; }
 start_page() { shows 112 440; }
-continues() { shows 290 390 && ! shows 60 400 && ! start_page; }
+continues() { shows 290 390 && ! shows 60 400; }
 
 # Functions for the installed kiosk on its panel of 800 x 480: `tap X Y` taps, `hold X Y` presses for 1.2 s,
 # and `unlock` enters the operator's code 2580.
@@ -140,4 +140,7 @@ unlock() {
 can_begin() { shows 640 445; }
 begins_pilot() { eventually 60 can_begin; tap 706 445; }
 english() { shows 200 150; }
-goes_on() { eventually 30 continues; sleep 0.7; tap 400 390; }
+# goes_on: taps "continue" until the next page is shown, because a new page ignores taps for a moment. The start page
+# has a dark button at the same place.
+went_on() { ! start_page && continues || return 1; sleep 0.7; tap 400 390; sleep 0.5; ! continues; }
+goes_on() { eventually 30 went_on; }
