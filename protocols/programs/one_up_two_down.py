@@ -5,7 +5,7 @@ Two right answers in a row make the task harder, one wrong answer makes it easie
 right. It gives the same levels as the built-in procedure `kind = "up-down"` with n_down = 2, so it is a good start for
 a procedure of your own: change learn(). protocols/programs.md explains the messages.
 
-Settings: start (first level), step (sizes; each reversal moves on to the next), reversals (after so many it is done).
+Settings: start (first level), step (sizes; each reversal moves on to the next), reversals (the number after which it is done).
 """
 
 import json
