@@ -1,13 +1,16 @@
-# Where `cmake --install` puts the files, and the Debian package (run `cpack -G DEB` in the build folder).
+# Says where `cmake --install` puts the files, and describes the Debian packages (run `cpack -G DEB` in the build
+# folder).
 install(DIRECTORY station/report/scripts/ DESTINATION ${CMAKE_INSTALL_DATADIR}/turnpoint/study COMPONENT station)
 install(TARGETS turnpoint RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT station)
 if(TURNPOINT_UI)
   install(TARGETS turnpoint-ui RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT station)
 endif()
 install(DIRECTORY protocols deploy/rigs DESTINATION ${CMAKE_INSTALL_DATADIR}/turnpoint COMPONENT station)
+install(PROGRAMS protocols/programs/one_up_two_down.py protocols/programs/careful_observer.py protocols/programs/right_answers.py
+  DESTINATION ${CMAKE_INSTALL_DATADIR}/turnpoint/protocols/programs COMPONENT station)
 # Keep the folder structure of the manuals, so that the links between them work.
 file(GLOB drawings RELATIVE ${CMAKE_SOURCE_DIR} CONFIGURE_DEPENDS deploy/drawings/*.svg)
-foreach(manual README.md LICENSE deploy/README.md deploy/boards.md deploy/to-measure.md deploy/rigs/README.md ${drawings} physics/README.md protocols/README.md protocols/a-study-in-an-afternoon.md protocols/coming-from-psychopy.md
+foreach(manual README.md LICENSE deploy/README.md deploy/boards.md deploy/to-measure.md deploy/rigs/README.md ${drawings} physics/README.md protocols/README.md protocols/a-study-in-an-afternoon.md protocols/coming-from-psychopy.md protocols/programs.md
         station/store/README.md station/collector/README.md station/python/README.md tests/README.md)
   cmake_path(GET manual PARENT_PATH folder)
   install(FILES ${manual} DESTINATION ${CMAKE_INSTALL_DOCDIR}/${folder} COMPONENT station)
@@ -34,7 +37,7 @@ install(FILES station/collector/queries.sql DESTINATION ${CMAKE_INSTALL_DATADIR}
 install(FILES deploy/system/turnpoint.bash-completion DESTINATION share/bash-completion/completions RENAME turnpoint COMPONENT station)
 install(FILES deploy/system/turnpoint.bash-completion DESTINATION share/bash-completion/completions RENAME turnpoint-ui COMPONENT station)
 install(FILES deploy/system/turnpoint.zsh-completion DESTINATION share/zsh/vendor-completions RENAME _turnpoint COMPONENT station)
-install(FILES deploy/system/watchdog.conf DESTINATION share/turnpoint/system COMPONENT station)
+install(FILES deploy/system/watchdog.conf deploy/system/iio.conf DESTINATION share/turnpoint/system COMPONENT station)
 install(FILES deploy/system/turnpoint.udev DESTINATION lib/udev/rules.d RENAME 60-turnpoint.rules COMPONENT station)
 install(FILES deploy/system/turnpoint.sysusers DESTINATION lib/sysusers.d RENAME turnpoint.conf COMPONENT station)
 install(FILES deploy/system/turnpoint.tmpfiles DESTINATION lib/tmpfiles.d RENAME turnpoint.conf COMPONENT station)
@@ -61,7 +64,7 @@ file(READ deploy/debian/description CPACK_DEBIAN_STATION_DESCRIPTION)
 set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
 set(CPACK_COMPONENTS_ALL station)
 if(TURNPOINT_PYTHON)
-  # python3-turnpoint, for the minor version of Python for which the modules were compiled
+  # The package python3-turnpoint, which works only with the minor version of Python for which its modules were compiled
   list(APPEND CPACK_COMPONENTS_ALL python)
   math(EXPR next_minor "${Python_VERSION_MINOR} + 1")
   set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-turnpoint)
@@ -78,7 +81,8 @@ if(TURNPOINT_PYTHON)
   install(FILES deploy/debian/python-lintian-overrides DESTINATION share/lintian/overrides RENAME python3-turnpoint COMPONENT python)
 endif()
 if(TURNPOINT_SITE)
-  # turnpoint-doc: the pages with pictures. They are made whenever the package is made, so they show this program.
+  # The package turnpoint-doc: the manual pages as a site with pictures. Each build of the package makes the pictures
+  # anew, so they show the program as it is now.
   list(APPEND CPACK_COMPONENTS_ALL documentation)
   set(site ${CMAKE_BINARY_DIR}/site)
   add_custom_target(site COMMAND ${CMAKE_SOURCE_DIR}/deploy/site/make ${CMAKE_BINARY_DIR} ${site} USES_TERMINAL

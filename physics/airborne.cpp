@@ -18,7 +18,8 @@ namespace {
 constexpr int nodes_along = 4, nodes_across = 12;
 constexpr double reference_Pa = 20e-6;
 
-// Displacement across the strip divided by the displacement of its centre, with eta = y / W.
+// Displacement across the strip divided by the displacement of its centre, at eta = y / W, with W the
+// half-width.
 double transverse_shape(bool clamped_plate, double eta) {
   if (!clamped_plate) return std::cos(0.5 * std::numbers::pi * eta);
   constexpr double b = 2.36502;  // the root of tan b + tanh b = 0

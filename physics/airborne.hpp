@@ -1,8 +1,8 @@
 #pragma once
-// Computes the sound in air above a vibrating surface. It is Rayleigh's integral over the planned field
-// (Strutt 1878, Theory of Sound, section 278; Pierce, Acoustics, section 5-2). The clamp frame is treated as
-// an infinite rigid baffle and the air as lossless. Both simplifications make the computed sound louder than
-// the real one.
+// Computes the sound in air above a vibrating surface. Evaluates Rayleigh's integral over the planned
+// vibration (Strutt 1878, Theory of Sound, section 278; Pierce, Acoustics, section 5-2). The clamp frame is
+// treated as an infinite rigid baffle and the air as lossless. Both simplifications make the computed sound
+// louder than the real one.
 #include <complex>
 #include <span>
 #include <vector>
@@ -32,8 +32,9 @@ struct SoundSource {
 };
 
 // The sound pressure at each place, as a complex peak value in Pa: p = -rho omega^2 / (2 pi) sum of volume
-// exp(-i k R) / R, with R the distance from the source. Multiply it by exp(+i omega t). The places must not
-// be on the surface. Throws std::invalid_argument unless the frequency is above zero.
+// exp(-i k R) / R, with rho the density of air, k the wavenumber in air and R the distance from the source.
+// The pressure at time t is the real part of p exp(+i omega t). The places must not be on the surface. Throws
+// std::invalid_argument unless the frequency is above zero.
 std::vector<std::complex<double>> radiated_pressure_Pa(std::span<const SoundSource> sources,
                                                        double frequency_Hz, std::span<const Place> places,
                                                        const Air& air = {});
@@ -51,9 +52,9 @@ struct LoudestSound {
 
 // Finds the loudest place in the plane y = 0 at `distance_m` from the centre line. Farther away, the sound is
 // softer. Outside that plane it is softer too if the half-width is below sqrt(wavelength x distance), the
-// width of the first Fresnel zone. The search tries places half a wavelength in air apart (at most 5 mm), so
-// the result is less than 0.3 dB too low. Throws std::invalid_argument if the distance is below a wavelength,
-// or if the half-width is not below the width of the Fresnel zone.
+// width of the first Fresnel zone. The search tries places half a wavelength in air apart (or 5 mm, if that
+// is less), so the result is less than 0.3 dB too low. Throws std::invalid_argument if the distance is below
+// a wavelength, or if the half-width is not below the width of the Fresnel zone.
 LoudestSound loudest_sound(const Surface& surface, const Tone& tone, Model model, double distance_m,
                            const Air& air = {});
 

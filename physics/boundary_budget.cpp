@@ -168,10 +168,10 @@ Surface changed(Surface s, Parameter parameter, double by) {
   return s;
 }
 
-// Returns the derivative of a boundary's position with respect to a parameter. The edge lies where W(x) =
-// ratio Wc(f), with the cut-off half-width Wc. The excess ratio - 1 is proportional to the taper's local
-// slope to the power 2/3, because the edge's distance from the turning point is proportional to the slope to
-// the power -1/3.
+// Returns the derivative of a boundary's position with respect to a parameter. The boundary lies where the
+// half-width W(x) is `ratio` times the cut-off half-width Wc(f). The excess ratio - 1 is proportional to the
+// taper's local slope to the power 2/3, because the boundary's distance from the turning point is
+// proportional to the slope to the power -1/3.
 double boundary_derivative(const Surface& s, Parameter parameter, double f, double x) {
   const Taper taper(s);
   const double w = taper.half_width_m(x), slope = taper.slope(x), cut_off_m = cut_off_half_width_m(s, f);
@@ -179,7 +179,7 @@ double boundary_derivative(const Surface& s, Parameter parameter, double f, doub
   const double aside = std::min({1e-3 * s.length_m, x, s.length_m - x});
   const double bend = aside > 0 ? (taper.slope(x + aside) - taper.slope(x - aside)) / (2 * aside) : 0;
   const double fall = by_ln_slope * bend / slope - slope;
-  // Derivative of W(x) - ratio Wc(f) with respect to a parameter.
+  // Derivative, with respect to a parameter, of W(x) - ratio Wc(f), which is 0 at the boundary.
   const auto grows = [&](Parameter p) {
     switch (p) {
       case Parameter::half_width:
@@ -199,7 +199,7 @@ double boundary_derivative(const Surface& s, Parameter parameter, double f, doub
     }
   };
   if (parameter != Parameter::temperature) return grows(parameter) / fall;
-  // a warmer surface is also longer
+  // warming stretches the surface in width and in length
   double rate = s.expansion_per_K * (w + fall * x);
   rate -= 3 * s.expansion_per_K * s.density_kg_m3 * grows(Parameter::density);
   if (bending_modelled(s)) {

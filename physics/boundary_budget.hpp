@@ -9,7 +9,8 @@
 
 namespace turnpoint::physics {
 
-// Converts to a name such as "modulus" or "clamp line", and back; empty if no parameter has this name.
+// Convert a parameter to its name, such as "modulus" or "clamp line", and back. find_parameter() returns
+// empty if no parameter has this name.
 std::string_view name(Parameter parameter);
 std::optional<Parameter> find_parameter(std::string_view name);
 
@@ -20,7 +21,7 @@ struct ParameterUnit {
 };
 ParameterUnit unit(Parameter parameter);
 
-// The parameter's standard deviation from `surface.sd`, in SI units.
+// Read and set the standard deviation of a parameter, which is stored in `surface.sd`, in SI units.
 double standard_deviation(const Surface& surface, Parameter parameter);
 void set_standard_deviation(Surface& surface, Parameter parameter, double sd);
 
@@ -34,9 +35,9 @@ std::vector<Parameter> parameters(const Surface& surface);
 Surface changed(Surface surface, Parameter parameter, double by);
 
 // The derivative of a boundary's position with respect to a parameter (m per SI unit) at constant frequency.
-// `boundary_m` is where the edge lies at that frequency. For every edge, taper and plate theory, the result
-// agrees with solving again on changed surfaces to 1 % of the largest derivative. Takes microseconds (plate
-// theory elastic: 0.1 s).
+// `boundary_m` is the boundary's position at that frequency. For every definition of the boundary, taper and
+// plate theory, the result agrees with solving again on changed surfaces to 1 % of the largest derivative.
+// Takes microseconds (plate theory elastic: 0.1 s).
 double boundary_derivative(const Surface& surface, Parameter parameter, double frequency_Hz,
                            double boundary_m);
 
@@ -46,12 +47,12 @@ struct Contribution {
   double sd = 0;  // standard deviation of the parameter, SI units
   // how far the boundary moves if the parameter rises by one standard deviation, positive outward
   double moved_m = 0;
-  double left_m = 0;  // the total that would be left if this parameter were known exactly
+  double left_m = 0;  // the boundary's standard deviation if this parameter were known exactly
 };
 
 struct BoundaryBudget {
   std::vector<Contribution> contributions;  // the parameter whose measurement would help most comes first
-  double total_m = 0;                       // one standard deviation of the boundary
+  double total_m = 0;                       // standard deviation of the boundary's position
 };
 
 // Returns the contributions of all parameters that have a standard deviation. If the errors of these

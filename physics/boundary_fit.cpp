@@ -12,8 +12,8 @@
 namespace turnpoint::physics {
 namespace {
 
-// The fit scales all quantities by standard deviations: parameters by those of the prior, boundaries by those
-// of the measurement.
+// The data of one fit. The fit divides parameters by their prior standard deviations, and boundaries by the
+// standard deviations of their measurement.
 struct Problem {
   const Surface& surface;
   const MapOptions& options;
@@ -104,8 +104,8 @@ Solution solve(const Problem& problem) {
   return s;
 }
 
-// A set of outliers. Without the boundaries in `taken`, no deviation exceeds the limit. `named` also contains
-// boundaries that deviate almost as much as these.
+// `taken` marks the boundaries that must be removed so that no deviation exceeds the limit. `named` marks
+// these and the boundaries that deviate almost as much.
 struct Outliers {
   std::vector<bool> named, taken;
 };

@@ -25,7 +25,7 @@ struct FittedParameter {
 struct BoundaryFit {
   std::vector<FittedParameter> parameters;
   std::vector<Correlation> correlations;
-  std::vector<double> residuals_m;  // measured minus fitted
+  std::vector<double> residuals_m;  // measured minus fitted position of each boundary
   // Distance of each boundary from the position that the other boundaries predict, in standard deviations.
   std::vector<double> deviations;
   std::vector<bool> outliers;

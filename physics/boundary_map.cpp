@@ -48,8 +48,8 @@ std::optional<double> BoundaryMap::State::frequency(double x) const noexcept {
   if (!(x >= 0 && x <= surface.length_m)) return std::nullopt;
   const double w = taper.half_width_m(x);
   if (!(w > 0)) return std::nullopt;
-  // Solves cut_off(w / ratio(f)) = f by the secant method, starting at the frequency whose turning point is
-  // at x.
+  // Solves cut_off(w / ratio(f)) = f, with w the half-width at x, by the secant method, starting at the
+  // frequency whose turning point is at x.
   const auto next = [&](double f) {
     return dispersion.cut_off_frequency_Hz(
         w / table.ratio(std::clamp(f, table.low_Hz, table.high_Hz)).value_or(1));

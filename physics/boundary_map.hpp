@@ -13,17 +13,17 @@
 
 namespace turnpoint::physics {
 
-// What a friction edge needs in addition to the surface.
+// The values, in addition to the surface, that determine an edge defined by friction.
 struct FrictionContext {
   FrictionMap friction;
-  double displacement_m = 1e-6;  // peak amplitude at the last maximum
+  double displacement_m = 1e-6;  // peak displacement at the last maximum of the vibration
   double fingertip_m = 10e-3;
 };
 
 struct MapOptions {
   Edge edge = Edge::turning();
-  std::optional<Model> model;  // empty: the cheapest model whose bound is within `tolerance_m`
-  // empty: the most exact position available (`edge` if it has a closed form)
+  std::optional<Model> model;  // empty: the cheapest model whose error bound is within `tolerance_m`
+  // largest error allowed; empty: the most exact model is used (`edge` if it has a closed form)
   std::optional<double> tolerance_m;
   std::optional<FrictionContext> friction;  // required if `edge` is defined by friction
   // The frequencies for which a table is made; if empty, all frequencies that the surface can present.
@@ -63,7 +63,8 @@ class BoundaryMap {
   BoundaryMap(BoundaryMap&&) noexcept;
   BoundaryMap& operator=(BoundaryMap&&) noexcept;
 
-  // The position for a frequency, and the frequency for a position; empty if the surface cannot present it.
+  // The boundary's position for a frequency, and the frequency for a position; empty if the surface cannot
+  // present it.
   std::optional<double> boundary_m(double frequency_Hz) const noexcept;
   std::optional<double> frequency_Hz(double boundary_m) const noexcept;
 

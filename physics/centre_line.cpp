@@ -88,8 +88,8 @@ MarchEquation best_equation(const Surface& surface, double frequency_Hz, Losses 
   MarchEquation equation = march_equation(surface, frequency_Hz, Model::mode, losses);
   const auto* taper = std::get_if<LinearTaper>(&surface.taper);
   if (taper == nullptr || !(taper->slope > 0) || Dispersion(surface).clamped_bending()) return equation;
-  // With s the distance from the apex and d the slope, v = J_nu(k s) solves the marched equation if B/d^2 + C
-  // + 1/4 = nu^2 and v = g W^-1/2. (B, C and g are those of taylor_march.hpp.)
+  // With s the distance from the apex and d the slope, v = J_nu(k s) solves the equation of `mode` if B/d^2 +
+  // C + 1/4 = nu^2 and v = g W^-1/2. (B, C and g are those of taylor_march.hpp.)
   const double nu = pi / (2 * std::atan(taper->slope));
   const double m = pi / (2 * taper->slope);
   equation.c = (nu - m) * (nu + m) - 0.25;

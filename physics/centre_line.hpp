@@ -58,7 +58,7 @@ MarchEquation march_equation(const Surface& surface, double frequency_Hz, Model 
 // equation of the model `mode`.
 MarchEquation best_equation(const Surface& surface, double frequency_Hz, Losses losses);
 
-// Makes a centre line by solving this equation.
+// Makes a centre line by solving the given equation.
 std::unique_ptr<CentreLine> make_marched_line(const Surface& surface, const MarchEquation& equation);
 
 // The resonance nearest to a frequency. A resonance is a frequency at which v(0) of the lossless mode is

@@ -3,7 +3,8 @@
 namespace turnpoint::physics {
 namespace {
 
-// Reorders the unknowns: first the inner ones (bubbles), then those of the two ends.
+// Reorders the unknowns of a symmetric element matrix: first the inner ones (bubbles), then those of the two
+// ends.
 Eigen::MatrixXd bubbles_first(const Eigen::MatrixXd& from, Eigen::Index left, Eigen::Index right) {
   const Eigen::Index n = from.rows(), inner = n - left - right;
   Eigen::MatrixXd to(n, n);

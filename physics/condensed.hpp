@@ -13,18 +13,20 @@ class Condensed {
   using Vector = Eigen::VectorXcd;
 
   Condensed() = default;
-  // The unknowns of the matrix real + i imaginary are in this order: `left` unknowns of the left end, the
-  // bubbles, `right` unknowns of the right end.
+  // The unknowns of the matrix real + i imaginary are in this order: those of the left end (`left` of them),
+  // the inner ones (bubbles), those of the right end (`right` of them).
   Condensed(const Eigen::MatrixXd& real, const Eigen::MatrixXd& imaginary, Eigen::Index left,
             Eigen::Index right);
 
   Eigen::Index bubbles() const { return pivots_.size(); }
-  // The matrix for the unknowns of the ends: first left, then right.
+  // The matrix that remains for the unknowns of the two ends: first those of the left end, then those of the
+  // right.
   const Matrix& ends() const { return ends_; }
-  // Returns the values of the bubbles for these values at the ends, if no load acts on the bubbles.
+  // Returns the values of the bubbles that belong to given values at the ends, if no load acts on the
+  // bubbles.
   Vector follow(const Vector& ends) const;
-  // reduce() prepares a load on the bubbles for the other two functions. load_on_ends() returns the load that
-  // the ends then feel; quadratic() returns load^T matrix^-1 load for a load on the bubbles alone.
+  // reduce() prepares a load on the bubbles for the functions below. load_on_ends() returns the load that the
+  // ends then feel; quadratic() returns load^T matrix^-1 load for a load on the bubbles alone.
   Vector reduce(const Vector& load) const;
   Vector load_on_ends(const Vector& reduced) const { return -(rows_ * reduced); }
   // Returns the values of the bubbles under the load that was passed to reduce(), with the unknowns of the
@@ -35,15 +37,15 @@ class Condensed {
   }
 
  private:
-  Matrix lower_;   // unit lower triangle L of the bubbles' block L D L^T
-  Matrix rows_;    // the rows that the same elimination gives for the unknowns of the ends
-  Vector pivots_;  // D
+  Matrix lower_;   // unit lower triangular factor L of the block of the bubbles (inner unknowns), L D L^T
+  Matrix rows_;    // the rows of the factor L for the unknowns of the ends
+  Vector pivots_;  // the diagonal of D in L D L^T
   Matrix ends_;
 };
 
-// Eliminates the first `count` unknowns of a symmetric matrix of this size. Real and imaginary part are
-// stored by columns, and only the lower triangle is used. On return, the first columns hold the pivots and
-// the factors below them, the others what is left of the matrix.
+// Eliminates the first `count` unknowns of a symmetric matrix of `size` rows. Real and imaginary part are
+// stored by columns, and only the lower triangle is used. On return, the first `count` columns hold the
+// pivots and, below them, the factors; the other columns hold the remaining matrix.
 void eliminate_first(double* re, double* im, int size, int count);
 
 }  // namespace turnpoint::physics

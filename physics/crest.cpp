@@ -12,7 +12,7 @@ namespace {
 
 using std::numbers::pi;
 constexpr double longest_period_s = 0.05;
-// with more tones than this, the improvement would take too long, so Schroeder's phases are kept
+// with more tones than this, improving the phases would take too long, so Schroeder's phases are kept
 constexpr std::size_t most_descended = 12;
 
 // Period of the envelope: 1 divided by the greatest common divisor of the differences between the
@@ -36,8 +36,8 @@ std::vector<std::size_t> by_frequency(std::span<const Tone> tones) {
   return order;
 }
 
-// Schroeder's phases for unequal powers: phi_n = -2 pi sum_(l < n) (n - l) p_l; equal powers give
-// -pi n (n - 1)/N.
+// Schroeder's phases for unequal powers: phi_n = -2 pi sum_(l < n) (n - l) p_l, with p_l the share of tone l
+// in the total power. N equal powers give phi_n = -pi n (n - 1)/N.
 void schroeder(std::span<Tone> tones) {
   double total = 0;
   for (const Tone& tone : tones) total += tone.amplitude_m * tone.amplitude_m;

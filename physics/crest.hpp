@@ -1,6 +1,6 @@
 #pragma once
-// Finds phases that give the sum of several tones a low crest factor, and lists the audible products of the
-// tones.
+// Finds phases that give the sum of several tones a low crest factor, and lists the audible products that a
+// nonlinear system makes of them.
 #include <span>
 #include <vector>
 

@@ -18,9 +18,10 @@ constexpr double epsilon = std::numeric_limits<double>::epsilon();
 // tanh b = 0.
 constexpr double plate_root = 2.3650203724313520;
 
-// Returns k W of a clamped strip at its cut-off, for tau = W^2 N/D. It is the root b in (pi/2, pi) of b sin b
-// + g tanh(g) cos b = 0, with g^2 = b^2 + tau. This is the cut-off equation (see dispersion.hpp) multiplied
-// by cos b, which removes the pole. For b below the root, the left side is positive.
+// Returns k W of a clamped strip at its cut-off, for tau = W^2 N/D (N: line tension, D: bending stiffness).
+// It is the root b in (pi/2, pi) of b sin b + g tanh(g) cos b = 0, with g^2 = b^2 + tau. This is the cut-off
+// equation (see dispersion.hpp) multiplied by cos b, which removes the pole. For b below the root, the left
+// side is positive.
 double clamped_root(double tau) noexcept {
   const auto tangent = [tau](double b) {
     const double g = std::sqrt(b * b + tau);

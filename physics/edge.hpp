@@ -1,5 +1,5 @@
 #pragma once
-// Definitions of the boundary of a smooth zone.
+// The ways to define where the boundary of a smooth zone lies.
 #include <string>
 #include <string_view>
 

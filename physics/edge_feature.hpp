@@ -1,5 +1,5 @@
 #pragma once
-// Finds the position of one edge at one frequency.
+// Finds the position of one edge (the boundary of a smooth zone) at one frequency by solving for the wave.
 #include <optional>
 
 #include "physics/boundary_map.hpp"

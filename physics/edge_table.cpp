@@ -108,7 +108,8 @@ class Builder {
     double worst = std::numeric_limits<double>::infinity();
     if (complete) worst = miss(piece);
     if (worst > tolerance_m(surface_, options_) && depth < deepest(surface_, options_)) {
-      // Near the lowest frequency the edge is close to the drive edge, and its position is least smooth.
+      // Near the lowest frequency the edge is close to the drive edge, where its position is least smooth;
+      // make the piece there shorter.
       const double middle =
           low + (thick() && piece.low == std::log(table.low_Hz) ? 0.25 : 0.5) * (high - low);
       fill(table, low, middle, depth + 1);
@@ -142,7 +143,7 @@ class Builder {
     return true;
   }
 
-  // Largest error (m) of a piece, at points between its nodes.
+  // Largest error (m) of a piece of the table, at points between its nodes.
   double miss(const Piece& piece) const {
     double worst = 0;
     for (const double t : {-0.98, -0.55, 0.06, 0.6, 0.985}) {
@@ -163,7 +164,7 @@ class Builder {
   Model model_;
   Taper taper_;
   Dispersion dispersion_;
-  std::size_t terms_ = most_terms;  // terms of the series for one piece
+  std::size_t terms_ = most_terms;  // number of terms of the series for one piece of the table
 };
 
 // True if each edge has the same k s (wavenumber times distance from the apex) at all frequencies, with any
@@ -186,7 +187,7 @@ std::optional<double> EdgeTable::ratio(double f) const noexcept {
   const double ln_f = std::log(f);
   auto piece =
       std::partition_point(pieces.begin(), pieces.end(), [ln_f](const Piece& p) { return p.high < ln_f; });
-  // Rounding of the logarithm may put a frequency from the end of the range just outside it.
+  // Rounding of the logarithm may put a frequency at the end of the range just outside it.
   if (piece == pieces.end()) piece = pieces.end() - 1;
   const double slack = 1e-12 * std::abs(ln_f);
   if (ln_f < piece->low - slack || ln_f > piece->high + slack) return std::nullopt;

@@ -17,9 +17,9 @@ struct EdgeTable {
     double low, high;  // the piece covers ln f from low to high
     std::array<double, degree + 1> coefficient;
   };
-  double low_Hz = 0;   // lowest frequency at which the edge lies on the surface
-  double high_Hz = 0;  // highest frequency at which the edge lies on the surface; infinity on a linear taper
-                       // that ends at its apex
+  double low_Hz = 0;  // lowest frequency at which the edge lies on the surface
+  // highest frequency at which the edge lies on the surface; infinity on a linear taper that ends at its apex
+  double high_Hz = 0;
   double constant = 1;
   std::vector<Piece> pieces;  // ascending; in a gap between two pieces the edge does not exist
   double error_m = 0;         // largest error at the check points, which lie between the nodes

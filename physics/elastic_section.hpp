@@ -1,22 +1,22 @@
 #pragma once
-// The cross-section of a clamped strip in three-dimensional elasticity. Computes its cut-off.
+// Computes the cut-off of a clamped strip from the three-dimensional elasticity of its cross-section.
 #include <array>
 
 namespace turnpoint::physics {
 
 // First symmetric bending cut-off of a clamped strip, as omega W / c_s with c_s^2 = G / rho. The
 // cross-section is |y| < W, |z| < h/2 (plane strain). It is held at |y| = W over the whole thickness and free
-// at z = +-h/2. The result depends only on h/W and Poisson's ratio. A table of it is computed with finite
-// elements once for each Poisson's ratio (in about 0.15 s) and kept. Functions marked const are thread-safe
-// and allocate nothing.
+// at z = +-h/2. The result depends only on h/W and Poisson's ratio. A table of the cut-off is computed with
+// finite elements once for each Poisson's ratio (in about 0.15 s) and kept. Functions marked const are
+// thread-safe and allocate nothing.
 class ElasticCutOff {
  public:
   // The table for a Poisson's ratio from 0 to 0.49. It stays valid until the program ends.
   static const ElasticCutOff& of(double poisson);
 
   explicit ElasticCutOff(double poisson);
-  // omega W / c_s at this h/W. The table ends at h/W = 2. Beyond that the function returns the last value,
-  // which is 4 % above the limit pi/2.
+  // Returns omega W / c_s for a given h/W. The table ends at h/W = 2. Beyond that the function returns the
+  // last value, which is 4 % above the limit pi/2.
   double value(double thickness_per_half_width) const noexcept;
   // Returns the h/W for which omega h / c_s has this value. omega h / c_s is h/W times value(h/W).
   double thickness_per_half_width(double omega_h_per_speed) const noexcept;

@@ -12,15 +12,16 @@ struct BasisValues {
   std::array<double, largest_degree + 1> value{}, first{}, second{};
 };
 
-// The functions are ordered: left vertex, bubbles (zero at both ends), right vertex. `per_vertex` is 1 if a
-// vertex has a value only, and 2 if it also has a slope.
+// The basis functions of one element come in this order: those of the left vertex, the bubbles (zero at both
+// ends), those of the right vertex. `per_vertex` is 1 if a vertex has a value only, and 2 if it also has a
+// slope.
 struct ElementBasis {
   int degree;
   int per_vertex;
   int count() const { return degree + 1; }
   int bubbles() const { return count() - 2 * per_vertex; }
-  // Values and derivatives with respect to t. A function that belongs to the slope at a vertex has dvalue/dt
-  // = 1 there.
+  // Values of all basis functions, and their derivatives with respect to t. A function that belongs to the
+  // slope at a vertex has dvalue/dt = 1 there.
   BasisValues at(double t) const;
 };
 

@@ -87,7 +87,7 @@ Reference reference(const Solved& s, const Tone& tone, Normalise normalise, doub
   const Scaled& unit = normalise == Normalise::peak ? s.at_peak : s.at_drive;
   if (unit.mantissa == 0.0) {
     throw std::domain_error(
-        "the tone is exactly a resonance, v(0) = 0: normalise by peak, or give a finite Q");
+        "the tone is exactly at a resonance, where v(0) = 0: normalise by peak, or give a finite Q");
   }
   const double weight = normalise == Normalise::none ? tone.amplitude_m : tone.amplitude_m / most;
   const auto phase = unit.mantissa / std::abs(unit.mantissa) * std::polar(1.0, -tone.phase_rad);
@@ -136,17 +136,17 @@ std::string validity_of(const Surface& surface, Model model) {
   return "two-dimensional field";
 }
 
-// A lower limit of the error of `modes` near a resonance. The resonances of the two-dimensional field and of
-// its higher modes are not exactly where the first mode's conditioning predicts them, so the estimate made
-// before solving can miss them. modes_bound(), where it can be used, does not miss them, because it compares
-// two solutions.
+// A lower limit of the error of `modes` near a resonance. The estimate made before solving finds resonances
+// from the conditioning of the first mode. The resonances of the two-dimensional field lie at slightly
+// different frequencies, so that estimate can miss them. modes_bound(), where it can be used, does not miss
+// them, because it compares two solutions.
 double resonant_error(const Surface& surface, const ToneField& tone, Normalise normalise, double weight) {
   constexpr double shape = 1e-4, largest = 2;
   if (normalise != Normalise::peak) {
     const bool piston = surface.drive == DriveShape::piston;
     return (piston ? 5 : 1) * shape * tone.info.conditioning;
   }
-  double most = 1;  // largest |v|, with the last maximum at one
+  double most = 1;  // largest |v| if the last maximum is scaled to 1
   for (const auto& v : tone.v) most = std::max(most, weight > 0 ? std::abs(v) / weight : 0);
   return std::min(largest, shape * tone.info.gain * most);
 }
@@ -228,8 +228,8 @@ FieldNotes describe(const Surface& surface, std::span<const Tone> tones, const F
   for (const ToneField& one : field.tones) conditioning = std::max(conditioning, one.info.conditioning);
   if (conditioning > 100) {
     std::ostringstream text;
-    text << "a tone lies near a zero of v(0): the division by it amplifies errors " << conditioning
-         << " times";
+    text << "a tone is close to a resonance, where v(0) = 0: dividing by v(0) amplifies errors "
+         << conditioning << " times";
     notes.warnings.push_back({"ill-conditioned", text.str()});
   }
   return notes;

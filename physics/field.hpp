@@ -35,7 +35,7 @@ struct ToneInfo {
   std::optional<double> last_peak_m;  // position of the outermost maximum of |v|
   // |v| at the last maximum (or, without one, the largest |v|) divided by |v(0)|
   double gain = 0;
-  // factor by which the division by v(0) amplifies rounding errors; 1 for `peak`
+  // factor by which the division by v(0) amplifies rounding errors; 1 for Normalise::peak
   double conditioning = 1;
   // frequency nearest to the tone's at which v(0) of the mode without loss is zero; set only by tone_info()
   std::optional<double> nearest_resonance_Hz;
@@ -44,7 +44,7 @@ struct ToneInfo {
 
 struct ToneField {
   ToneInfo info;
-  // one value per point, to be multiplied by exp(+i omega t); 0 where it underflows
+  // complex displacement, one value per point, to be multiplied by exp(+i omega t); 0 where it underflows
   std::vector<std::complex<double>> v;
   // ln|v|, correct also where v underflows; ln_zero where v is exactly zero
   std::vector<double> ln_amplitude;

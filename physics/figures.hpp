@@ -21,8 +21,8 @@ struct Mark {
 struct FigurePanel {
   std::string title;
   std::string y_label;
-  std::vector<Curve> curves;  // all curves have the same points
-  std::vector<Mark> marks;    // the turning points
+  std::vector<Curve> curves;  // all curves of a panel have the same x values
+  std::vector<Mark> marks;    // the turning points of the tones
 };
 
 struct Figure {

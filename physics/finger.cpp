@@ -10,8 +10,8 @@
 namespace turnpoint::physics {
 namespace {
 
-// Returns the position of the edge of |value| on an ascending grid: the last maximum, or the outermost point
-// beyond it at which |value| has the given level.
+// Returns the position of the edge on an ascending grid x: the last maximum of |value|, or the outermost
+// point beyond it at which |value| has the given level.
 std::optional<double> feature(const std::vector<double>& x, const std::vector<double>& value,
                               const Edge& edge) {
   std::size_t peak = x.size() - 1;

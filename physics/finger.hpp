@@ -19,11 +19,12 @@ struct Finger {
   double beside_m = 0;  // distance of the disc's centre from the centre line
 };
 
-// Means over the disc under the finger. The motion of the drive edge is the same with and without the finger.
+// The effect of a finger at one position. All displacements are means over the disc under the finger. The
+// motion of the drive edge is the same with and without the finger.
 struct FingerLoad {
   double x_m = 0;
-  std::complex<double> unloaded;           // displacement of the free surface, with v(0) = 1
-  std::complex<double> loaded;             // displacement under the finger, unloaded / (1 + Z mobility)
+  std::complex<double> unloaded;  // displacement of the free surface, with v(0) = 1
+  std::complex<double> loaded;    // displacement under the finger of impedance Z: unloaded / (1 + Z mobility)
   std::complex<double> mobility_m_per_Ns;  // velocity of the free surface per unit of force on the disc
 
   // Fraction of the amplitude that remains under the finger.
@@ -32,11 +33,11 @@ struct FingerLoad {
   }
 };
 
-// The load of a finger at each position, from the two-dimensional field of `modes` (for plate theory elastic:
-// from Mindlin's). The fraction returned by share() agrees with independent finite elements within the
-// relative error `finger_share_bound`, on the centre line and 3 mm beside it, and for impedances with phases
-// of -60 to 60 degrees. Throws std::invalid_argument for a position beyond the surface, or a disc without
-// radius.
+// The load of a finger at each position. It is computed from the two-dimensional field of Model::modes, with
+// the surface's own plate theory or, if that is `elastic`, with Mindlin's theory. The fraction returned by
+// share() agrees with independent finite elements within the relative error `finger_share_bound`, on the
+// centre line and 3 mm beside it, and for impedances with phases of -60 to 60 degrees. Throws
+// std::invalid_argument for a position beyond the surface, or a disc without radius.
 std::vector<FingerLoad> finger_load(const Surface& surface, double frequency_Hz,
                                     const std::vector<double>& x_m, const Finger& finger);
 inline constexpr double finger_share_bound = 0.02;

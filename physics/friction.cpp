@@ -16,7 +16,8 @@ constexpr double smallest_share = 0.02;
 // reach rounding accuracy.
 constexpr int start_steps = 256;
 
-// Returns the excursion e that causes an overpressure q. It solves (1 + q)^2 = (1 + 3 e^2/2)/(1 - e^2).
+// Returns the excursion e (amplitude divided by gap) that causes an overpressure q (in units of the ambient
+// pressure). It solves (1 + q)^2 = (1 + 3 e^2/2)/(1 - e^2).
 double excursion(double overpressure) {
   const double r = overpressure * (2 + overpressure);  // equals (1 + q)^2 - 1, without cancellation
   return std::sqrt(r / (2.5 + r));
@@ -171,7 +172,7 @@ double integral_to(std::span<const double> x, std::span<const double> y, std::sp
 std::vector<double> fingertip_average(std::span<const double> x, std::span<const double> values,
                                       double fingertip_m) {
   if (x.size() != values.size() || x.size() < 2) {
-    throw std::invalid_argument("fingertip average: as many values as points, two or more");
+    throw std::invalid_argument("fingertip average: needs as many values as points, and at least two");
   }
   require(fingertip_m >= 0, "fingertip_m", fingertip_m, "0 or more");
   if (fingertip_m == 0) return {values.begin(), values.end()};

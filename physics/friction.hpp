@@ -25,7 +25,7 @@ struct LoadSharing {
   // the length u_s: the contacts' part of the load falls by a factor e for each u_s of gap
   double decay_length_m = 2e-6;
   double rest_gap_m = 4e-6;    // gap without vibration, under `pressure_Pa`
-  double ambient_Pa = 101325;  // p0
+  double ambient_Pa = 101325;  // the ambient pressure p0
 };
 
 // One measured point. A table begins at (0, 1), and its relative_friction falls strictly with displacement.
@@ -44,7 +44,8 @@ class FrictionMap {
  public:
   FrictionMap() : FrictionMap(LoadSharing{}) {}
   explicit FrictionMap(const LoadSharing& model);
-  explicit FrictionMap(std::vector<FrictionPoint> table);  // throws std::invalid_argument
+  // throws std::invalid_argument unless the table begins at (0, 1) and falls strictly
+  explicit FrictionMap(std::vector<FrictionPoint> table);
 
   // Relative friction in (0, 1] for a peak displacement >= 0.
   double relative_friction(double displacement_m) const;

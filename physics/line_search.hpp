@@ -1,5 +1,6 @@
 #pragma once
-// Finds features of a centre line that can be evaluated only point by point.
+// Finds the last maximum, and the point with a given level, of a centre line that can be evaluated only point
+// by point.
 #include <optional>
 
 #include "physics/centre_line.hpp"

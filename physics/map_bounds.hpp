@@ -8,9 +8,9 @@
 namespace turnpoint::physics {
 
 struct MapBounds {
-  // difference between the positions by the model and by the best equation of the first mode
+  // distance between the boundary by the model and the boundary by the best equation for the first mode
   double equation_m = 0;
-  double drive_modes_m = 0;  // shift by higher transverse modes from the drive edge
+  double drive_modes_m = 0;  // how far higher transverse modes from the drive edge shift the boundary
   std::string reason;
   double error_m() const { return equation_m + drive_modes_m; }
 };
@@ -22,7 +22,7 @@ MapBounds map_bounds(const Surface& surface, const MapOptions& options, double f
 // last maximum of the two-dimensional field may then be somewhere else. This happens only with strong loss.
 bool peak_is_shallow(const Surface& surface, double frequency_Hz, double last_peak_m);
 
-// Explains why an edge has no position at a frequency.
+// Returns a sentence that explains why there is no boundary on the surface at this frequency.
 std::string why_no_boundary(const Surface& surface, const MapOptions& options, double frequency_Hz);
 
 }  // namespace turnpoint::physics

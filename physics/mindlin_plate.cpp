@@ -59,7 +59,8 @@ MindlinPlate::Waves MindlinPlate::waves(double f) const noexcept {
 double MindlinPlate::wavenumber_per_m(double f) const noexcept { return std::sqrt(waves(f).bending); }
 
 double MindlinPlate::frequency_Hz(double k) const noexcept {
-  // Solves (J omega^2 - S - D k^2)(rho h omega^2 - S k^2) = S^2 k^2 for the smaller omega^2.
+  // Solves (J omega^2 - S - D k^2)(rho h omega^2 - S k^2) = S^2 k^2 for the smaller omega^2 (symbols as in
+  // mindlin_plate.hpp).
   const double d = stiffness_N_m, s = shear_N_per_m, m = mass_kg_per_m2, j = rotary_inertia_kg, k2 = k * k;
   const double half = 0.5 * (j * s * k2 + m * (s + d * k2)), product = j * m * s * d * k2 * k2;
   return std::sqrt(s * d * k2 * k2 / (half + std::sqrt(half * half - product))) / (2 * std::numbers::pi);

@@ -1,5 +1,6 @@
 #pragma once
-// A clamped strip with shear deformation and rotary inertia (Mindlin's plate theory).
+// The dispersion and the cut-off of a clamped strip by Mindlin's plate theory, which includes shear
+// deformation and rotary inertia.
 #include "physics/surface.hpp"
 
 namespace turnpoint::physics {

@@ -65,7 +65,7 @@ ModalAssembler::Form ModalAssembler::single_form(double w, double r, double curv
   const double across = 1 / (w * w), stretch = 2 * r * r - curve;
   const auto& m = single_bend_;
   const double bending = equation_.bending, tension = equation_.tension;
-  // the terms of lap v that contain X itself, not its derivatives
+  // the terms of the Laplacian of v that contain X itself, not its derivatives
   const auto with_value = [&](Eigen::Index row) {
     return stretch * m(row, 1) + r * r * m(row, 2) + across * m(row, 3);
   };
@@ -159,8 +159,8 @@ Eigen::MatrixXcd ModalAssembler::matrix(const ModalElement& e) const {
   const Small mass = gram(value, weight.cwiseProduct(w), value);
   std::array<std::array<Small, 4>, 4> bend;
   if (equation_.plate()) {
-    // Terms of lap v = X'' Y + [(2 r^2 - W''/W) X - 2 r X'] eta Y' + r^2 X eta^2 Y'' + X Y''/W^2, with r =
-    // W'/W.
+    // Terms of lap v for v = X(x) Y(eta): lap v = X'' Y + [(2 r^2 - W''/W) X - 2 r X'] eta Y' + r^2 X eta^2
+    // Y'' + X Y''/W^2, with r = W'/W.
     const Column r2 = r.cwiseProduct(r);
     const Column stretch = 2 * r2 - curve;
     const Column across = w.cwiseProduct(w).cwiseInverse();
@@ -173,8 +173,8 @@ Eigen::MatrixXcd ModalAssembler::matrix(const ModalElement& e) const {
       for (std::size_t j = 0; j < 4; ++j) bend[i][j] = gram(part[i], weight.cwiseProduct(w), part[j]);
     }
   }
-  // Index pairs of the unknowns that exist. The right vertex may have fewer transverse functions than the
-  // left.
+  // The unknowns that exist, each as a pair of indices: function along x, transverse function. The right
+  // vertex may have fewer transverse functions than the left.
   std::vector<std::pair<int, int>> index;
   for (int a = 0; a < n; ++a) {
     const int functions = a >= n - along_.per_vertex ? e.right : e.left;

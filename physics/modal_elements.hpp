@@ -52,11 +52,12 @@ class ModalAssembler {
 
  private:
   struct Point {
-    double weight, w, w1, w2;  // weight in the integral over x; half-width and its two derivatives
+    double weight, w, w1, w2;  // weight in the integral over x; half-width, its first and second derivative
     BasisValues basis;         // derivatives with respect to x, in units of the slope unknowns
   };
   std::vector<Point> points(const ModalElement& element) const;
-  // Coefficients of a symmetric quadratic form in X'' (s), X' (f) and X (v) at one point.
+  // Coefficients, at one point, of a symmetric quadratic form in X'', X' and X (letters s, f and v), where
+  // X(x) is the function along the strip.
   struct Form {
     double ss, sf, sv, ff, fv, vv;
   };

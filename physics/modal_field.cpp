@@ -16,12 +16,14 @@
 namespace turnpoint::physics {
 namespace {
 
-// the lift of a piston reaches this many half-widths of the drive edge into the strip
+// the PistonLift reaches into the strip by this many half-widths of the drive edge
 constexpr double lift_widths = 0.45;
-constexpr int lift_nodes = 12;  // quadrature nodes along x; across, one more for each transverse function
+// quadrature nodes along x; across the strip, one more for each transverse function
+constexpr int lift_nodes = 12;
 
-// Expresses the load by its effect on the bubbles and the right vertex. `tail` is the load on everything
-// farther out, seen at the right vertex. Returns the load that the left vertex sees.
+// Eliminates the load on one element (static condensation): moves it from the inner unknowns (bubbles) and
+// the right vertex to the left vertex. `tail` is the load on all elements farther out, as a load on the right
+// vertex. Returns the resulting load on the left vertex.
 Eigen::VectorXcd eliminate_load(ModalElement& e, const Eigen::PartialPivLU<Eigen::MatrixXcd>& right_stiffness,
                                 Eigen::Index left, const Eigen::VectorXcd& tail) {
   const Eigen::Index right = e.pull.rows(), bubbles = e.inner.bubbles();
@@ -39,7 +41,7 @@ Eigen::VectorXcd eliminate_load(ModalElement& e, const Eigen::PartialPivLU<Eigen
 // The same as eliminate(), but with pivoting. It is for plates, whose equation is of fourth order.
 void eliminate_plate(const ModalAssembler& assembler, const ElementBasis& along,
                      std::vector<ModalElement>& elements) {
-  Eigen::MatrixXcd tail;  // stiffness of all elements farther out, seen at the right vertex
+  Eigen::MatrixXcd tail;  // stiffness of all elements farther out, as it acts on the right vertex
   for (auto e = elements.rbegin(); e != elements.rend(); ++e) {
     Eigen::MatrixXcd k = assembler.matrix(*e);
     if (tail.size() > 0) k.bottomRightCorner(tail.rows(), tail.cols()) += tail;
@@ -54,8 +56,8 @@ void eliminate_plate(const ModalAssembler& assembler, const ElementBasis& along,
 // vertex.
 void eliminate(const ModalAssembler& assembler, const ElementBasis& along,
                std::vector<ModalElement>& elements) {
-  Eigen::MatrixXcd tail;       // stiffness of all elements farther out, seen at the right vertex
-  Eigen::VectorXcd tail_load;  // load on them, seen at the right vertex; empty if there is none
+  Eigen::MatrixXcd tail;       // stiffness of all elements farther out, as it acts on the right vertex
+  Eigen::VectorXcd tail_load;  // load on them, as it acts on the right vertex; empty if there is none
   for (auto e = elements.rbegin(); e != elements.rend(); ++e) {
     const Eigen::MatrixXcd k = assembler.matrix(*e);
     const Eigen::Index left = along.per_vertex * e->left, right = along.per_vertex * e->right;
@@ -73,7 +75,7 @@ void eliminate(const ModalAssembler& assembler, const ElementBasis& along,
   }
 }
 
-// Returns all other unknowns of an element, given those of its left vertex.
+// Returns the other unknowns of an element (bubbles and right vertex), given those of its left vertex.
 Eigen::VectorXcd others(const ModalElement& e, const Eigen::VectorXcd& u) {
   if (e.transfer.size() > 0) return e.transfer * u;
   const Eigen::Index right = e.pull.rows(), bubbles = e.inner.bubbles();
@@ -117,7 +119,8 @@ void substitute(const ModalSetup& s, const ModalAssembler& assembler, const Eige
   }
 }
 
-// Returns the load on an element in the weak form if the field is the sum of the elements' part and the lift.
+// Returns the load on an element, in the weak form, that arises because the field is written as the sum of
+// the finite-element part and the PistonLift.
 Eigen::VectorXcd lift_load(const ModalSetup& s, const PistonLift& lift, const ModalElement& e) {
   const Quadrature along = gauss_legendre(lift_nodes), across = gauss_legendre(lift_nodes + e.left);
   const int bubbles_end = s.along.count() - s.along.per_vertex;
@@ -172,7 +175,8 @@ class ModalLine final : public CentreLine {
   TaylorMarch tail_;
   double length_m_, turning_m_ = 0, match_m_ = 0, spacing_m_;
   std::optional<double> peak_m_;
-  std::optional<PistonLift> lift_;  // set if the elements solve only for the field minus this lift
+  // the part of the field of a piston that the elements leave out; empty if they solve for the whole field
+  std::optional<PistonLift> lift_;
 };
 
 ModalLine::ModalLine(const Surface& surface, double f, Losses losses, const ModalResolution& resolution)

@@ -12,15 +12,15 @@ namespace turnpoint::physics {
 // The resolution of the field. With the default values, the field agrees with the exact two-dimensional field
 // to 1e-5 or better.
 struct ModalResolution {
-  // Degree of the polynomials along x; if empty, 7, or 5 for a thick plate, whose solution takes long and
-  // which then agrees with a finer one to 1e-4.
+  // Degree of the polynomials along x. If empty: 7; for a thick plate 5, because its solution takes long.
+  // With degree 5 it agrees with a finer solution to 1e-4.
   std::optional<int> degree;
   double radians = 2.5;     // phase (wavenumber times length, in radians) that one element spans
   int spare_functions = 3;  // number of transverse functions beyond those that follow waves across the strip
   // Displacement of the drive edge as a function of eta = y/W in [0, 1]. If empty, the surface's `drive` is
   // used. Tests use it to prescribe the drive edge of a field that is known exactly.
   std::function<double(double)> drive;
-  // which transverse functions are used
+  // the transverse functions: polynomials (model `modes`), or the shape at the cut-off (model `mode`)
   enum class Across { polynomials, cut_off_shape } across = Across::polynomials;
 };
 

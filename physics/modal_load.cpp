@@ -18,15 +18,16 @@ namespace {
 using Matrix = Eigen::MatrixXcd;
 using Vector = Eigen::VectorXcd;
 
-// The field's finite elements with all data that a load needs. The matrices describe one half of the strip.
+// The finite elements of the field, with all data that are needed to compute its response to a load. The
+// matrices describe one half of the strip.
 struct Strip {
   ModalSetup setup;
   std::vector<ModalElement> elements;
   std::vector<Matrix> matrices;
   Eigen::VectorXd drive;  // unknowns of the drive edge
-  // number of functions before those of the deflection, which are bubbles_at with `power`
+  // number of functions that are ordered before those of the deflection (rotations of a thick plate)
   int other_functions;
-  int power;  // exponent of (1 - eta^2) in the functions of the deflection
+  int power;  // exponent of (1 - eta^2) in the deflection's functions, see bubbles_at()
   Parity parity;
   std::complex<double> compliance;  // factor that turns 1 / matrix into metres per newton
 };
@@ -43,7 +44,8 @@ struct Sizes {
 class Chain {
  public:
   Chain(const Strip& strip);
-  // Returns load^T matrix^-1 load for loads on consecutive elements. The drive edge is held.
+  // Returns load^T matrix^-1 load for loads on consecutive elements, beginning with element `first`. The
+  // drive edge is held.
   std::complex<double> quadratic(std::size_t first, const std::vector<Vector>& loads) const;
   // Returns the unknowns of each element for a motion of the drive edge.
   std::vector<Vector> driven(const Eigen::VectorXd& drive) const;
@@ -53,7 +55,7 @@ class Chain {
     Eigen::Index left, right;
     Condensed element;
     Eigen::PartialPivLU<Matrix> right_stiffness;  // stiffness of the right vertex and everything beyond it
-    Matrix pull;                                  // gives right vertex = -pull (left vertex)
+    Matrix pull;  // unknowns of the right vertex are -pull times those of the left one
   };
   std::vector<Link> links_;
 };
@@ -194,7 +196,7 @@ struct DiscLoad {
   std::vector<Vector> loads;
 };
 
-// Returns the integrals of the deflection's functions over the width of the disc at one x.
+// Returns the integrals of the transverse functions of the deflection over the width of the disc at one x.
 Eigen::VectorXd across_disc(const Strip& strip, int functions, double half_width, double from, double to) {
   const Quadrature rule = gauss_legendre(14);
   Eigen::VectorXd sum = Eigen::VectorXd::Zero(functions);
@@ -226,7 +228,7 @@ Vector element_load(const Strip& strip, const ModalElement& e, double x_m, const
           across * (basis.value[static_cast<std::size_t>(a)] * (slope ? slope_factor : 1));
     }
   }
-  // The right vertex may have fewer functions than the left.
+  // The right vertex may have fewer transverse functions than the left one.
   const Eigen::Index rest = (along.count() - along.per_vertex) * functions;
   Vector kept(rest + along.per_vertex * e.right);
   kept.head(rest) = load.head(rest);

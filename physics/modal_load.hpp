@@ -8,7 +8,7 @@
 
 namespace turnpoint::physics {
 
-// A disc whose centre is `beside_m` from the centre line.
+// A disc-shaped area under pressure. Its centre is `beside_m` from the centre line of the surface.
 struct Disc {
   double radius_m;
   double beside_m;

@@ -14,7 +14,7 @@ namespace {
 using std::numbers::pi;
 // the elements end where the field has decayed by e^-70 beyond the turning point
 constexpr double ln_domain_end = 70;
-constexpr double ln_match = 45;  // the one-mode decay is used where the field has decayed by more than e^-45
+constexpr double ln_match = 45;  // where the field has decayed by e^-45, the one-mode equation takes over
 constexpr double widths_per_element = 1.2;
 
 // Returns the number of functions of eta that are needed to follow cos(kw eta). Legendre's series of this
@@ -26,8 +26,9 @@ int functions_for(double kw, bool plate) {
   return plate ? std::max(static_cast<int>(std::ceil(kw / pi)), followed - 1) : followed;
 }
 
-// Number of transverse functions beyond those that follow waves across the strip. Tension makes a boundary
-// layer of width sqrt(D/N) along clamped sides, which takes more polynomials to describe.
+// Returns how many transverse functions are used in addition to those that follow waves across the strip.
+// Tension makes a boundary layer of width sqrt(D/N) along clamped sides, which takes more polynomials to
+// describe.
 int spare_functions(const Dispersion& dispersion, double f, const ModalResolution& resolution) {
   if (!dispersion.clamped_bending()) return resolution.spare_functions;
   const double layers =
@@ -50,7 +51,7 @@ TransverseBasis make_across(const Surface& surface, double f, const ModalResolut
 }
 
 // Shortens an element in which a membrane narrows by a large factor, as at a step in a tabulated taper.
-// Polynomials along x follow such a change badly, and those of a finer solution hardly better.
+// Polynomials along x approximate such a change poorly, also at a higher resolution.
 double gently_narrowing(const Taper& taper, double x, double h) {
   constexpr double least_share = 0.5;
   const double w = taper.half_width_m(x);

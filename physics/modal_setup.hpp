@@ -26,16 +26,16 @@ ModalSetup make_modal_setup(const Surface& surface, double frequency_Hz, Losses 
 // first transverse mode at its cut-off.
 std::function<double(double)> drive_shape(const Surface& surface, const ModalEquation& equation);
 
-// Returns the unknowns of the first vertex, which has this number of `functions`, for a motion of the drive
-// edge with the coefficients `shape`. On a clamped plate, the drive edge has no slope: dv/dx = 0 at constant
-// y. The unknowns are derivatives at constant eta = y/W(x), so the slope unknowns are not 0 but W'/W eta
-// dv/deta.
+// Returns the unknowns of the first vertex, which has `functions` transverse functions, for a motion of the
+// drive edge with the coefficients `shape`. On a clamped plate, the drive edge has no slope: dv/dx = 0 at
+// constant y. The unknowns are derivatives at constant eta = y/W(x), so the slope unknowns are not 0 but W'/W
+// eta dv/deta.
 Eigen::VectorXd drive_unknowns(const ModalSetup& setup, const TransverseBasis& across,
                                const Eigen::VectorXd& shape, int functions);
 
 // Divides the surface from the drive edge to the far end into elements. They are finer near the corners of
 // the drive edge, and elements end at the knots of a tabulated taper. Sets match_m to the position beyond
-// which the one-mode decay is used.
+// which the one-mode equation gives the further decay.
 std::vector<ModalElement> make_modal_elements(const ModalSetup& setup, const ModalResolution& resolution,
                                               double& match_m);
 

@@ -18,7 +18,7 @@ using std::numbers::pi;
 // half-width and its derivatives. Shifts of an edge are in units of the cut-off half-width.
 constexpr double coupling = 0.15;  // amplitude of higher modes, divided by |W'| W(0) / (cut-off half-width)
 constexpr double piston_coupling = 0.55;  // amplitude of higher modes for a piston drive, at any slope
-// unknown phase of a higher mode's standing wave at the drive edge
+// uncertainty of the phase of a higher mode's standing wave at the drive edge
 constexpr double phase_uncertainty = 0.12;
 constexpr double curvature_shift = 0.2;  // shift of an edge, divided by |W''| W
 constexpr double slope_shift = 0.1;      // shift of an edge, divided by |W'|^3
@@ -28,12 +28,12 @@ constexpr double plate_drift = 1.5e-3;  // phase error in radians, divided by k 
 constexpr double plate_piston = 0.9;
 // cut-off half-width of the second symmetric mode divided by that of the first
 constexpr double plate_second_mode = 2.3246;
-constexpr double plate_shift = 1.2e-3;  // shift of an edge at any taper
-// Tension makes a boundary layer along clamped sides, whose width does not follow W. The shape of `mode`,
-// however, has the layer of the cut-off at every W. This value is added to plate_shift if the layer is a
-// third of the half-width or thinner.
+constexpr double plate_shift = 1.2e-3;  // shift of an edge, which occurs on every taper
+// Tension makes a boundary layer along clamped sides, whose width does not follow W. The shape that `mode`
+// uses, however, has at every W the layer that belongs to the cut-off half-width. This value is added to
+// plate_shift if the layer is a third of the half-width or thinner.
 constexpr double layer_shift = 4.8e-3;
-// shift of an edge at any taper, for the plate theories mindlin and elastic
+// shift of an edge on any taper, for the plate theories mindlin and elastic
 constexpr double thick_shift = 2.5e-3;
 constexpr double plate_slope_shift = 0.15;  // shift of an edge divided by W'^2
 // shift of an edge caused by a clamped end: just beyond the turning point, divided by W'^2; farther away,
@@ -41,12 +41,12 @@ constexpr double plate_slope_shift = 0.15;  // shift of an edge divided by W'^2
 constexpr double end_shift = 0.15, far_end_shift = 7, close_end_shift = 0.09;
 // shift of an edge, divided by the amplitude of higher modes near this edge
 constexpr double shallow = 6;
-constexpr double other_peak =
-    0.5;  // largest shift by higher modes; beyond it, another maximum may be the last one
+// if higher modes shift the last maximum by more than this, another maximum may become the last one
+constexpr double other_peak = 0.5;
 constexpr double largest = 2;  // bounds are limited to this value, because a larger one would say nothing
 
 // The equation of the n-th symmetric transverse mode, n = 1, 2, ... On a wedge the solution is a Bessel
-// function, whose order is exact to the second power of the slope.
+// function; its order is accurate up to the square of the slope.
 MarchEquation equation(const Surface& surface, double f, int n) {
   const double k = wavenumber_per_m(surface, f);
   const std::complex<double> lossy(1, -0.5 / surface.quality_factor);
@@ -77,16 +77,16 @@ double amplification(const Surface& surface, double f, int n) {
   return 1 / std::max({standing - phase_uncertainty, loss, 1e-3});
 }
 
-// Like amplification(), for a clamped plate. The higher modes of a plate are not solved for, so only loss
-// bounds this ratio.
+// Like amplification(), for a clamped plate. The standing wave of a higher mode is unknown here, because the
+// higher modes of a plate are not solved for. So loss alone is assumed to limit the amplification.
 double plate_amplification(const Surface& surface, const Taper& taper, double f) {
   const auto turning = taper.position_continued_m(plate_second_mode * cut_off_half_width_m(surface, f));
   const double reach = std::clamp(turning.value_or(0), 0.0, taper.length_m());
   return 1 / std::max(std::tanh(0.5 * wavenumber_per_m(surface, f) * reach / surface.quality_factor), 0.01);
 }
 
-// Natural logarithm of how far the n-th symmetric mode decays from one position to another, where the strip
-// is too narrow for it.
+// Natural logarithm of the factor by which the n-th symmetric mode decays from one position to another, where
+// the strip is too narrow for it.
 double ln_decay(const Surface& surface, double f, int n, double from_m, double to_m) {
   const Taper taper(surface);
   const double k = wavenumber_per_m(surface, f);
@@ -100,7 +100,7 @@ double ln_decay(const Surface& surface, double f, int n, double from_m, double t
   return ln;
 }
 
-// How far the first mode decays between the turning point and the clamped end, there and back.
+// The factor by which the first mode decays on the way from the turning point to the clamped end and back.
 double round_trip_decay(const Surface& surface, double f, double turning_point_m) {
   return std::exp(-2 * ln_decay(surface, f, 1, turning_point_m, surface.length_m));
 }
@@ -144,7 +144,7 @@ Steepness steepness(const Taper& taper, double cut, double x0, double last_peak)
 }
 
 // Shift of an edge relative to the cut-off half-width, caused by the fact that `mode` of a clamped plate has
-// only one shape across.
+// only one transverse shape.
 double plate_shift_of(const Surface& surface, const Dispersion& dispersion, double cut) {
   if (surface.theory != PlateTheory::kirchhoff) return thick_shift;
   const double layers = cut * std::sqrt(dispersion.tension_N_per_m / dispersion.stiffness_N_m);
@@ -196,7 +196,7 @@ ModeBound mode_bound(const Surface& surface, double f, double conditioning,
   const double end_width = taper.half_width_m(taper.length_m()) / cut;
   double end = std::min(end_shift, far_end_shift * round_trip_decay(surface, f, x0)) * steepest * steepest;
   end = std::max(end, close_end_shift * steepest * std::clamp((end_width - 0.75) / 0.1, 0.0, 1.0));
-  // Higher modes that are strong near the last maximum may replace it by another one.
+  // Strong higher modes near the last maximum may make another maximum the last one.
   const bool same_peak = polluted < other_peak;
   bound.drive_m = cut * (end + (same_peak ? polluted : 1)) + (same_peak ? 0 : x0);
   if (!same_peak) {

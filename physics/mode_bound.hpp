@@ -20,7 +20,7 @@ struct ModeBound {
   // nearby
   double drive_m = 0;
   double position_m() const { return equation_m + drive_m; }
-  // how many times larger the higher modes are on the surface than the drive edge alone would make them
+  // factor by which resonance makes the higher modes on the surface larger than the drive edge alone would
   double resonance = 1;
   double higher_modes = 0;  // the part of `shape` that higher modes from the drive edge cause
 };

@@ -21,7 +21,7 @@ constexpr double floor = 1e-8;
 
 constexpr double points_per_radian = 3;
 
-// A solution. It belongs to a drive edge whose centre moves by exactly 1.
+// A solution of `modes`, scaled to a drive edge whose centre moves by exactly 1.
 struct Line {
   std::unique_ptr<CentreLine> line;
   std::optional<double> peak_m;
@@ -57,7 +57,7 @@ std::optional<ModesBound> modes_bound(const Surface& surface, double f, const Ed
                                       Comparison comparison) {
   ModalResolution other;
   const bool finer = comparison == Comparison::finer;
-  // `modes` has degree 7, or 5 for a thick plate.
+  // For comparison: the polynomials of `modes` itself have degree 7, or 5 for a thick plate.
   other.degree = finer ? 8 : surface.theory == PlateTheory::mindlin ? 4 : 6;
   other.radians = finer ? 2.2 : 2.5;
   other.spare_functions = finer ? 5 : 2;

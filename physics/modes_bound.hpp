@@ -14,9 +14,9 @@ struct ModesBound {
   double position_m = 0;  // error of the edge's position
 };
 
-// True if comparing two solutions can bound the error. It cannot for a clamped plate that is driven by a
-// piston, because both solutions have much the same error at the corners. It is not done for thick plates,
-// because it would take seconds.
+// True if the error of `modes` can be bounded by comparing two solutions. It cannot for a clamped plate that
+// is driven by a piston, because both solutions have much the same error at the corners. It is not done for
+// thick plates, because it would take seconds.
 bool modes_bound_applies(const Surface& surface);
 
 // Which solution `modes` is compared with.

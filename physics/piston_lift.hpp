@@ -1,5 +1,5 @@
 #pragma once
-// The part of a piston's field that jumps at the corners of the drive edge, in closed form.
+// Closed formulas for the part of the field that jumps at the corners of a piston-like drive edge.
 #include "physics/taper.hpp"
 
 namespace turnpoint::physics {
@@ -18,11 +18,11 @@ class PistonLift {
   double value(double x_m, double y_m) const;
   // Laplacian, without the point masses of the jump
   double laplacian(double x_m, double y_m) const;
-  double centre_slope(double x_m) const;  // d/dx at y = 0
+  double centre_slope(double x_m) const;  // derivative of the value with respect to x, at y = 0
 
  private:
   struct Point {
-    double value, along, laplacian;  // without the cut-off; `along` is d/dx
+    double value, along, laplacian;  // all without the cut-off in x; `along` is the derivative d/dx
   };
   Point without_cut_off(double x_m, double y_m) const;
 

@@ -26,10 +26,10 @@ constexpr double unknown = 2, unknown_dB = 120;
 // sides. The field of a clamped plate's piston jumps at the corners of the drive edge.
 constexpr double membrane_accuracy = 2e-3, plate_accuracy = 1e-3, tense_plate_accuracy = 5e-3,
                  thick_plate_accuracy = 4e-3, plate_piston_accuracy = 0.15;
-// how much a higher mode's resonance adds to this error
+// how much a resonance of a higher mode adds to the assumed error of `modes`
 constexpr double membrane_resonance = 5e-4, plate_resonance = 6e-4;
-// shift of an edge relative to the cut-off half-width, divided by this error; larger with a quality factor
-// below 30, because the field is then less steep at its edges
+// shift of an edge relative to the cut-off half-width, divided by the error of `modes`; larger with a quality
+// factor below 30, because the field is then less steep at its edges
 constexpr double edge_share = 0.8, lossy_edge_share = 1.2, lossy_below = 30;
 
 // The profile of one model: logarithms of |v| at the probe points, and the positions of its maximum and edge.
@@ -61,7 +61,8 @@ Probe probe(const Surface& surface, const PlanRequest& request, double f, Model 
   return p;
 }
 
-// How much two models differ at the probe points, as the errors in a RungEstimate.
+// The differences between two models at the probe points. The members correspond to the bounds of a
+// RungEstimate.
 struct Difference {
   double amplitude = 0, level_dB = 0, position_m = 0;
 };
@@ -162,7 +163,8 @@ RungEstimate edge_estimate(const Surface& surface, const PlanRequest& request, c
   return e;
 }
 
-// Returns the error of the boundaries if another model has computed the tones' frequencies.
+// Returns the error of the boundaries that arises because another model has computed the frequencies of the
+// tones; 0 if no other model has.
 double placed_elsewhere_m(const PlanRequest& request, const Reference& reference) {
   const bool graded = request.edge.kind != Edge::Kind::turning;
   return graded && request.placed_by.value_or(Model::modes) != Model::modes ? reference.bound.position_m()
@@ -176,7 +178,7 @@ double modes_accuracy(const Surface& surface) {
   return surface.theory == PlateTheory::kirchhoff ? plate_accuracy : thick_plate_accuracy;
 }
 
-// Estimates the bounds of `modes` without solving it.
+// Estimates the error bounds of the model `modes` without solving it.
 RungEstimate modes_estimate(const Surface& surface, const PlanRequest& request, const Reference& reference) {
   RungEstimate e;
   e.cost_s = cost_s(surface, reference.f, Model::modes, request.points);
@@ -192,7 +194,7 @@ RungEstimate modes_estimate(const Surface& surface, const PlanRequest& request, 
   return e;
 }
 
-// Computes the bounds of `modes` by solving a second time.
+// Computes the error bounds of the model `modes` by solving a second time.
 RungEstimate compared_modes_estimate(const Surface& surface, const PlanRequest& request,
                                      const Reference& reference, Comparison comparison) {
   RungEstimate e = modes_estimate(surface, request, reference);
@@ -210,7 +212,7 @@ RungEstimate profile_estimate(const Surface& surface, const PlanRequest& request
                               Model model) {
   RungEstimate e;
   e.cost_s = cost_s(surface, reference.f, model, request.points);
-  e.reason = "error measured by comparison with mode at probe points";
+  e.reason = "error measured by comparison with the model mode at probe points";
   const bool drive = request.normalise != Normalise::peak;
   if (model == Model::modes && surface.theory == PlateTheory::elastic)
     throw std::domain_error("model modes is not available for plate theory elastic");
@@ -223,7 +225,8 @@ RungEstimate profile_estimate(const Surface& surface, const PlanRequest& request
                       rounding_error(surface, reference.f) * (drive ? reference.conditioning : 1);
   e.level_bound_dB = bound.level_dB;
   e.boundary_bound_m = request.edge.kind == Edge::Kind::turning ? 0 : bound.position_m();
-  // The two-dimensional field may have a last maximum although the model `mode` has none, or another one.
+  // The two-dimensional field may have a last maximum although the model `mode` has none, or have it at
+  // another place.
   if (reference.shallow_peak) e.boundary_bound_m += surface.length_m;
   if (!reference.mode.peak || reference.shallow_peak) {
     e.amplitude_bound += unknown;

@@ -17,7 +17,7 @@ namespace turnpoint::physics {
 struct Tolerance {
   std::optional<double> boundary_m;
   std::optional<double> amplitude;  // error of |v|, relative to its largest value
-  std::optional<double> level_dB;   // error of the level at the last maximum
+  std::optional<double> level_dB;   // error of |v| at the last maximum, relative to |v(0)|
 };
 
 // The error bounds of a model for a set of tones. They are estimated before the model is evaluated, except
@@ -26,9 +26,9 @@ struct Tolerance {
 struct RungEstimate {
   Model model = Model::mode;
   bool usable = true;           // false if the model cannot be used here at all (`reason` says why)
-  double boundary_bound_m = 0;  // error of any edge's position
+  double boundary_bound_m = 0;  // error of the position, for any edge
   double amplitude_bound = 0;   // error of |v|, relative to its largest value
-  double level_bound_dB = 0;    // error of the level at the last maximum
+  double level_bound_dB = 0;    // error of |v| at the last maximum, relative to |v(0)|
   double cost_s = 0;            // computing time on one core of a 3 GHz machine
   std::string reason;
 };

@@ -25,9 +25,9 @@ struct TheoryChoice {
   std::string reason;  // why this theory was chosen: one sentence with numbers
 };
 
-// Chooses the simplest theory (Kirchhoff, Mindlin, elastic cross-section) whose boundary is within the
-// tolerance at all frequencies. Without a tolerance it chooses elastic. On a surface to which only
-// Kirchhoff's theory applies, it chooses Kirchhoff.
+// Chooses the simplest theory (Kirchhoff, Mindlin, elastic cross-section) that places the boundary within the
+// tolerance of where the elastic theory places it, at all frequencies. Without a tolerance it chooses
+// elastic. On a surface to which only Kirchhoff's theory applies, it chooses Kirchhoff.
 TheoryChoice choose_theory(const Surface& surface, std::span<const double> frequencies_Hz,
                            std::optional<double> tolerance_m);
 

@@ -1,4 +1,4 @@
-// Finds tones for a desired profile of amplitude.
+// Finds tones that produce a desired profile of amplitude along the centre line.
 #include <cmath>
 #include <sstream>
 #include <stdexcept>

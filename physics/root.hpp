@@ -34,21 +34,20 @@ Bracket bisect(Bracket bracket, IsAbove&& is_above, Done&& done, int most = 200)
   return bracket;
 }
 
-// Halves the bracket until no number is left between its ends.
+// Halves the bracket until there is no floating-point number between its ends.
 template <typename IsAbove>
 Bracket bisect(Bracket bracket, IsAbove&& is_above) {
   return bisect(bracket, is_above, [](const Bracket&) { return false; });
 }
 
 // The result of a Newton step at x: the function's value, and the point where the tangent at x crosses 0. If
-// the tangent never crosses 0, `point` may be NaN or any number outside the bracket.
+// the tangent never crosses 0, `meets_0` may be NaN or any number outside the bracket.
 struct Tangent {
   double f, meets_0;
 };
 
 // Takes Newton steps from x. A step that would leave the bracket goes to the middle of the bracket instead.
-// Ends at a point where the function is 0, or after a step from x to `point` for which close(point, x) is
-// true.
+// Ends at a point where the function is 0, or after a step from x to a point p for which close(p, x) is true.
 template <typename Function, typename Close>
 double newton(Bracket bracket, double x, Function&& tangent, Close&& close, int most = 200) {
   for (int i = 0; i < most; ++i) {
@@ -71,8 +70,7 @@ struct Chord {
   double meets_0() const { return left + (right - left) * f_left / (f_left - f_right); }
 };
 
-// False position converges slowly if one end of the interval never moves. These settings choose what is done
-// against this.
+// False position converges slowly if one end of the interval never moves. These settings choose the remedies.
 struct Creeping {
   int halve_every;  // n: every n-th step goes to the middle of the interval
   // Illinois method: halves the function value of an end that did not move for two steps

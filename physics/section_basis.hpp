@@ -16,7 +16,7 @@ namespace turnpoint::physics {
 // derivative by x or y. Integrals are over eta in [0, 1], in SI units, for half of the strip.
 struct SectionBasis {
   using Matrix = Eigen::MatrixXd;
-  enum Part { along, stretch, across, local };  // X, R, Y, Z
+  enum Part { along, stretch, across, local };  // the strains X, R, Y and Z
   // integrals of part i (X, R, Y or Z) of function a times part j of function b
   std::array<std::array<Matrix, 4>, 4> stiff;
   Matrix mass;

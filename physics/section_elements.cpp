@@ -103,7 +103,8 @@ MatrixXd tensor(const MatrixXd& across, const MatrixXd& through) {
 
 }  // namespace
 
-// The layer of finer elements along the clamp is as wide as the plate is thick.
+// The layer of finer elements along the clamp is 1.2 times as wide as the plate is thick, but at most half of
+// the half-width.
 SectionElements::SectionElements(double thickness, double nu)
     : SectionElements(thickness, nu, std::min(0.5, 1.2 * thickness)) {}
 
@@ -134,7 +135,7 @@ SectionElements::SectionElements(double thickness, double nu, double layer)
                                   tensor(y(c.odd, c.odd), z(t.odd_slope, t.odd_slope));
   p.plane.bottomRightCorner(nc, nc) = (lame + 2) * tensor(even_y, z(t.even_slope, t.even_slope)) +
                                       tensor(y(c.even_slope, c.even_slope), even_z);
-  // integrals of lame (b_y, c_z) + (b_z, c_y)
+  // integrals of lame (b_y, c_z) + (b_z, c_y), with b_y = db/dy; see SectionElements for A, b and c
   p.plane.topRightCorner(nb, nc) = lame * tensor(y(c.odd_slope, c.even), z(t.odd, t.even_slope)) +
                                    tensor(y(c.odd, c.even_slope), z(t.odd_slope, t.even));
   p.plane.bottomLeftCorner(nc, nb) = p.plane.topRightCorner(nb, nc).transpose();

@@ -88,10 +88,10 @@ void solve_section_elements(const Surface& surface, double f, Losses losses,
   const Eigen::Index n = section.count();
   struct Link {
     Condensed element;
-    Eigen::MatrixXcd pull;  // gives right vertex = -pull (left vertex)
+    Eigen::MatrixXcd pull;  // unknowns of the right vertex are -pull times those of the left one
   };
   std::vector<Link> links(elements.size());
-  // stiffness of all elements farther out, seen at the right vertex, with the far end held
+  // stiffness of all elements farther out, as seen at the right vertex, with the far end of the strip fixed
   Eigen::MatrixXcd tail;
   for (std::size_t i = elements.size(); i-- > 0;) {
     Link& link = links[i];

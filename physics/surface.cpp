@@ -146,7 +146,7 @@ bool bending_modelled(const Surface& s) {
   if (s.tension_Pa == 0) return true;
   const auto stiffness = bending_stiffness_N_m(s);
   if (!stiffness) return false;
-  // Half-width at 90 % of the length. No boundary is expected beyond, where the surface is narrower.
+  // Half-width at 90 % of the length. No boundary is expected farther out, where the surface is narrower.
   const double w = half_width_m(s, 0.9 * s.length_m);
   const double k = std::numbers::pi / (2 * w);
   const double ratio = *stiffness * k * k / line_tension_N_per_m(s);

@@ -34,8 +34,8 @@ enum class PlateTheory {
   elastic  // three-dimensional elasticity of the cross-section (elastic_section.hpp)
 };
 
-// The names "kirchhoff", "mindlin", "elastic". `parse_plate_theory` throws std::invalid_argument listing
-// them.
+// Converts a theory to its name, "kirchhoff", "mindlin" or "elastic", and back. `parse_plate_theory` throws
+// std::invalid_argument with a list of the names.
 std::string_view name(PlateTheory theory);
 PlateTheory parse_plate_theory(std::string_view text);
 
@@ -88,8 +88,8 @@ struct ParameterSd {
   double thickness_m = 0;
   double modulus_Pa = 0;
   double half_width_m = 0;
-  double slope = 0;           // slope of a linear taper
-  double decay_length_m = 0;  // decay length of an exponential taper
+  double slope = 0;           // for a linear taper
+  double decay_length_m = 0;  // for an exponential taper
   double clamp_line_m = 0;
   // how far the temperature may deviate from the one at which the other values hold
   double temperature_K = 0;
@@ -111,7 +111,7 @@ struct Surface {
   double density_kg_m3 = 0;
   double tension_Pa = 0;  // tension as a stress; 0 means a plate
   double thickness_m = 0;
-  double length_m = 0;        // from the drive edge to the clamped end
+  double length_m = 0;        // distance from the drive edge to the clamped end
   double quality_factor = 0;  // infinity means no loss
   TaperForm taper = LinearTaper{0, 0};
   Edges edges = Edges::supported;
@@ -145,7 +145,7 @@ std::optional<Material> find_material(std::string_view name);
 // quantity and its allowed range.
 void validate(const Surface& surface);
 
-// Half-width (m) and its first derivative at x in [0, length_m]. For many points, make a Taper (taper.hpp).
+// Returns the half-width (m) at x in [0, length_m]. For many points, make a Taper (taper.hpp).
 double half_width_m(const Surface& surface, double x_m);
 
 // Bending stiffness D = E h^3 / (12 (1 - nu^2)), which is empty without a modulus; line tension N = T h; and

@@ -17,7 +17,7 @@ class Taper {
   double slope(double x_m) const;  // the derivative dW/dx, which is negative
   // d2W/dx2. For a tabulated taper it jumps at the points of the table.
   double second_derivative(double x_m) const;
-  // Position at which the half-width is W; empty if outside [0, length_m].
+  // Position at which the half-width has this value; empty if outside [0, length_m].
   std::optional<double> position_m(double half_width_m) const;
   // Like position_m(), but a linear or exponential taper is continued beyond the ends of the surface. Empty
   // if a tabulated taper does not contain this half-width.

@@ -45,7 +45,7 @@ double Scaled::ln_magnitude() const {
 struct TaylorMarch::State {
   Taper taper;
   MarchEquation equation;
-  std::optional<ApexSeries> apex;  // the solution for x > apex->inner_m()
+  std::optional<ApexSeries> apex;  // the solution near the apex, for x > apex->inner_m()
   std::vector<TaylorStep> steps;   // from the tip to x = 0, or to the last maximum
   double held_m;                   // the outer end, where v is set to zero
 
@@ -342,7 +342,7 @@ void TaylorMarch::evaluate(std::span<const double> x, std::complex<double> phase
   for (std::size_t i = 0; i < x.size();) {
     if (step == nullptr || !(x[i] > step->x_start - step->length && x[i] <= step->x_start))
       step = s.step_at(x[i]);
-    // the apex series covers this point, or the point is the held end, where v is zero
+    // no Taylor step covers this point: the apex series does, or the point is the held end, where v is zero
     if (step == nullptr || x[i] >= end) {
       const Scaled one = value(x[i]);
       ln_amplitude[i] = one.mantissa == 0.0 ? ln_zero : one.ln_magnitude() - ln_reference;

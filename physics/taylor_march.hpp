@@ -38,7 +38,7 @@ class TaylorMarch {
   TaylorMarch(const Taper& taper, const MarchEquation& equation);
   // Solves only the part from `held_m`, a point in the evanescent zone where v is set to zero, to the last
   // maximum. This part contains the last maximum and the levels beyond it. The functions below are valid only
-  // there.
+  // in this part.
   TaylorMarch(const Taper& taper, const MarchEquation& equation, double held_m);
   ~TaylorMarch();
   TaylorMarch(TaylorMarch&&) noexcept;

@@ -9,9 +9,9 @@ namespace turnpoint::physics {
 namespace {
 
 // The series ends where its terms are below exp(ln_truncation) times the larger of the first two.
-constexpr double ln_truncation = -39.8;  // that is, 5e-18
+constexpr double ln_truncation = -39.8;  // exp(-39.8) = 5e-18
 
-// 1/((n + 1)(n + 2))
+// 1/((n + 1)(n + 2)), which the recurrences for the coefficients need
 constexpr auto inverse_products = [] {
   std::array<double, taylor_order + 1> table{};
   for (int n = 0; n <= taylor_order; ++n) table[static_cast<std::size_t>(n)] = 1.0 / ((n + 1.0) * (n + 2.0));
@@ -93,8 +93,8 @@ void SeriesMaker::linear(double x, TaylorStep& step) const {
   }
 }
 
-// Computes the Taylor coefficients of p - A in tau, which are real. Returns the number of coefficients that
-// are not negligible.
+// Computes the Taylor coefficients of p(x) - A (see taylor_march.hpp) in tau. They are real. Returns the
+// number of coefficients that are not negligible.
 int SeriesMaker::potential_series(double x, double knot, double scale,
                                   std::array<double, taylor_order>& q) const {
   q.fill(0);

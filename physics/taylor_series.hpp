@@ -1,6 +1,6 @@
 #pragma once
-// Series that solve the marched equation locally: a Taylor series at a regular point, and Frobenius' series
-// at the apex of a linear taper.
+// Series that solve the equation of taylor_march.hpp near one point: a Taylor series at a regular point, and
+// Frobenius' series at the apex of a linear taper.
 #include <array>
 #include <complex>
 #include <vector>

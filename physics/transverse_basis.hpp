@@ -1,6 +1,6 @@
 #pragma once
-// Basis functions of eta = y / W(x) for the two-dimensional field, and the integrals of their products that
-// its weak form needs.
+// Basis functions of eta = y / W(x) for the two-dimensional field, and the integrals of their products in the
+// weak form of the field equation.
 #include <Eigen/Core>
 #include <array>
 #include <functional>

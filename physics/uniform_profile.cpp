@@ -56,7 +56,7 @@ class UniformLine final : public CentreLine {
   MarchEquation equation_;
   double k_, length_m_;
   double turning_m_ = 0;
-  double steepness_ = 0;  // -dp/dx at the turning point
+  double steepness_ = 0;  // -dp/dx at the turning point, with p of the equation g'' + p g = 0
   // Phase integrals from the turning point, towards the drive edge and towards the tip, at equal steps of u =
   // sqrt(distance from the turning point).
   std::array<std::vector<double>, 2> running_;
@@ -68,7 +68,7 @@ UniformLine::UniformLine(const Surface& surface, double f)
       equation_(march_equation(surface, f, Model::mode, Losses::left_out)),
       k_(wavenumber_per_m(surface, f)),
       length_m_(surface.length_m) {
-  // Langer's correction adds 1/4; it makes the solution right at the apex
+  // Langer's correction adds 1/4 to C of the equation, which makes the solution right at the apex
   if (taper_.apex_m()) equation_.c += 0.25;
   find_turning();
   if (!taper_.apex_m()) tabulate();
@@ -100,7 +100,8 @@ void UniformLine::find_turning() {
   steepness_ = (potential(turning_m_ - step) - potential(turning_m_ + step)) / (2 * step);
 }
 
-// Sums the phase integrals over steps of u, with sqrt|p| dx = sqrt|p| 2 u du.
+// Sums the phase integrals over steps of u = sqrt(distance from the turning point), so that sqrt|p| dx =
+// sqrt|p| 2 u du.
 void UniformLine::tabulate() {
   panel_ = std::sqrt(length_m_) / 64;
   for (int side = 0; side < 2; ++side) {

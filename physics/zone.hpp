@@ -23,12 +23,12 @@ struct ToneBand {
 
 // Describes a zone from from_m to boundary_m with the mean relative friction `friction`. boundary_m is the
 // required position of `edge`. The edge belongs to the amplitude profile of the whole zone: the root of
-// summed squares over its tones. A turning edge is that of the highest tone.
+// summed squares over its tones. If the edge is `turning`, it is that of the highest tone.
 struct ZoneRequest {
   double from_m = 0;
   double boundary_m = 0;
   Edge edge = Edge::turning();
-  double friction = 0.6;  // fingertip-averaged friction, averaged over [from_m, boundary_m]
+  double friction = 0.6;  // wanted relative friction: mean over the fingertip and over [from_m, boundary_m]
   int tones = 3;          // largest number of tones
   ToneBand band;
   double fingertip_m = 10e-3;

@@ -55,8 +55,8 @@ ToneShape ZoneProfile::shape(double f) const {
   return one;
 }
 
-// Returns weights, 0 or more, for which the weighted sum of squared amplitudes is as close to 1 in the zone
-// as possible.
+// Returns non-negative weights of the tones for which the weighted sum of squared amplitudes is as close to 1
+// in the zone as possible.
 std::vector<double> ZoneProfile::fit(const std::vector<const ToneShape*>& shapes, double& residual) const {
   std::vector<double> columns, wanted;
   for (const ToneShape* one : shapes) {
@@ -208,8 +208,8 @@ void ZoneProfile::scale_to_friction() {
     }
     return mean - request_.friction;
   };
-  // Mean friction falls as the level rises. Widen a bracket on a logarithmic scale, starting from the
-  // previous level, then search it by false position.
+  // Mean friction falls as the level rises. Widen an interval of levels on a logarithmic scale, starting from
+  // the previous level, until it contains the solution; then find the solution by false position.
   double low = std::log(scale_), high = low;
   double f_low = miss(low), f_high = f_low;
   double step = scaled_before_ ? 0.01 : 0.3;

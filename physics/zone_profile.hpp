@@ -27,10 +27,11 @@ class ZoneProfile {
   // their shapes. A tone that would leave the band stays at the band's lower end, or is removed if it would
   // be too close to the next tone there.
   void shift_to(double highest_Hz);
-  // Sets the overall level so that the mean friction in the zone has the desired value. Throws
-  // std::domain_error if no level does.
+  // Scales the amplitudes of all tones together so that the mean friction in the zone has the desired value.
+  // Throws std::domain_error if no level does.
   void scale_to_friction();
-  // Position of the edge in the zone's own profile; empty if there is none.
+  // Position of the edge in the amplitude profile that all tones of the zone produce together; empty if there
+  // is none.
   std::optional<double> edge_m() const;
   double edge_slope_m_per_Hz() const;
   std::vector<Tone> tones() const;

@@ -1,4 +1,5 @@
-# How Sphinx turns the pages into the site. `make` calls it on a folder with copies of the pages.
+# Configures Sphinx, which turns the manual pages into the site. The script `make` runs it on a folder with
+# copies of the pages.
 import os
 
 project = "Turnpoint"

@@ -1,6 +1,6 @@
-# Cross build for 64-bit ARM on an amd64 Debian with libraries of both architectures (multiarch), in a root
-# folder made by `tests/roots/make`. Programs used during the build (moc, rcc, qmlcachegen) are native; tests
-# run under qemu-user.
+# Settings for a cross build for 64-bit ARM on an amd64 Debian with libraries of both architectures
+# (multiarch), in a root folder made by `tests/roots/make`. Programs used during the build (moc, rcc,
+# qmlcachegen) are native; tests run under qemu-user.
 set(CMAKE_SYSTEM_NAME Linux)
 set(CMAKE_SYSTEM_PROCESSOR aarch64)
 set(CMAKE_CXX_COMPILER aarch64-linux-gnu-g++)

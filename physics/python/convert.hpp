@@ -56,7 +56,7 @@ Value value_in(Names<Value> names, std::string_view text) {
   throw std::invalid_argument("\"" + std::string(text) + "\" is not one of " + allowed);
 }
 
-// Returns how a value is written as text in Python.
+// Converts a value to the text that stands for it in Python (write), and back (read).
 template <class Value>
 struct Text;
 template <>
@@ -116,7 +116,7 @@ struct TextCaster {
   }
 };
 
-// A class whose fields can be given by name: Surface(density_kg_m3=8400, ...).
+// Defines a Python class whose fields can be given by name: Surface(density_kg_m3=8400, ...).
 template <class Record>
 py::class_<Record> record(py::module_& module, const char* type_name, const char* documentation) {
   const std::string type = type_name;

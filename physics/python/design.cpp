@@ -26,7 +26,8 @@ void add_friction(py::module_& module) {
                table.push_back({displacement_m.data()[i], relative_friction.data()[i]});
              return FrictionMap(std::move(table));
            }),
-           py::arg("displacement_m"), py::arg("relative_friction"), "A measured table from (0, 1), falling strictly.")
+           py::arg("displacement_m"), py::arg("relative_friction"),
+           "A measured table that starts at (0, 1) and falls strictly.")
       .def("relative_friction", &frictions, py::arg("displacement_m"), "Relative friction for peak displacements in m.")
       .def("displacement_m", &FrictionMap::displacement_m, py::arg("relative_friction"),
            "The displacement that gives this friction, m; None below the lowest friction.")
@@ -38,7 +39,7 @@ void add_friction(py::module_& module) {
         return array(fingertip_average(values(x_m), values(quantity), fingertip_m));
       },
       py::arg("x_m"), py::arg("values"), py::arg("fingertip_m"),
-      "Means of samples over a fingertip centred at each ascending x.");
+      "Averages samples over a fingertip centred at each x; the x must ascend.");
 }
 
 void add_zones(py::module_& module) {

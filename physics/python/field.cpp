@@ -63,7 +63,7 @@ void add_results(py::module_& module) {
                     "factor by which the division by v(0) amplifies rounding errors")
       .def_readonly("nearest_resonance_Hz", &ToneInfo::nearest_resonance_Hz, "set only by tone_info()")
       .def_readonly("no_peak_reason", &ToneInfo::no_peak_reason);
-  py::class_<ToneField>(module, "ToneField", "The field of one tone at the points of the call.")
+  py::class_<ToneField>(module, "ToneField", "The field of one tone at the points x_m of the call.")
       .def_readonly("info", &ToneField::info)
       .def_property_readonly(
           "v",

@@ -34,13 +34,15 @@ void add_answer(py::module_& module) {
       .def_readwrite("friction", &FrictionContext::friction)
       .def_readwrite("displacement_m", &FrictionContext::displacement_m, "peak amplitude at the last maximum, m")
       .def_readwrite("fingertip_m", &FrictionContext::fingertip_m, "m");
-  py::class_<MapAnswer>(module, "MapAnswer", "A look-up with error bound, uncertainty, reason and warnings.")
+  py::class_<MapAnswer>(module, "MapAnswer",
+                        "The result of a look-up, with error bound, uncertainty, reason and warnings.")
       .def_readonly("boundary_m", &MapAnswer::boundary_m)
       .def_readonly("frequency_Hz", &MapAnswer::frequency_Hz)
       .def_readonly("edge", &MapAnswer::edge)
       .def_readonly("model", &MapAnswer::model)
       .def_readonly("error_bound_m", &MapAnswer::error_bound_m, "error of the model, m")
-      .def_readonly("uncertainty_m", &MapAnswer::uncertainty_m, "one standard deviation from the surface's parameters, m")
+      .def_readonly("uncertainty_m", &MapAnswer::uncertainty_m,
+                    "standard deviation that the surface's parameters cause, m")
       .def_readonly("m_per_Hz", &MapAnswer::m_per_Hz)
       .def_readonly("shear_shift_m", &MapAnswer::shear_shift_m)
       .def_readonly("reason", &MapAnswer::reason)
@@ -48,12 +50,14 @@ void add_answer(py::module_& module) {
 }
 
 void add_uncertainty(py::module_& module) {
-  py::class_<Contribution>(module, "Contribution", "What one uncertain parameter contributes.")
+  py::class_<Contribution>(module, "Contribution",
+                           "What one uncertain parameter contributes to the uncertainty of a boundary.")
       .def_readonly("parameter", &Contribution::parameter)
       .def_readonly("sd", &Contribution::sd, "standard deviation of the parameter, SI units")
       .def_readonly("moved_m", &Contribution::moved_m, "how far one standard deviation moves the boundary, m")
-      .def_readonly("left_m", &Contribution::left_m, "total if this parameter were known exactly, m");
-  py::class_<BoundaryBudget>(module, "BoundaryBudget", "How uncertain a boundary is, and why.")
+      .def_readonly("left_m", &Contribution::left_m,
+                    "the boundary's standard deviation if this parameter were known exactly, m");
+  py::class_<BoundaryBudget>(module, "BoundaryBudget", "How uncertain a boundary is, and which parameters cause this.")
       .def_readonly("contributions", &BoundaryBudget::contributions)
       .def_readonly("total_m", &BoundaryBudget::total_m, "one standard deviation, m");
   module.def("boundary_budget", &boundary_budget, py::arg("surface"), py::arg("frequency_Hz"), py::arg("boundary_m"),
@@ -112,13 +116,13 @@ void add_map(py::module_& module) {
           [](const BoundaryMap& self, const py::object& frequency_Hz) {
             return look_up(frequency_Hz, [&](double query) { return self.boundary_m(query); });
           },
-          py::arg("frequency_Hz"), "The boundary in m; None for a number, NaN in an array, where there is none.")
+          py::arg("frequency_Hz"), "The boundary in m. If there is none: None for one frequency, NaN in an array.")
       .def(
           "frequency_Hz",
           [](const BoundaryMap& self, const py::object& boundary_m) {
             return look_up(boundary_m, [&](double query) { return self.frequency_Hz(query); });
           },
-          py::arg("boundary_m"), "The frequency in Hz; None for a number, NaN in an array, where there is none.")
+          py::arg("boundary_m"), "The frequency in Hz. If there is none: None for one boundary, NaN in an array.")
       .def("at_frequency", &BoundaryMap::at_frequency, py::arg("frequency_Hz"))
       .def("at_boundary", &BoundaryMap::at_boundary, py::arg("boundary_m"));
   module.def(

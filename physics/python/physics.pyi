@@ -102,7 +102,7 @@ class ToneInfo:
     def turning_point_m(self) -> float | None: ...  # where the local cut-off equals the frequency, m
 
 class ToneField:
-    """The field of one tone at the points of the call."""
+    """The field of one tone at the points x_m of the call."""
     @property
     def info(self) -> ToneInfo: ...
     @property
@@ -243,7 +243,7 @@ class FrictionContext:
         float = ...) -> None: ...
 
 class MapAnswer:
-    """A look-up with error bound, uncertainty, reason and warnings."""
+    """The result of a look-up, with error bound, uncertainty, reason and warnings."""
     @property
     def boundary_m(self) -> float | None: ...
     @property
@@ -261,14 +261,14 @@ class MapAnswer:
     @property
     def shear_shift_m(self) -> float | None: ...
     @property
-    def uncertainty_m(self) -> float: ...  # one standard deviation from the surface's parameters, m
+    def uncertainty_m(self) -> float: ...  # standard deviation that the surface's parameters cause, m
     @property
     def warnings(self) -> list[Warning]: ...
 
 class Contribution:
-    """What one uncertain parameter contributes."""
+    """What one uncertain parameter contributes to the uncertainty of a boundary."""
     @property
-    def left_m(self) -> float: ...  # total if this parameter were known exactly, m
+    def left_m(self) -> float: ...  # the boundary's standard deviation if this parameter were known exactly, m
     @property
     def moved_m(self) -> float: ...  # how far one standard deviation moves the boundary, m
     @property
@@ -277,7 +277,7 @@ class Contribution:
     def sd(self) -> float: ...  # standard deviation of the parameter, SI units
 
 class BoundaryBudget:
-    """How uncertain a boundary is, and why."""
+    """How uncertain a boundary is, and which parameters cause this."""
     @property
     def contributions(self) -> list[Contribution]: ...
     @property
@@ -378,7 +378,7 @@ def finger_load(surface: Surface, frequency_Hz: float, x_m: npt.ArrayLike, finge
     the fraction of the amplitude that remains under the finger."""
 
 def fingertip_average(x_m: npt.ArrayLike, values: npt.ArrayLike, fingertip_m: float) -> npt.NDArray[np.float64]:
-    """Means of samples over a fingertip centred at each ascending x."""
+    """Averages samples over a fingertip centred at each x; the x must ascend."""
 
 def fit_boundaries(surface: Surface, measured: list[MeasuredBoundary], edge: str = 'turning') -> BoundaryFit:
     """Fits the surface's uncertain parameters to measured boundaries."""

@@ -63,7 +63,7 @@ void add_surface(py::module_& module) {
       .def_readwrite("density_kg_m3", &Surface::density_kg_m3, "density, kg/m3")
       .def_readwrite("tension_Pa", &Surface::tension_Pa, "tension as a stress, Pa; 0 means a plate")
       .def_readwrite("thickness_m", &Surface::thickness_m, "thickness, m")
-      .def_readwrite("length_m", &Surface::length_m, "from the drive edge to the clamped end, m")
+      .def_readwrite("length_m", &Surface::length_m, "distance from the drive edge to the clamped end, m")
       .def_readwrite("quality_factor", &Surface::quality_factor, "Q; infinity means no loss")
       .def_property(
           "taper", [](const Surface& self) { return self.taper; },

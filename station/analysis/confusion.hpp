@@ -12,7 +12,7 @@ namespace turnpoint::analysis {
 struct ConfusionRow {
   std::optional<int> stimulus;      ///< the choice that is right; empty if no choice is right
   std::optional<double> level;      ///< the presented level; set if no choice is right
-  std::vector<int> answers;         ///< number of trials by index of the choice
+  std::vector<int> answers;         ///< number of trials with each answer, by index of the choice
   int trials = 0;                   ///< sum of `answers`
   std::optional<Proportion> right;  ///< proportion correct; empty if no choice is right
 };
@@ -24,8 +24,9 @@ struct Confusion {
   std::optional<Proportion> right;  ///< proportion correct of all trials with a right answer
 };
 
-/// Counts the answers in answered experimental trials: by the right choice, or by the level in trials without
-/// one. Returns one matrix for each condition; conditions in `order` come first.
+/// Counts the answers in answered experimental trials, with one row for each right choice or, in trials
+/// without a right choice, for each level. Returns one matrix for each condition; conditions in `order` come
+/// first.
 std::vector<Confusion> confusions(const std::vector<TrialRecord>& trials,
                                   const std::vector<std::string>& order, int choices);
 

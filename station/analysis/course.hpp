@@ -19,8 +19,8 @@ struct Trace {
   std::string procedure;
   std::vector<TracePoint> points;
 };
-/// Returns one trace per procedure, in the order in which the procedures first occur. Includes only
-/// experimental trials with a level.
+/// Returns one trace (the levels and answers in the order of the trials) per procedure, in the order in which
+/// the procedures first occur. Includes only experimental trials with a level.
 std::vector<Trace> traces(const std::vector<TrialRecord>& trials);
 
 /// How often one of two choices (left/right, first/second) was preferred.

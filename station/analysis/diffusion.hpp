@@ -38,8 +38,8 @@ EzResult ez_diffusion(const EzMoments& moments);
 struct SharedEz {
   double boundary = 0, nondecision_s = 0;
   /// Standard deviation of the estimate of ln(boundary), by the delta method. The kurtosis of the times is
-  /// taken from the model. That of a sample is far too low, so intervals from a bootstrap over trials would
-  /// be too short.
+  /// taken from the model. The kurtosis of a sample is far too low, so intervals from a bootstrap over trials
+  /// would be too short.
   double log_boundary_sd = 0;
   std::vector<double> drift;  ///< one drift rate per difficulty, in the order of the moments passed in
 };

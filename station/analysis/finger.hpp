@@ -11,9 +11,9 @@ namespace turnpoint::analysis {
 /// What force cells measured of the finger in one trial. Values that were not measured are empty.
 struct FingerTrial {
   int trial_index = 0;
-  std::string condition;                       ///< "" if there is only one
-  bool measured = false;                       ///< false: the forces of this trial are not known
-  std::optional<double> normal_N, speed_mm_s;  ///< means over the strokes
+  std::string condition;                       ///< condition of the trial; "" if there is only one
+  bool measured = false;                       ///< whether the forces of this trial are known
+  std::optional<double> normal_N, speed_mm_s;  ///< means over the strokes of the finger in this trial
   std::optional<double> mu_low, mu_high;  ///< friction on the smooth and the rough side of the felt boundary
   /// For the scene presented last: the planned position of the change of friction, the position at which the
   /// finger met the change, and the standard error of that position.
@@ -24,14 +24,14 @@ struct FingerTrial {
 /// Student's t; empty with fewer than 3 trials that have the value.
 struct FingerCondition {
   std::string condition;
-  int trials = 0;    ///< trials in which force cells recorded
-  int measured = 0;  ///< trials whose forces are known
-  int felt = 0;      ///< trials with a felt boundary
+  int trials = 0;    ///< number of trials in which force cells recorded
+  int measured = 0;  ///< number of trials whose forces are known
+  int felt = 0;      ///< number of trials in which the forces show where the finger met the boundary
   std::optional<Estimate> normal_N, speed_mm_s, mu_low, mu_high;
-  std::optional<Estimate> shift_mm;  ///< felt minus planned boundary
+  std::optional<Estimate> shift_mm;  ///< position of the felt boundary minus the planned position
 };
 
-/// A value for trials with the same planned boundary, with its interval if that is known.
+/// The mean of a quantity over the trials with the same planned boundary, with its interval if that is known.
 struct AtBoundary {
   double planned_mm = 0, value = 0;
   int trials = 1;  ///< number of trials of which `value` is the mean
@@ -43,7 +43,7 @@ struct AtBoundary {
 /// Otherwise each trial keeps its own value; the interval of a felt boundary is then 1.96 standard errors of
 /// the trial to both sides.
 struct FeltBoundaries {
-  std::vector<AtBoundary> shift_mm, mu_low, mu_high;  ///< in the order of planned boundaries
+  std::vector<AtBoundary> shift_mm, mu_low, mu_high;  ///< in ascending order of the planned boundary
 };
 
 /// Friction in one direction of movement, by distance from the planned boundary: means and standard errors
@@ -60,9 +60,10 @@ struct RepeatedTrials {
 };
 
 struct Finger {
-  std::vector<FingerTrial> trials;          ///< in the order given
-  std::vector<FingerCondition> conditions;  ///< conditions in `order` come first
-  FeltBoundaries boundaries;                ///< boundaries of all conditions
+  std::vector<FingerTrial> trials;  ///< in the order in which they were passed in
+  /// one for each condition; those in the argument `order` of finger() come first
+  std::vector<FingerCondition> conditions;
+  FeltBoundaries boundaries;  ///< boundaries of all conditions
   std::vector<Statement> statements;
 };
 

@@ -15,10 +15,12 @@ namespace turnpoint::analysis {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kLargest = 40;  // beyond this d', proportions are 0 or 1 to the last digit
+constexpr double kLargest = 40;  // largest d' of the search; proportions there are 0 or 1 to the last digit
 
-/// The integral of phi(x - d') Phi(x)^(m - 1) by the trapezoidal rule, whose error is below 1e-15 for such a
-/// smooth function that vanishes at both ends.
+/// Returns the probability that the observation with the signal is the largest of m = `intervals`
+/// observations: the integral over x of phi(x - d') Phi(x)^(m - 1), with the normal density phi and
+/// distribution function Phi. The trapezoidal rule has an error below 1e-15 for such a smooth function that
+/// vanishes at both ends.
 double largest_of(double d_prime, int intervals) {
   constexpr double step = 0.125;
   double sum = 0;
@@ -96,7 +98,7 @@ std::vector<Discrimination> discriminate(const std::vector<TrialRecord>& trials,
                                          std::size_t most_levels) {
   std::vector<Discrimination> result;
   for (const auto& condition : conditions_of(trials, order)) {
-    std::map<double, std::pair<int, int>> levels;  // right answers and trials
+    std::map<double, std::pair<int, int>> levels;  // for each level: right answers, all trials
     std::pair<int, int> all;
     for (const auto& trial : trials) {
       if (trial.type != TrialType::experimental || trial.outcome != Outcome::answered || !trial.correct ||

@@ -10,7 +10,7 @@ namespace turnpoint::analysis {
 /// One number of one participant in one condition, such as a threshold or a median response time.
 struct PersonMeasure {
   std::string person, condition, measure;
-  std::string unit;  ///< "" if it has none
+  std::string unit;  ///< unit of the measure; "" if it has none
   double value = 0;
 };
 
@@ -23,22 +23,22 @@ struct GroupMean {
 };
 
 /// The effect of a condition on a measure: the mean of the participants' own differences, second minus first.
-/// If no participant has both conditions, they are those of two groups, and the effect is the difference of
-/// the groups' means.
+/// If no participant has both conditions, each condition is that of one group, and the effect is the
+/// difference of the groups' means.
 struct Effect {
   std::string measure, unit, first, second;
-  int persons = 0;  ///< participants who have the measure in both conditions; between groups: in either
-  /// 95 % interval by Student's t for pairs, between groups by Welch's t; empty with fewer than 3 pairs, or
-  /// fewer than 3 participants in a group
+  int persons = 0;  ///< participants with the measure in both conditions (between groups: in either one)
+  /// 95 % interval by Student's t for pairs, in an effect between groups by Welch's t; empty with fewer than
+  /// 3 pairs, or fewer than 3 participants in a group
   std::optional<Estimate> difference;
-  /// the difference divided by the standard deviation of the differences (Cohen's d_z), between groups by the
-  /// pooled standard deviation in the groups (Cohen's d_s); empty if that is 0
+  /// the difference divided by the standard deviation of the differences (Cohen's d_z), in an effect between
+  /// groups by the pooled standard deviation in the groups (Cohen's d_s); empty if that is 0
   std::optional<double> standardised;
   bool between_groups = false;
 };
 
-/// Both return their entries in the order in which measures and conditions first occur. A person must not
-/// have the same measure twice in one condition.
+/// Both functions return their entries in the order in which measures and conditions first occur. A person
+/// must not have the same measure twice in one condition.
 std::vector<GroupMean> group_means(const std::vector<PersonMeasure>& measures);
 std::vector<Effect> effects(const std::vector<PersonMeasure>& measures);
 

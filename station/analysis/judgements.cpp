@@ -33,7 +33,7 @@ void add_exponent(Judgements& judgements, bool decibel) {
   }
   if (!sizes) {
     judgements.statements.push_back(
-        {"no-logarithm", "Levels of 0 or below have no logarithm: there is no exponent."});
+        {"no-logarithm", "Levels of 0 or below have no logarithm, so no exponent can be computed."});
     return;
   }
   judgements.exponent = student_slope(x, y);

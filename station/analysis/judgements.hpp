@@ -33,8 +33,8 @@ enum class Judged {
   magnitudes_dB,  ///< levels are 20 log10 of a physical quantity
 };
 
-/// Analyses TrialRecord::setting of answered experimental trials, one entry for each condition. Conditions in
-/// `order` come first.
+/// Analyses the ratings or magnitudes (TrialRecord::setting) of answered experimental trials, one entry for
+/// each condition. Conditions in `order` come first.
 std::vector<Judgements> judgements(const std::vector<TrialRecord>& trials,
                                    const std::vector<std::string>& order, Judged judged);
 

@@ -29,8 +29,8 @@ MixedTheta gradient_of(Laplace& laplace, const MixedTheta& theta) {
   return gradient;
 }
 
-/// The step is ten times that of the gradient, because rounding errors are divided by the square of the step
-/// here.
+/// Computes second derivatives by differences. The step is ten times as long as that of gradient_of(),
+/// because second differences divide rounding errors by the square of the step.
 Matrix5 hessian_of(Laplace& laplace, const MixedTheta& theta, double centre) {
   Matrix5 hessian;
   const auto at = [&](int i, double di, int j, double dj) {
@@ -50,7 +50,8 @@ Matrix5 hessian_of(Laplace& laplace, const MixedTheta& theta, double centre) {
   return hessian;
 }
 
-/// Returns the furthest point along `direction` that lowers the value enough; the start itself if none does.
+/// Line search that halves the step: returns the first point tried along `direction` at which the value is
+/// low enough, or the start itself if there is none.
 std::pair<MixedTheta, double> descend(Laplace& laplace, const MixedTheta& start, double value,
                                       const MixedTheta& direction, double slope) {
   for (double length = 1; length > 1e-8; length /= 2) {

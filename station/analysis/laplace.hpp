@@ -55,13 +55,14 @@ class Laplace {
   std::vector<Eigen::Vector2d> mode_;
 };
 
-/// Minimises by the BFGS method (Broyden, Fletcher, Goldfarb, Shanno) with central differences, and then by
-/// Newton's method. `hessian` is the Hessian at the minimum.
+/// The minimum of the negative log posterior.
 struct MixedMinimum {
-  MixedTheta theta;
-  double negative_log = 0;
-  Eigen::Matrix<double, 5, 5> hessian;
+  MixedTheta theta;                     ///< where it is
+  double negative_log = 0;              ///< its value
+  Eigen::Matrix<double, 5, 5> hessian;  ///< second derivatives there
 };
+/// Minimises the negative log posterior by the BFGS method (Broyden, Fletcher, Goldfarb, Shanno) with central
+/// differences, and then refines the result by Newton's method.
 MixedMinimum minimise(Laplace& laplace, const MixedTheta& start);
 
 }  // namespace turnpoint::analysis

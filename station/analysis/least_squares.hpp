@@ -3,12 +3,13 @@
 
 namespace turnpoint::analysis {
 
-/// A linear fit with few parameters.
+/// The result of a linear least-squares fit.
 struct LeastSquares {
   std::vector<double> value;
   /// standard errors estimated from the residuals; 0 if there are as many points as parameters
   std::vector<double> sd;
-  std::vector<double> known_sd;  ///< standard errors if the weights are 1 / variance
+  /// standard errors that follow from the weights alone, if each weight is 1 / variance
+  std::vector<double> known_sd;
 };
 
 /// Minimises sum w (y - row . value)^2 by Householder QR with column pivoting (columns scaled to unit

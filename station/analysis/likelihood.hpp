@@ -54,7 +54,8 @@ class Likelihood {
     std::array<std::array<double, 4>, 4> information;
   };
   Local local(const Theta& theta) const;
-  /// The value of the function's variable z at theta[0], and its derivatives with respect to lapse and guess.
+  /// The value of the standard variable z (see core()) at the level theta[0], and its derivatives with
+  /// respect to lapse and guess.
   struct Anchor {
     double z = 0, dz_dlapse = 0, dz_dguess = 0;
   };

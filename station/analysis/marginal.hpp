@@ -16,8 +16,8 @@ struct Cells {
 /// A distribution with constant density within each cell.
 class Marginal {
  public:
-  /// Takes one mass per cell. The masses may have any sum above 0. Throws std::invalid_argument if the number
-  /// of masses is wrong.
+  /// Takes the probability mass of each cell. The masses may have any sum above 0. Throws
+  /// std::invalid_argument if the number of masses is wrong.
   Marginal(const Cells& cells, std::vector<double> mass);
 
   const Cells& cells() const { return cells_; }
@@ -27,7 +27,7 @@ class Marginal {
 
  private:
   Cells cells_;
-  std::vector<double> mass_, cumulative_;  ///< cumulative_[i] is the mass below edge i
+  std::vector<double> mass_, cumulative_;  ///< cumulative_[i] is the total mass below edge i of the cells
 };
 
 }  // namespace turnpoint::analysis

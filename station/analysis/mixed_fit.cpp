@@ -18,8 +18,8 @@ namespace {
 
 constexpr std::size_t kFewestPeople = 3;
 constexpr double kNormal975 = 1.959963984540054;
-/// Below this standard deviation, on an axis whose levels have the standard deviation 1, the random effect is
-/// at its bound of 0.
+/// A random effect counts as absent if its standard deviation is below this value, on an axis whose levels
+/// have the standard deviation 1.
 constexpr double kNoVariance = 1e-3;
 
 /// The data on an axis that is centred and scaled, so that all parameters are of the order of 1.
@@ -78,7 +78,7 @@ MixedMinimum fit_at(double lapse, Scaled& data, const MixedOptions& options, con
   return minimise(laplace, start);
 }
 
-/// Finds the lapse rate at which the likelihood is highest, and the other parameters with it.
+/// Finds the lapse rate at which the likelihood is highest, and the best other parameters at this lapse rate.
 std::pair<double, MixedMinimum> fit_all(Scaled& data, const MixedOptions& options, const MixedTheta& start) {
   double lapse = options.lapse_low;
   auto best = fit_at(lapse, data, options, start);
@@ -96,7 +96,7 @@ std::pair<double, MixedMinimum> fit_all(Scaled& data, const MixedOptions& option
 }
 
 /// Returns the covariance of the fixed effects. A random effect whose variance is 0 is left out of the
-/// information, which is singular there.
+/// information matrix, which would otherwise be singular.
 std::optional<Eigen::Matrix2d> covariance_of(const MixedMinimum& found) {
   std::vector<int> kept{0, 1};
   const Eigen::Matrix2d factor = random_factor(found.theta);
@@ -197,7 +197,8 @@ void describe_group(const Scaled& data, const MixedMinimum& found, const Eigen::
     fit.statements.push_back(
         {"singular",
          "The participants differ in less than two ways: intercepts or slopes do not vary beyond chance, or "
-         "they vary together. Estimates and intervals hold, but say nothing of how both vary."});
+         "they vary together. Estimates and intervals are valid, but say nothing about how the two vary "
+         "separately."});
 }
 
 }  // namespace

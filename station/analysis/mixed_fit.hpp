@@ -43,12 +43,12 @@ struct PooledPerson {
 struct MixedFit {
   MixedOptions options;
   double intercept = 0, rate = 0;        ///< b0 and b1
-  double intercept_se = 0, rate_se = 0;  ///< standard errors
+  double intercept_se = 0, rate_se = 0;  ///< standard errors of b0 and b1
   double intercept_sd = 0, rate_sd = 0;  ///< standard deviations of b0i and b1i
-  double correlation = 0;                ///< of b0i and b1i; 0 if one of them does not vary
+  double correlation = 0;                ///< correlation of b0i and b1i; 0 if one of them does not vary
   double lapse = 0;
-  double log_likelihood = 0;                 ///< of the individual answers, by Laplace's approximation
-  std::optional<Estimate> threshold, slope;  ///< of the group, with 95 % intervals
+  double log_likelihood = 0;                 ///< for the individual answers, by Laplace's approximation
+  std::optional<Estimate> threshold, slope;  ///< for the group, with 95 % intervals
   /// Standard deviation of the participants' thresholds, in the unit of the level (at the group's threshold).
   std::optional<double> threshold_sd;
   std::vector<PooledPerson> persons;  ///< in the order of the data
@@ -57,15 +57,15 @@ struct MixedFit {
 
 /// Fits by maximum likelihood. The random effects are integrated out by Laplace's approximation, as lme4 does
 /// by default. The intervals of the group use Student's t with one degree of freedom less than there are
-/// participants. Those of participants include the uncertainty of the group's parameters (Morris 1983), but
-/// not that of the random effects' covariance. Empty, with a reason in `statements`, with fewer than 3
-/// participants who have answers, or if the answers do not determine the function.
+/// participants. The intervals of participants include the uncertainty of the group's parameters (Morris
+/// 1983), but not that of the random effects' covariance. `fit` is empty, and `statements` give the reason,
+/// with fewer than 3 participants who have answers, or if the answers do not determine the function.
 ///
 /// Takes about 0.2 s for 20 participants with 10 levels each, and three times as long if the lapse rate is
 /// fitted.
 struct MixedResult {
   std::optional<MixedFit> fit;
-  std::vector<Statement> statements;  ///< why there is no fit
+  std::vector<Statement> statements;  ///< why `fit` is empty
 };
 MixedResult fit_mixed(const std::vector<PersonCounts>& data, const MixedOptions& options);
 

@@ -19,15 +19,15 @@ using PoleVector = Eigen::VectorXcd;
 
 constexpr int kRounds = 12;  // how often all poles are moved; they settle after about five rounds
 constexpr int kSteps = 40;
-constexpr int kBackground = 3;  // number of coefficients of the parabola
+constexpr int kBackground = 3;  // number of coefficients of the background, a parabola
 
-/// Frequencies are mapped to -1 ... 1, so that the columns have similar sizes.
+/// Maps the frequencies to -1 ... 1, so that all columns of the fit's matrix have similar sizes.
 struct PoleScale {
   double middle_Hz, half_Hz;
   double of(double frequency_Hz) const { return (frequency_Hz - middle_Hz) / half_Hz; }
 };
 
-/// Columns: 1 / (x - pole) for each pole, then 1, x, x^2.
+/// Returns the matrix of the linear fit, one row for each x: 1 / (x - pole) for each pole, then 1, x, x^2.
 PoleMatrix pole_columns(const Eigen::VectorXd& x, const PoleVector& poles) {
   PoleMatrix columns(x.size(), poles.size() + kBackground);
   for (Eigen::Index row = 0; row < x.size(); ++row) {
@@ -51,7 +51,7 @@ PoleVector better_poles(const Eigen::VectorXd& x, const PoleVector& response, co
   PoleMatrix moved = poles.asDiagonal();
   moved.rowwise() -= solution.tail(n).transpose();
   PoleVector better = Eigen::ComplexEigenSolver<PoleMatrix>(moved, false).eigenvalues();
-  // A pole on the other side would mean a vibration that grows, which is impossible: mirror it.
+  // A pole with a negative imaginary part would mean a vibration that grows, which is impossible: mirror it.
   for (auto& pole : better) pole = {pole.real(), std::max(std::abs(pole.imag()), 1e-6)};
   return better;
 }
@@ -116,7 +116,7 @@ PolesTried refined(const Eigen::VectorXd& x, const PoleVector& response, PolesTr
   return best;
 }
 
-/// Adds the standard errors, computed from the derivatives with respect to all parameters.
+/// Makes the result, with standard errors computed from the derivatives with respect to all parameters.
 PoleFit with_errors(const Eigen::VectorXd& x, const PolesTried& best, double noise, const PoleScale& scale) {
   const auto n = best.poles.size();
   const PoleMatrix slopes = pole_slopes(x, best);
@@ -149,10 +149,10 @@ PoleFit with_errors(const Eigen::VectorXd& x, const PolesTried& best, double noi
   return fit;
 }
 
-/// Returns two fits: the one whose number of poles the Bayesian information criterion prefers, and the one
-/// with the next number. It would not do to stop at the first fit whose residual is as small as the noise.
-/// The part of the response that such a fit misses is similar at many neighbouring frequencies, so it shifts
-/// the poles by more than their standard errors.
+/// Returns two fits: the one whose number of poles the Bayesian information criterion prefers, and one with
+/// the next larger number (or the next smaller one, if no larger number was tried). The first fit whose
+/// residual is as small as the noise is not good enough: the part of the response that it misses is similar
+/// at many neighbouring frequencies, so it shifts the poles by more than their standard errors.
 std::pair<PolesTried, PolesTried> best_of(const Eigen::VectorXd& x, const PoleVector& response,
                                           int most_poles) {
   const double points = static_cast<double>(x.size());

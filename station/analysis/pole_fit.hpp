@@ -18,8 +18,8 @@ struct FittedPole {
 /// A response as a sum of resonances and a background that changes slowly (a parabola in frequency).
 struct PoleFit {
   std::vector<FittedPole> poles;  ///< in order of frequency; includes those that only improve the background
-  std::vector<std::complex<double>> fitted;  ///< at the frequencies of the measurement
-  std::vector<double> fitted_sd;             ///< standard errors (rms of the complex number)
+  std::vector<std::complex<double>> fitted;  ///< fitted response at the frequencies of the measurement
+  std::vector<double> fitted_sd;             ///< standard errors of `fitted` (rms of the complex number)
   double residual = 0;                       ///< rms of measured minus fitted
 
   /// The resonances inside the measured range that the data determine: quality factor to 25 %, weight to

@@ -9,8 +9,8 @@ namespace turnpoint::analysis {
 
 namespace {
 
-/// A cell is left out if its profile log-likelihood is this far below the maximum. For a normal likelihood
-/// that is 4.2 standard deviations.
+/// A cell is left out of the next, finer grid if its profile log-likelihood is this far below the maximum.
+/// For a normal likelihood that is 4.2 standard deviations.
 constexpr double kNegligible_nats = 9;
 /// The data exclude an end of the prior if the log-likelihood there is this far below the maximum: half the
 /// 95 % point of chi squared with one degree of freedom.
@@ -80,7 +80,7 @@ void PosteriorGrid::evaluate(const Box& box) {
 }
 
 /// Adds up the log-likelihood of the data for each pair of asymptotes. `between` holds the value of the
-/// function's core at each level.
+/// psychometric function at each level, without guess and lapse.
 void PosteriorGrid::add_log_likelihoods(const std::vector<double>& between) {
   for (const auto& ends : ends_) {
     double sum = 0;
@@ -96,8 +96,8 @@ void PosteriorGrid::add_log_likelihoods(const std::vector<double>& between) {
 }
 
 /// Returns the box for the next, finer grid: the cells that are not negligible, and one more cell on each
-/// side. The box keeps at least half the width of the previous one. If cells are far wider than the
-/// posterior, the maximum may lie outside the cell with the highest likelihood.
+/// side. The box keeps at least half the width of the previous one, because the maximum may lie outside the
+/// cell with the highest likelihood if cells are far wider than the posterior.
 Box PosteriorGrid::narrowed() const {
   Box box = box_;
   for (std::size_t p = 0; p < kParameters; ++p) {

@@ -8,8 +8,8 @@
 
 namespace turnpoint::analysis {
 
-/// The axes of the grid, in the order of Theta. The threshold is a position on the function's axis; the rate
-/// is given by its logarithm.
+/// The axes of the grid, in the order of Theta. The threshold is given by its axis_position(), the rate by
+/// its logarithm.
 enum Parameter { at_threshold, at_rate, at_lapse, at_guess };
 constexpr std::size_t kParameters = 4;
 using Box = std::array<Cells, kParameters>;
@@ -29,7 +29,7 @@ class PosteriorGrid {
   /// Returns the marginal distribution of the position on the axis at which the probability is `p`. Empty if
   /// no such position exists for most of the posterior.
   std::optional<Marginal> marginal_of_crossing(double p) const;
-  /// Returns the marginal distribution of the probability at a position on the axis.
+  /// Returns the marginal distribution of the probability at the axis_position() `u`.
   Marginal marginal_of_probability(double u) const;
 
   /// True if the data exclude neither end of the prior. An interval would then merely repeat the prior. The

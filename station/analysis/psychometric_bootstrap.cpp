@@ -90,8 +90,9 @@ Replicator replicator(const PsychometricFit& fit) {
   return result;
 }
 
-/// Returns the value, on the side of `bound`, at which the likelihood ratio reaches `critical`. Returns the
-/// bound if the ratio stays below `critical`.
+/// Finds one end of a profile-likelihood interval: the value of the quantity, between the estimate and
+/// `bound`, at which the likelihood ratio reaches `critical`. Returns `bound` if the ratio stays below
+/// `critical`.
 double profile_end(const Replicator& base, const Quantity& quantity, Theta start, double bound,
                    double best_cost, double critical) {
   double inside = start[quantity.parameter], outside = bound;

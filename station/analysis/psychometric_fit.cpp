@@ -87,12 +87,12 @@ std::optional<Statement> refusal(const std::vector<LevelCount>& data, const FitO
   if (positive == trials)
     return Statement{
         "all-positive",
-        "Every answer was right (or the tracked one), at every level: the threshold lies below the levels "
-        "shown, and cannot be estimated."};
+        "Every answer was right (or was the tracked answer) at every level: the threshold lies below the "
+        "levels shown, and cannot be estimated."};
   if (positive == 0)
     return Statement{"none-positive",
-                     "No answer was right (or the tracked one), at any level: the threshold lies above the "
-                     "levels shown, and cannot be estimated."};
+                     "No answer was right (or was the tracked answer) at any level: the threshold lies above "
+                     "the levels shown, and cannot be estimated."};
   if (trend(axis_counts(data, options.function, options.scale)) <= 0)
     return Statement{"flat", "The answers do not change with the level: no threshold can be estimated."};
   return std::nullopt;

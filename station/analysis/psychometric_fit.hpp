@@ -84,7 +84,7 @@ enum class IntervalMethod { none, bootstrap, posterior };
 struct PsychometricIntervals {
   IntervalMethod method = IntervalMethod::none;
   int replicates = 0;          ///< number of resamples; set for a bootstrap only
-  std::optional<Prior> prior;  ///< prior of the posterior; empty for a bootstrap
+  std::optional<Prior> prior;  ///< prior of the Bayesian fit; empty for a bootstrap
   double confidence = 0.95;
   std::optional<ParameterInterval> threshold, slope, lapse, guess;
   /// level at which the fitted probability is 0.75, if there is one
@@ -101,8 +101,9 @@ struct BootstrapOptions {
   int replicates = 1000;
   double confidence = 0.95;
   std::uint64_t seed = 1;
-  int stream = 0;        ///< number of the fit: gives each fit of a session different random draws
-  int band_points = 61;  ///< number of levels at which the band is computed; 0: no band
+  int stream = 0;  ///< number of the fit: gives each fit of a session different random draws
+  /// number of levels at which the confidence band of the function is computed; 0: no band
+  int band_points = 61;
 };
 
 /// Computes intervals by a parametric bootstrap of a fit (Wichmann & Hill 2001b).
@@ -110,8 +111,8 @@ struct BootstrapOptions {
 /// Threshold, slope and 75 % point get profile-likelihood intervals. Their critical value comes from the
 /// likelihood ratios of the replicates instead of chi-square. Percentile intervals of the slope would be
 /// worse: with ten trials per level they would miss the true value in 1 case of 7 instead of 1 of 20, because
-/// the estimate is biased. BCa intervals of a Weibull's threshold are no better. Lapse and guess get percentile
-/// intervals.
+/// the estimate is biased. BCa intervals of a Weibull's threshold are no better. Lapse and guess get
+/// percentile intervals.
 ///
 /// Use this only if the levels were fixed before the session. If a procedure chose the levels from the
 /// answers, these intervals are too short: use fit_posterior().

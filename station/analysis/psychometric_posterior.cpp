@@ -15,7 +15,7 @@ namespace {
 /// Steepness (rate) of the function at the two ends of the prior's flat part, multiplied by the range of the
 /// levels.
 constexpr double kShallow = 1.5, kSteep = 24;
-/// An estimate in the outer quarter of the prior's range, at either end, gets a statement in the report.
+/// The report gets a statement if an estimate lies in the first or last quarter of the prior's range.
 constexpr double kOuter = 0.25;
 /// Width of the part at either end in which the prior falls to 0: kBeyond is relative to the width of the
 /// flat part, kFallingShare to the whole range.

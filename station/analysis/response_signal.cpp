@@ -20,8 +20,8 @@ constexpr double kWidest = 0.8;
 
 double log_cdf(double z) { return std::log(std::max(normal_cdf(z), 1e-300)); }
 
-/// Returns the log likelihood of the answers at one lag for a distance between the two stimuli, with the
-/// criterion at which it is highest.
+/// Returns the log likelihood of the answers at one lag if the two stimuli are `distance` apart. The
+/// criterion takes the value at which the likelihood is highest.
 double log_likelihood(const YesNoCounts& n, double distance) {
   const auto at = [&](double c) {
     return n.hits * log_cdf(distance / 2 - c) + n.misses * log_cdf(c - distance / 2) +
@@ -36,7 +36,7 @@ double log_likelihood(const YesNoCounts& n, double distance) {
   return at(0.5 * (low + high));
 }
 
-/// Log likelihood of the answers at one lag, tabulated over d'.
+/// A table of the log likelihood of the answers at one lag, over the sensitivity d'.
 class LagLikelihood {
  public:
   LagLikelihood(const YesNoCounts& counts, double scale) {

@@ -11,10 +11,10 @@ namespace turnpoint::analysis {
 
 /// Sensitivity at one lag of the response signal.
 struct LagPoint {
-  double lag_s = 0;   ///< from response_zero to the signal
-  double time_s = 0;  ///< mean response time, from response_zero (so it includes the lag)
+  double lag_s = 0;  ///< time of the response signal, counted from the zero of response times (response_zero)
+  double time_s = 0;  ///< mean response time, counted from the same zero
   YesNoCounts counts;
-  std::optional<Estimate> d_prime;  ///< as in Detection; empty if one of the two stimuli was never answered
+  std::optional<Estimate> d_prime;  ///< sensitivity as in Detection; empty if a stimulus has no answers
 };
 
 /// How sensitivity grows with time: d'(t) = asymptote (1 - exp(-rate (t - intercept))) after the intercept,
@@ -29,12 +29,12 @@ struct SpeedAccuracyCurve {
   std::vector<Statement> statements;
 };
 
-/// Returns d'(t) of a curve.
+/// Returns the sensitivity d'(t) at a time on the curve with these three parameters.
 double d_prime_at(double asymptote, double rate_per_s, double intercept_s, double time_s);
 
-/// Fits the curve to answered experimental trials with a right answer and a lag (TrialRecord::signal_s). The
-/// criterion is free at each lag. `positive` is the choice that counts as "yes". One curve for each condition
-/// that has such trials, first those in `order`.
+/// Fits the curve to answered experimental trials with a right answer and a lag (TrialRecord::signal_s). Each
+/// lag has a criterion of its own. `positive` is the choice that counts as "yes". One curve for each
+/// condition that has such trials, first those in `order`.
 std::vector<SpeedAccuracyCurve> response_signal(const std::vector<TrialRecord>& trials,
                                                 const std::vector<std::string>& order, Detecting detecting,
                                                 int positive);

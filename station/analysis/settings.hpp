@@ -8,8 +8,8 @@
 
 namespace turnpoint::analysis {
 
-/// The settings from trials in which the slider started on the same side; the intervals are those of
-/// Settings.
+/// The settings from trials in which the slider started on the same side. Mean and standard deviation have
+/// the same kinds of interval as in Settings.
 struct SideSettings {
   int settings = 0;
   std::optional<Estimate> mean, sd;
@@ -20,14 +20,16 @@ struct SideSettings {
 /// Fundamentals, ch. 3).
 struct Settings {
   std::string procedure;
-  std::string condition;               ///< TrialRecord::instruction; "" if the design has none
-  std::vector<double> starts, values;  ///< in order of presentation, in the unit of the level
-  std::optional<Estimate> mean;        ///< 95 % interval by Student's t; empty with fewer than 3 settings
-  std::optional<Estimate> sd;          ///< 95 % interval by chi squared; empty with fewer than 3 settings
+  std::string condition;  ///< TrialRecord::instruction; "" if the design has none
+  /// starting positions and settings of the slider, in order of presentation, in the unit of the level
+  std::vector<double> starts, values;
+  std::optional<Estimate> mean;  ///< 95 % interval by Student's t; empty with fewer than 3 settings
+  std::optional<Estimate> sd;    ///< 95 % interval by chi squared; empty with fewer than 3 settings
   /// slope of the settings over the slider's starting positions: 0 if the start has no influence, 1 if the
   /// slider was not moved
   std::optional<Estimate> start_slope;
-  /// the same by the side from which the slider started; without sides in the protocol both are empty
+  /// mean and scatter of the settings, by the side from which the slider started; both empty if the protocol
+  /// has no sides
   SideSettings from_below, from_above;
   /// mean from below minus mean from above, with a 95 % interval by Welch's t
   std::optional<Estimate> side_difference;

@@ -53,7 +53,7 @@ YesNoCounts operator+(const YesNoCounts& a, const YesNoCounts& b) {
           a.correct_rejections + b.correct_rejections};
 }
 
-/// Returns the variance of z(p), where p is the log-linear proportion of this number of trials.
+/// Returns the variance of z(p), where p is a proportion of `trials` trials, with the log-linear correction.
 double variance_of_z(double p, int trials) {
   const double density = normal_density(normal_quantile(p));
   return p * (1 - p) / (trials + 1) / (density * density);

@@ -19,7 +19,7 @@ struct YesNoCounts {
 };
 
 /// Sensitivity d' = z(H) - z(F) and criterion c = -(z(H) + z(F)) / 2, from hit rate H and false-alarm rate F.
-/// c is positive if "yes" is avoided.
+/// c is positive if the observer says "yes" too rarely.
 struct YesNo {
   double d_prime = 0, criterion = 0;
   double hit_rate = 0, false_alarm_rate = 0;  ///< both rates with the log-linear correction

@@ -8,8 +8,8 @@ namespace turnpoint::analysis {
 
 /// Estimates with 95 % intervals by Student's t. Empty with fewer than 3 values.
 std::optional<Estimate> student_mean(const std::vector<double>& values);
-/// The difference of the means, a - b, of two samples with variances of their own (Welch 1947). Empty if one
-/// of them has fewer than 3 values, or if all values of both are equal.
+/// The difference of the means, a - b, of two samples that may differ in variance (Welch 1947). Empty if one
+/// of the samples has fewer than 3 values, or if all values of both are equal.
 std::optional<Estimate> student_difference(const std::vector<double>& a, const std::vector<double>& b);
 /// The least-squares slope of y over x. Empty if all x are equal.
 std::optional<Estimate> student_slope(const std::vector<double>& x, const std::vector<double>& y);

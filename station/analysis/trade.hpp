@@ -16,7 +16,7 @@ struct DifficultyCell {
   int answered = 0, correct = 0;
   double proportion_correct = 0;
   Interval accuracy;                     ///< Wilson interval of `proportion_correct`
-  std::optional<double> mean_correct_s;  ///< empty if no answer was correct
+  std::optional<double> mean_correct_s;  ///< mean time of correct answers; empty if there were none
   std::optional<double> drift;           ///< drift rate from the diffusion fit of all difficulties together
 };
 
@@ -26,7 +26,7 @@ struct DifficultyCell {
 struct InstructionResult {
   std::string instruction;
   int presented = 0, answered = 0, timeouts = 0, anticipations = 0, excluded = 0, correct = 0;
-  std::optional<Estimate> proportion_correct;  ///< Wilson interval
+  std::optional<Estimate> proportion_correct;  ///< with its Wilson interval
   std::optional<ResponseTimes> times, correct_times;
   std::vector<double> times_s;  ///< times of the included trials, in order of presentation
   std::vector<CafBin> caf;
@@ -39,8 +39,8 @@ struct InstructionResult {
 struct Difference {
   std::string first, second;
   std::string measure;  ///< "proportion correct", "median response time", ...
-  /// "s"; "proportion"; "s = 0.1" for EZ-diffusion, after its scaling parameter; "SD" for BIS, after the
-  /// standard deviation over cells
+  /// the unit of the measure: "s", "proportion", "s = 0.1" for EZ-diffusion (its scaling parameter), or "SD"
+  /// for BIS (the standard deviation over cells)
   std::string unit;
   std::optional<Estimate> estimate;
 };

@@ -22,7 +22,8 @@ struct TrialRecord {
   std::string block;
   TrialType type = TrialType::experimental;
   std::string procedure;
-  /// in the unit of the protocol's factor; signed if it has two sides, such as left and right
+  /// level of the stimulus in the unit of the protocol's factor; signed if it has two sides, such as left and
+  /// right
   std::optional<double> level;
   std::optional<int> right_choice;  ///< index of the correct choice; empty if there is none
   std::optional<int> response;      ///< index of the chosen answer
@@ -32,11 +33,12 @@ struct TrialRecord {
   std::optional<int> confidence;  ///< from 1 for the least sure; empty if the task does not ask
   Outcome outcome = Outcome::answered;
   std::optional<double> response_time_s;
-  std::optional<double>
-      signal_s;  ///< when the response signal came, after response_zero; empty if there is none
+  /// time of the response signal, counted from the zero of response times (response_zero); empty if there is
+  /// none
+  std::optional<double> signal_s;
   /// the condition by which the analysis groups trials; "" if there is only one
   std::string instruction;
-  /// equal for trials of equal difficulty; usually the absolute value of the level
+  /// a number that is the same for trials of equal difficulty; usually the absolute value of the level
   std::optional<double> difficulty;
   StartSide start_side = StartSide::none;
 };

@@ -49,8 +49,14 @@ void apply(const rig::PickUpResponse& measured, rig::Rig& rig) {
 }
 
 void apply(const rig::ForceCells& measured, rig::Rig& rig) {
-  if (!rig.capture || rig.capture->bridges.empty())
+  if (!rig::has_force_cells(rig))
     throw terms::UsageError("the calibration has force cells, but the rig does not");
+  const bool own_clock = measured.carrier_Hz == 0;
+  if (own_clock != rig.capture->converter.has_value())
+    throw terms::UsageError(fmt::format(
+        "the force cells of the calibration were {}, those of the rig are {}; calibrate them again",
+        own_clock ? "on a converter with a clock of its own" : "captured by the card",
+        own_clock ? "captured by the card" : "on a converter with a clock of its own"));
   rig.capture->forces = measured;
 }
 

@@ -10,7 +10,7 @@
 
 namespace turnpoint::calibration {
 
-/// A measured sound pressure level at full scale.
+/// A sound pressure level that was measured with the drive at full scale.
 struct SoundPoint {
   double frequency_Hz = 0;
   double level_dB = 0;
@@ -21,7 +21,7 @@ struct SoundPoint {
 struct Calibration {
   std::string rig_name;
   std::string rig_sha256;  ///< hash of the rig file for which the calibration was made
-  std::string made_on;     ///< YYYY-MM-DD
+  std::string made_on;     ///< date, YYYY-MM-DD
   int valid_days = 90;
   std::string note;
   struct Transducer {
@@ -57,8 +57,8 @@ struct Measurements {
 /// terms::UsageError for points that do not determine a fit.
 Calibration fit_measurements(const Measurements& measurements, const rig::Rig& rig);
 
-/// Convert to the text of a calibration file (format "friction-calibration/1") and back. load() throws
-/// text::BadInput or std::system_error.
+/// to_toml() returns the text of a calibration file (format "friction-calibration/1"); load() reads such a
+/// file, and throws text::BadInput or std::system_error.
 std::string to_toml(const Calibration& calibration);
 Calibration load(const std::string& path);
 /// Like load(), for the text of a calibration file that is already in memory (a resumed session). `path` is

@@ -8,7 +8,7 @@
 #include "station/text/number.hpp"
 #include "station/text/reader.hpp"
 
-// Helpers that both the readers and the writers of the tables in a calibration file use.
+// Helpers for reading and writing the tables of a calibration file.
 namespace turnpoint::calibration {
 
 std::string quoted(const std::string& plain);
@@ -24,11 +24,11 @@ std::string numbers(const char* key, const Points& points, Get&& get) {
 /// Returns true if the columns have equal length; otherwise reports a problem.
 bool same_length(text::TableReader& reader, const char* key, std::size_t length, std::size_t wanted);
 
-/// The table [[pickup]].
+/// Write and read the table [[pickup]] of a calibration file.
 std::string pick_up_toml(const PickUp& pick_up);
 PickUp read_pick_up(const text::Value& table, text::Findings& findings);
 
-/// The table [forces].
+/// Write and read the table [forces] of a calibration file.
 std::string forces_toml(const rig::ForceCells& forces);
 rig::ForceCells read_forces(const text::Value& table, text::Findings& findings);
 

@@ -16,7 +16,7 @@ struct BoundaryPoint {
   double frequency_Hz = 0;
   double boundary_m = 0;
   double sd_m = 0;        ///< standard deviation of the measurement, above 0
-  double residual_m = 0;  ///< measured minus fitted
+  double residual_m = 0;  ///< measured minus fitted position
   /// distance from the position that the other boundaries predict, in standard deviations
   double deviation = 0;
   bool outlier = false;
@@ -25,7 +25,8 @@ struct BoundaryPoint {
 
 /// The result of fitting the rig's surface to measured boundaries.
 struct BoundaryFit {
-  std::string edge;  ///< which edge was measured, as physics::format() writes it
+  /// which definition of the boundary was measured ("p50"), as physics::format() writes it
+  std::string edge;
   std::vector<BoundaryPoint> points;
   rig::SurfaceFit surface;
 };
@@ -47,15 +48,15 @@ struct ResponseFit {
   std::vector<ResponsePoint> points;
   double residual_dB = 0;  ///< rms deviation of the measured points from the fit
   double residual_rad = 0;
-  double low_Hz = 0, high_Hz = 0;  ///< band in which equalisation stays within equalisation_cap_dB
+  double low_Hz = 0, high_Hz = 0;  ///< band in which no tone needs more equalisation than equalisation_cap_dB
 };
 
-/// The largest allowed equalisation. A frequency whose response is farther than this below the best one is
-/// outside the band.
+/// The largest amount by which equalisation raises a weak response. A frequency whose response is more than
+/// this below the strongest one is outside the usable band.
 inline constexpr double equalisation_cap_dB = 20;
 
-/// Smooths a sweep. Throws terms::UsageError for fewer than 5 points, frequencies that do not ascend, or an
-/// amplitude that is not above 0.
+/// Smooths the response that a sweep has measured. Throws terms::UsageError for fewer than 5 points,
+/// frequencies that do not ascend, or an amplitude that is not above 0.
 ResponseFit fit_response(const std::vector<ResponsePoint>& sweep, int window = 5);
 
 /// A resonance of the surface found in a sweep.
@@ -73,8 +74,8 @@ std::vector<Resonance> find_resonances(const std::vector<ResponsePoint>& sweep);
 /// Median quality factor; empty without resonances.
 std::optional<double> quality_of(const std::vector<Resonance>& resonances);
 
-/// Relative friction as a function of displacement, made monotonically decreasing by pooling adjacent
-/// violators.
+/// One point of a curve of relative friction over displacement. The fitted curve falls monotonically, which
+/// is achieved by pooling adjacent violators.
 struct FrictionPoint {
   double displacement_m = 0;
   double relative_friction = 0;

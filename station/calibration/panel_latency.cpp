@@ -7,7 +7,8 @@ namespace turnpoint::calibration {
 
 namespace {
 
-/// Delay between a touch and the reference edge that matches it; empty unless exactly one edge matches.
+/// Returns the delay between a touch and the matching edge of the reference signal (button or photodiode);
+/// empty unless exactly one edge matches.
 std::optional<std::int64_t> lag_ns(std::int64_t touch_ns, const std::vector<std::int64_t>& edges_ns,
                                    LatencyReference reference) {
   const bool before = reference == LatencyReference::button;

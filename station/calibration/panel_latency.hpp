@@ -6,7 +6,7 @@
 
 namespace turnpoint::calibration {
 
-/// Statistics of the delays between matching touches and edges, in seconds.
+/// Statistics of the delays, in seconds, between touches and the matching edges of a reference signal.
 struct Delay {
   double median_s = 0;
   double sd_s = 0;  ///< standard deviation: the jitter
@@ -19,9 +19,10 @@ struct Delay {
 /// touch; a photodiode on this square gives the time of the light, so it measures display latency.
 enum class LatencyReference { button, photodiode };
 
-/// The latency of a touch panel: from contact to time stamp (input), and from time stamp to light (display).
+/// The latency of a touch panel: from the finger's contact to the time stamp of the touch (input), and from
+/// the time stamp to the light on the screen (display).
 struct PanelLatency {
-  std::string made_on;         ///< YYYY-MM-DD
+  std::string made_on;         ///< date, YYYY-MM-DD
   std::string quality;         ///< source of the touches' time stamps: kernel | toolkit
   std::optional<Delay> touch;  ///< from the finger's contact to the touch's time stamp
   std::optional<Delay> flash;  ///< from the touch's time stamp to the light on the screen

@@ -44,7 +44,8 @@ struct ScaleRows {
   std::vector<double> logs, weights;
 };
 
-/// ln(um per full scale of the capture) at each measured frequency, over ln(frequency / at_Hz).
+/// Returns the rows of a linear fit: ln(um per full scale of the capture) at each measured frequency as a
+/// function of ln(frequency / at_Hz).
 ScaleRows scale_rows(const PickUp& pick_up, const std::vector<DisplacementPoint>& table, double at_Hz) {
   ScaleRows made;
   for (const auto& point : table) {
@@ -140,7 +141,8 @@ PickUpScale fit_scale(const PickUp& pick_up, PickUpSensor sensor, const std::vec
     if (scale.exponent < kLeastExponent || scale.exponent > kMostExponent)
       throw terms::UsageError(fmt::format(
           "with the measured displacements, the pick-up's sensitivity would be proportional to the power {} "
-          "of frequency; a piezo patch has 0 to 2. Check the unit and the place of the measurement",
+          "of frequency; for a piezo patch, the power is 0 to 2. Check the unit and the place of the "
+          "measurement",
           number(scale.exponent, 2)));
   } else {
     scale.exponent = 2;

@@ -11,8 +11,9 @@
 namespace turnpoint::calibration {
 namespace {
 
-// Between the half-power points of a resonance, the phase turns by 90 degrees. At a hump of the transducer's
-// response it turns only a little.
+// A peak counts as a resonance only if the phase turns by at least this angle. Between the half-power points
+// of a resonance, the phase turns by 90 degrees; at a hump of the transducer's response it turns only a
+// little.
 constexpr double least_turn_rad = std::numbers::pi / 4;
 
 void check(const std::vector<ResponsePoint>& sweep, int window) {
@@ -25,7 +26,8 @@ void check(const std::vector<ResponsePoint>& sweep, int window) {
     if (!rising || !(sweep[k].frequency_Hz > 0) || !(sweep[k].m_per_full_scale > 0) ||
         !std::isfinite(sweep[k].phase_rad))
       throw terms::UsageError(
-          fmt::format("sweep at {} Hz: frequencies must be in ascending order, and displacements above 0",
+          fmt::format("sweep at {} Hz: frequencies must be above 0 and in ascending order, displacements "
+                      "above 0, and phases finite",
                       sweep[k].frequency_Hz));
   }
 }

@@ -123,10 +123,12 @@ constexpr auto same = [](double number) { return number; };
 }  // namespace
 
 std::string forces_toml(const rig::ForceCells& forces) {
-  std::string out = fmt::format(
-      "\n[forces]                      # dead weights: N, N and N mm per ratio of bridge to reference\n"
-      "carrier_Hz = {}\nreference_amplitude = {}\n",
-      exact(forces.carrier_Hz), exact(forces.reference_amplitude));
+  std::string out =
+      fmt::format("\n[forces]                      # dead weights: N, N and N mm per {}\n",
+                  forces.carrier_Hz > 0 ? "ratio of bridge to reference" : "unit of the converter");
+  if (forces.carrier_Hz > 0)
+    out += fmt::format("carrier_Hz = {}\nreference_amplitude = {}\n", exact(forces.carrier_Hz),
+                       exact(forces.reference_amplitude));
   out += numbers("rotation_deg", forces.rotation_rad, [](double rad) { return rad / kDegree_rad; });
   out += numbers("rated_ratio", forces.rated_ratio, same);
   out += numbers("matrix", flat(forces.matrix), same);
@@ -141,8 +143,13 @@ std::string forces_toml(const rig::ForceCells& forces) {
 rig::ForceCells read_forces(const text::Value& table, text::Findings& findings) {
   text::TableReader reader(table, "forces", findings);
   rig::ForceCells forces;
-  forces.carrier_Hz = reader.number("carrier_Hz", {0, 1e6, SensorEnds::open_low, "Hz"});
-  forces.reference_amplitude = reader.number("reference_amplitude", {0, 1, SensorEnds::open_low});
+  // Without a carrier, the cells have a converter with a clock of its own.
+  if (reader.has("carrier_Hz") || reader.has("reference_amplitude")) {
+    forces.carrier_Hz = reader.number("carrier_Hz", {0, 1e6, SensorEnds::open_low, "Hz"});
+    forces.reference_amplitude = reader.number("reference_amplitude", {0, 1, SensorEnds::open_low});
+  } else {
+    for (const char* key : {"carrier_Hz", "reference_amplitude"}) reader.take(key);
+  }
   const auto rotation = reader.numbers("rotation_deg", {-360, 360});
   const auto rated = reader.numbers("rated_ratio", {0, 1e3, SensorEnds::open_low});
   const auto matrix = reader.numbers("matrix", {-1e12, 1e12});

@@ -272,7 +272,7 @@ void add_calibrate(CommandLine& app, Context& context) {
   add_json(*command, context);
   command->footer(
       "Example: turnpoint calibrate --rig simulated --sweep\n"
-      "It lists the tones to measure. When they are measured: turnpoint calibrate --rig plate.toml "
+      "This lists the tones to measure. After measuring them: turnpoint calibrate --rig plate.toml "
       "--response "
       "main=sweep.csv --full-scale 0.1 --boundaries edges.csv --friction friction.csv");
   command->callback([options, &context] { calibrate(*options, context); });

@@ -16,7 +16,8 @@ namespace calibrate_forces_command {
 using maintenance::ForceResult;
 using text::number;
 
-/// What the operator types: an empty line when the weight stands, "s" to leave the step out.
+/// Asks the operator to place a weight. The operator types an empty line when the weight stands, or "s" to
+/// leave this step out. Returns false for "s".
 bool stands(std::istream& in, std::ostream& out, const maintenance::WeightStep& step) {
   if (!step.remark.empty() && step.tare) fmt::print(out, "{}\n", step.remark);
   fmt::print(out, "{} Then press Enter (s: leave this step out) ", step.text());
@@ -48,14 +49,17 @@ void print(std::ostream& out, const ForceResult& result) {
   const auto share = [](double misfit) { return number(misfit, 2); };
   fmt::print(
       out,
-      "residuals relative to what weights, places and pulley explain: normal {}, lateral {}, moment {}{}\n",
+      "residuals divided by the errors expected from weights, places and pulley: normal {}, lateral {}, "
+      "moment {}{}\n",
       share(result.misfit[0]), share(result.misfit[1]), share(result.misfit[2]),
       *std::max_element(result.misfit.begin(), result.misfit.end()) > 3
           ? "; that is much: the weights or their places are not known well, and the uncertainty is larger"
           : "");
-  fmt::print(out, "largest change of the zero: {} mN\n", number(result.zero_moved_mN, 2));
+  fmt::print(out, "largest change of the zero reading: {} mN\n", number(result.zero_moved_mN, 2));
   fmt::print(out,
-             "uncertainty (one standard deviation, with 0.5 N and 0.25 N in the middle): normal force {} mN, "
+             "uncertainty (one standard deviation, for a finger in the middle with 0.5 N normal and 0.25 N "
+             "lateral force): "
+             "normal force {} mN, "
              "lateral force {} mN, position {} mm, friction {}\n",
              number(1e3 * result.sd.normal_N, 2), number(1e3 * result.sd.lateral_N, 2),
              number(result.sd.position_mm, 2), number(result.sd.friction, 2));

@@ -74,8 +74,8 @@ void add_sensor_options(Command& command, SensorOptions& options) {
   command
       .add_option(
           "--vibrometer", options.vibrometer,
-          "With --pickup: CHANNEL=FILE, the displacement at the pick-up on this captured channel, with "
-          "columns frequency_Hz,displacement_um, driven at --full-scale")
+          "With --pickup: CHANNEL=FILE, a table of the displacement at the pick-up on this captured channel "
+          "(columns frequency_Hz,displacement_um), measured while driving at --full-scale")
       ->value("CHANNEL=FILE");
   command
       .add_option("--accelerometer", options.accelerometer,
@@ -83,7 +83,7 @@ void add_sensor_options(Command& command, SensorOptions& options) {
       ->value("CHANNEL=FILE");
   command
       .add_option("--instrument-sd", options.instrument_percent,
-                  "Standard deviation of the instrument behind the table, in percent")
+                  "Standard deviation of the instrument that measured the table, in percent")
       ->capture_default_str()
       ->check(range(0, 100));
 }

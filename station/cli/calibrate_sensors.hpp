@@ -6,8 +6,8 @@
 
 namespace turnpoint::cli {
 
-/// Options of `turnpoint calibrate` for the sensors of a rig. The last five come from the options that all
-/// kinds of calibration share.
+/// Options of `turnpoint calibrate` for the sensors of a rig. The last five members are copies of options
+/// that all kinds of `turnpoint calibrate` share.
 struct SensorOptions {
   bool pick_up = false, forces = false;
   std::string sensor = "patch", vibrometer, accelerometer;
@@ -19,10 +19,12 @@ struct SensorOptions {
 
 void add_sensor_options(Command& command, SensorOptions& options);
 
-/// `calibrate --pickup`: sweeps, fits, and writes the calibration file.
+/// Carries out `turnpoint calibrate --pickup`: plays a sweep, fits the responses of the pick-ups, and writes
+/// the calibration file.
 void calibrate_pick_ups(const SensorOptions& options, const rig::Rig& rig, Context& context);
 
-/// `calibrate --forces`: asks for dead weights on the terminal, and writes the calibration file.
+/// Carries out `turnpoint calibrate --forces`: asks for dead weights on the terminal, and writes the
+/// calibration file.
 void calibrate_forces(const SensorOptions& options, const rig::Rig& rig, Context& context);
 
 }  // namespace turnpoint::cli

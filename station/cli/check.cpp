@@ -11,6 +11,7 @@
 #include "station/cli/shared_options.hpp"
 #include "station/cli/sound.hpp"
 #include "station/cli/uncertainty.hpp"
+#include "station/programs/programs.hpp"
 #include "station/protocol/combinations.hpp"
 #include "station/protocol/triggers.hpp"
 #include "station/setup/places.hpp"
@@ -240,6 +241,7 @@ void check(const Options& options, Context& context) {
   LongWork work(options.progress);
   simulation::CheckOptions wanted{options.sessions, true, true, load_rig, system::drawable};
   wanted.steps.finish = work.stop();
+  wanted.try_programs = programs::problems_of;
   wanted.steps.progress = [&work](const char* what, int done, int of) { work.show(what, done, of); };
   simulation::Check result;
   try {
@@ -282,7 +284,7 @@ void add_check(CommandLine& app, Context& context) {
   command
       ->add_option("--sessions", options->sessions,
                    "Number of sessions to simulate in order to predict trials and duration; 0 for none; by "
-                   "default 1000, or 200 if its procedures need long")
+                   "default 1000, or 200 if the protocol's procedures take long")
       ->check(range(0, 1000));
   add_progress(*command, options->progress);
   add_json(*command, context);

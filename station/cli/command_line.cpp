@@ -27,7 +27,8 @@ std::optional<Number> parsed(const std::string& text) {
   return value;
 }
 
-/// A check of numbers. `good` is never called with a value that is not finite.
+/// Makes a check for an option whose value is a number. `good` says whether a number is allowed; it is called
+/// only with finite numbers.
 template <class Number>
 Check number_check(const std::string& allowed, std::function<bool(Number)> good) {
   return {allowed, [allowed, good = std::move(good)](const std::string& value) -> std::string {
@@ -46,7 +47,8 @@ std::string joined(const std::vector<std::string>& words, const std::string& sep
 std::string suggestion(const std::string& word, const std::vector<std::string>& known,
                        const std::string& advice) {
   auto near = text::nearest(word, known);
-  // by edit distance, the beginning of a name (--lang) may be far from the whole name, so look for it first
+  // The beginning of a name (such as --lang) may differ from the whole name in many letters, so nearest() may
+  // not find it.
   for (const auto& candidate : known)
     if (near.empty() && word.size() > 3 && candidate.starts_with(word)) near = candidate;
   return near.empty() ? "; " + advice : fmt::format("; did you mean {}? {}", near, advice);

@@ -55,11 +55,11 @@ struct OptionText {
   std::string name;     ///< "--db", or "protocol" for a positional one
   std::string kind;     ///< kind of value, such as "FILE" or "INT"; "" for a flag
   std::string allowed;  ///< allowed values, such as "1 to 1000"; "" if nothing is said about them
-  std::string preset;   ///< the value that it has if it is not given; "" if there is none
+  std::string preset;   ///< value of the option if it is not given; "" if there is none
   std::string help;
   bool positional = false, required = false;
-  bool many = false;                ///< takes several values
-  std::vector<std::string> values;  ///< see Check::values
+  bool many = false;                ///< whether the option takes several values
+  std::vector<std::string> values;  ///< the allowed values, if there are only a few
 };
 
 struct CommandText {

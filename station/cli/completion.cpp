@@ -11,7 +11,7 @@ namespace {
 
 using Words = std::vector<std::string>;
 
-/// The names of the files that come with the program in a folder.
+/// Returns the names of the shipped files in a folder, such as protocols.
 Words shipped_names(const std::string& folder) {
   Words names;
   std::error_code error;
@@ -73,7 +73,7 @@ Words after(const CommandText& command, const Words& words) {
 
 std::vector<std::string> completions(const std::vector<CommandText>& commands,
                                      std::vector<std::string> words) {
-  // Bash splits "--db=lab" into three words.
+  // Bash splits "--db=lab" into three words, so remove the equals sign.
   if (words.size() > 1 && words.back() == "=") words.back().clear();
   words.erase(std::remove(words.begin(), words.end(), "="), words.end());
   if (words.empty()) return {};

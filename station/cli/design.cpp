@@ -13,7 +13,7 @@ namespace turnpoint::cli {
 namespace design_command {
 
 constexpr const char* without_screen =
-    "without a screen make a file with turnpoint new, and change it with a text editor";
+    "without a screen, make a file with turnpoint new, and change it with a text editor";
 
 }  // namespace design_command
 

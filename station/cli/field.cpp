@@ -149,11 +149,16 @@ void add_field(CommandLine& app, Context& context) {
                    "Number of evenly spaced points along the surface, ends included")
       ->check(range(2, 10'000'000));
   command->add_option("--at", options->at, "Positions in mm, separated by commas");
-  command->add_option("--model", options->model, "auto | airy | seed | uniform | mode | modes")
+  command
+      ->add_option("--model", options->model, "Physical model: auto | airy | seed | uniform | mode | modes")
       ->capture_default_str();
   command->add_option("--tolerance", options->tolerance, "Allowed relative error of the amplitude")
       ->check(positive());
-  command->add_option("--normalise", options->normalise, "drive | peak | none")->capture_default_str();
+  command
+      ->add_option(
+          "--normalise", options->normalise,
+          "Amplitude that is set to 1: drive (at the driven edge) | peak (last maximum) | none (in m)")
+      ->capture_default_str();
   add_json(*command, context);
   command->footer("Example: turnpoint field --tone 30000:0.5 --points 301");
   command->callback([options, &context] { with_users_numbers([&] { field(*options, context); }); });

@@ -2,13 +2,14 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "physics/warning.hpp"
 
 namespace turnpoint::cli {
 
-/// Keys keep the order in which they were written.
+/// JSON whose keys keep the order in which they were written.
 using Json = nlohmann::ordered_json;
 
 /// JSON has no NaN and no infinity; they become null.
@@ -17,6 +18,12 @@ inline Json json_number(double value) { return std::isfinite(value) ? Json(value
 /// The value times `factor`, which converts its unit; null if there is no value.
 inline Json json_number(const std::optional<double>& value, double factor = 1) {
   return value ? json_number(*value * factor) : Json(nullptr);
+}
+
+/// The ends of an interval, or null.
+inline Json json_interval(const std::optional<std::pair<double, double>>& interval) {
+  if (!interval) return nullptr;
+  return {{"low", json_number(interval->first)}, {"high", json_number(interval->second)}};
 }
 
 inline Json json_numbers(const std::vector<double>& values, double factor = 1) {

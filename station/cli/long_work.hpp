@@ -8,7 +8,7 @@
 
 namespace turnpoint::cli {
 
-/// Adds --progress.
+/// Adds the option --progress to a command.
 void add_progress(Command& command, bool& target);
 
 /// Work of a command that may take long. While this object exists, the progress is shown, and the first stop

@@ -42,7 +42,7 @@ std::string tail(const std::string& see_also) {
          "fault of "
          "the program itself; please report it\n.TP\n128 and the number of a signal\na signal stopped the "
          "work, "
-         "and the output has what was done until then (power, check)\n.SH SEE ALSO\n" +
+         "and the output contains the results until then (power, check)\n.SH SEE ALSO\n" +
          see_also + "\n.PP\nThe manuals in /usr/share/doc/turnpoint, README.md first.\n";
 }
 

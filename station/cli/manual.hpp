@@ -7,7 +7,7 @@
 namespace turnpoint::cli {
 
 /// Writes the manual pages turnpoint.1, turnpoint-ui.1 and turnpoint-COMMAND.1 into a folder, which is
-/// created if missing. They say what --help says. Throws std::system_error.
+/// created if missing. They contain the same texts as --help. Throws std::system_error.
 void write_manual(const std::vector<CommandText>& commands, const std::string& description,
                   const std::string& folder);
 

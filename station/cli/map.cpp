@@ -91,7 +91,7 @@ void print(std::ostream& out, const std::optional<scene::FingerShift>& shift) {
                number(shift->most_m * 1e3, 3));
 }
 
-constexpr std::size_t most_lines = 6;  ///< more lines would repeat the colours and dashes
+constexpr std::size_t most_lines = 6;  ///< most lines in the plot; more would repeat the colours and dashes
 
 /// Plots the largest contributions to the uncertainty, for all boundaries that the rig can present.
 plot::Figure figure_of(const rig::Rig& rig, const physics::Surface& surface, const physics::BoundaryMap& map,
@@ -225,7 +225,9 @@ void add_map(CommandLine& app, Context& context) {
   add_calibration(*command, options->calibration);
   command->add_option("--boundary", options->boundaries_mm, "Boundaries in mm from the wide end");
   command->add_option("--frequency", options->frequencies_Hz, "Frequencies in Hz");
-  command->add_option("--edge", options->edge, "turning | peak | p70 | p50 | p25 | p10 | friction=0.7")
+  command
+      ->add_option("--edge", options->edge,
+                   "Definition of the boundary: turning | peak | p70 | p50 | p25 | p10 | friction=0.7")
       ->capture_default_str();
   command->add_option("--model", options->model,
                       "Physical model to use; by default the cheapest one that meets the tolerance");
@@ -236,7 +238,7 @@ void add_map(CommandLine& app, Context& context) {
                     "measurement would help most");
   command
       ->add_option("--plot", options->plot,
-                   "With --budget: SVG file with the same for all boundaries that the rig can present")
+                   "With --budget: SVG file that plots this for all boundaries that the rig can present")
       ->value("FILE");
   add_json(*command, context);
   command->footer("Example: turnpoint map --boundary 150 200 --edge p50 --budget");

@@ -47,7 +47,7 @@ const char* name(PageKind kind) {
     case PageKind::number:
       return "answer on the screen";
     case PageKind::explanation:
-      return "explanation: on the screen, or type next";
+      return "explanation: read it on the screen, or type next";
     case PageKind::feedback:
       return "feedback";
     case PageKind::interval:

@@ -13,6 +13,7 @@
 #include "station/cli/long_work.hpp"
 #include "station/cli/power_part.hpp"
 #include "station/cli/shared_options.hpp"
+#include "station/programs/programs.hpp"
 #include "station/setup/places.hpp"
 #include "station/setup/prepare.hpp"
 #include "station/simulation/cue_guard.hpp"
@@ -191,6 +192,11 @@ void power(const Options& options, Context& context) {
   auto& wanted = part.options;
   wanted.observers = options.observers;
   wanted.interval_sessions = options.intervals;
+  if (programs::is_program(options.observer))
+    throw UsageError(
+        "--observer " + options.observer +
+        ": a power study does not run separate programs; use sim:..., or simulate sessions one by one "
+        "with `turnpoint run --observer program:...`");
   wanted.observer = observer::parse(part.observer = options.observer);
   wanted.seed = options.seed;
   wanted.threads = simulation::processors();

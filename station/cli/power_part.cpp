@@ -19,7 +19,7 @@ using terms::UsageError;
 
 constexpr auto kind = "part of a power study";
 
-/// Unlike json_number(), keeps infinity and NaN.
+/// Like json_number(), but writes infinity and NaN as texts, not as null.
 Json exact(double value) {
   if (std::isfinite(value)) return value;
   return std::isnan(value) ? "nan" : value > 0 ? "inf" : "-inf";
@@ -32,7 +32,7 @@ double number(const Json& json) {
   return text == "-inf" ? -std::numeric_limits<double>::infinity() : std::numeric_limits<double>::infinity();
 }
 
-/// Everything that all parts of one study have in common.
+/// Returns everything that all parts of one power study have in common.
 Json study_of(const PowerPart& part) {
   return {{"program", TURNPOINT_VERSION},
           {"protocol", part.protocol},
@@ -107,7 +107,8 @@ PowerPart part_of(const Json& json) {
   return part;
 }
 
-/// Reads one file. `first` is the study of the first file, to compare with; null while there is none.
+/// Reads the file of one part, and checks that it belongs to the same study as the first file. `first`
+/// describes that study; if it is null, this is the first file.
 PowerPart read_part(const std::string& file, const std::string& first_file, Json& first) {
   const std::string remedy = "; such files are written by turnpoint power --part";
   try {

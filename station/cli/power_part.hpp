@@ -16,7 +16,7 @@ struct PowerPart {
   std::string observer;  ///< the simulated observer as the user wrote it
   simulation::PowerOptions options;
   std::vector<simulation::SessionOutcome> sessions;
-  /// what an observer can achieve with each cue alone; only in the first part
+  /// for each unwanted cue, what an observer could achieve with it alone; set in the first part only
   std::vector<simulation::CueReport> cues;
   bool whole = true;  ///< false if a signal stopped the work
 };

@@ -13,7 +13,11 @@
 #include "station/cli/shared_options.hpp"
 #include "station/collector/fetch.hpp"
 #include "station/desk/study_data.hpp"
+#include "station/programs/program_estimator.hpp"
+#include "station/protocol/protocol.hpp"
 #include "station/report/html.hpp"
+#include "station/report/stored_trials.hpp"
+#include "station/store/read.hpp"
 #include "station/system/write_file.hpp"
 #include "station/terms/usage_error.hpp"
 #include "station/text/number.hpp"
@@ -24,11 +28,23 @@ namespace report_command {
 
 struct Options {
   std::vector<std::string> databases, names;
-  std::string out, tables;
+  std::string out, tables, estimator;
   store::SessionFilter filter;
   bool study = false, progress = false;
   std::string protocol_version, mode;
 };
+
+/// Adds the estimates of a separate program, and which program it was.
+void add_estimates(const std::string& estimator, const std::string& database, const std::string& session,
+                   report::SessionData& data) {
+  const auto stored = store::read_session(database, session);
+  const auto& start = stored.session.start;
+  const auto found = programs::estimated_by(
+      estimator, protocol::parse(start.protocol_text, start.protocol_path), stored.blocks);
+  report::add_estimator(found.program.name, found.estimates, data);
+  data.facts.emplace_back("Estimator", fmt::format("{} {}, SHA-256 {}", found.program.name,
+                                                   found.program.version, found.program.sha256));
+}
 
 void report_session(Options options, Context& context) {
   if (options.databases.size() > 1)
@@ -39,7 +55,9 @@ void report_session(Options options, Context& context) {
         "--tables, --protocol-version and --mode belong to the report of a study: add --study");
   const auto& database = options.databases.front();
   const auto id = desk::session_to_report(database, options.filter);
-  const auto summary = report::summarise(desk::report_data(database, id));
+  auto collected = desk::report_data(database, id);
+  if (!options.estimator.empty()) add_estimates(options.estimator, database, id, collected);
+  const auto summary = report::summarise(collected);
   if (context.json) context.out << report::to_json(summary) << "\n";
   if (options.out.empty() && !context.json) options.out = "report-" + id + ".html";
   if (options.out.empty()) return;
@@ -49,12 +67,15 @@ void report_session(Options options, Context& context) {
   fmt::print(context.out, "{}: session {} of {}, {}, {} trials\n", options.out, data.session_id,
              data.participant, data.title, summary.outcomes.presented);
   for (const auto& estimate : data.estimates)
-    fmt::print(context.out, "  {}: {} {}{}\n", estimate.procedure, estimate.parameter,
+    fmt::print(context.out, "  {}: {} {}{}{}\n", estimate.procedure, estimate.parameter,
                text::number(estimate.mean, 4),
-               estimate.sd ? fmt::format(" (SD {})", text::number(*estimate.sd, 3)) : "");
+               estimate.sd ? fmt::format(" (SD {})", text::number(*estimate.sd, 3)) : "",
+               estimate.interval ? fmt::format(", 95 % {} to {}", text::number(estimate.interval->low, 3),
+                                               text::number(estimate.interval->high, 3))
+                                 : "");
 }
 
-/// The file trials.csv, written participant by participant.
+/// The file trials.csv, which --tables asks for. It is written participant by participant.
 class TrialFile {
  public:
   explicit TrialFile(const std::string& folder) {
@@ -102,6 +123,8 @@ void print_study(std::ostream& out, const std::string& file, const report::Study
 void report_study(Options options, Context& context) {
   if (!options.filter.session_id.empty() || !options.filter.participant.empty())
     throw terms::UsageError("--study covers all participants: leave out --session and --participant");
+  if (!options.estimator.empty())
+    throw terms::UsageError("--estimator belongs to the report of one session: leave out --study");
   LongWork work(options.progress);
   TrialFile trials(options.tables);
   const auto study = desk::study_data(
@@ -152,10 +175,9 @@ void add_report(CommandLine& app, Context& context) {
                       "Report the newest session of this participant: CODE or CODE@STATION");
   command->add_option("--protocol", options->filter.protocol_id,
                       "Report the newest session of this protocol, or the study with this protocol");
-  command->add_flag(
-      "--study", options->study,
-      "Report all participants of a protocol together, without those whom its [exclusion] leaves "
-      "out");
+  command->add_flag("--study", options->study,
+                    "Report all participants of a protocol together, except those whom its [exclusion] "
+                    "excludes");
   command->add_option("--protocol-version", options->protocol_version,
                       "With --study: only sessions with this version of the protocol, or with a protocol "
                       "text whose SHA-256 begins with this");
@@ -165,6 +187,11 @@ void add_report(CommandLine& app, Context& context) {
       ->add_option("--tables", options->tables,
                    "With --study: write tidy CSV tables for R and Python to this folder")
       ->value("FOLDER");
+  command
+      ->add_option("--estimator", options->estimator,
+                   "program:FILE[,limit_s=S][,KEY=VALUE]...: also show what this separate program estimates "
+                   "from the trials; protocols/programs.md")
+      ->value("PROGRAM");
   command
       ->add_option("--out", options->out,
                    "HTML file to write; by default report-SESSION.html or study.html, or no file with --json")

@@ -18,7 +18,8 @@ void add_resume(CommandLine& app, Context& context) {
   command->add_option("--session", request->session_id,
                       "Session to continue; by default the newest interrupted one");
   command
-      ->add_option("--policy", request->policy, "resume | restart | block; by default as the protocol says")
+      ->add_option("--policy", request->policy,
+                   "How to continue: resume | restart | block; by default as the protocol says")
       ->check(one_of({"resume", "restart", "block"}));
   command->add_flag("--any-age", request->any_age,
                     "Continue a session although it seems older than its protocol allows, because the clock "

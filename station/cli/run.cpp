@@ -35,6 +35,7 @@ Json to_json(const session::Summary& summary) {
                          {"parameter", e.parameter},
                          {"mean", json_number(e.mean)},
                          {"sd", json_number(e.sd)},
+                         {"interval", json_interval(e.interval)},
                          {"basis", e.basis.empty() ? Json(nullptr) : Json(e.basis)}});
   return {{"session_id", summary.session_id},
           {"participant", summary.participant},
@@ -121,7 +122,7 @@ void add_conditions(Command& command, setup::RunRequest& request) {
       .add_option("--temperature", conditions.room_temperature_C,
                   "Temperature of the room, in degrees Celsius")
       ->check(between(-20, 60));
-  command.add_option("--cleaned", request.cleaned, "Whether the surface was cleaned just before")
+  command.add_option("--cleaned", request.cleaned, "Whether the surface was cleaned just before the session")
       ->check(one_of({"yes", "no"}));
   command.add_option("--finger", conditions.finger, "Hand and finger on the surface, such as right-index")
       ->check(one_of({terms::fingers.begin(), terms::fingers.end()}));
@@ -148,14 +149,15 @@ std::shared_ptr<setup::RunRequest> add_run_options(Command& command) {
   command.add_option(
       "--observer", request->observer,
       "sim[:threshold=...,slope=...,lapse=...,bias=...,criterion=...,bound=...]: a simulated observer "
-      "answers; protocols/README.md lists all keys");
+      "answers; protocols/README.md lists all keys; or program:FILE[,KEY=VALUE]...: a separate program "
+      "answers; protocols/programs.md");
   command.add_option("--seed", request->seed, "Seed for all random numbers, 0 to 2^53")
       ->check(range(0, 9007199254740992));
   command.add_option(
       "--consent", request->consent_version,
       "Version of the consent form; the screen asks the participant to confirm having signed it");
   command.add_flag("--headless", request->headless, "No screen");
-  command.add_flag("--fullscreen", request->fullscreen, "Fill the screen, on a desktop too");
+  command.add_flag("--fullscreen", request->fullscreen, "Fill the screen, even on a desktop computer");
   command.add_flag(
       "--buttons-only", request->buttons_only,
       "Run without a screen: a person answers with the rig's buttons, and the operator types commands");
@@ -181,9 +183,10 @@ void add_run(CommandLine& app, Context& context) {
   add_json(*command, context);
   command->footer(
       "Example: turnpoint run demo --participant P01 --db lab.sqlite --observer sim\n"
-      "Without --observer a person answers: on the screen, or with the rig's buttons and --buttons-only.\n"
-      "Ctrl-C or SIGTERM ends a session without a screen cleanly, so that it can be resumed; a second one "
-      "kills it.");
+      "Without --observer a person answers, on the screen or, with --buttons-only, by the rig's buttons.\n"
+      "If there is no screen, Ctrl-C or SIGTERM ends the session cleanly, so that it can be resumed; a "
+      "second "
+      "one kills it.");
   command->callback([request, &context] {
     const bool person = request->observer.empty();
     request->self_test = request->self_test || person;

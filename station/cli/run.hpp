@@ -31,8 +31,8 @@ auto with_screen(const std::string& instead, Show show) {
 }
 
 /// Prints the summary as JSON, or as text with the command that continues an interrupted session. An
-/// interrupted session sets exit status 1. `resume_options` are further options for that command ("
-/// --headless").
+/// interrupted session sets exit status 1. `resume_options` are further options for that command, such as "
+/// --headless".
 void show_summary(Context& context, const session::Summary& summary, const std::string& resume_options = "");
 
 }  // namespace turnpoint::cli

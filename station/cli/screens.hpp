@@ -11,8 +11,8 @@
 
 namespace turnpoint::cli {
 
-/// There is no screen on which to open a window. The message does not say what to do instead, because that
-/// differs from command to command.
+/// Thrown if there is no screen on which to open a window. The message does not say what to do instead,
+/// because that differs from command to command.
 struct NoScreen : terms::UsageError {
   using UsageError::UsageError;
 };
@@ -35,8 +35,8 @@ struct Screens {
   std::function<void(const desk::PreviewRequest&)> preview;
   /// Shows forms in which a protocol file is made or changed.
   std::function<void(const DesignRequest&)> design;
-  /// Measures the latency of the touch panel against a reference line until the operator accepts the result;
-  /// empty if the operator accepts none.
+  /// Measures the latency of the touch panel, with a button or a photodiode as the reference, until the
+  /// operator accepts the result; empty if the operator accepts none.
   std::function<std::optional<calibration::PanelLatency>(const maintenance::LatencyRequest&)> latency;
 };
 

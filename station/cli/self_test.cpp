@@ -76,13 +76,14 @@ void add_self_test(CommandLine& app, Context& context) {
       ->add_option("--data", options->data,
                    "Folder for databases; by default the one in the user's data folder")
       ->value("FOLDER");
-  command->add_flag("--unattended", options->unattended, "Nobody is there to press the stop and the buttons");
+  command->add_flag("--unattended", options->unattended,
+                    "Leave out the checks for which somebody must press the stop and the buttons");
   add_json(*command, context);
   command->footer(
       "Example: turnpoint self-test --rig simulated\n"
       "The amplifier is armed and enabled, and a quiet tone is played on each transducer: keep everybody's "
       "fingers "
-      "off the surface, and nothing on it.");
+      "off the surface, and leave nothing on it.");
   command->callback([options, &context] {
     if (options->data.empty())
       options->data = std::filesystem::path(setup::default_database()).parent_path().string();

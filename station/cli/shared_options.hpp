@@ -6,9 +6,11 @@
 
 namespace turnpoint::cli {
 
-// Options that several commands have. The same mistake gets the same message in each of them.
+// Each function adds an option that several commands share, so that all of them give the same message for the
+// same mistake.
 
-/// Adds the protocol: a file, or the name of a protocol that comes with the program. It is not required yet.
+/// Adds the protocol: a file, or the name of a protocol that comes with the program. The argument is optional
+/// unless the caller makes it required.
 Option* add_protocol(Command& command, std::string& target);
 
 /// Adds --rig: a file, or the name of a rig that comes with the program. `when` is added to the help; it
@@ -21,10 +23,11 @@ Option* add_rig(Command& command, std::string& target,
 /// Adds --calibration: a file to use instead of the newest valid one beside the rig file.
 Option* add_calibration(Command& command, std::string& target);
 
-/// Adds --db, which is required. The file must exist, and begin as a database does.
+/// Adds --db, which is required. The file must exist, and begin like an SQLite database.
 void add_database(Command& command, std::string& target, const std::string& help = "Database");
 
-/// Like add_database(), but also accepts the address of a collector (postgresql://...). For commands that only read.
+/// Like add_database(), but also accepts the address of a collector (postgresql://...). For commands that
+/// only read.
 void add_readable_database(Command& command, std::string& target);
 
 /// Like add_readable_database(), for a command that can read several databases at once.
@@ -33,7 +36,8 @@ void add_databases(Command& command, std::vector<std::string>& target, const std
 /// Like add_database(), for a command that creates a missing database.
 void add_new_database(Command& command, std::string& target, const std::string& help);
 
-/// Accepts a file that can be a database. Leaves files that it cannot read to the store, which explains why.
+/// Accepts a file that can be a database. Also accepts a file that cannot be read: opening it in the store
+/// gives the reason.
 Check database();
 
 }  // namespace turnpoint::cli

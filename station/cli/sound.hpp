@@ -12,7 +12,8 @@ namespace turnpoint::cli {
 
 /// The upper limit of the airborne sound level, as text for one line.
 inline std::string in_words(const std::optional<scene::SoundBound>& sound) {
-  if (!sound) return "no bound is known for this surface; a live session needs measured levels";
+  if (!sound)
+    return "no upper limit of the level is known for this surface; a live session needs measured levels";
   return fmt::format("at most {} dB at an ear {} m away ({} kHz); recommended: at most {} dB{}",
                      text::number(sound->level_dB, 4), text::number(scene::kEarDistance_m),
                      text::number(1e-3 * sound->frequency_Hz, 4), text::number(sound->allowed_dB),

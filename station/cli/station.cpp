@@ -19,7 +19,7 @@ std::shared_ptr<setup::StationRequest> add_station_options(Command& command) {
   add_rig(command, request->rig);
   command.add_option("--db", request->database, "Database file; by default one in the user's data folder")
       ->value("FILE");
-  command.add_flag("--fullscreen", request->fullscreen, "Fill the screen, on a desktop too");
+  command.add_flag("--fullscreen", request->fullscreen, "Fill the screen, even on a desktop computer");
   command.add_flag("--locked", request->locked,
                    "Ask for the operator's code before showing the first page; use this if participants can "
                    "reach the screen");
@@ -37,7 +37,7 @@ void add_station(CommandLine& app, Context& context) {
       throw UsageError(
           "station: --locked needs your own operator's code, because the built-in code is public; store one "
           "with: sudo turnpoint operator-code");
-    const auto instead = "the station needs a screen; without one run each session with turnpoint run";
+    const auto instead = "the station needs a screen; without one, run each session with turnpoint run";
     if (!context.screens) return become_ui(context, instead);
     request->rig = setup::rig_or_default(request->rig, context.err);
     if (request->protocols.empty()) request->protocols = setup::shipped("protocols");

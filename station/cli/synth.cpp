@@ -72,7 +72,7 @@ Json to_json(const drive::PlayReport& report, const Options& options) {
             {"device_losses", c.device_losses}}}};
 }
 
-/// Without `--arm` the amplifier is not touched and stays off.
+/// Plays the tones to the device or file. Without `--arm` the amplifier is not touched and stays off.
 drive::PlayReport play(const rig::Rig& rig, const Options& options) {
   const auto burst = burst_for(rig, options);
   if (!options.arm) {

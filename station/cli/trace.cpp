@@ -7,6 +7,7 @@
 #include "station/cli/json.hpp"
 #include "station/cli/shared_options.hpp"
 #include "station/procedure/trace.hpp"
+#include "station/programs/programs.hpp"
 #include "station/protocol/protocol.hpp"
 #include "station/text/number.hpp"
 #include "station/trial/orders.hpp"
@@ -30,7 +31,7 @@ const procedure::Spec& find(const protocol::Protocol& protocol, const std::strin
       fmt::format("--procedure {}: the protocol has no such procedure; its procedures are {}", name, known));
 }
 
-/// Returns the context in which the procedure runs. Every factor has its first level.
+/// Returns the factors and levels with which the procedure runs. Every factor has its first level.
 procedure::Context context_of(const protocol::Protocol& protocol, const procedure::Spec& spec) {
   procedure::Context context;
   protocol::Factors factors;
@@ -48,29 +49,35 @@ procedure::Context context_of(const protocol::Protocol& protocol, const procedur
 void trace(const Options& options, Context& context) {
   const auto protocol = protocol::load(options.protocol);
   const auto& spec = find(protocol, options.procedure);
-  const auto result =
-      procedure::trace(spec, context_of(protocol, spec), options.answers,
-                       {options.seed ? options.seed : protocol.seed.value_or(0), {}, 0, 0, 0});
+  programs::Programs programs(protocol.path);
+  auto around = context_of(protocol, spec);
+  around.programs = &programs;
+  const auto result = procedure::trace(
+      spec, around, options.answers, {options.seed ? options.seed : protocol.seed.value_or(0), {}, 0, 0, 0});
   if (context.json) {
     Json estimates = Json::object();
     for (const auto& [parameter, e] : result.estimates)
       estimates[parameter] = {{"mode", json_number(e.mode)},
                               {"mean", json_number(e.mean)},
                               {"sd", json_number(e.sd)},
+                              {"interval", json_interval(e.interval)},
                               {"basis", e.basis.empty() ? Json(nullptr) : Json(e.basis)}};
-    context.out << Json{{"levels", json_numbers(result.levels)},
-                        {"next", json_number(result.next)},
-                        {"estimates", estimates},
-                        {"entropy_nats", json_number(result.entropy_nats)},
-                        {"reversals", json_numbers(result.reversals)}}
-                       .dump(2)
-                << "\n";
+    Json json{{"levels", json_numbers(result.levels)},
+              {"next", json_number(result.next)},
+              {"estimates", estimates},
+              {"entropy_nats", json_number(result.entropy_nats)},
+              {"reversals", json_numbers(result.reversals)}};
+    if (spec.second)
+      json["second"] = json_numbers(result.second), json["next_second"] = json_number(result.next_second);
+    context.out << json.dump(2) << "\n";
     return;
   }
   for (std::size_t i = 0; i < result.levels.size(); ++i)
-    fmt::print(context.out, "{:>4} {:>10} {}\n", i + 1, text::number(result.levels[i]), options.answers[i]);
-  fmt::print(context.out, "next {}\n",
-             result.next ? text::number(*result.next) : "none, because the procedure has stopped");
+    fmt::print(context.out, "{:>4} {:>10} {}{}\n", i + 1, text::number(result.levels[i]),
+               spec.second ? fmt::format("{:>10} ", text::number(result.second[i])) : "", options.answers[i]);
+  fmt::print(context.out, "next {}{}\n",
+             result.next ? text::number(*result.next) : "none, because the procedure has stopped",
+             result.next_second ? ", " + spec.second->level + " " + text::number(*result.next_second) : "");
   for (const auto& [parameter, e] : result.estimates)
     fmt::print(context.out, "{}: mode {}, mean {}{}{}\n", parameter, text::number(e.mode),
                text::number(e.mean), e.sd ? ", SD " + text::number(*e.sd) : "",

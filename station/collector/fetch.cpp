@@ -46,14 +46,15 @@ bool is_part_of_session(const CollectedTable& table) {
   return table.name != "session" && table.name != "tombstone" && table.has("session_id");
 }
 
-/// Orders trials by the age of their session. In a station's file, readers find the newest session by the row
-/// of its newest trial. So the session whose last trial is the newest is copied last.
+/// Orders trials by the age of their session. A reader takes the session of the last row as the newest one,
+/// so the session with the newest trial is copied last.
 std::string order_of(const CollectedTable& table) {
   if (table.name != "trial") return "ORDER BY " + quoted_list(table.key);
   return "ORDER BY newest, session_id, trial_index";
 }
 
-/// `sessions` is the condition that selects sessions; "" for all.
+/// Returns the COPY statement that reads a table. `sessions` is the WHERE condition that selects sessions; ""
+/// for all.
 std::string select(const CollectedTable& table, const std::string& sessions) {
   std::string sql = fmt::format("SELECT {} FROM turnpoint.{}", column_list(table), table.name);
   if (table.name == "trial")

@@ -10,7 +10,7 @@ struct pg_result;
 
 namespace turnpoint::collector {
 
-/// The server cannot be reached, or refuses what was asked. The message says what the server reported.
+/// Thrown if the server cannot be reached, or refuses a request. The message says what the server reported.
 class ServerError : public std::runtime_error {
  public:
   ServerError(const std::string& message, std::string state)
@@ -49,7 +49,8 @@ class Connection {
   /// Runs one statement with its parameters $1, $2, ...
   Rows query(const std::string& sql, const std::vector<std::optional<std::string>>& parameters = {});
 
-  /// Sends rows with COPY ... FROM STDIN. Call copy_data() any number of times between the two.
+  /// Sends rows with COPY ... FROM STDIN. Call copy_data() any number of times between begin_copy_in() and
+  /// end_copy_in().
   void begin_copy_in(const std::string& sql);
   void copy_data(const std::string& bytes);
   void end_copy_in();
@@ -68,7 +69,7 @@ class Connection {
   std::unique_ptr<pg_conn, Finish> connection_;
 };
 
-/// BEGIN ... COMMIT. Its destructor rolls back unless commit() was called.
+/// A transaction on the server (BEGIN ... COMMIT). The destructor rolls it back unless commit() was called.
 class ServerTransaction {
  public:
   explicit ServerTransaction(Connection& connection, const std::string& mode = "");

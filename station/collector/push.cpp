@@ -31,7 +31,7 @@ struct Known {
   std::int64_t annotations = 0;
 };
 
-/// Checks the version of the server. Returns the stations for which this connection may speak.
+/// Checks the version of the server. Returns the stations whose sessions this connection may send.
 std::set<std::string> greet(Connection& server) {
   std::optional<Rows> rows;
   try {
@@ -95,7 +95,8 @@ std::int64_t value_of(const store::Link& link, const std::string& column) {
   return column == "last_trial" ? link.last.trial : link.last.event;
 }
 
-/// Sends those rows of one table that belong to the session ?1 and that the server does not have.
+/// Sends the rows of one table that belong to a session and that the server does not have. In the SQL, ?1 is
+/// the session, and ?2 is the last value of the counter that the server has.
 std::int64_t send_table(Database& database, const CollectedTable& table, const store::SessionRecord& session,
                         const store::Link& last, Connection& server) {
   std::string where = "session_id = ?1";
@@ -123,8 +124,8 @@ std::int64_t send_table(Database& database, const CollectedTable& table, const s
                                column_list(table)));
 }
 
-/// Sends a session, or the rest of it, in one transaction. Both ends must come to the same checksums before
-/// it is committed.
+/// Sends a session, or the rest of it, in one transaction. It is committed only if the server computes the
+/// same checksums from its rows as this station.
 void send_session(Database& database, const store::SessionRecord& session, const store::Link& last,
                   Connection& server, PushedSession& pushed) {
   const auto& id = session.session_id;
@@ -138,12 +139,14 @@ void send_session(Database& database, const store::SessionRecord& session, const
       server.query("SELECT last_sha256, annotations_sha256 FROM turnpoint.store_session($1)", {id});
   if (stored.text(0, 0) != pushed.sha256 || stored.text(0, 1) != store::annotations_checksum(database, id))
     throw ServerError(
-        fmt::format("collector: session {}: the server stored something else; nothing was stored", id),
+        fmt::format("collector: session {}: the server computed other checksums for it; nothing was stored",
+                    id),
         "TP001");
   transaction.commit();
 }
 
-/// Returns why the server's part of a session is not the beginning of the session here; "" if it is.
+/// Returns the reason why the server's part of a session is not the beginning of the session in this
+/// database; "" if it is.
 std::string conflict_of(Database& database, const std::string& id, const store::Link& theirs) {
   const auto here = store::link_at(database, id, theirs.index);
   if (!here)
@@ -157,7 +160,7 @@ std::string conflict_of(Database& database, const std::string& id, const store::
   return "";
 }
 
-/// True for errors after which the server cannot store any other session either.
+/// True if an error with this SQLSTATE means that the server cannot store any other session either.
 bool is_fatal(const std::string& state) {
   return state.empty() || state.starts_with("08") || state.starts_with("53") || state.starts_with("57") ||
          state.starts_with("58") || state.starts_with("XX");
@@ -194,14 +197,15 @@ PushedSession push_session(Database& database, const store::SessionRecord& sessi
   return pushed;
 }
 
-/// Leases places until this station has `wanted` that are free. Returns all that are leased to it.
+/// Leases places in the counterbalancing until this station has `wanted` free ones. Returns all places that
+/// are leased to this station.
 std::vector<std::int64_t> lease_places(Database& database, const std::string& protocol_id,
                                        std::int64_t wanted, Connection& server, PushReport& report) {
   const auto used = store::used_places(database, protocol_id);
   std::vector<std::int64_t> leased;
-  // The first answer lists the places that this station already has, even if an earlier answer was lost on
-  // the way. The server may lease a place that is in use here, because it does not know that participant yet.
-  // Then ask for a few more.
+  // The server's first answer lists the places in the counterbalancing that this station already has, even if
+  // an earlier answer was lost on the way. The server may lease a place that is in use here, because it does
+  // not know that participant yet. In that case, ask for a few more places.
   for (std::int64_t more = 0, free = 0;; more = wanted - free) {
     const auto rows = server.query("SELECT place FROM turnpoint.lease_places($1, $2) place",
                                    {protocol_id, std::to_string(more)});
@@ -233,8 +237,8 @@ void use(const Received& received, const PushOptions& options, PushReport& repor
   }
 }
 
-/// Gives up the places in this station's database first. Only then may the server lease them to another
-/// station.
+/// Returns leased places to the server. Deletes them from this station's database first: only then may the
+/// server lease them to another station.
 void return_places(const PushOptions& options, Connection& server) {
   for (const auto& protocol_id : options.return_places) {
     std::string list;
@@ -306,7 +310,8 @@ PushReport push(const PushOptions& options) {
   }
   push_sessions(snapshot, stations, received, server, report);
   server.query("SELECT turnpoint.store_joins($1::json)", {joins_json(store::list_joins(snapshot))});
-  // Lease places after sending the sessions, because the sessions tell the server which places are taken.
+  // Lease places in the counterbalancing after sending the sessions, because the sessions tell the server
+  // which places are taken.
   for (const auto& [protocol_id, wanted] : options.places)
     received.places[protocol_id] = lease_places(snapshot, protocol_id, wanted, server, report);
   if (!received.places.empty()) use(received, options, report);

@@ -12,8 +12,8 @@ struct PushOptions {
   std::string database;
   std::string to;                ///< connection string of libpq
   std::string backup_directory;  ///< as in store::WithdrawOptions, for withdrawals that come from the server
-  /// File into which to write what the server sent (received.hpp). With "", its withdrawals and places are
-  /// carried out at once on the database.
+  /// File into which to write what the server sent (received.hpp). If this is "", the withdrawals and places
+  /// that it sent are applied to the database at once.
   std::string received;
   /// for each protocol, how many free places in its counterbalancing this station should hold afterwards
   std::map<std::string, std::int64_t> places;
@@ -30,29 +30,33 @@ struct PushedSession {
   };
   std::string session_id, participant, station_id;
   What what = What::unchanged;
-  std::int64_t trials = 0;  ///< trials that were sent
-  std::string sha256;       ///< checksum of the last link
+  std::int64_t trials = 0;  ///< number of trials that were sent
+  std::string sha256;       ///< checksum of the last link in the session's chain
   std::string problem;
 };
 
 const char* name(PushedSession::What what);
 
 struct PushReport {
-  std::vector<PushedSession> sessions;  ///< sessions of the stations that this role may send
+  std::vector<PushedSession> sessions;  ///< one entry for each session that this database role may send
   std::int64_t running = 0;             ///< sessions that have not ended; they are sent later
-  /// for each protocol asked for, the number of free places that this station now holds
+  /// for each protocol that was asked for: number of free places in its counterbalancing that this station
+  /// now holds
   std::map<std::string, std::int64_t> places;
-  std::vector<std::string> foreign;  ///< stations in the database whose sessions this role may not send
-  store::Withdrawal withdrawn;       ///< what was withdrawn here because the server says so
+  /// stations in the database whose sessions this database role may not send
+  std::vector<std::string> foreign;
+  store::Withdrawal withdrawn;  ///< what was deleted here, because the server lists it as withdrawn
   /// why the withdrawals and places from the server could not be carried out here, for example because a
   /// session is running; "" if they were
   std::string waiting;
 
-  bool complete() const;  ///< false if a session was refused, or if withdrawals or places from the server
-                          ///< still wait to be carried out
+  /// False if a session was refused, or if withdrawals or places from the server still wait to be carried
+  /// out.
+  bool complete() const;
 };
 
-/// Sends the sessions that have ended to a collector, exchanges withdrawals with it, and leases places.
+/// Sends the sessions that have ended to a collector, exchanges withdrawals with it, and leases places in the
+/// counterbalancing of protocols.
 ///
 /// The sessions are read from a snapshot, so a session may run meanwhile. Each session is checked against its
 /// checksum chain and then sent in a separate transaction, in which the server computes the chain again from

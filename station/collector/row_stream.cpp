@@ -95,7 +95,7 @@ std::int64_t send_rows(store::Statement& rows, const CollectedTable& table, Conn
     if (count++ == 0) {
       server.begin_copy_in(copy);
       bytes = kSignature;
-      put(bytes, std::uint64_t{0});  // no flags, and no header extension
+      put(bytes, std::uint64_t{0});  // no flags, and a header extension of length 0
     }
     put(bytes, static_cast<std::uint16_t>(table.columns.size()));
     for (std::size_t i = 0; i < table.columns.size(); ++i)

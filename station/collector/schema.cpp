@@ -18,8 +18,8 @@ std::string type_of(const Column& column) {
   return column.type == "BLOB" ? "bytea" : "text";
 }
 
-/// Returns the words of "a | b | c". Returns nothing if the list is incomplete or contains a word for "no
-/// value".
+/// Returns the words of a list such as "a | b | c". Returns nothing if the list is incomplete or contains a
+/// word for "no value".
 std::vector<std::string> words_of(const std::string& values) {
   std::vector<std::string> words;
   for (std::size_t at = 0; at < values.size();) {
@@ -77,7 +77,7 @@ std::string comments(const CollectedTable& table) {
 }
 
 /// Returns the SQL that turns on row security. turnpoint_reader may read the rows by a policy. All other
-/// roles need the functions, which run as turnpoint_owner.
+/// roles reach the rows only through functions, which run as turnpoint_owner.
 std::string protection(const std::string& table) {
   return fmt::format(
       "ALTER TABLE turnpoint.{0} ENABLE ROW LEVEL SECURITY;\n"

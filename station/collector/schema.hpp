@@ -12,9 +12,9 @@ namespace turnpoint::collector {
 /// - turnpoint_reader may read all tables and views.
 std::string schema_sql();
 
-// Parts of schema_sql().
-std::string functions_sql();  ///< what stations and administrators call
-std::string views_sql();      ///< what readers look at
+// The parts of which schema_sql() consists:
+std::string functions_sql();  ///< the functions that stations and administrators call
+std::string views_sql();      ///< the views for readers
 std::string checksum_sql();   ///< the functions that calculate the checksum chain on the server
 
 }  // namespace turnpoint::collector

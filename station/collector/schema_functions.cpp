@@ -19,7 +19,8 @@ std::string take_rows(const CollectedTable& table) {
       table.name, quoted(part.counter), part.last, column_list(table));
 }
 
-/// Returns the SQL that inserts rows which several sessions share. A row that is already there must be equal.
+/// Returns the SQL that inserts rows which several sessions share. A session is refused if a row with the
+/// same key is already there but differs.
 std::string take_shared(const CollectedTable& table, const std::string& conflict) {
   std::string same;
   for (const auto& name : table.key)

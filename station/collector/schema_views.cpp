@@ -2,7 +2,7 @@
 
 namespace turnpoint::collector {
 
-// Columns of these views are written in lower case, so that queries need no quotes.
+// The columns of these views have names in lower case, so that queries need no quotes.
 std::string views_sql() {
   return R"sql(
 CREATE OR REPLACE VIEW turnpoint.sessions AS

@@ -62,8 +62,8 @@ void read_references(Database& database, CollectedTable& table) {
   for (auto& [id, reference] : references) table.references.push_back(std::move(reference));
 }
 
-/// Adds the columns' descriptions, and returns the columns that the chain covers, in the order in which the
-/// chain hashes them.
+/// Adds the columns' descriptions, and returns the columns that the checksum chain covers, in the order in
+/// which it hashes them.
 template <class Record>
 std::vector<Covered> describe(CollectedTable& table, const store::Table<Record>& described) {
   std::vector<Covered> covered;
@@ -100,9 +100,14 @@ void describe_chain(CollectedTable& table) {
     part(store::answer_table(), "event_index", "event_index,answer_index", "last_event", 5);
   if (name == "friction_level")
     part(store::friction_level_table(), "event_index", "event_index,level_index", "last_event", 5);
+  if (name == "program")
+    part(store::program_table(), "event_index", "event_index,program_index", "last_event", 5);
+  if (name == "estimate")
+    part(store::estimate_table(), "event_index", "event_index,estimate_index", "last_event", 5);
   if (name == "session") {
     table.provenance = describe(table, store::session_table());
-    table.provenance.resize(table.provenance.size() - 2);  // status and reason are part of each link
+    // the last two columns, status and reason, are part of each link instead
+    table.provenance.resize(table.provenance.size() - 2);
   }
   if (name == "protocol") table.provenance = describe(table, store::protocol_table());
   if (name == "rig") table.provenance = describe(table, store::rig_table());
@@ -114,9 +119,10 @@ std::vector<CollectedTable> read_tables() {
   store::create_schema(database, store::schema_version());
   std::vector<CollectedTable> tables;
   for (const auto* name :
-       {"participant",    "enrolment", "protocol", "rig",        "calibration", "session",   "segment",
-        "block",          "trial",     "tone",     "signal",     "event",       "self_test", "answer",
-        "friction_level", "link",      "unsealed", "annotation", "same_person", "tombstone"}) {
+       {"participant", "enrolment",  "protocol",       "rig",      "calibration", "session",
+        "segment",     "block",      "trial",          "tone",     "signal",      "event",
+        "self_test",   "answer",     "friction_level", "program",  "estimate",    "link",
+        "unsealed",    "annotation", "same_person",    "tombstone"}) {
     CollectedTable table;
     table.name = name;
     read_columns(database, table);

@@ -11,7 +11,7 @@ struct Column {
   std::string type;  ///< INTEGER, REAL, TEXT or BLOB
   bool nullable = true;
   std::string fallback;                   ///< SQL of the value that older rows get; "" if there is none
-  std::string description, unit, values;  ///< as in store/fields.hpp; "" if the field has none
+  std::string description, unit, values;  ///< of the field, as in store/fields.hpp; "" if it has none
 };
 
 struct Reference {
@@ -27,12 +27,13 @@ struct Covered {
   int since = 1;
 };
 
-/// How the chain covers a table. A link hashes, in the order of `order`, the rows whose value in the column
-/// `counter` is greater than the value that the previous link stored in its column `last` (of table link).
+/// How the checksum chain of a session covers a table. Each link of the chain is a hash over, in the order of
+/// `order`, the rows whose value in the column `counter` is greater than the value that the previous link
+/// stored in its column `last` (of table link).
 struct ChainPart {
   std::vector<Covered> columns;
   std::string counter, order, last;
-  int since = 1;  ///< the first encoding that covers the table
+  int since = 1;  ///< the first encoding of the chain that covers the table
 };
 
 /// A table that a station sends to the server.
@@ -42,8 +43,9 @@ struct CollectedTable {
   std::vector<std::string> key;
   std::vector<std::vector<std::string>> unique;
   std::vector<Reference> references;
-  std::optional<ChainPart> chain;   ///< empty for tables that are not hashed row by row
-  std::vector<Covered> provenance;  ///< columns that the first link of a session covers
+  /// how the checksum chain covers the table; empty if it is not hashed row by row
+  std::optional<ChainPart> chain;
+  std::vector<Covered> provenance;  ///< columns that the first link of a session's checksum chain covers
 
   const Column& column(const std::string& name) const;
   bool has(const std::string& name) const;
@@ -56,12 +58,13 @@ const std::vector<CollectedTable>& collected_tables();
 
 const CollectedTable& collected_table(const std::string& name);
 
-/// Names in double quotes, as PostgreSQL and SQLite both accept them, separated by commas.
+/// Each returns names in double quotes, as PostgreSQL and SQLite both accept them; lists are separated by
+/// commas.
 std::string quoted(const std::string& name);
 std::string quoted_list(const std::vector<std::string>& names);
 std::string column_list(const CollectedTable& table);
 
-/// A text as an SQL literal.
+/// Returns a text as an SQL literal.
 std::string literal(const std::string& text);
 
 }  // namespace turnpoint::collector

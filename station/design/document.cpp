@@ -31,13 +31,14 @@ std::vector<const Part*> tables_of(const Part& part) {
   return tables;
 }
 
-/// Collects the lines of all keys below a dotted part.
+/// Collects the lines of all keys below a table that consists of dotted keys.
 void collect_entries(const Part& part, std::vector<Span>& lines) {
   if (part.kind != Part::Kind::dotted) return lines.push_back({part.key.begin, part.value.end});
   for (const auto& below : part.parts) collect_entries(below, lines);
 }
 
-/// The way from a part to the innermost part whose text contains this offset.
+/// Finds the innermost part below this one whose text contains the offset `at`, and appends the names on the
+/// way to it to `way`. Returns false if there is none.
 bool way_to(const Part& part, std::size_t at, Path& way) {
   const Part* own = nullptr;
   for (const auto& below : part.parts) {

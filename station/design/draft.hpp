@@ -8,6 +8,9 @@
 
 namespace turnpoint::design {
 
+/// The version after this one: its last number raised by one, such as "2" after "1" and "1.3" after "1.2".
+std::string next_version(const std::string& version);
+
 /// A protocol file while somebody edits it: its present text, which may be invalid for a while, and the
 /// earlier texts, to which the editor can return.
 class Draft {
@@ -18,7 +21,7 @@ class Draft {
   const std::string& file() const { return file_; }
   /// The document made from the text; nullptr while the text is not valid TOML.
   const Document* document() const { return document_ ? &*document_ : nullptr; }
-  /// Why the text is not valid TOML.
+  /// The reasons why the text is not valid TOML; empty if it is.
   const std::vector<text::Problem>& problems() const { return problems_; }
 
   /// Replaces the whole text. Does nothing if the new text equals the old one.

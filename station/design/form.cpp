@@ -21,25 +21,6 @@ std::string section_of(const std::string& table) {
   return found == sections.end() ? "other" : found->second;
 }
 
-/// The table whose names a key refers to; "" if it refers to none.
-std::string referred(const std::string& key) {
-  static const std::map<std::string, std::string> tables{{"base", "scene"},
-                                                         {"intervals", "scene"},
-                                                         {"standard", "scene"},
-                                                         {"target", "scene"},
-                                                         {"scene", "scene"},
-                                                         {"level", "factor"},
-                                                         {"adjusts", "factor"},
-                                                         {"over", "factor"},
-                                                         {"balance", "factor"},
-                                                         {"by", "factor"},
-                                                         {"procedures", "procedure"},
-                                                         {"copy", "procedure"},
-                                                         {"instruction", "instructions"}};
-  const auto found = tables.find(key);
-  return found == tables.end() ? "" : found->second;
-}
-
 std::string name_in(const Document& document, const Part& table) {
   const auto* name = table.find("name");
   if (name == nullptr || name->kind != Part::Kind::scalar) return "";
@@ -62,7 +43,7 @@ std::vector<std::string> languages_of(const Document& document) {
   return languages;
 }
 
-/// A scalar as a person writes it.
+/// Returns a value as a person writes it: without quotes and brackets.
 std::string shown(const Document& document, const Part& part) {
   if (part.kind == Part::Kind::array) {
     std::string all;
@@ -102,7 +83,7 @@ class Maker {
   }
 
  private:
-  /// Groups for [[block]], or for [scene.NAME]. There are none if the file has none.
+  /// Adds a group for each table [[block]], or [scene.NAME], that the file has.
   void add_tables(const std::string& name, const Rule& rule, std::vector<Group>& groups) {
     const auto* list = document_.find({name});
     if (list == nullptr) return;
@@ -157,7 +138,7 @@ class Maker {
                                needed && (part != nullptr || key.required)));
       }
     } else if (rule.kind == RuleKind::table) {
-      // A table that the file does not have is offered key by key, but not the tables below it.
+      // If the file does not have this table, offer its keys, but not the tables below it.
       if (part != nullptr || absent == 0)
         add_fields(path, rule, part, fields, part == nullptr ? absent + 1 : absent, needed && key.required);
     } else if (rule.kind == RuleKind::tables) {
@@ -179,7 +160,7 @@ class Maker {
       field.kind = RuleKind::other;
     if (part != nullptr)
       field.value = field.kind == RuleKind::other ? document_.written(path) : shown(document_, *part);
-    if (const auto table = referred(path.back()); !table.empty() && rule.allowed.empty())
+    if (const auto table = referred_table(path.back()); !table.empty() && rule.allowed.empty())
       field.allowed = names_of(document_, table);
     return field;
   }
@@ -202,8 +183,8 @@ bool begins_with(const Path& path, const Path& start) {
   return start.size() <= path.size() && std::equal(start.begin(), start.end(), path.begin());
 }
 
-/// The field that a remark is about: the longest path that leads to the place. A remark about a table belongs
-/// to the key that it names, if the table does not have this key.
+/// Returns the form field that a remark is about: the field with the longest path that begins the path of the
+/// remark. If the remark says that a table lacks a key, returns the field of this missing key.
 Field* field_for(Group& group, const Path& place, const std::string& what) {
   Field* best = nullptr;
   for (auto& field : group.fields) {
@@ -283,6 +264,24 @@ std::string toml_lines(const std::string& text) {
 }
 
 }  // namespace
+
+std::string referred_table(const std::string& key) {
+  static const std::map<std::string, std::string> tables{{"base", "scene"},
+                                                         {"intervals", "scene"},
+                                                         {"standard", "scene"},
+                                                         {"target", "scene"},
+                                                         {"scene", "scene"},
+                                                         {"level", "factor"},
+                                                         {"adjusts", "factor"},
+                                                         {"over", "factor"},
+                                                         {"balance", "factor"},
+                                                         {"by", "factor"},
+                                                         {"procedures", "procedure"},
+                                                         {"copy", "procedure"},
+                                                         {"instruction", "instructions"}};
+  const auto found = tables.find(key);
+  return found == tables.end() ? "" : found->second;
+}
 
 std::vector<Section> form_of(const Document& document, const Schema& schema,
                              const std::vector<text::Problem>& remarks) {

@@ -6,7 +6,7 @@ namespace turnpoint::design {
 
 /// Something that a researcher can want to measure, and the shipped protocol that measures it.
 struct Goal {
-  const char* word;  ///< to type on a command line
+  const char* word;  ///< stands for the goal on a command line
   const char* file;  ///< name of the shipped protocol, without .toml
 };
 
@@ -14,7 +14,7 @@ struct Goal {
 const std::vector<Goal>& goals();
 /// Returns the goal with this word; nullptr if there is none.
 const Goal* find_goal(const std::string& word);
-/// What the goal measures, in a language of the station.
+/// Returns what the goal measures, in a language of the station.
 std::string describe(const Goal& goal, const std::string& language);
 
 /// Turns the text of the goal's shipped protocol into that of a study: gives it its own id, and version

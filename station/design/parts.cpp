@@ -10,7 +10,7 @@ namespace turnpoint::design {
 
 namespace {
 
-/// A key, which may have several parts separated by dots: the text of each part, and its place.
+/// A key, which may consist of several names separated by dots, and the place of each name in the text.
 struct Key {
   std::vector<std::string> names;
   std::vector<Span> spans;

@@ -30,7 +30,7 @@ struct Part {
   /// The range of the value. For a table with a header: from the header to the end of the line of the last
   /// key that belongs to the table itself.
   Span value;
-  std::vector<Span> header_names;  ///< the names in the header
+  std::vector<Span> header_names;  ///< for a table with a header: where each name in the header is
   /// for a dotted table, its name below the header, such as `grid`; "" if it only contains tables that have
   /// headers
   std::string prefix;

@@ -62,6 +62,15 @@ void add_keys(const Json& schema, Rule& rule) {
   rule.keys.push_back({"", false, &*more});
 }
 
+bool is_linear(const Json& schema) { return schema.value("$ref", "") == "#/$defs/linear"; }
+
+/// The forms among which the schema lets a file choose; nullptr if there is only one.
+const Json* forms_in(const Json& schema) {
+  for (const char* several : {"oneOf", "anyOf"})
+    if (schema.contains(several) && !schema.contains("type")) return &schema[several];
+  return nullptr;
+}
+
 }  // namespace
 
 Schema::Schema(const std::string& source) {
@@ -81,39 +90,49 @@ const Json& Schema::resolved(const Json& schema) const {
 
 Rule Schema::rule(const Json& given, const text::Value* value) const {
   const auto* schema = &resolved(given);
+  if (const auto* forms = forms_in(*schema); forms != nullptr && !is_linear(given)) {
+    const auto found = std::find_if(forms->begin(), forms->end(), [&](const Json& form) {
+      return value == nullptr || fits(resolved(form), *value);
+    });
+    schema = &resolved(found == forms->end() ? forms->front() : *found);
+  }
+  return rule_of(given, *schema);
+}
+
+std::vector<Rule> Schema::forms(const Json& given) const {
+  const auto* several = forms_in(resolved(given));
+  if (several == nullptr || is_linear(given)) return {rule(given)};
+  std::vector<Rule> rules;
+  for (const auto& form : *several)
+    for (auto& one : forms(form)) rules.push_back(std::move(one));
+  return rules;
+}
+
+Rule Schema::rule_of(const Json& given, const Json& form) const {
+  const auto& whole = resolved(given);
   Rule rule;
-  rule.help = given.value("description", schema->value("description", ""));
-  const std::string ref = given.value("$ref", "");
-  if (ref == "#/$defs/linear") {
+  rule.help = given.value("description", whole.value("description", ""));
+  if (is_linear(given)) {
     rule.kind = Rule::Kind::expression;
     return rule;
   }
-  for (const char* several : {"oneOf", "anyOf"}) {
-    if (!schema->contains(several) || schema->contains("type")) continue;
-    const auto& forms = (*schema)[several];
-    const auto found = std::find_if(forms.begin(), forms.end(), [&](const Json& form) {
-      return value == nullptr || fits(resolved(form), *value);
-    });
-    schema = &resolved(found == forms.end() ? forms.front() : *found);
-    break;
-  }
-  const auto type = schema->value("type", "");
-  rule.allowed = words_of(*schema);
-  if (schema->contains("minimum")) rule.low = (*schema)["minimum"].get<double>();
-  if (schema->contains("exclusiveMinimum")) rule.low = (*schema)["exclusiveMinimum"].get<double>();
-  if (schema->contains("maximum")) rule.high = (*schema)["maximum"].get<double>();
-  if (schema->contains("exclusiveMaximum")) rule.high = (*schema)["exclusiveMaximum"].get<double>();
+  const auto type = form.value("type", "");
+  rule.allowed = words_of(form);
+  if (form.contains("minimum")) rule.low = form["minimum"].get<double>();
+  if (form.contains("exclusiveMinimum")) rule.low = form["exclusiveMinimum"].get<double>();
+  if (form.contains("maximum")) rule.high = form["maximum"].get<double>();
+  if (form.contains("exclusiveMaximum")) rule.high = form["exclusiveMaximum"].get<double>();
   if (!rule.allowed.empty()) {
     rule.kind = Rule::Kind::word;
   } else if (type == "array") {
-    const auto* items = schema->contains("items") ? &resolved((*schema)["items"]) : schema;
+    const auto* items = form.contains("items") ? &resolved(form["items"]) : &form;
     if (items->contains("oneOf") && !items->contains("type")) items = &resolved((*items)["oneOf"].front());
     rule.kind = kind_of_items(*items);
     rule.allowed = words_of(*items);
     if (rule.kind == Rule::Kind::tables) add_keys(*items, rule);
   } else if (type == "object") {
-    rule.kind = ref == "#/$defs/texts" ? Rule::Kind::texts : Rule::Kind::table;
-    add_keys(*schema, rule);
+    rule.kind = given.value("$ref", "") == "#/$defs/texts" ? Rule::Kind::texts : Rule::Kind::table;
+    add_keys(form, rule);
   } else {
     rule.kind = type == "number"    ? Rule::Kind::number
                 : type == "integer" ? Rule::Kind::integer

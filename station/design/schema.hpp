@@ -26,14 +26,15 @@ struct Rule {
     other
   };
   Kind kind = Kind::other;
-  std::vector<std::string> allowed;  ///< word and names: the words that the schema lists
-  std::optional<double> low, high;   ///< numbers: the limits, if the schema has them
+  std::vector<std::string> allowed;  ///< for the kinds `word` and `names`: the words that the schema lists
+  std::optional<double> low, high;   ///< for the kinds of numbers: the limits, if the schema has them
   std::string help;                  ///< the schema's description; "" if it has none
   /// Keys of a table, or of each table of a list, in the order of the schema.
   struct Key;
   std::vector<Key> keys;
-  bool any_key =
-      false;  ///< a table whose keys are names, such as [scene]; `keys` has one, which stands for all
+  /// true if the keys of the table are names that the user chooses, as in [scene]; `keys` then has one
+  /// element, which stands for all of them
+  bool any_key = false;
 };
 struct Rule::Key {
   std::string name;
@@ -51,8 +52,11 @@ class Schema {
   /// The rule of a key. If the schema allows several forms, `value` chooses the one that fits it; without a
   /// value, the first one counts.
   Rule rule(const nlohmann::ordered_json& schema, const text::Value* value = nullptr) const;
+  /// The rules of all forms that the schema allows for a key.
+  std::vector<Rule> forms(const nlohmann::ordered_json& schema) const;
 
  private:
+  Rule rule_of(const nlohmann::ordered_json& given, const nlohmann::ordered_json& form) const;
   const nlohmann::ordered_json& resolved(const nlohmann::ordered_json& schema) const;
 
   std::unique_ptr<const nlohmann::ordered_json> json_;

@@ -54,20 +54,22 @@ std::optional<InterruptedNote> interrupted_note(const std::string& database);
 /// away.
 struct CheckWords {
   std::vector<std::string> problems, warnings;
-  std::vector<std::pair<std::string, std::string>> facts;  ///< pairs of a label and a value
-  /// A cue, the proportion correct of an observer who uses nothing but this cue, and whether that proportion
-  /// is clearly above chance.
+  /// what the session consists of, as pairs of a label and a value
+  std::vector<std::pair<std::string, std::string>> facts;
+  /// An unwanted cue: `says` is the proportion correct of an observer who uses nothing but this cue, and
+  /// `leaks` is true if that proportion is clearly above chance.
   struct Cue {
     std::string name, says;
     bool leaks = false;
-    std::string advice;  ///< what can be done about it; "" if the cue does not help
+    /// what the researcher can do about the cue; "" if the cue does not give answers away
+    std::string advice;
   };
   std::vector<Cue> cues;
   /// What the check says about one place of the protocol or of the rig. Problems come first, notes last.
   struct Remark {
     enum class Kind { problem, warning, note } kind = Kind::problem;
     std::string file;  ///< name of the file, without its folder
-    int line = 0;      ///< 0: the file as a whole
+    int line = 0;      ///< line in the file; 0: the file as a whole
     std::string what, hint;
   };
   std::vector<Remark> remarks;

@@ -19,7 +19,7 @@ namespace {
 using text::number;
 using Facts = std::vector<std::pair<std::string, std::string>>;
 
-/// Time over which the duty cycle is computed: the limit applies to any 60 s.
+/// Time over which the duty cycle is computed: the limit applies to every period of 60 s.
 constexpr double kWindow_s = 60;
 
 /// Each setting of a slider is displayed for at least this time, so that the operator can read it.

@@ -23,7 +23,8 @@ namespace turnpoint::desk {
 struct LiveState {
   /// number and level of the current trial
   std::string heading;
-  std::vector<std::pair<std::string, std::string>> scene, course, limits;  ///< pairs of a label and a value
+  /// facts about the scene, the session so far and the exposure limits, as pairs of a label and a value
+  std::vector<std::pair<std::string, std::string>> scene, course, limits;
   /// what pick-ups and force cells measured in the last trial; empty if the rig has neither
   std::vector<std::pair<std::string, std::string>> sensors;
   /// drawings of the surface, one for each scene, in the order of presentation
@@ -41,7 +42,7 @@ struct LiveTrial {
   std::optional<double> response_time_s, threshold_est, threshold_sd;
   terms::Outcome outcome = terms::Outcome::answered;
   terms::TrialType type = terms::TrialType::experimental;
-  double onset_s = 0, ended_s = 0;  ///< relative to the start of the session
+  double onset_s = 0, ended_s = 0;  ///< s from the start of the session
   double stimulus_s = 0;            ///< duration for which the stimulus was presented
   int xruns = 0, extra_touches = 0;
   records::Proof proof = records::Proof::unproven;
@@ -57,12 +58,13 @@ std::vector<std::pair<std::string, std::string>> limits_used(const std::vector<L
                                                              std::optional<double> peak_displacement_m,
                                                              const rig::Rig& rig);
 
-/// Describes what the sensors measured in a trial, beside the limits. Pure.
+/// Describes what the sensors measured in a trial, next to the ranges that the protocol asks for. Pure.
 std::vector<std::pair<std::string, std::string>> sensors_of(const records::TrialRow& row,
                                                             const std::optional<protocol::Sensing>& asked);
 
-/// Plots the levels in order, one series per procedure. Open markers are wrong answers; a line shows the
-/// running estimate.
+/// live_trace() plots the levels in the order of the trials, one series per procedure. Open markers are wrong
+/// answers; a line shows the running estimate. live_times() plots the response times. Both are empty if there
+/// are no data.
 std::optional<plot::Figure> live_trace(const std::vector<LiveTrial>& trials, const std::string& label);
 std::optional<plot::Figure> live_times(const std::vector<LiveTrial>& trials);
 
@@ -70,7 +72,7 @@ std::optional<plot::Figure> live_times(const std::vector<LiveTrial>& trials);
 /// something changes. While the participant moves a slider, it shows the newest setting five times a second.
 class LiveView : public session::Monitor {
  public:
-  /// Called on the view's own thread.
+  /// Receives each new state. Called on LiveView's own thread.
   using OnState = std::function<void(LiveState)>;
   LiveView(const protocol::Protocol& protocol, const rig::Rig& rig, OnState on_state);
   ~LiveView() override;
@@ -94,7 +96,8 @@ class LiveView : public session::Monitor {
     std::optional<Begun> begun;
     std::optional<Setting> setting;
     std::optional<LiveTrial> ended;
-    std::shared_ptr<const records::TrialRow> row = nullptr;  ///< row of the ended trial, with its signal
+    /// stored row of the ended trial, with its force signal
+    std::shared_ptr<const records::TrialRow> row = nullptr;
   };
   void push(News news);
   void work(const std::stop_token& stop);
@@ -103,7 +106,8 @@ class LiveView : public session::Monitor {
   void tell();
 
   OnState on_state_;
-  std::string level_;  ///< name of the level in the protocol
+  /// name of the factor that the first procedure varies, or "Level" if there is no procedure
+  std::string level_;
   std::optional<protocol::Sensing> asked_;
   std::string adjusted_;  ///< the factor that a slider sets; "" if there is none
   rig::Rig rig_;

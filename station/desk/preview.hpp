@@ -11,7 +11,7 @@ namespace turnpoint::desk {
 
 /// The options of `turnpoint preview`.
 struct PreviewRequest {
-  std::string protocol, rig, scene;  ///< name of the scene; "" for the first one
+  std::string protocol, rig, scene;  ///< `scene` is the name of the scene; "" for the first one
   std::vector<std::string> set;      ///< values of factors, each written as "factor=value"
 };
 
@@ -34,7 +34,8 @@ struct SceneLook {
   /// the surface without a finger, at kProfilePoints points, starting at the wide end
   scene::Planner::Profile profile;
   scene::UnderFinger under;
-  /// (label, value) in reading order
+  /// facts about the scene and its cues, as pairs of a label and a value, in the order in which they are
+  /// shown
   std::vector<std::pair<std::string, std::string>> facts, cues;
 };
 

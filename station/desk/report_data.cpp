@@ -1,10 +1,16 @@
 #include "station/desk/report_data.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <map>
+#include <set>
+#include <stdexcept>
+#include <string>
 
 #include "station/protocol/protocol.hpp"
 #include "station/report/stored_trials.hpp"
+#include "station/session/planned_session.hpp"
 #include "station/store/open.hpp"
 #include "station/store/stored_signals.hpp"
 #include "station/text/number.hpp"
@@ -21,7 +27,8 @@ std::string late_frames(const std::vector<records::EventRow>& events) {
   return frames == 0 ? "none" : std::to_string(frames) + " in " + std::to_string(trials) + " trials";
 }
 
-/// Describes the largest model error and the largest uncertainty of the tones that were presented.
+/// Describes the largest model error and the largest uncertainty of the boundaries of the tones that were
+/// presented.
 std::string boundary_errors(const std::vector<store::BlockRecord>& blocks) {
   double bound_mm = 0, uncertainty_mm = 0;
   for (const auto& block : blocks)
@@ -54,7 +61,8 @@ std::string proofs(const std::vector<store::BlockRecord>& blocks) {
   return text.empty() ? "none" : text;
 }
 
-/// Says in how many trials the forces are known, and why they are not known in others: "57 ok, 2 wire".
+/// Says in how many trials the forces are known, and why they are not known in others, such as "57 ok, 2
+/// wire" for a broken wire.
 std::string forces(const std::vector<store::BlockRecord>& blocks) {
   std::map<std::string, int> counts;
   for (const auto& block : blocks)
@@ -100,7 +108,7 @@ std::string self_test(const std::vector<records::EventRow>& events) {
          " not possible";
 }
 
-/// Lists what was stated about room, surface and finger.
+/// Lists what was stated before the session about room, surface and finger.
 std::string conditions(const records::Conditions& stated) {
   std::string text;
   const auto add = [&text](const std::string& part) { text += (text.empty() ? "" : ", ") + part; };
@@ -171,7 +179,8 @@ void add_health(const store::StoredSession& stored, report::SessionData& data) {
                  {"Software", start.software_version}};
 }
 
-/// Adds friction along the strip, from the stored signals of the trials that count.
+/// Adds friction along the strip, from the stored signals of those trials that the report's section on the
+/// finger uses.
 void add_strip(const std::string& path, const store::StoredSession& stored, report::SessionData& data) {
   if (data.finger.empty()) return;
   std::map<int, const records::TrialRow*> rows;
@@ -202,6 +211,18 @@ std::vector<analysis::FrictionCurve> curves_of(const session::AlongStrip& along)
   return curves;
 }
 
+/// Adds the separate programs that took part, each version once.
+void add_programs(const std::vector<records::EventRow>& events, report::SessionData& data) {
+  std::set<std::string> told;
+  for (const auto& event : events)
+    for (const auto& program : event.programs) {
+      auto fact = fmt::format("{} {}, SHA-256 {}", program.program, program.version, program.sha256);
+      const auto name =
+          program.procedure.empty() ? "Program of the observer" : "Program of " + program.procedure;
+      if (told.insert(name + fact).second) data.facts.emplace_back(name, std::move(fact));
+    }
+}
+
 report::SessionData report_data(const std::string& database, const std::string& session_id) {
   const auto stored = store::read_session(database, session_id);
   const auto& start = stored.session.start;
@@ -227,7 +248,15 @@ report::SessionData report_data(const std::string& database, const std::string& 
               (answer.occasion > 0 ? " (after block " + std::to_string(answer.occasion) + ")" : ""),
           answer.answer);
   data.seed = start.seed;
+  try {
+    data.earlier = session::earlier_trials(database, protocol, stored.session);
+  } catch (const std::runtime_error&) {
+    // The earlier sessions cannot be repeated by this program. The report then has no estimates of procedures
+    // that continue.
+  }
   report::add_trials(stored.blocks, protocol, data);
+  report::add_program_estimates(stored.blocks, stored.events, data);
+  add_programs(stored.events, data);
   add_health(stored, data);
   data.measured = measured_trials(stored.blocks);
   add_strip(database, stored, data);

@@ -68,6 +68,18 @@ void add_fits(const report::Summary& summary, ReportPages& pages) {
   }
 }
 
+/// Adds the estimates of procedures with a second dimension or a criterion, which no fit has.
+void add_estimates(const report::Summary& summary, ReportPages& pages) {
+  for (const auto& estimate : summary.data.estimates) {
+    const auto& name = estimate.parameter;
+    const bool in_fit = !summary.fits.empty() && name != "criterion" && name != "gradient" && name != "floor";
+    if (!estimate.interval || in_fit) continue;
+    pages.fit.emplace_back(
+        estimate.procedure + ", " + name + (estimate.unit.empty() ? "" : " (" + estimate.unit + ")"),
+        with(estimate.mean, *estimate.interval));
+  }
+}
+
 void add_judgements(const report::Summary& summary, ReportPages& pages) {
   const auto& unit = summary.data.level_unit;
   for (const auto& judged : summary.judgements) {
@@ -131,6 +143,7 @@ ReportPages report_pages(const report::Summary& summary) {
                 summary.data.status + ")";
   add_outcomes(summary, pages);
   add_fits(summary, pages);
+  add_estimates(summary, pages);
   add_judgements(summary, pages);
   if (summary.data.design == report::Design::categories) add_confusions(summary, pages);
   add_trade(summary, pages);
@@ -142,6 +155,7 @@ ReportPages report_pages(const report::Summary& summary) {
   pages.trade = drawing(report::trade_figure(summary));
   pages.fits =
       drawing(report::judges(summary.data.design)                 ? report::judgement_figure(summary)
+              : summary.data.thresholds_differ                    ? report::threshold_curve_figure(summary)
               : summary.data.design == report::Design::categories ? report::confusion_figure(summary)
                                                                   : report::psychometric_figure(summary));
   pages.levels = drawing(report::trace_figure(summary));

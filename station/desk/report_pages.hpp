@@ -11,8 +11,8 @@ namespace turnpoint::desk {
 /// A session's report as pages of the screen: texts and figures.
 struct ReportPages {
   std::string title;
-  std::vector<std::pair<std::string, std::string>> outcomes, fit, speed_accuracy, forces,
-      health;                                            ///< pairs of a label and a value
+  /// the tables of the report, as pairs of a label and a value
+  std::vector<std::pair<std::string, std::string>> outcomes, fit, speed_accuracy, forces, health;
   std::vector<std::string> statements;                   ///< remarks that must be shown with the numbers
   Drawing trade, fits, levels, times, finger, friction;  ///< figures; empty if there are no data
 };

@@ -74,7 +74,7 @@ Place place_on(const rig::Rig& rig, double width_px, double height_px) {
   for (int i = 0; i <= 20; ++i)
     widest = std::max(widest, physics::half_width_m(at.surface, at.length_m * i / 20));
   const double to_scale = (at.right - at.left) / at.length_m;
-  // Leave room for labels above and below, even if the strip becomes thin.
+  // Leave room for labels above and below the strip, even if the strip becomes thin.
   const double most_px = std::min(0.24 * height_px, 0.5 * height_px - (low ? 33 : 46));
   at.across = std::clamp(to_scale, 0.75 * most_px / widest, most_px / widest);
   return at;
@@ -111,7 +111,8 @@ void draw_transducer(plot::Canvas& canvas, const Place& at) {
                    fill("#4d565e"));
 }
 
-/// Draws the mark where the participant sees it. Its name is on the side away from the boundary.
+/// Draws the mark beside the strip, to which a question can refer, where the participant sees it. Its name is
+/// on the side away from the boundary.
 void draw_mark(plot::Canvas& canvas, const SceneLook& look, const Place& at) {
   const auto mark = mark_of(look);
   if (!mark || *mark <= 0 || *mark >= at.length_m) return;
@@ -122,8 +123,8 @@ void draw_mark(plot::Canvas& canvas, const SceneLook& look, const Place& at) {
               to_left ? plot::Anchor::end : plot::Anchor::start, kInk);
 }
 
-/// Returns the y coordinate of the boundary's name. If the name would overlap the mark or the mark's name, it
-/// moves up above both.
+/// Returns the y coordinate of the boundary's name. If the name would overlap the mark (the place that a
+/// question refers to) or the mark's name, it moves up above both.
 double boundary_name_y(const SceneLook& look, const Place& at, const std::string& name) {
   const double boundary = *look.plan.boundary_m, own = at.above(boundary).second;
   const auto mark = mark_of(look);

@@ -27,7 +27,7 @@ std::vector<SessionLine> session_lines(const std::string& database) {
   std::vector<SessionLine> lines;
   for (const auto& session : sessions) {
     const auto& start = session.start;
-    // A session of a program that was killed is still marked as running.
+    // If the program was killed, its session is still marked as running. Treat it as interrupted.
     const bool ended = session.status != store::SessionStatus::interrupted &&
                        session.status != store::SessionStatus::running;
     lines.push_back(

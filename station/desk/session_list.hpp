@@ -9,8 +9,8 @@ struct SessionLine {
   std::string session_id, person, participant, protocol, started, run_mode, status, reason;
   int trials = 0;
   std::vector<std::string> notes;
-  bool resumable =
-      false;  ///< true if the session was interrupted and has trials, so that it can be continued
+  /// true if the session was interrupted and has trials, so that it can be continued
+  bool resumable = false;
 };
 
 /// Returns the sessions of a database, the newest first; empty if there is no database yet. Throws

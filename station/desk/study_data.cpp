@@ -74,8 +74,8 @@ void require_one_study(const StudyChoice& choice, const std::vector<Found>& all)
               [](const auto& start) { return std::string(store::name(start.run_mode)); });
 }
 
-/// Returns the name CODE@STATION for each person of each file. If a name contains no station, it is the
-/// station at which the person's first session was made.
+/// Returns the name CODE@STATION for each person of each file. If the stored name contains no station, the
+/// station of the person's first session is added.
 std::map<std::pair<std::string, std::string>, std::string> full_names(const std::vector<Found>& all) {
   std::map<std::pair<std::string, std::string>, std::string> names;
   for (const auto& found : all) {
@@ -106,7 +106,7 @@ std::map<std::string, std::vector<Found>> by_person(std::vector<Found> all) {
   return people;
 }
 
-/// Returns the protocol with each group analysed separately.
+/// Returns the protocol, changed so that each group of participants is analysed separately.
 protocol::Protocol by_group(protocol::Protocol protocol) {
   auto& by = protocol.analysis.by;
   std::vector<std::string> groups;
@@ -115,7 +115,7 @@ protocol::Protocol by_group(protocol::Protocol protocol) {
         std::find(by.begin(), by.end(), factor.name) == by.end())
       groups.push_back(factor.name);
   if (groups.empty()) return protocol;
-  // without `by`, instructions are the conditions
+  // An empty `by` means that the conditions are the instructions. Keep that when groups are added.
   const auto is_instruction = [](const protocol::Factor& factor) { return factor.name == "instruction"; };
   if (by.empty() && std::any_of(protocol.factors.begin(), protocol.factors.end(), is_instruction) &&
       std::find(groups.begin(), groups.end(), "instruction") == groups.end())

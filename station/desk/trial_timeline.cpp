@@ -25,7 +25,7 @@ std::size_t interval_count(const protocol::Task& task) {
   }
 }
 
-/// When the time for an answer begins, if that does not depend on the participant.
+/// Returns the time from which an answer counts; empty if it depends on the participant.
 std::optional<double> answer_from(const protocol::Protocol& protocol, double begin_s, double end_s) {
   using Zero = protocol::ResponseZero;
   const auto& foreperiod = protocol.task.foreperiod_s;

@@ -5,7 +5,7 @@
 
 namespace turnpoint::desk {
 
-/// One stretch of a trial, in seconds from its start.
+/// One part of a trial, with its begin and end in seconds from the start of the trial.
 struct TrialPart {
   enum class Kind { pause, interval, gap, answer } kind = Kind::pause;
   double from_s = 0, to_s = 0;

@@ -17,7 +17,7 @@
 namespace turnpoint::drive {
 namespace {
 
-constexpr int kFifoPriority = 69;  // below that of the playback, whose deadline is stricter
+constexpr int kFifoPriority = 69;  // below the priority of the playback thread, whose deadline is stricter
 
 std::string device_name(const std::string& uri) {
   if (!uri.starts_with("alsa:") || uri.size() == 5)
@@ -133,7 +133,7 @@ void DeviceCapture::recover(int error) noexcept {
   if (action == RecoveryAction::go_on) return;
   unknown_gaps_.fetch_add(1);
   numbering_.fetch_add(1);
-  // at least one buffer of frames is lost
+  // how many frames are lost is unknown; count one buffer, which is the least
   frames_.fetch_add(static_cast<std::int64_t>(device_->alsa.buffer_frames));
   while (action != RecoveryAction::go_on) {
     int outcome = 0;

@@ -22,7 +22,7 @@ struct CapturedBlock {
   /// Changes with each loss of frames. After a change, the delay from played to captured frames must be
   /// measured again, because not every device reports how many frames were lost.
   std::uint32_t numbering = 0;
-  std::int32_t count = 0;  ///< samples in use
+  std::int32_t count = 0;  ///< number of samples in use
   std::array<std::int32_t, kSamples> samples{};
 
   std::span<const std::int32_t> used() const noexcept {
@@ -35,15 +35,16 @@ struct CaptureCounters {
   std::int64_t overruns = 0;      ///< gaps for which the device said how many frames were lost
   std::int64_t lost_frames = 0;   ///< frames lost in `overruns`
   std::int64_t unknown_gaps = 0;  ///< losses of an unknown number of frames: the device was restarted or lost
-  std::uint32_t numbering = 0;    ///< numbering of the newest frame (see CapturedBlock)
-  bool present = true;            ///< false while the device is lost
+  /// current value of CapturedBlock::numbering, which changes with each loss of frames
+  std::uint32_t numbering = 0;
+  bool present = true;  ///< false while the device is lost
 };
 
 /// An open capture device. One thread takes the blocks; any thread may ask for the counters.
 class Capture {
  public:
   virtual ~Capture() = default;
-  /// The oldest block that has not been taken. Returns false if there is none. Wait-free.
+  /// Takes the oldest block that has not been taken yet. Returns false if there is none. Wait-free.
   [[nodiscard]] virtual bool take(CapturedBlock& block) noexcept = 0;
   virtual CaptureCounters counters() const noexcept = 0;
   virtual system::Rights rights() const = 0;
@@ -68,7 +69,7 @@ class DeviceCapture : public Capture {
   CaptureCounters counters() const noexcept override;
   system::Rights rights() const override { return {}; }
 
-  /// Memory that the capture side uses.
+  /// Memory that the capture side uses, so that it can be locked.
   std::vector<system::MemoryRange> memory() const;
 
  private:

@@ -82,8 +82,8 @@ std::string offered_channels(snd_pcm_t* pcm, snd_pcm_hw_params_t* params) {
   return text;
 }
 
-// Chooses 32-bit samples, or 24-bit samples if the device has no 32-bit ones. Uses as many channels as the
-// device has.
+// Chooses 32-bit samples, or 24-bit samples if the device has no 32-bit ones. The number of channels is the
+// rig's device_channels or, if that is larger, the number of channels in use.
 void set_layout(AlsaDevice& device, snd_pcm_hw_params_t* p, const OutputConfig& config,
                 const std::string& name) {
   snd_pcm_t* pcm = device.pcm.get();

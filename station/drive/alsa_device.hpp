@@ -16,10 +16,10 @@ struct PcmCloser {
 };
 using Pcm = std::unique_ptr<snd_pcm_t, PcmCloser>;
 
-/// An open device that is known to take the samples without altering them.
+/// An open sound device. open_alsa_device() has checked that it does not alter the samples.
 struct AlsaDevice {
   Pcm pcm;
-  FrameLayout layout;  ///< how frames must be packed
+  FrameLayout layout;  ///< how the device expects a frame in memory
   snd_pcm_uframes_t period_frames = 0;
   snd_pcm_uframes_t buffer_frames = 0;
   std::string chain;  ///< alsa-lib's own description of the plug-in chain that the samples pass through
@@ -31,7 +31,7 @@ enum class Direction { playback, capture };
 /// exact, the format is S32_LE or else S24_3LE, the channels match the rig file, nothing in the chain
 /// converts rates, and the kernel reports the same rate. Throws OutputRefused (with what was asked and what
 /// is offered), or std::system_error with ENOENT, ENODEV, EBUSY or EACCES for a device that is currently not
-/// available. A capture must have S32_LE; the bits of its converter are not checked.
+/// available. A capture device must offer S32_LE; the depth of its converter is not checked.
 AlsaDevice open_alsa_device(const OutputConfig& config, const std::string& name,
                             Direction direction = Direction::playback);
 

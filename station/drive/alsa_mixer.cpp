@@ -19,7 +19,7 @@ struct Free {
 std::optional<bool> card_switch(const std::string& output_uri, const std::string& name) {
   constexpr std::string_view scheme = "alsa:";
   if (!output_uri.starts_with("alsa:hw:")) return std::nullopt;
-  // hw:CARD=NAME,DEV=0 is a device of the card hw:CARD=NAME.
+  // Remove the device part of the name: the card of hw:CARD=NAME,DEV=0 is hw:CARD=NAME.
   const std::string card_name = output_uri.substr(scheme.size(), output_uri.find(',') - scheme.size());
   snd_ctl_t* opened = nullptr;
   if (snd_ctl_open(&opened, card_name.c_str(), SND_CTL_READONLY) < 0) return std::nullopt;

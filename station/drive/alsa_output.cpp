@@ -46,7 +46,7 @@ class AlsaOutput final : public Output {
     return result;
   }
 
-  // The number of frames that have left the converter's buffer, with the driver's time stamp for this number.
+  // Returns how many frames have left the device's buffer, with the driver's time stamp of this count.
   std::optional<Position> position() noexcept override {
     if (recovery_.lost()) return std::nullopt;
     snd_pcm_uframes_t free = 0;
@@ -74,8 +74,8 @@ class AlsaOutput final : public Output {
  private:
   snd_pcm_t* pcm() const noexcept { return device_.pcm.get(); }
 
-  // Prepares the device, fills its buffer with silence and starts it. This silence is not counted: frame 0
-  // comes after it.
+  // Prepares the device, fills its buffer with silence and starts it. The count of frames starts after this
+  // silence.
   int start() noexcept {
     snd_pcm_drop(pcm());  // a resumed device still has its old buffer contents
     if (const int error = snd_pcm_prepare(pcm()); error < 0) return error;
@@ -86,7 +86,8 @@ class AlsaOutput final : public Output {
     return snd_pcm_start(pcm());
   }
 
-  // Waits for room and writes some frames. Returns the number of frames written, or a negative errno.
+  // Waits until the device's buffer has room and writes as many frames as fit. Returns the number of frames
+  // written, or a negative errno.
   snd_pcm_sframes_t transfer(const std::int32_t* at, std::size_t frames, WriteResult& result) noexcept {
     const auto buffer = static_cast<snd_pcm_sframes_t>(device_.buffer_frames);
     const auto period = static_cast<snd_pcm_sframes_t>(device_.period_frames);
@@ -100,7 +101,7 @@ class AlsaOutput final : public Output {
       room = snd_pcm_avail(pcm());  // the device may have played its whole buffer during the wait
     }
     if (room < 0) return room;
-    // With less than an eighth of a period left, the device could overtake the block during the write.
+    // If less than an eighth of a period is queued, the device could run out of samples during the write.
     // Plug-ins without a device (null, file) never have anything queued.
     const bool hardware = snd_pcm_type(pcm()) == SND_PCM_TYPE_HW;
     const snd_pcm_sframes_t queued = buffer - room;
@@ -127,8 +128,8 @@ class AlsaOutput final : public Output {
     return 0;
   }
 
-  // The device overtook the block during the write. Counts the written frames as lost and skips the rest of
-  // the block.
+  // Called when the device ran out of samples while a block was written. Counts the frames already written as
+  // lost and skips the rest of the block.
   snd_pcm_sframes_t overtaken(snd_pcm_sframes_t done, std::size_t frames, WriteResult& result) noexcept {
     result.taken += done;
     result.dropped = done;
@@ -167,8 +168,8 @@ class AlsaOutput final : public Output {
     }
   }
 
-  // Counts the silence that start() wrote as frames that passed. Frames that were in the buffer but not yet
-  // played are counted as dropped.
+  // Called after a restart. Counts the silence that start() wrote as frames that passed, and the frames that
+  // the device had not played yet as dropped.
   void note_gap(int error, WriteResult& result) noexcept {
     const auto gap = static_cast<std::int64_t>(device_.buffer_frames - device_.period_frames);
     result.status = WriteStatus::restarted;
@@ -208,7 +209,7 @@ class AlsaOutput final : public Output {
 
   int reopen() noexcept {
     try {
-      snd_config_update_free_global();  // the list of cards has changed
+      snd_config_update_free_global();  // make alsa-lib read the list of cards again
       device_ = open_alsa_device(config_, name_);
       packed_.resize(device_.layout.bytes() * device_.buffer_frames);
       const int error = start();
@@ -230,8 +231,8 @@ class AlsaOutput final : public Output {
   AlsaDevice device_;
   std::vector<unsigned char> packed_;  ///< frames in the device's own sample format
   Recovery recovery_;
-  std::int64_t frames_ = 0;  ///< frames written or skipped
-  std::int64_t played_ = 0;  ///< number of those frames known to have been played
+  std::int64_t frames_ = 0;  ///< number of frames written or skipped so far
+  std::int64_t played_ = 0;  ///< number of frames, of those in frames_, that are known to have been played
   std::int64_t lost_at_ns_ = 0;
   int stalls_ = 0;
   bool running_ = false;

@@ -50,11 +50,11 @@ struct Marker {
   double amplitude = 0.5;
   double frequency_Hz = 1000;  ///< frequency if the marker is a tone
   std::int64_t frames = 192;   ///< length of the pulse or tone, or of one bit of a code
-  /// codes of the onset and of each change, 1 to 255; 0: none for this event
+  /// trigger codes of the onset and of each change, 1 to 255; 0: no code for this event
   std::array<std::uint8_t, max_changes + 1> codes{};
 };
 
-/// Band-limited noise that masks audible sound, gated by the burst's ramp. rms 0 means no noise.
+/// Band-limited noise that masks audible sound, faded in and out with the burst's ramp. rms 0 means no noise.
 struct MaskingNoise {
   std::int32_t channel = 1;
   double rms = 0;
@@ -63,7 +63,8 @@ struct MaskingNoise {
   std::uint64_t seed = 1;
 };
 
-/// A stimulus as data. `start_frame` counts from the opening of the stream. The length includes both ramps.
+/// Describes one stimulus. `start_frame` counts from the opening of the stream. The length includes both
+/// ramps.
 struct Burst {
   std::int64_t start_frame = 0;
   std::int64_t length_frames = 0;

@@ -33,7 +33,7 @@ std::optional<Event> DeviceStream::poll() {
 }
 
 // Moves measured positions from the audio thread to the clock. A restart of the device resets the clock,
-// which then knows nothing until the device reports its first position.
+// which then has no data until the device reports its first position.
 void DeviceStream::gather_positions() {
   const std::uint32_t relation = relation_.load();
   if (relation != clock_relation_) clock_.reset();
@@ -111,7 +111,7 @@ void DeviceStream::follow_device() noexcept {
   const auto position = output_->position();
   if (!position) return;
   core_.heard(position->frame);
-  // Ignore a full ring: then nobody reads the clock, and the older positions in the ring are good enough.
+  // If the ring is full, nobody reads the clock, and the older positions in the ring are good enough.
   static_cast<void>(positions_->push({relation_.load(), *position}));
   if (!rate_told_) check_rate(*position);
 }

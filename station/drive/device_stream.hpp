@@ -18,15 +18,16 @@ namespace turnpoint::drive {
 /// one and the same control thread.
 class DeviceStream : public Stream {
  public:
-  /// Throws the same errors as open_output.
+  /// Opens the output of `config`. Throws the same errors as open_output.
   explicit DeviceStream(const StreamConfig& config);
 
-  /// Audio side. Renders the next block and writes it, which takes as long as the device takes to play it. A
-  /// block that was lost is not played later: the next step renders the frames that are due by then.
+  /// For the audio thread. Renders the next block and writes it, which takes as long as the device takes to
+  /// play it. A block that was lost is not played later: the next step renders the frames that are due by
+  /// then.
   void step() noexcept;
 
-  /// Memory that the audio side uses in addition to this object, and a textual note about memory missing from
-  /// the list.
+  /// Memory that the audio side uses in addition to this object, so that it can be locked, and a note about
+  /// memory that is missing from the list.
   std::vector<system::MemoryRange> memory() const;
   std::string memory_left_out() const { return output_->memory_left_out(); }
 
@@ -80,11 +81,11 @@ class DeviceStream : public Stream {
   std::unique_ptr<Ring<StampedRate, 4>> rates_ = std::make_unique<Ring<StampedRate, 4>>();
   std::atomic<std::uint32_t> relation_{0};  ///< number of restarts of the device so far
   std::atomic<std::uint32_t> device_{0};    ///< number of losses of a device so far
-  // the members from here on belong to the control side
+  // the members from here on are used by the control side only
   FrameClock clock_;
   std::uint32_t clock_relation_ = 0;
   std::optional<StampedRate> rate_;
-  // the members from here on belong to the audio side
+  // the members from here on are used by the audio side only
   std::vector<std::int32_t> block_;
   std::int64_t frame_ = 0;  ///< the next frame to render
   std::int64_t origin_ns_ = 0;

@@ -39,7 +39,8 @@ enum class EventKind : std::int32_t {
 
 struct Event {
   EventKind kind = EventKind::burst_started;
-  std::uint32_t burst = 0;  ///< for an underrun or a loss: the first burst that lost frames; 0 if none did
+  /// underrun, device_lost: number of the first burst that lost frames; 0 if none did
+  std::uint32_t burst = 0;
   std::int64_t frame = 0;
   std::int64_t frames = 0;
   int error = 0;  ///< negative errno that the device reported; 0 if none
@@ -85,8 +86,8 @@ struct StreamConfig {
   /// take effect this many frames later. Real-time streams use their device's buffer.
   std::int64_t virtual_lead_frames = 0;
   std::optional<Carrier> carrier;
-  /// May be null. Its audio_alive() is called after each block that a device accepted. It must outlive the
-  /// stream.
+  /// The amplifier whose audio_alive() is called after each block that a device accepted; may be null. It
+  /// must outlive the stream.
   Amplifier* amplifier = nullptr;
 };
 
@@ -112,13 +113,13 @@ class Stream {
   /// intervals between them stay exact. Takes microseconds. If it throws BurstRefused, none of the bursts is
   /// played.
   virtual std::vector<Scheduled> schedule_together(std::span<const PreparedBurst> bursts) = 0;
-  /// Checks one burst, which can take longer than a buffer lasts (see prepare), and sends it like
-  /// schedule_together.
+  /// Checks one burst and sends it like schedule_together. The check can take longer than a buffer lasts (see
+  /// prepare).
   Scheduled schedule_soon(const Burst& burst);
-  /// Changes a waiting or sounding burst; `at_frame` counts from its start. Throws BurstRefused.
+  /// Changes a waiting or sounding burst; `at_frame` counts from the start of the burst. Throws BurstRefused.
   virtual void change(std::uint32_t burst, const Change& change) = 0;
-  /// Ramps one burst down (0: all of them), from the given frame of the stream or, without one, as soon as
-  /// possible. Throws std::runtime_error if the audio thread does not accept commands.
+  /// Ramps down the burst with this number (0: all bursts), from the given frame of the stream or, without
+  /// one, as soon as possible. Throws std::runtime_error if the audio thread does not accept commands.
   virtual void stop(std::uint32_t burst, const Ramp& ramp, std::optional<std::int64_t> frame = {}) = 0;
 
   /// Returns the oldest event that was not returned yet; empty if there is none. Call this at least every few
@@ -159,8 +160,8 @@ class SynchronousStream : public Stream {
   virtual void finish() = 0;
 };
 
-/// Throws the errors of open_output. Also throws terms::UsageError for a format that cannot be synthesised,
-/// and for Samples::passed with an output that needs samples.
+/// Opens a stream on a virtual clock. Throws the errors of open_output. Also throws terms::UsageError for a
+/// format that cannot be synthesised, and for Samples::passed with an output that needs samples.
 std::unique_ptr<SynchronousStream> open_synchronous(const StreamConfig& config, std::int64_t origin_ns = 0);
 
 /// Opens the output and starts the audio thread. The device sets the pace; for `null:` and `wav:`,

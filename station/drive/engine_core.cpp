@@ -35,7 +35,7 @@ void EngineCore::send(const Command& command) {
   if (!commands_->push(command)) throw BurstRefused(not_taken);
 }
 
-// Where bursts overlap, their peaks add up on each channel.
+// Refuses a burst if too many others are waiting, or if the peaks of overlapping bursts add up to too much.
 void EngineCore::check_room(const PreparedBurst& burst) const {
   std::array<double, max_channels> sum = burst.peak;
   if (config_.carrier) sum[static_cast<std::size_t>(config_.carrier->channel)] += config_.carrier->amplitude;
@@ -126,8 +126,8 @@ EngineCore::Open* EngineCore::find(std::uint32_t burst) {
   return found == open_.end() ? nullptr : &*found;
 }
 
-// Marks the bursts that lost any frame of [first_frame, end_frame). Returns the number of the first such
-// burst, or 0.
+// Marks as damaged the bursts that lost any frame of [first_frame, end_frame). Returns the number of the
+// first such burst, or 0.
 std::uint32_t EngineCore::damage(std::int64_t first_frame, std::int64_t end_frame) {
   std::uint32_t first = 0;
   for (Open& open : open_) {
@@ -168,7 +168,7 @@ void EngineCore::follow(Event& event) {
 }
 
 void EngineCore::gather() {
-  // Read this position before the events. All losses before this frame are then among the events.
+  // Read this position before the events are read: the events then include all losses before this frame.
   const std::int64_t heard = atomics_.heard.load();
   Event event;
   while (events_->pop(event)) {
@@ -254,7 +254,7 @@ void EngineCore::take_commands() noexcept {
   }
 }
 
-// Reports the synth's events up to `frame`.
+// Sends the synthesiser's events up to `frame` to the control thread.
 void EngineCore::report_until(std::int64_t frame) noexcept {
   for (const SynthEvent& event : synth_.events()) {
     const EventKind kind = event.kind == SynthEventKind::started ? EventKind::burst_started

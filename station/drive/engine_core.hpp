@@ -10,9 +10,9 @@
 
 namespace turnpoint::drive {
 
-/// The part that all streams share. The control thread sends commands through one ring and receives events
-/// through another; the audio side renders blocks. `process`, `pass`, `heard`, `lose` and `report` are for
-/// the audio side, everything else is for one control thread.
+/// What real-time and synchronous streams have in common. The control thread sends commands through one ring
+/// and receives events through another; the audio side renders blocks. `process`, `pass`, `heard`, `lose` and
+/// `report` are for the audio side, everything else is for one control thread.
 class EngineCore {
  public:
   explicit EngineCore(const StreamConfig& config);
@@ -27,7 +27,7 @@ class EngineCore {
   void stop(std::uint32_t burst, const Ramp& ramp, std::optional<std::int64_t> frame);
   std::optional<Event> poll();
   Counters counters() const noexcept;
-  /// Memory that the audio side uses in addition to this object.
+  /// Memory that the audio side uses in addition to this object, so that it can be locked.
   std::vector<system::MemoryRange> memory() const;
 
   /// Takes the waiting commands and renders frames, beginning with `frame`.
@@ -52,7 +52,7 @@ class EngineCore {
     PreparedChange change;
     PreparedBurst start;
   };
-  /// A burst that was sent but has not yet been heard or reported as damaged.
+  /// A burst that was sent to the audio side but has not yet been heard or reported as damaged.
   struct Open {
     PreparedBurst burst;
     /// end of the burst as scheduled; once the end has been rendered, the actual end

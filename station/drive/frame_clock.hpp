@@ -4,13 +4,14 @@
 
 namespace turnpoint::drive {
 
-/// A straight line fitted to pairs of a frame and its time (CLOCK_MONOTONIC). Each trial stores one.
+/// A straight line fitted to pairs of a frame number and the time of that frame (CLOCK_MONOTONIC). Each trial
+/// stores one.
 struct ClockFit {
   std::int64_t frame = 0;  ///< a frame on the fitted line
   /// time at which this frame leaves the converter, without the converter's group delay
   std::int64_t time_ns = 0;
   double ns_per_frame = 0;
-  double residual_ns = 0;  ///< rms distance of the pairs from the line
+  double residual_ns = 0;  ///< root mean square distance of the pairs from the line
   int pairs = 0;
 
   std::int64_t time_of(std::int64_t at_frame) const noexcept;
@@ -29,8 +30,8 @@ class FrameClock {
   void add(std::int64_t frame, std::int64_t time_ns);
   void reset();
 
-  /// The fitted line. With fewer than 8 pairs, a line through the newest pair with the nominal rate. If
-  /// `pairs` is 0, the line has no meaning.
+  /// The fitted line. With fewer than 8 pairs, a line through the newest pair whose slope is the nominal
+  /// rate. If `pairs` is 0, the line has no meaning.
   ClockFit fit() const;
 
  private:

@@ -37,7 +37,7 @@ struct Kernels {
   void (*gliding)(double* sum, int frames, Partial partial, const double* shape) noexcept;
 };
 
-/// Loops that run on every processor of the architecture.
+/// Loops without special instructions, which run on every processor of the architecture.
 const Kernels& generic_kernels() noexcept;
 
 /// The fastest loops that this processor supports; detected once.

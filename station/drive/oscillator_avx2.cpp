@@ -1,5 +1,6 @@
-// Compiled with -mavx2 and called only if oscillator_dispatch_x86.cpp has detected AVX2. It must not use
-// fused multiply-add, because the loops must give the same bits on every processor.
+// The oscillator's inner loops for processors with AVX2. This file is compiled with -mavx2, and its code is
+// called only if oscillator_dispatch_x86.cpp has detected AVX2. It must not use fused multiply-add, because
+// the loops must give the same bits on every processor.
 #include "station/drive/oscillator_avx2.hpp"
 #include "station/drive/oscillator_kernels.hpp"
 

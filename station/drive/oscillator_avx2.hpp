@@ -3,7 +3,7 @@
 
 namespace turnpoint::drive {
 
-/// The AVX2 version of the loops. Call it only on processors with AVX2.
+/// The oscillator's inner loops for AVX2. Call it only on processors with AVX2.
 const Kernels& avx2_kernels() noexcept;
 
 }  // namespace turnpoint::drive

@@ -1,6 +1,6 @@
-// The loops of oscillator.hpp, compiled once for each kind of processor. Include this only in
-// oscillator_*.cpp. Everything is in an unnamed namespace, so that the linker cannot share code built for a
-// newer processor with the rest of the program.
+// The oscillator's inner loops (see Kernels in oscillator.hpp), compiled once for each kind of processor.
+// Include this only in oscillator_*.cpp. Everything is in an unnamed namespace, so that the linker cannot
+// share code built for a newer processor with the rest of the program.
 #pragma once
 #include <cstdint>
 

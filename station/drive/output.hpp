@@ -43,9 +43,8 @@ struct WriteResult {
   WriteStatus status = WriteStatus::ok;
   int error = 0;            ///< negative errno if the write failed
   std::int64_t taken = 0;   ///< number of frames of this block that the device accepted
-  std::int64_t passed = 0;  ///< number of frames after those that were replaced by silence
-  /// Number of frames, up to the last accepted one, that the device received but, as far as is known, never
-  /// played.
+  std::int64_t passed = 0;  ///< number of frames after the taken ones that were replaced by silence
+  /// Number of accepted frames, of this and earlier blocks, that the device has probably never played.
   std::int64_t dropped = 0;
 };
 

@@ -100,7 +100,7 @@ void prepare_changes(const Burst& burst, const Format& format, const SynthLimits
   out.change_count = burst.change_count;
 }
 
-// Each code must end, and be followed by its silent bits, before the next one begins.
+// Prepares the trigger codes. Each code and the silent bits after it must end before the next code begins.
 void prepare_codes(const Marker& marker, const Burst& burst, PreparedMarker& out) {
   const std::int64_t code = trigger_bits * marker.frames, quiet = trigger_quiet_bits * marker.frames;
   if (marker.frames % 2 != 0)
@@ -152,7 +152,7 @@ void low_pass(double frequency_Hz, const Format& format, double (&out)[5]) {
 
 void high_pass(double frequency_Hz, const Format& format, double (&out)[5]) {
   low_pass(frequency_Hz, format, out);
-  const double b = (1 - out[3] + out[4]) / 4;  // unit gain at half the sampling rate
+  const double b = (1 - out[3] + out[4]) / 4;  // makes the gain 1 at half the sampling rate
   out[0] = b;
   out[1] = -2 * b;
   out[2] = b;
@@ -188,8 +188,13 @@ void check_shape(const Burst& burst, const SynthLimits& limits) {
 
 }  // namespace
 
+double largest_peak(const Format& format, const SynthLimits& limits) {
+  return std::min(limits.peak, 1 - std::ldexp(2, 1 - format.bits));
+}
+
 PreparedBurst prepare(const Burst& burst, const Format& format, const SynthLimits& limits) {
   check_shape(burst, limits);
+  const double largest = largest_peak(format, limits);
   PreparedBurst out;
   out.start_frame = burst.start_frame;
   out.length_frames = burst.length_frames;
@@ -201,18 +206,19 @@ PreparedBurst prepare(const Burst& burst, const Format& format, const SynthLimit
   out.marker = prepare(burst.marker, burst, format, limits);
   out.noise = prepare(burst.noise, format, limits);
   out.peak = peak_bound(out);
-  const auto above = [&](double peak) { return peak > limits.peak; };
+  const auto above = [&](double peak) { return peak > largest; };
   if (std::any_of(out.peak.begin(), out.peak.end(), above) &&
       burst.length_frames <= limits.longest_rendered_frames)
     out.peak = rendered_peak(out, format);
   for (std::size_t c = 0; c < max_channels; ++c)
     if (above(out.peak[c]))
-      refuse("peak of {:.6f} of full scale on channel {}; the limit is {:.6f}", out.peak[c], c, limits.peak);
+      refuse("peak of {:.6f} of full scale on channel {}; the limit is {:.6f}", out.peak[c], c, largest);
   return out;
 }
 
 PreparedChange prepare_change(const Change& change, PreparedBurst& burst, const Format& format,
                               const SynthLimits& limits) {
+  const double largest = largest_peak(format, limits);
   PreparedChange out = prepare(change, burst.tones, burst.tone_count, format, limits);
   out.live = true;
   PreparedBurst with = burst;
@@ -224,9 +230,9 @@ PreparedChange prepare_change(const Change& change, PreparedBurst& burst, const 
   const auto own = peak_bound(with), live = peak_bound(with, out);
   for (std::size_t c = 0; c < max_channels; ++c) {
     with.peak[c] = std::max({burst.peak[c], own[c], live[c]});
-    if (with.peak[c] > limits.peak)
+    if (with.peak[c] > largest)
       refuse("the change could reach {:.6f} of full scale on channel {}; the limit is {:.6f}", with.peak[c],
-             c, limits.peak);
+             c, largest);
   }
   burst = with;
   return out;

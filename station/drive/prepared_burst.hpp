@@ -20,7 +20,7 @@ struct Format {
 
 /// The limits that a burst must meet to be accepted.
 struct SynthLimits {
-  /// largest allowed peak of each channel, relative to full scale; it leaves room for dither
+  /// largest allowed peak of each channel, relative to full scale
   double peak = 1.0 - 0x1p-20;
   double highest_relative_Hz = terms::kHighestShareOfRate;
   std::int64_t longest_frames = 192000LL * 3600;
@@ -28,6 +28,10 @@ struct SynthLimits {
       /// a longer burst is judged by the sum of its amplitudes, because rendering it would take too long
       192000LL * 60;
 };
+
+/// Returns the largest peak that a burst may have in this format, relative to full scale: limits.peak, or
+/// less if dither and rounding could otherwise reach full scale (they add up to two steps of the converter).
+double largest_peak(const Format& format, const SynthLimits& limits);
 
 /// Thrown for a burst that will not be played; gives the reason.
 class BurstRefused : public std::runtime_error {
@@ -61,7 +65,7 @@ struct PreparedNoise {
   std::int32_t channel = 0;
   double gain = 0;
   std::uint64_t seed = 0;
-  double high_pass[5] = {};  ///< b0 b1 b2 a1 a2
+  double high_pass[5] = {};  ///< filter coefficients b0 b1 b2 a1 a2
   double low_pass[5] = {};
 };
 
@@ -88,7 +92,8 @@ struct PreparedBurst {
   PreparedMarker marker;
   PreparedNoise noise;
   std::array<double, max_channels>
-      peak{};  ///< largest sample of each channel (or an upper limit of it, if that is allowed)
+      /// largest sample of each channel (or an upper limit of it, if that is below the allowed peak)
+      peak{};
 };
 
 static_assert(std::is_trivially_copyable_v<PreparedBurst>);

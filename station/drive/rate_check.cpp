@@ -37,8 +37,8 @@ std::optional<MeasuredRate> RateCheck::result() const noexcept {
   rate.deviation_ppm = slope / nominal_rate_Hz_ * 1e6;
   rate.standard_error_ppm = std::sqrt(variance / sxx) / nominal_rate_Hz_ * 1e6;
   rate.span_s = span;
-  // Coarse time stamps have correlated errors, so the computed standard error is too small. Therefore call a
-  // rate wrong only if it is far off, or after 20 s.
+  // Coarse time stamps have correlated errors, so the computed standard error is too small. Therefore, in the
+  // first 20 s, report a wrong rate only if it is far off.
   const double off = std::abs(rate.deviation_ppm);
   const bool clear = off <= tolerance_ppm || off > tolerance_ppm + 4 * rate.standard_error_ppm;
   if ((rate.standard_error_ppm > 40 || !clear) && span < 20) return std::nullopt;

@@ -24,9 +24,9 @@ class RateCheck {
   void add(std::int64_t frame, std::int64_t raw_ns) noexcept;
   void restart() noexcept { count_ = 0; }
 
-  /// The rate, once at least 16 time stamps span 2 s or more and the result is certain: a standard error of
-  /// at most 40 ppm, and a deviation clearly inside or outside the tolerance. After 20 s, the rate in any
-  /// case.
+  /// Returns the rate once at least 16 time stamps span 2 s or more and the result is certain: a standard
+  /// error of at most 40 ppm, and a deviation clearly inside or outside the tolerance. After 20 s, returns it
+  /// in any case.
   std::optional<MeasuredRate> result() const noexcept;
 
  private:

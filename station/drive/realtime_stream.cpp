@@ -38,7 +38,7 @@ class Realtime final : public DeviceStream {
       stop(0, ramp, std::nullopt);
       const std::int64_t tail = ramp.frames + std::int64_t{output.period_frames} * (output.periods + 1);
       system::sleep_until_ns(system::monotonic_ns() + tail * 1'000'000'000 / output.rate_Hz);
-      // The audio thread does not accept commands, so nothing is sounding either.
+      // stop() threw because the audio thread takes no commands. Then it plays nothing either.
     } catch (const std::exception&) {
     }
     thread_.request_stop();

@@ -6,7 +6,8 @@ namespace turnpoint::drive {
 namespace {
 
 constexpr std::int64_t reopen_every_ns = 250'000'000;
-// a device needs about ten waits to resume; after 50 it will not resume by itself
+// after the machine has slept, a device needs about ten waits to resume; after 50 it will not resume by
+// itself
 constexpr int most_resumes = 50;
 
 }  // namespace

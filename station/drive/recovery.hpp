@@ -24,7 +24,7 @@ enum class RecoveryAction {
 /// neither sleeps nor calls the device.
 class Recovery {
  public:
-  /// Call this after a transfer or a wait.
+  /// Call this after writing samples to the device or waiting for it.
   RecoveryAction transferred(const DeviceReport& report) noexcept;
   /// Call this after carrying out the action `restart` or `resume`.
   RecoveryAction acted(const DeviceReport& report) noexcept;

@@ -15,8 +15,8 @@ enum class SynthEventKind : std::int32_t { started, ended, missed };
 struct SynthEvent {
   SynthEventKind kind = SynthEventKind::started;
   std::uint32_t burst = 0;
-  /// started: first frame of the burst; ended: first silent frame after it; missed: requested start, already
-  /// past
+  /// started: first frame of the burst; ended: first silent frame after it; missed: the requested start,
+  /// which was already past
   std::int64_t frame = 0;
 };
 
@@ -68,11 +68,11 @@ class Synth {
   std::span<const SynthEvent> events() const noexcept;
   void clear_events() noexcept;
 
-  /// All memory that render() uses in addition to this object.
+  /// All memory that render() uses in addition to this object, so that it can be locked.
   system::MemoryRange memory() const noexcept;
 
-  bool active() const noexcept;  ///< true while anything waits or sounds
-  /// number of samples that exceeded the range: 0 unless limits were lifted
+  bool active() const noexcept;  ///< true while any burst waits or sounds
+  /// number of samples that exceeded the range and were clipped
   std::uint64_t saturated() const noexcept;
 
  private:

@@ -12,7 +12,8 @@ inline constexpr int trigger_half_bits = 2 * trigger_bits;
 /// Bits of silence that a code needs before and after itself.
 inline constexpr int trigger_quiet_bits = 1;
 
-/// The remainder of the code divided by x^4 + x + 1. It detects all errors of one or two bits.
+/// The four check bits of a code: a CRC with the polynomial x^4 + x + 1. They detect all errors of one or two
+/// bits.
 constexpr std::uint32_t trigger_check(std::uint32_t code) noexcept {
   std::uint32_t remainder = code << 4;
   for (int bit = 11; bit >= 4; --bit)
@@ -20,7 +21,8 @@ constexpr std::uint32_t trigger_check(std::uint32_t code) noexcept {
   return remainder;
 }
 
-/// The half bits of a code: bit 27 is the first, 1 is high. 0 for code 0, which is no code.
+/// The half bits of a code: bit 27 is the first half bit, and 1 means high. Code 0 means "no code" and gives
+/// 0.
 constexpr std::uint32_t trigger_pattern(std::uint8_t code) noexcept {
   if (code == 0) return 0;
   std::uint32_t pattern = 0b1100;
@@ -29,7 +31,7 @@ constexpr std::uint32_t trigger_pattern(std::uint8_t code) noexcept {
   return pattern;
 }
 
-/// The wave of a pattern, 1 or -1, in this half bit (from 0).
+/// Sign of the pulse train (1 or -1) during this half bit, counted from 0.
 constexpr int trigger_wave(std::uint32_t pattern, int half_bit) noexcept {
   return pattern >> (trigger_half_bits - 1 - half_bit) & 1 ? 1 : -1;
 }

@@ -31,7 +31,7 @@ struct Scratch {
 class Voice {
  public:
   void begin(const PreparedBurst& burst) noexcept;
-  /// Replaces a live change that is still waiting, if there is one.
+  /// Accepts a live change (one sent while the burst plays). It replaces an earlier one that still waits.
   void change(const PreparedChange& change) noexcept;
   /// Adds a stop, at which the burst ramps down. Ignored if the burst would not end earlier because of it, or
   /// if there are eight stops already.
@@ -62,7 +62,7 @@ class Voice {
 
   PreparedBurst burst_;
   std::array<Partial, max_tones> partials_;
-  std::int64_t origin_ = 0;         ///< frame of the burst that is frame n = 0 of `partials_`
+  std::int64_t origin_ = 0;         ///< frame of the burst at which the frame count n of `partials_` is 0
   std::int64_t glide_end_ = never;  ///< frame at which the current glide ends
   std::int64_t glide_frames_ = 1;
   std::array<PreparedTone, max_tones> target_;

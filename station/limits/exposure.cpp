@@ -48,7 +48,8 @@ void Exposure::check(double displacement_m, double length_s) const {
                                     limits_.duty * window_s, window_s));
 }
 
-// Only the window that ends with this stimulus needs to be checked, because the duty cycle is largest there.
+// Only the time window that ends with this stimulus needs to be checked, because the duty cycle is largest
+// there.
 bool Exposure::fits(double start_s, double length_s) const {
   constexpr double rounding_s = 1e-9;
   const double end_s = start_s + length_s;

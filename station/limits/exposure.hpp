@@ -10,14 +10,14 @@ namespace turnpoint::limits {
 
 /// The largest vibration that a rig may deliver to a finger.
 struct ExposureLimits {
-  double displacement_m = 0;  ///< peak anywhere on the surface, with all tones added
+  double displacement_m = 0;  ///< largest peak displacement anywhere on the surface, with all tones added
   double continuous_s = 30;   ///< longest vibration without a pause of 0.5 s
   double duty = 0.8;          ///< largest fraction of any 60 s in which the surface may vibrate
-  double session_s = 3600;    ///< length of one period of exposure, pauses included
+  double session_s = 3600;    ///< longest period of exposure, pauses included (see finger_account.hpp)
 };
 
-/// The start and end of a stimulus that was presented, in seconds. The clock must not restart with the
-/// station: the wall time in the database is such a clock.
+/// The start and end of a stimulus that was presented, in seconds. Use a clock that does not restart with the
+/// station, such as the wall time in the database.
 struct Exposed {
   double start_s = 0;
   double end_s = 0;

@@ -18,7 +18,7 @@ double wall_s(const records::SegmentStart& segment, std::int64_t time_ns) {
          1e-9 * static_cast<double>(time_ns - segment.monotonic_ns);
 }
 
-/// The time during which a segment ran, in s since 1970.
+/// The time during which a segment (one program run of a session) was active, in s since 1970.
 struct Active {
   double start_s = 0, end_s = 0;
 };

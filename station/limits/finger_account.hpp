@@ -10,22 +10,22 @@
 
 namespace turnpoint::limits {
 
-/// Converts the rig's limits. A simulated session may have any length.
+/// Returns the rig's limits of exposure. There is no limit on the length of a simulated session.
 ExposureLimits limits_of(const rig::Rig& rig, terms::RunMode mode);
 
-/// The vibration that a participant's finger has received so far: the stimuli of earlier segments, from the
-/// database and in order of time, and the start of the period of exposure on the wall clock (s since 1970).
-/// Only a pause of half an hour starts a new period; a restart of the program or another session of this
-/// participant does not.
+/// The vibration that a participant's finger has received so far: the stimuli of earlier program runs, from
+/// the database and in order of time, and the start of the period of exposure on the wall clock (s since
+/// 1970). Only a pause of half an hour starts a new period; a restart of the program or another session of
+/// this participant does not.
 struct FingerHistory {
   std::vector<Exposed> stimuli;
   double period_start_s = 0;
 };
 inline constexpr double kNewPeriod_s = 1800;
 
-/// Uses the sessions that ended within the half hour before `now_s`. A trial that was presented but never
-/// finished, because of a crash, counts as a stimulus of `longest_s`. A time after `now_s` counts as `now_s`,
-/// because the clock must have been set back.
+/// Computes the history from the sessions that ended within the half hour before `now_s`. A trial that was
+/// presented but never finished, because of a crash, counts as a stimulus of `longest_s`. A time after
+/// `now_s` counts as `now_s`, because the clock must have been set back.
 FingerHistory finger_history(const std::vector<store::StoredSession>& sessions, double now_s,
                              double longest_s);
 
@@ -33,10 +33,12 @@ FingerHistory finger_history(const std::vector<store::StoredSession>& sessions, 
 FingerHistory read_finger_history(const std::string& database, const std::string& participant, double now_s,
                                   double longest_s);
 
-/// Keeps a period of exposure within the rig's limits. Times are those of the stage's clock.
+/// Keeps a period of exposure within the rig's limits. Times are those of the stage's clock, which may be
+/// virtual.
 class FingerAccount {
  public:
-  /// `origin_ns` on the stage's clock and `origin_s` on the wall clock are the same moment.
+  /// `origin_ns` (on Stage::now_ns(), the session's clock) and `origin_s` (on the wall clock) are the same
+  /// moment.
   FingerAccount(const ExposureLimits& limits, const FingerHistory& history, std::int64_t origin_ns,
                 double origin_s);
 
@@ -54,7 +56,8 @@ class FingerAccount {
   std::int64_t origin_ns_;
 };
 
-/// Returns the stimuli of a trial, with their times from its start and their longest possible durations.
+/// Returns the stimuli of a trial, with times counted from the start of the trial and with their longest
+/// possible durations.
 std::vector<Exposed> stimuli_of(const protocol::Protocol& protocol, const trial::TrialSpec& trial);
 
 }  // namespace turnpoint::limits

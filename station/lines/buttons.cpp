@@ -23,7 +23,7 @@ constexpr std::int64_t settle_check_ns = 5'000'000;
 constexpr std::int64_t glitch_pause_ns = 1'000'000'000;
 constexpr std::int64_t evdev_wait_ns = 100'000'000;
 
-// Reads the lines: first the buttons, then the contact line, if any.
+// Watches the lines of the buttons and, if there is one, the contact line, which is the last.
 class LineReader {
  public:
   LineReader(std::unique_ptr<Lines> lines, const WatchedLines& plan, const ButtonsHandlers& handlers)

@@ -26,7 +26,7 @@ struct Glitch {
   int untold = 0;              ///< number of earlier glitches of this line that were not reported
 };
 
-/// A fault of the buttons or the contact.
+/// A fault of the buttons or of the finger contact.
 struct ButtonsFault {
   enum class Kind {
     edges_lost,  ///< edges came faster than they were read, and the kernel's buffer overflowed

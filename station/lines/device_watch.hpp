@@ -8,8 +8,8 @@
 
 namespace turnpoint::lines {
 
-/// A thread that watches a device of the buttons or the contact, reports when it is lost, and looks for it
-/// until it is back.
+/// A thread that watches the device of the buttons or of the finger contact, reports when it is lost, and
+/// looks for it until it is back.
 class DeviceWatch {
  public:
   /// A function that checks the open device once: it waits a short time for an event and handles it. It

@@ -20,7 +20,7 @@ struct LineChange {
   std::int64_t time_ns = 0;
   int edges = 0;               ///< number of edges in the burst; 0 for `lost`
   std::int64_t length_ns = 0;  ///< time from the first to the last of these edges
-  bool active = false;         ///< the current level
+  bool active = false;         ///< whether the line is active now
 };
 
 /// Distinguishes presses from bouncing contacts and from interference. It uses the kernel's time stamps only.
@@ -47,8 +47,8 @@ class EdgeFilter {
   /// been passed to edge(). Call until it returns nothing.
   std::optional<LineChange> decide(std::int64_t now_ns) noexcept;
 
-  /// Takes the next edge; call decide() for its time first. `active` is the level after the edge. Returns a
-  /// glitch if the burst has become too long for a bouncing contact.
+  /// Takes the next edge; first call decide() with the time of this edge. `active` is the level after the
+  /// edge. Returns a glitch if the burst has become too long for a bouncing contact.
   std::optional<LineChange> edge(std::int64_t time_ns, bool active) noexcept;
 
   /// Takes the level that was read at `now_ns` while no edge was waiting. If this level goes on differing
@@ -67,7 +67,7 @@ class EdgeFilter {
   Rules rules_;
   bool level_;                     ///< level after the last edge
   bool stable_;                    ///< the latest level that lasted at least `hold_ns`
-  std::int64_t stable_since_ = 0;  ///< first edge of the burst that led to the stable level
+  std::int64_t stable_since_ = 0;  ///< time of the first edge of the burst that led to the stable level
   bool told_;                      ///< the level that was reported last
   std::int64_t quiet_until_ = std::numeric_limits<std::int64_t>::min();
   bool in_burst_ = false;

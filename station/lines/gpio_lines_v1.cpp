@@ -113,7 +113,7 @@ class GpioLines final : public Lines {
  private:
   struct Last {
     std::uint32_t sequence = 0;
-    int waiting = 0;  ///< edges read since the buffers were last empty
+    int waiting = 0;  ///< number of edges read since the kernel's buffers were last empty
     bool was_full = false;
   };
   std::vector<Found> lines_;
@@ -137,7 +137,7 @@ class GpioOutputs final : public Outputs {
     }
     values_.resize(names.size());
     if (gpiod_line_request_bulk_output(&lines_, consumer.c_str(), values_.data()) != 0)
-      throw_line_error(errno, names.front(), "request, together with the lines named with it");
+      throw_line_error(errno, names.front(), "cannot be requested together with the other lines");
   }
 
   void drive(std::uint32_t levels) override {

@@ -168,7 +168,8 @@ class GpioOutputs final : public Outputs {
     if (gpiod_line_config_add_line_settings(lines.get(), offsets.data(), offsets.size(), settings.get()) != 0)
       throw_line_error(errno, names.front(), "request");
     request_ = Request(gpiod_chip_request_lines(first.chip.get(), config.get(), lines.get()));
-    if (!request_) throw_line_error(errno, names.front(), "request, together with the lines named with it");
+    if (!request_)
+      throw_line_error(errno, names.front(), "cannot be requested together with the other lines");
     values_.resize(names.size());
   }
 

@@ -7,7 +7,7 @@
 
 namespace turnpoint::lines {
 
-/// The levels that the guard wants on the lines after a step.
+/// The levels to which the guard's output lines are to be set after a step of its state machine.
 struct GuardOutputs {
   int enable = 0;
   int heartbeat = 0;
@@ -31,7 +31,7 @@ class Guard {
     terms::FaultKind kind = terms::FaultKind::other;
     bool latched = false;
   };
-  /// The latched fault. Its detail is a string literal.
+  /// The latched fault, which stays until somebody clears it. Its detail is a string literal.
   struct Fault {
     terms::FaultKind kind = terms::FaultKind::other;
     const char* detail = "";
@@ -48,7 +48,7 @@ class Guard {
   void disarm() noexcept;
   void disable() noexcept;
 
-  /// Reports the level of a line, either after an edge or as it was read.
+  /// Report the level of the fault line or the stop line, after an edge or after reading the line.
   void fault_line(std::int64_t time_ns, bool active) noexcept;
   void stop_line(std::int64_t time_ns, bool active) noexcept;
   /// Reports the actual level of the enable line. If it is high although it was set low, the heartbeat ends
@@ -56,8 +56,8 @@ class Guard {
   void enable_line(std::int64_t time_ns, bool level) noexcept;
   void trip(std::int64_t time_ns, terms::FaultKind kind, const char* detail = "") noexcept;
 
-  /// Report that a thread is alive, or that time has passed. After the page's first report, the guard expects
-  /// the page to keep reporting.
+  /// Report that a thread is alive or, for tick(), that time has passed. After the page's first report, the
+  /// guard expects the page to keep reporting.
   void audio_alive(std::int64_t now_ns) noexcept { audio_seen_ns_ = now_ns; }
   void session_alive(std::int64_t now_ns) noexcept { session_seen_ns_ = now_ns; }
   void page_alive(std::int64_t now_ns) noexcept { page_seen_ns_ = now_ns; }

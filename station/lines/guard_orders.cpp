@@ -13,7 +13,7 @@ std::optional<Guard::Refusal> GuardOrders::ask(Ask what) {
 }
 
 void GuardOrders::post(std::atomic<std::uint32_t>& order, std::uint32_t bits) noexcept {
-  // From here on the guard will carry out the command, at its next beat at the latest, even if this thread
+  // From here on the guard will carry out the command, at its next tick at the latest, even if this thread
   // stops.
   order.fetch_or(bits);
   scheduler_point();

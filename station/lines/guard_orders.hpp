@@ -43,7 +43,7 @@ class GuardOrders {
   std::optional<Taken> take() noexcept;
   void done(const Taken& taken, std::optional<Guard::Refusal> refusal) noexcept;
 
-  /// Wakes the guard without a command.
+  /// Wakes the guard's thread without giving it a command.
   void wake() noexcept { wake_.ring(); }
   int descriptor() const noexcept { return wake_.descriptor(); }
 

@@ -23,9 +23,9 @@ using Ask = GuardOrders::Ask;
 
 constexpr int guard_priority = 75;
 constexpr std::int64_t open_again_ns = 100'000'000;
-// how often the levels of the fault and stop lines are read while the enable line is high
+// interval at which the levels of the fault and stop lines are read while the enable line is high
 constexpr std::int64_t look_ns = 500'000;
-static_assert(terms::fault_kinds.size() <= 32, "each kind of fault needs its own bit in the word of trips");
+static_assert(terms::fault_kinds.size() <= 32, "each kind of fault needs a bit in GuardOrders::Taken::trips");
 
 /// The guard's state, copied for ordinary threads to read.
 struct Report {
@@ -34,7 +34,7 @@ struct Report {
   std::int64_t reaction_ns = -1;
   bool gate = false;
 };
-/// The reason why the lines were lost, truncated to fit.
+/// The reason why the lines were lost, truncated to the size of the array.
 using Reason = std::array<char, 160>;
 
 /// Owns the lines and the guard's rules. All members belong to the guard's thread; other threads read only
@@ -86,8 +86,7 @@ class GuardThread {
     if (const auto at = page_ns.load(); at >= 0) guard_.page_alive(at);
   }
 
-  /// Starts to use freshly opened lines. The outputs are low. Reads which stops and faults are already
-  /// active.
+  /// Opens the lines, whose outputs are low at first, and reads whether a stop or a fault is already active.
   void take_up() {
     lines_ = open_();
     driven_high_ = false;
@@ -228,7 +227,7 @@ class GuardThread {
   bool driven_high_ = false;
   std::int64_t lowered_ns_ = 0;  ///< time at which the enable line was last set from high to low
   std::int64_t reaction_ns_ = -1;
-  bool gate_ = false;  ///< level of the gate when it was last read
+  bool gate_ = false;  ///< level of the line GuardLines::gate when it was last read
   std::jthread thread_;
 };
 

@@ -31,11 +31,11 @@ struct GuardOptions {
 
 /// Makes an amplifier on lines (kernel or simulated) with its guard thread, at SCHED_FIFO 75 if granted. Once
 /// the lines are open, only the guard thread uses them. It handles the edges of the fault and stop lines and
-/// also reads their levels: every 0.5 ms while the enable line is high, in every beat, and before each arming
-/// and enabling. A lost or delayed edge therefore does not matter. The enable line is low when this function
-/// returns, and after destruction. The loss of the lines' chip is a latched fault. The guard looks for the
-/// lines until they are back; then an operator can clear the fault and arm. Throws what `open` throws at the
-/// first attempt.
+/// also reads their levels: every 0.5 ms while the enable line is high, at every toggle of the heartbeat, and
+/// before each arming and enabling. A lost or delayed edge therefore does not matter. The enable line is low
+/// when this function returns, and after destruction. The loss of the lines' chip is a latched fault. The
+/// guard looks for the lines until they are back; then an operator can clear the fault and arm. Throws what
+/// `open` throws at the first attempt.
 std::unique_ptr<drive::Amplifier> guard_amplifier(OpenLines open, const GuardLines& roles,
                                                   GuardOptions options = {});
 

@@ -19,7 +19,7 @@ struct LineRequest {
   LineUse use = LineUse::input;
 };
 
-/// A change of an input, with the kernel's time stamp.
+/// A change of the level of an input line, with the kernel's time stamp.
 struct Edge {
   std::int64_t time_ns = 0;  ///< CLOCK_MONOTONIC time at which the interrupt occurred
   int line = 0;              ///< index of the line in the requests
@@ -41,7 +41,8 @@ class Lines {
   virtual std::optional<Edge> wait(std::int64_t timeout_ns, int wake = -1) = 0;
   /// The current level of line `index`. Throws std::system_error.
   virtual bool level(int index) = 0;
-  /// Sets output `index`. Throws std::system_error. Safe on a real-time thread: one system call.
+  /// Sets the level of output line `index`. Throws std::system_error. Safe on a real-time thread: one system
+  /// call.
   virtual void drive(int index, int level) = 0;
   /// The actual level of output `index`; empty if the chip cannot tell. Throws std::system_error: ENODEV if
   /// the chip was removed.

@@ -18,7 +18,8 @@ struct Finding {
 /// line; for `sim:`, one finding that the device is simulated.
 std::vector<Finding> check_lines(const std::string& device, const std::string& uri);
 
-/// Checks that the touch sensor or panel of an `evdev:NAME` URI exists, is readable and has monotonic stamps.
+/// Checks that the touch sensor or panel of an `evdev:NAME` URI exists, is readable and has monotonic time
+/// stamps.
 Finding check_touch(const std::string& device, const std::string& uri);
 
 /// The result of trying to open the machine's input devices.

@@ -8,7 +8,7 @@
 
 namespace turnpoint::lines {
 
-/// The lines of a simulated amplifier: enable, heartbeat, fault, stop, gate.
+/// The index of each line of a simulated amplifier: enable, heartbeat, fault, stop, gate.
 inline constexpr GuardLines kSimulatedAmplifier{0, 1, 2, 3, 4};
 
 /// The lines of a simulated amplifier, with the monostable and the gate of deploy/README.md: the gate is open
@@ -31,7 +31,8 @@ class SimulatedAmplifierLines : public SimulatedLines {
   std::atomic<bool> bridged_{false}, broken_{false};
 };
 
-/// Makes an amplifier with the real guard on these lines. The caller may change the lines at any time.
+/// Makes an amplifier that uses these simulated lines and is supervised by the same guard (guard.hpp) as a
+/// real one. The caller may change the lines at any time.
 std::unique_ptr<drive::Amplifier> simulated_amplifier(const std::shared_ptr<SimulatedAmplifierLines>& lines);
 
 }  // namespace turnpoint::lines

@@ -20,11 +20,11 @@ class SimulatedLines : public Lines {
   void drive(int index, int level) override;
   std::optional<bool> read_back(int index) override { return level(index); }
 
-  /// Changes an input at the given time.
+  /// Sets the level of an input, with this time stamp.
   void set(int index, bool level, std::int64_t time_ns);
   /// Changes an input and changes it back after `length_ns`; both edges are available at once.
   void pulse(int index, std::int64_t time_ns, std::int64_t length_ns);
-  /// Loses this number of edges, as if the kernel's buffer had no room for them.
+  /// Drops this number of edges, as if the kernel's buffer had no room for them.
   void lose_edges(int index, std::uint32_t count);
   /// One change of an output: which output, its new level, and when.
   struct Driven {

@@ -13,10 +13,10 @@ namespace turnpoint::lines {
 /// buttons.
 class SyncLine {
  public:
-  /// Called with the time of a pulse's first edge (CLOCK_MONOTONIC), on the thread of the line.
+  /// Called with the time of a pulse's first edge (CLOCK_MONOTONIC), on the thread that watches the line.
   using Pulse = std::function<void(std::int64_t time_ns)>;
-  /// With `low`, a pulse pulls the line low. Of `handlers`, only `fault` and `back` are called. Throws the
-  /// errors of `open`.
+  /// If `low` is true, a pulse pulls the line low. Of `handlers`, only `fault` and `back` are called. Throws
+  /// the errors of `open`.
   SyncLine(const OpenLines& open, bool low, Pulse pulse, ButtonsHandlers handlers);
 
  private:

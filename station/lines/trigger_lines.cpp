@@ -13,15 +13,15 @@ namespace turnpoint::lines {
 namespace {
 
 constexpr std::int64_t kLow_ns = 1'000'000;  // time for which all lines are low between two codes
-// the condition variable is awaited only until this long before a code is due, because a sleep until a given
-// time is more exact
+// The thread waits on the condition variable until this long before a code is due. Then it sleeps until the
+// exact time, because such a sleep is more precise.
 constexpr std::int64_t kAhead_ns = 300'000;
 
 std::chrono::steady_clock::time_point point(std::int64_t time_ns) {
   return std::chrono::steady_clock::time_point(std::chrono::nanoseconds(time_ns));
 }
 
-/// Lines that exist only in memory.
+/// Output lines for `sim:`, which do nothing.
 class NoOutputs final : public Outputs {
  public:
   void drive(std::uint32_t) override {}

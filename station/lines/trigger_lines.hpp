@@ -12,14 +12,15 @@
 
 namespace turnpoint::lines {
 
-/// The lines of a URI `gpio:bit0=LINE,bit1=LINE,strobe=LINE,pulse_ms=5`, or `sim:` with eight bits.
+/// The trigger lines that a URI names: `gpio:bit0=LINE,bit1=LINE,strobe=LINE,pulse_ms=5`, or `sim:` for eight
+/// simulated bits.
 struct TriggerPlan {
   std::vector<std::string> names;  ///< lines of the bits, the lowest first, then the strobe; empty for `sim:`
   int bits = 8;
   bool strobe = false;
   std::int64_t pulse_ns = 5'000'000;  ///< how long a code is held on the lines
 };
-/// Throws terms::UsageError for a URI that is not understood.
+/// Reads the URI of trigger lines. Throws terms::UsageError if it is not understood.
 TriggerPlan trigger_plan(const std::string& uri);
 
 /// Sends trigger codes in parallel on GPIO lines, for a device that reads TTL levels. An ordinary thread sets
@@ -38,7 +39,7 @@ class TriggerLines {
   struct Given {
     int code = 0;
     std::int64_t due_ns = 0;
-    /// time at which the code was on the lines; with a strobe, the time at which the strobe rose
+    /// time at which the lines carried the code; with a strobe, the time at which the strobe rose
     std::int64_t time_ns = 0;
   };
   /// Removes and returns the codes sent so far, in order.
@@ -55,13 +56,13 @@ class TriggerLines {
   const TriggerPlan plan_;
   mutable std::mutex mutex_;
   std::condition_variable_any changed_;
-  std::deque<Given> waiting_;  ///< in order of due_ns
+  std::deque<Given> waiting_;  ///< codes that wait to be sent, in order of due_ns
   std::vector<Given> given_;
   std::string failure_;
   std::jthread thread_;
 };
 
-/// Opens the rig's lines for codes. Throws LineError or terms::UsageError.
+/// Opens the rig's lines for trigger codes. Throws LineError or terms::UsageError.
 std::unique_ptr<TriggerLines> open_trigger_lines(const std::string& uri);
 
 }  // namespace turnpoint::lines

@@ -12,8 +12,8 @@ struct Uri {
       name;  ///< the part before the first comma if it has no `=`, e.g. the device of `evdev:NAME,axis=x`
   std::vector<std::pair<std::string, std::string>> values;
 
-  /// Removes a key and returns its value, or `otherwise` if there is no such key. A key that is still there
-  /// at the end was not understood.
+  /// Removes a key and returns its value, or `otherwise` if there is no such key. A key that nobody takes is
+  /// unknown: see check_empty().
   std::string take(const std::string& key, const std::string& otherwise);
   /// Throws terms::UsageError with the name of the first key that has not been removed.
   void check_empty(const std::string& allowed) const;
@@ -26,7 +26,8 @@ bool take_low(Uri& uri);
 /// `highest_ms`.
 std::int64_t take_ms(Uri& uri, const std::string& key, std::int64_t otherwise_ns, double highest_ms);
 
-/// Throws terms::UsageError for text without a scheme or with an empty key or value.
+/// Parses the URI of a device in a rig file. Throws terms::UsageError for text without a scheme or with an
+/// empty key or value.
 Uri parse_uri(const std::string& text);
 
 }  // namespace turnpoint::lines

@@ -11,7 +11,7 @@
 
 namespace turnpoint::lines {
 
-/// The lines to watch: first the buttons in order, then the contact, if any.
+/// The lines to watch: first the buttons in order, then the contact line, if any.
 struct WatchedLines {
   std::vector<LineRequest> requests;
   std::vector<std::string> names;  ///< name of each line: "left", "right", "contact"

@@ -21,7 +21,7 @@ namespace turnpoint::maintenance {
 namespace {
 
 constexpr double kSettle_s = 1, kRead_s = 1, kGlance_s = 0.12, kPatience_s = 5;
-constexpr double kLeastReference = 0.02;  // of full scale
+constexpr double kLeastReference = 0.02;  // smallest accepted amplitude of the reference; 1 is full scale
 
 sensing::BridgeOptions bridge_options(const rig::Rig& rig, double reference_amplitude) {
   const auto& capture = *rig.capture;
@@ -35,8 +35,8 @@ sensing::BridgeOptions bridge_options(const rig::Rig& rig, double reference_ampl
   return options;
 }
 
-/// Means of the points that were captured in one step. The first reading fixes the amplitude of the
-/// reference, with which later ones are compared.
+/// Computes the mean of the points captured in one reading of the bridges. The first reading fixes the
+/// amplitude of the captured excitation (the reference); later readings are compared with it.
 class BridgeMean {
  public:
   explicit BridgeMean(const rig::Rig& rig) : rig_(rig) {}
@@ -47,7 +47,7 @@ class BridgeMean {
     BridgeReading reading;
     std::vector<sensing::BridgePoint> points;
     demodulator.push({samples, options.channels, 0, options.rate_Hz}, [&](const sensing::BridgePoint& point) {
-      // the filter is filled after 17 ms
+      // skip the first 17 ms, in which the filter is still settling
       if (point.index >= 20) points.push_back(point);
     });
     if (points.empty()) throw std::runtime_error("force cells: nothing was captured");
@@ -114,7 +114,7 @@ class BridgeMean {
   double reference_ = 0;
 };
 
-/// Puts the weights on the simulated surface.
+/// Reads the bridges of a simulated surface, on which it puts the weights.
 class SimulatedBridges : public BridgeReader {
  public:
   SimulatedBridges(const rig::Rig& rig, const std::function<void(plant::Setup&)>& laboratory)
@@ -159,8 +159,8 @@ class SimulatedBridges : public BridgeReader {
   bool keep_ = false;
 };
 
-/// Captures the bridges with the card that plays the carrier. Reference and bridges are captured together, so
-/// the delay from playback to capture does not matter.
+/// Captures the bridges with the sound card that plays the carrier. Reference and bridges are captured
+/// together, so the delay from playback to capture does not matter.
 class CardBridges : public BridgeReader {
  public:
   CardBridges(const rig::Rig& rig, BridgeDevices devices)
@@ -220,8 +220,10 @@ std::unique_ptr<BridgeReader> card_bridges(const rig::Rig& rig, BridgeDevices de
 
 std::unique_ptr<BridgeReader> open_bridges(const rig::Rig& rig,
                                            const std::function<void(plant::Setup&)>& laboratory) {
-  if (!rig.capture || rig.capture->bridges.empty())
-    throw terms::UsageError("the rig \"" + rig.name + "\" has no force cells; add bridges to its [capture]");
+  if (!rig::has_force_cells(rig))
+    throw terms::UsageError("the rig \"" + rig.name +
+                            "\" has no force cells; add bridges to its [capture], or [force_cells]");
+  if (rig.capture->converter) return converter_bridges(*rig.capture->converter);
   if (session::simulates_capture(rig)) return std::make_unique<SimulatedBridges>(rig, laboratory);
   const auto card = session::card_capture_of(rig).value().device;
   return card_bridges(rig, {drive::open_realtime(session::session_stream(rig)), drive::open_capture(card),

@@ -19,7 +19,7 @@ calibration::Calibration calibrate(const rig::Rig& rig, const calibration::Measu
 plot::Figure calibration_figure(const calibration::Calibration& calibration,
                                 const calibration::Measurements& measurements);
 
-/// One tone of a stepped sweep. A vibrometer finds the tones by their times.
+/// One tone of a stepped sweep. In a vibrometer's recording, the tones are found by their times.
 struct SweepStep {
   std::string transducer;
   int channel = 0;

@@ -126,7 +126,7 @@ Captured capture_armed(const rig::Rig& rig, const std::vector<drive::Burst>& bur
   const sensing::CaptureBlock block{samples, plan.device.channels, 0, plan.device.rate_Hz};
   const double longest_s =
       static_cast<double>(block.frames() - plan.pilot.frames - 256) / plan.device.rate_Hz;
-  // the listener needs 64 frames from before the pilot
+  // the listener needs 64 captured frames from before the pilot, the chirp that shows the delay
   sensing::PilotListener listener(plan.pilot, 64, plan.device.channels, plan.reference, longest_s);
   listener.push(block);
   const auto echo = listener.find();

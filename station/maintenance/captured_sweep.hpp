@@ -12,7 +12,7 @@ namespace turnpoint::maintenance {
 /// What was captured while bursts were played. Captured frame k belongs to playback frame first_frame + k -
 /// delay_frames, in the numbering of the bursts.
 struct Captured {
-  std::vector<std::vector<double>> channels;  ///< all captured channels; 1 is full scale
+  std::vector<std::vector<double>> channels;  ///< samples of all captured channels; 1 is full scale
   std::int64_t first_frame = 0;
   double delay_frames = 0;
 };
@@ -20,13 +20,13 @@ struct Captured {
 /// Returns the samples that a burst plays on one channel, beginning with its first frame; 1 is full scale.
 std::vector<double> rendered(const rig::Rig& rig, const drive::Burst& burst, int channel);
 
-/// Plays the bursts in the simulated laboratory.
+/// Plays the bursts in the simulated laboratory, and captures them there.
 Captured capture_simulated(const rig::Rig& rig, const std::vector<drive::Burst>& bursts,
                            const std::function<void(plant::Setup&)>& laboratory);
 
-/// Plays a pilot and then the bursts on the rig's card, and captures them with the same card (see
-/// play_armed()). The first burst must not start before frame 2 * rate. Throws std::runtime_error if frames
-/// were lost, or if the pilot was not heard.
+/// Plays a pilot (a chirp that shows the delay from playback to capture) and then the bursts on the rig's
+/// sound card, and captures all of it with the same card (see play_armed()). The first burst must not start
+/// before frame 2 * rate. Throws std::runtime_error if frames were lost, or if the pilot was not heard.
 Captured capture_armed(const rig::Rig& rig, const std::vector<drive::Burst>& bursts);
 
 }  // namespace turnpoint::maintenance

@@ -6,14 +6,19 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cstdint>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <string_view>
+#include <utility>
 
 #include "station/drive/alsa_capture.hpp"
 #include "station/drive/alsa_mixer.hpp"
 #include "station/drive/engine.hpp"
+#include "station/iio/converter.hpp"
+#include "station/sensing/own_clock.hpp"
+#include "station/session/cell_feed.hpp"
 #include "station/session/self_test.hpp"
 #include "station/session/stage.hpp"
 #include "station/setup/places.hpp"
@@ -123,6 +128,39 @@ lines::Finding pick_ups(const rig::Rig& rig) {
   return {"pick-ups", Status::warning,
           fmt::format("not calibrated for {}: these stimuli will be unproven", fmt::join(unproven, ", ")),
           "measure them with `turnpoint calibrate --pickup` (deploy/rigs/README.md, Pick-ups)"};
+}
+
+// Reads the converter of the force cells for half a second.
+lines::Finding force_converter(const rig::CellConverter& converter) {
+  const char* const name = "force converter";
+  const std::string mend =
+      "correct [force_cells] in the rig file, load the driver of the board, or give the station's user "
+      "access "
+      "(deploy/rigs/README.md, Force cells on a converter with a clock of its own)";
+  try {
+    const auto config = session::converter_of(converter);
+    const auto opened = iio::open(config);
+    sensing::OwnClock clock({.rate_Hz = converter.rate_Hz});
+    std::int64_t first_ns = 0, last_ns = 0;
+    for (bool begun = false; !begun || last_ns - first_ns < 500'000'000;)
+      for (const auto& sample : opened->read()) {
+        if (!std::exchange(begun, true)) first_ns = sample.time_ns;
+        last_ns = sample.time_ns;
+        clock.push({sample.time_ns, sample.value, sample.at_limit}, {}, [](const auto&) {});
+      }
+    const auto& [samples, lost, gaps, disorder] = clock.counters();
+    const double rate_Hz =
+        1e9 * static_cast<double>(samples + lost - 1) / static_cast<double>(last_ns - first_ns);
+    const auto found =
+        fmt::format("{}: {:.1f} samples a second on {}, {} lost, {} time stamps out of order", converter.uri,
+                    rate_Hz, fmt::join(converter.channels, ", "), lost, disorder);
+    if (const auto wrong = session::wrong_rate(config.device, rate_Hz, converter.rate_Hz); !wrong.empty())
+      return {name, Status::failed, wrong, mend};
+    return {name, lost + disorder == 0 ? Status::ok : Status::failed, found,
+            lost + disorder == 0 ? "" : mend};
+  } catch (const std::exception& error) {
+    return {name, Status::failed, error.what(), mend};
+  }
 }
 
 lines::Finding force_cells(const rig::Rig& rig) {
@@ -262,7 +300,8 @@ std::vector<lines::Finding> examine(const rig::Rig& rig, const std::string& data
   if (const auto plan = session::card_capture_of(rig)) {
     checks.push_back(capture(*plan));
     checks.push_back(pick_ups(rig));
-    if (!rig.capture->bridges.empty()) checks.push_back(force_cells(rig));
+    if (rig.capture->converter) checks.push_back(force_converter(*rig.capture->converter));
+    if (rig::has_force_cells(rig)) checks.push_back(force_cells(rig));
   }
   const auto lines = [&checks](const char* device, const std::string& uri) {
     for (auto& check : lines::check_lines(device, uri)) checks.push_back(std::move(check));

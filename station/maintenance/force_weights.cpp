@@ -18,20 +18,24 @@ namespace turnpoint::maintenance {
 namespace {
 
 constexpr double kGravity_m_s2 = 9.81, kRatedLoad_N = 10;
-constexpr double kMoved_N = 20e-3, kRestless_N = 2e-3;  // as for the tare before a trial
-constexpr double kRestlessShare = 10;  // a reading varies by more than this many times what the first one did
-constexpr double kRipple = 1e-4;       // of a reading: what the demodulation itself leaves
-constexpr double kDeaf_share = 0.01;   // a cell that changes by less than this share of the others
-constexpr double kOutlier = 4;         // deviations, see sensing::deviations()
+// largest allowed change and SD of the zero reading; sessions use the same limits before a trial
+constexpr double kMoved_N = 20e-3, kRestless_N = 2e-3;
+// refuse a reading whose SD is this many times that of the first reading
+constexpr double kRestlessShare = 10;
+constexpr double kRipple = 1e-4;  // SD that remains after demodulation, as a fraction of the reading
+// a cell does not respond if it changes by less than this share of the others
+constexpr double kDeaf_share = 0.01;
+constexpr double kOutlier = 4;  // ask again for a weight whose sensing::deviations() is larger than this
 constexpr std::size_t kMostRepeats = 4, kFewest = 8;
-// Residuals that are so many times what places, masses and pulley explain are another kind of mistake.
+// Residuals larger than this multiple of the errors of places, masses and pulley show that something else is
+// wrong.
 constexpr double kMostMisfit = 20;
 
 constexpr std::array<const char*, 3> kCells{"a", "b", "lateral"};
 
 double newtons(double grams) { return 1e-3 * grams * kGravity_m_s2; }
 
-/// A reading of a weight, and the tare before it.
+/// The reading with one weight, and the reading without a weight (tare) before it.
 struct Weighed {
   WeightStep step;
   BridgeReading with, without;
@@ -40,7 +44,7 @@ struct Weighed {
   double across(std::size_t cell) const { return with.quadrature[cell] - without.quadrature[cell]; }
 };
 
-/// The phase of each bridge, from the weight that changes it most.
+/// Returns the phase of each bridge's signal (rad), from the weight that changes the signal most.
 std::array<double, 3> rotations(const std::vector<Weighed>& all) {
   std::array<double, 3> rotation{}, largest{};
   for (std::size_t cell = 0; cell < 3; ++cell)
@@ -48,7 +52,7 @@ std::array<double, 3> rotations(const std::vector<Weighed>& all) {
       const double size = std::hypot(one.in_phase(cell), one.across(cell));
       if (size <= largest[cell]) continue;
       largest[cell] = size;
-      // a bridge may be connected either way round, so only the line counts and not its direction
+      // a bridge may be connected with either polarity, so the phase is found modulo pi
       rotation[cell] = std::atan(one.across(cell) / one.in_phase(cell));
     }
   const double most = *std::max_element(largest.begin(), largest.end());
@@ -67,7 +71,7 @@ sensing::Readings rotated(const Weighed& one, const std::array<double, 3>& rotat
   return readings;
 }
 
-/// The reading of each cell at its rated load: that of the weight that loads it most, scaled up.
+/// Returns the reading of each cell at its rated load, scaled up from the weight that loads the cell most.
 std::array<double, 3> rated_ratios(const std::vector<sensing::DeadWeight>& weights) {
   std::array<double, 3> rated{};
   double most_N = 0, most_pull_N = 0;
@@ -82,7 +86,7 @@ std::array<double, 3> rated_ratios(const std::vector<sensing::DeadWeight>& weigh
   return rated;
 }
 
-/// Fitted weights, in the order in which they were weighed.
+/// The phases of the bridges, and the weights with their readings, in the order in which they were weighed.
 struct Fitted {
   std::array<double, 3> rotation_rad{};
   std::vector<sensing::DeadWeight> weights;
@@ -96,7 +100,7 @@ Fitted fitted(const std::vector<Weighed>& all) {
   return made;
 }
 
-/// The readings of the cells under a load: the inverse of the matrix, by Cramer's rule.
+/// Returns the readings of the cells under a load. Inverts the matrix `k` by Cramer's rule.
 sensing::Readings readings_under(const sensing::ForceCalibration::Matrix& k,
                                  const std::array<double, 3>& load) {
   const auto determinant = [](const sensing::ForceCalibration::Matrix& m) {
@@ -124,7 +128,7 @@ sensing::WeightFit fit_of(const std::vector<sensing::DeadWeight>& weights) {
   }
 }
 
-/// Asks for the steps, and keeps what was read.
+/// Asks the operator for each step of the calibration, and keeps the readings.
 class Weighing {
  public:
   Weighing(BridgeReader& bridges, const std::function<bool(const WeightStep&)>& ready,
@@ -142,7 +146,7 @@ class Weighing {
       all_.push_back({step, *reading, tares_.back()});
   }
 
-  /// Weighs again what does not agree with the other weights.
+  /// Asks the operator to weigh again each weight that does not agree with the others.
   void repeat_outliers() {
     while (true) {
       enough();
@@ -205,14 +209,14 @@ class Weighing {
     }
   }
 
-  /// What the other weights say about one of them.
+  /// Returns the load that a calibration with the other weights finds for weight `index`, as text.
   static std::string found_without(std::vector<sensing::DeadWeight> weights, std::size_t index) {
     const auto readings = weights[index].readings;
     weights.erase(weights.begin() + static_cast<std::ptrdiff_t>(index));
     const auto force = sensing::fit_weights(weights).calibration.force(readings);
     const auto tenths = [](double value) { return text::number(std::round(10 * value) / 10 + 0.0, 5); };
     const auto grams = [&](double force_N) { return tenths(1e3 * force_N / kGravity_m_s2); };
-    return fmt::format("they say {} g at {} mm with a pull of {} g", grams(force.normal_N),
+    return fmt::format("according to them, it is {} g at {} mm with a pull of {} g", grams(force.normal_N),
                        tenths(force.moment_Nmm / force.normal_N), grams(force.lateral_N));
   }
 
@@ -224,23 +228,25 @@ class Weighing {
   std::vector<WeightStep> repeated_;
 };
 
-/// Refuses weights that do not agree with each other, and a zero that was shaken or moved.
+/// Throws if the weights do not agree with each other, or if the readings without a weight vary or drift too
+/// much.
 void check(const ForceResult& made, const std::vector<BridgeReading>& tares) {
   constexpr std::array<const char*, 3> loads{"normal force", "pull along the surface", "place"};
   for (std::size_t k = 0; k < 3; ++k)
     if (!(made.misfit[k] < kMostMisfit))
       throw terms::UsageError(
           fmt::format("the weights do not agree with each other: the residuals of the {} are {} times what "
-                      "careful weights leave; check the masses, the places and the string",
+                      "careful weighing leaves; check the masses, the places and the string",
                       loads[k], text::number(made.misfit[k], 2)));
   double shaken_N = 0;
   for (const auto& tare : tares)
     for (std::size_t cell = 0; cell < 3; ++cell)
       shaken_N = std::max(shaken_N, kRatedLoad_N * tare.sd[cell] / made.cells.rated_ratio[cell]);
   if (shaken_N > kRestless_N)
-    throw terms::UsageError(fmt::format(
-        "the cells do not rest without a weight: a cell varies by {} mN; a calibration needs less than {} mN",
-        text::number(1e3 * shaken_N, 2), text::number(1e3 * kRestless_N, 2)));
+    throw terms::UsageError(
+        fmt::format("the force cells are not steady without a weight: the reading of a cell varies by {} mN; "
+                    "a calibration needs less than {} mN",
+                    text::number(1e3 * shaken_N, 2), text::number(1e3 * kRestless_N, 2)));
   if (made.zero_moved_mN > 1e3 * kMoved_N)
     throw terms::UsageError(fmt::format(
         "the zero of the cells moved by {} mN between two readings without a weight; something lay "
@@ -301,9 +307,9 @@ ForceResult weigh(const rig::Rig& rig, BridgeReader& bridges,
   made.cells.rotation_rad = rotation_rad;
   made.cells.matrix = fit.calibration.matrix();
   made.cells.changes = fit.calibration.changes();
-  made.cells.carrier_Hz = sensing::carriers_Hz.front();
   const auto& tares = weighing.tares();
   made.cells.reference_amplitude = tares.front().reference;
+  if (tares.front().reference > 0) made.cells.carrier_Hz = sensing::carriers_Hz.front();
   made.cells.rated_ratio = rated_ratios(weights);
   const double middle_Nmm = 0.5 * 0.5e3 * rig.surface.length_m;
   made.sd = fit.calibration.sd(readings_under(made.cells.matrix, {0.5, 0.25, middle_Nmm}));

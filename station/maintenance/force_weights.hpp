@@ -8,6 +8,7 @@
 #include "station/calibration/calibration.hpp"
 #include "station/drive/alsa_capture.hpp"
 #include "station/drive/engine.hpp"
+#include "station/iio/converter.hpp"
 #include "station/plant/setup.hpp"
 #include "station/rig/rig.hpp"
 #include "station/sensing/force_calibration.hpp"
@@ -16,25 +17,27 @@ namespace turnpoint::maintenance {
 
 /// One step of the calibration with dead weights.
 struct WeightStep {
-  bool tare = false;  ///< nothing on the surface
+  bool tare = false;  ///< true for a reading with nothing on the surface
   double mass_g = 0, position_mm = 0;
-  double pull_g = 0;        ///< weight on the string; negative pulls towards the wide edge
+  /// mass that hangs on the string and so pulls along the surface; negative if it pulls towards the wide edge
+  double pull_g = 0;
   std::string remark = {};  ///< why the step is repeated; usually empty
 
-  /// What the operator is asked to do, and what the step is called in messages.
+  /// text() is what the operator is asked to do; name() is what messages call the step.
   std::string text() const;
   std::string name() const;
 };
 
-/// The steps for a surface of this length: a tare, then 20, 50, 100 and 200 g at five places; then 20, 50 and
-/// 100 g over a pulley in both directions at two places, with 200 g standing on the surface. Each place
-/// begins with a tare of its own.
+/// The steps for a surface of this length: a tare (a reading without a weight), then 20, 50, 100 and 200 g at
+/// five places; then 20, 50 and 100 g over a pulley in both directions at two places, with 200 g standing on
+/// the surface. Each place begins with a tare of its own.
 std::vector<WeightStep> weight_steps(double length_mm);
 
-/// Means of the bridges while nothing moved.
+/// Means of the signals of the strain-gauge bridges while nothing moved.
 struct BridgeReading {
-  std::array<double, 3> ratio{}, quadrature{}, sd{};  ///< bridge / reference
-  double reference = 0;                               ///< amplitude; 1 is full scale
+  /// Bridge / reference; from a converter with a clock of its own, the reading in the unit of its driver.
+  std::array<double, 3> ratio{}, quadrature{}, sd{};
+  double reference = 0;  ///< amplitude; 1 is full scale, 0: a converter with a clock of its own
 };
 
 /// Reads the bridges of a rig: with a card, or in the simulated laboratory, where it also puts the weights on
@@ -42,13 +45,15 @@ struct BridgeReading {
 class BridgeReader {
  public:
   virtual ~BridgeReader() = default;
-  /// Throws std::runtime_error that names the wire, if one is off, or the device, if frames were lost.
+  /// Reads the bridges during this step. Throws std::runtime_error, which names the wire if one is
+  /// disconnected, or the device if frames were lost.
   virtual BridgeReading read(const WeightStep& step) = 0;
-  /// What the bridges read at this moment, over a tenth of a second. Throws like read().
+  /// Takes a quick reading, over a tenth of a second. Throws like read().
   virtual BridgeReading glance() { return {}; }
 };
 
-/// The card of a rig whose cells are read. `pause` is called while nothing has been captured.
+/// The sound card of a rig whose force cells are read. `pause` is called to wait while nothing new was
+/// captured.
 struct BridgeDevices {
   std::unique_ptr<drive::Stream> stream;
   std::unique_ptr<drive::Capture> capture;
@@ -56,7 +61,12 @@ struct BridgeDevices {
 };
 std::unique_ptr<BridgeReader> card_bridges(const rig::Rig& rig, BridgeDevices devices);
 
-/// Opens the reader for the rig's [capture]. Only the carrier is played, and the amplifier stays off.
+/// Reads cells on a converter with a clock of its own. `open` opens it.
+std::unique_ptr<BridgeReader> converter_bridges(
+    const rig::CellConverter& converter,
+    const std::function<std::unique_ptr<iio::Converter>(const iio::Config&)>& open = iio::open);
+
+/// Opens the reader for the rig's force cells. Only the carrier is played, and the amplifier stays off.
 /// `laboratory` changes the simulated laboratory; for tests. Throws terms::UsageError for a rig without force
 /// cells.
 std::unique_ptr<BridgeReader> open_bridges(const rig::Rig& rig,
@@ -65,13 +75,19 @@ std::unique_ptr<BridgeReader> open_bridges(const rig::Rig& rig,
 /// The result of a calibration with dead weights.
 struct ForceResult {
   rig::ForceCells cells;
-  std::vector<WeightStep> steps;  ///< the weights, without the tares
+  /// the readings with a weight; the tares (readings without a weight) are left out
+  std::vector<WeightStep> steps;
   std::vector<sensing::WeightResidual> residuals;
-  std::vector<WeightStep> repeated;  ///< weights that did not agree with the others at first
-  std::array<double, 3> misfit{};    ///< see sensing::WeightFit
-  double zero_moved_mN = 0;          ///< largest change of the zero between two tares
-  sensing::ForceSd
-      sd;  ///< of forces, position and friction in the middle, with 0.5 N normal and 0.25 N lateral
+  /// weights that were weighed again, because at first they did not agree with the others
+  std::vector<WeightStep> repeated;
+  /// for normal force, lateral force and moment: rms residual divided by the expected value; see
+  /// sensing::WeightFit
+  std::array<double, 3> misfit{};
+  /// largest change of a reading without a weight, from one tare to another
+  double zero_moved_mN = 0;
+  /// standard deviations of forces, position and friction for a finger at the middle of the surface that
+  /// presses with 0.5 N and is dragged with 0.25 N
+  sensing::ForceSd sd;
 };
 
 /// Asks for each step and reads the bridges. `ready` shows the step to the operator and returns false to

@@ -16,8 +16,11 @@ std::optional<calibration::Calibration> in_force(const rig::Rig& rig) {
   const auto path = calibration::newest_for(rig.path);
   if (path.empty()) return std::nullopt;
   auto newest = calibration::load(path);
-  if (!calibration::problems(newest, rig.sha256, calibration::today()).empty()) return std::nullopt;
-  return newest;
+  // A calibration that has only friction or sound levels is not used by sessions, but what is in it still
+  // counts when more is measured.
+  const int left_days = calibration::days_left(newest, calibration::today());
+  const bool current = left_days >= 0 && left_days <= newest.valid_days;
+  return newest.rig_sha256 == rig.sha256 && current ? std::optional(newest) : std::nullopt;
 }
 
 }  // namespace

@@ -29,15 +29,16 @@ class LatencyDevices {
  public:
   using OnEdge = std::function<void(std::int64_t time_ns)>;
 
-  /// `on_edge` is called on the thread of the buttons. Throws terms::UsageError for a rig without real
-  /// buttons, and the errors of lines::open_buttons and touch::TouchReader.
+  /// `on_edge` is called on the thread that watches the buttons. Throws terms::UsageError for a rig without
+  /// real buttons, and the errors of lines::open_buttons and touch::TouchReader.
   LatencyDevices(const rig::Rig& rig, OnEdge on_edge);
 
   ~LatencyDevices();
 
   /// True if touches have the kernel's time stamps.
   bool has_kernel_times() const { return touch_ != nullptr; }
-  /// See touch::TouchReader::claim(). Empty if touches do not have the kernel's time stamps.
+  /// Returns the kernel's time stamp of the touch at this place; see touch::TouchReader::claim(). Empty if
+  /// touches do not have the kernel's time stamps.
   std::optional<std::int64_t> claim(double x, double y, std::int64_t seen_ns);
 
  private:

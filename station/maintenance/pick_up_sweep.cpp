@@ -24,8 +24,8 @@ using calibration::PickUp;
 
 constexpr double kFirst_s = 2, kPause_s = 1;
 constexpr double kOverload = 0.98;  // a sample of this fraction of full scale counts as overload
-// A response must be at least this many times its noise at its best frequency; otherwise the pick-up was not
-// measured.
+// At its best frequency, a response must be at least this many times larger than its noise. Otherwise the
+// pick-up has captured nothing but noise.
 constexpr double kLeastOverNoise = 20;
 // If measured displacements differ from those in the rig file by more than this factor, their unit must be
 // wrong.
@@ -168,8 +168,8 @@ std::vector<PickUp> calibrate_pick_ups(const rig::Rig& rig, const PickUpOptions&
                                          recording.delay_frames)));
   }
   if (!table) return made;
-  // The table was measured with the first transducer, but the sensitivity found with it is the sensor's own
-  // and holds for all.
+  // The table was measured with the first transducer, but the sensitivity that it gives is that of the
+  // sensor, and holds for all transducers.
   const auto measured = std::find_if(made.begin(), made.end(), [&](const PickUp& pick_up) {
     return pick_up.response.channel == table->channel;
   });

@@ -9,16 +9,16 @@
 
 namespace turnpoint::maintenance {
 
-/// How the pick-ups of a rig are calibrated.
+/// Options for calibrating the pick-ups of a rig.
 struct PickUpOptions {
-  double full_scale = 0.1;  ///< amplitude of the sweep
+  double full_scale = 0.1;  ///< amplitude of the sweep; 1 is full scale
   double low_Hz = 22000, high_Hz = 46000, length_s = 3;
   calibration::PickUpSensor sensor = calibration::PickUpSensor::patch;
   /// Measured displacements or accelerations, as CHANNEL=FILE with the pick-up's captured channel; "" if none
   /// were measured. The columns are frequency_Hz,displacement_um or frequency_Hz,acceleration_m_s2.
   std::string vibrometer, accelerometer;
-  double table_full_scale = 1;  ///< amplitude of the drive while the table was measured
-  double instrument_sd = 0.05;  ///< relative standard deviation of the instrument
+  double table_full_scale = 1;  ///< amplitude of the drive while the table was measured; 1 is full scale
+  double instrument_sd = 0.05;  ///< relative standard uncertainty of the instrument that measured the table
   /// Changes the simulated laboratory; for tests.
   std::function<void(plant::Setup&)> laboratory;
 };

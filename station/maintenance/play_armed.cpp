@@ -48,8 +48,10 @@ std::string trouble_of(const drive::Event& event, const drive::OutputConfig& out
 }
 
 /// Until `done` returns true, reads the stream's events and keeps reporting to the amplifier that this
-/// program is running. Throws if a tone was not played correctly, or after a termination signal.
-void attend(drive::Stream& stream, drive::Amplifier& amplifier, const std::function<bool()>& done) {
+/// program is running. Returns at once if a stop is requested. Throws if a tone was not played correctly, or
+/// after a termination signal.
+void attend(drive::Stream& stream, drive::Amplifier& amplifier, const std::stop_token& stop,
+            const std::function<bool()>& done) {
   for (;;) {
     const bool last = done();  // call done() before polling, so that all events up to then are processed
     amplifier.session_alive();
@@ -64,14 +66,14 @@ void attend(drive::Stream& stream, drive::Amplifier& amplifier, const std::funct
     if (const auto signal = system::StopSignals::told(); !signal.empty())
       throw std::runtime_error("the program was stopped by a signal (" + signal +
                                ") before everything was played");
-    if (last) return;
+    if (last || stop.stop_requested()) return;
     system::sleep_until_ns(system::monotonic_ns() + kPoll_ns);
   }
 }
 
 /// Plays the bursts. Returns the frame of the first onset.
-std::int64_t play(drive::Stream& stream, drive::Amplifier& amplifier,
-                  const std::vector<drive::Burst>& bursts) {
+std::int64_t play(drive::Stream& stream, drive::Amplifier& amplifier, const std::vector<drive::Burst>& bursts,
+                  const std::stop_token& stop) {
   const int rate_Hz = stream.config().output.rate_Hz;
   const auto margin = std::llround(kMargin_s * rate_Hz);
   auto first = bursts.at(0);
@@ -85,13 +87,14 @@ std::int64_t play(drive::Stream& stream, drive::Amplifier& amplifier,
     burst.start_frame += onset - bursts[0].start_frame;
     // Compare with the render position, not the playback position. With a long device buffer, rendering runs
     // far ahead of playback.
-    attend(stream, amplifier, [&] { return stream.earliest_frame() + margin >= burst.start_frame; });
+    attend(stream, amplifier, stop, [&] { return stream.earliest_frame() + margin >= burst.start_frame; });
+    if (stop.stop_requested()) return onset;
     stream.schedule(burst);
     end = burst.start_frame + burst.length_frames;
   }
   const auto left = end - stream.counters().heard;
   const auto due_ns = system::monotonic_ns() + left * 1'000'000'000 / rate_Hz + kHeard_ns;
-  attend(stream, amplifier, [&] {
+  attend(stream, amplifier, stop, [&] {
     if (system::monotonic_ns() > due_ns)
       throw std::runtime_error(stream.config().output.uri +
                                ": the device does not report which frame it has played");
@@ -112,27 +115,44 @@ double largest_peak(const std::vector<drive::Burst>& bursts, const drive::Stream
 
 drive::PlayReport play_armed(const rig::Rig& rig, const std::string& uri,
                              const std::vector<drive::Burst>& bursts) {
+  system::StopSignals signals;
+  signals.take_over();
+  return play_armed(rig, uri, bursts, {});
+}
+
+drive::PlayReport play_armed(const rig::Rig& rig, const std::string& uri,
+                             const std::vector<drive::Burst>& bursts, const std::stop_token& stop) {
   auto config = session::stream_of(rig);
   config.output.uri = uri;
   // this may throw, so do it before anything is opened
   const auto peak = largest_peak(bursts, config);
   const auto amplifier = lines::open_amplifier(rig.amplifier_uri);  // the amplifier must outlive the stream
   config.amplifier = amplifier.get();
-  system::StopSignals signals;
-  signals.take_over();
   // the stream's destructor ramps down tones that are playing
   const auto stream = drive::open_realtime(config);
-  attend(*stream, *amplifier, [until_ns = system::monotonic_ns() + kFirstBlocks_ns] {
+  attend(*stream, *amplifier, stop, [until_ns = system::monotonic_ns() + kFirstBlocks_ns] {
     return system::monotonic_ns() >= until_ns;
   });
+  if (stop.stop_requested()) return drive::report_of(*stream);
   for (const auto& refusal : {amplifier->arm(), amplifier->enable()})
     if (refusal) throw std::runtime_error("amplifier: " + terms::describe(*refusal));
-  const auto onset_frame = play(*stream, *amplifier, bursts);
-  amplifier->disarm();
+  const auto onset_frame = play(*stream, *amplifier, bursts, stop);
+  // after a request to stop, tones may still be playing: the stream ramps them down before the amplifier goes
+  // off
+  if (!stop.stop_requested()) amplifier->disarm();
   auto report = drive::report_of(*stream);
   report.peak = peak;
   report.onset_frame = onset_frame;
   return report;
+}
+
+bool can_be_felt(const rig::Rig& rig) { return rig.output.uri.starts_with("alsa:"); }
+
+drive::PlayReport play_on_rig(const rig::Rig& rig, const drive::Burst& burst, const std::stop_token& stop) {
+  if (can_be_felt(rig)) return play_armed(rig, rig.output.uri, {burst}, stop);
+  auto config = session::stream_of(rig);
+  config.output.uri = "null:";
+  return drive::play(config, burst);
 }
 
 }  // namespace turnpoint::maintenance

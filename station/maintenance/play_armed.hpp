@@ -1,4 +1,5 @@
 #pragma once
+#include <stop_token>
 #include <string>
 #include <vector>
 
@@ -17,5 +18,17 @@ namespace turnpoint::maintenance {
 /// amplifier cannot be armed, after a fault, for lost frames, or after a stop signal.
 drive::PlayReport play_armed(const rig::Rig& rig, const std::string& uri,
                              const std::vector<drive::Burst>& bursts);
+
+/// Like the function above, for a program that handles stop signals itself. After a request to stop, the
+/// tones are ramped down, the amplifier is switched off, and the function returns normally.
+drive::PlayReport play_armed(const rig::Rig& rig, const std::string& uri,
+                             const std::vector<drive::Burst>& bursts, const std::stop_token& stop);
+
+/// True if the rig's output drives a surface that can be felt; false if it is simulated.
+bool can_be_felt(const rig::Rig& rig);
+
+/// Plays one burst on the rig at an operator's request: with play_armed() on a rig that can be felt;
+/// otherwise the sound is only computed. Throws the errors of play_armed(), and drive::BurstRefused.
+drive::PlayReport play_on_rig(const rig::Rig& rig, const drive::Burst& burst, const std::stop_token& stop);
 
 }  // namespace turnpoint::maintenance

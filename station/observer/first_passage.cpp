@@ -72,8 +72,8 @@ double upper_by(double drift, double bound, double time_s) {
   constexpr double pi = 3.14159265358979323846;
   const double pull = std::clamp(drift * bound, -kSurest, kSurest), time = time_s / (bound * bound);
   if (time <= 0) return 0.5;
-  // Computes P(upper) - pull sum over odd n of exp(-(pull^2 + (n pi / 2)^2) time / 2) / (pull^2 + (n pi /
-  // 2)^2).
+  // With pull = drift bound and time in units of bound^2, this is P(upper) - pull times the sum over odd n of
+  // exp(-(pull^2 + (n pi / 2)^2) time / 2) / (pull^2 + (n pi / 2)^2).
   double sum = 0;
   for (int n = 1;; n += 2) {
     const double rate = pull * pull + 0.25 * n * n * pi * pi;

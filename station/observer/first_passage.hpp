@@ -3,7 +3,7 @@
 
 namespace turnpoint::observer {
 
-/// Where and when a diffusion ended.
+/// Which boundary a diffusion (a random walk of evidence) reached, and when.
 struct Passage {
   bool upper = false;  ///< true if the diffusion ended at the upper boundary
   double time_s = 0;
@@ -31,8 +31,8 @@ double upper_probability(double drift, double bound);
 /// section 5.7.)
 double upper_by(double drift, double bound, double time_s);
 
-/// The same probability if the starting point is uniformly distributed between -range and +range times the
-/// bound (0 <= range < 1).
+/// Returns the probability that a walk ends at the upper boundary if its starting point is uniformly
+/// distributed between -range and +range times the bound (0 <= range < 1).
 double upper_probability(double drift, double bound, double range);
 
 }  // namespace turnpoint::observer

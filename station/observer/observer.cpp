@@ -1,23 +1,21 @@
 #include "station/observer/observer.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <limits>
-#include <map>
 
 #include "station/observer/first_passage.hpp"
 #include "station/random/elementary.hpp"
-#include "station/terms/usage_error.hpp"
 
 namespace turnpoint::observer {
 
 namespace {
 
 constexpr double kLogStrongest = 4.6;         // ln 99: at 99 times the threshold nobody makes errors
-constexpr double kZ75 = 0.67448975019608171;  // z of 75 % in the normal distribution
+constexpr double kZ75 = 0.67448975019608171;  // the 75 % quantile of the standard normal distribution
 constexpr double kLn2 = 0.69314718055994531;
-// largest |z|: beyond it the tail of the normal distribution is below 1e-9, and its logarithm loses precision
+// largest |z| that is used: beyond it the tail of the normal distribution is below 1e-9, and its logarithm
+// loses precision
 constexpr double kSurest_sd = 6;
 constexpr double kRatingStep_sd = 0.5;  // distance between the criteria of neighbouring ratings
 constexpr double kLinePoints = 9;
@@ -37,8 +35,9 @@ double half_logit_of_normal(double x) {
   return inside < 0 ? -half : half;
 }
 
-/// Returns the proportion correct of the largest of `answers` observations, one of which is d' higher: the
-/// integral of phi(x) Phi(x + d')^(answers - 1), by the trapezoidal rule.
+/// Returns the proportion correct of an observer who chooses the largest of `answers` noisy observations, of
+/// which the right one is d' higher on average. It is the integral of phi(x) Phi(x + d')^(answers - 1), where
+/// phi and Phi are the normal density and distribution function, by the trapezoidal rule.
 double largest_is_right(double d_prime, int answers) {
   constexpr double step = 0.125;
   double sum = 0;
@@ -51,9 +50,9 @@ double largest_is_right(double d_prime, int answers) {
   return sum * step * kNormalPeak;
 }
 
-/// Returns the proportion correct in ABX by differencing (Macmillan & Creelman 2005, eq. 9.7). A negative d'
-/// means that the difference is felt the wrong way round; then the proportion correct with two intervals is
-/// returned.
+/// Returns the proportion correct in ABX of an observer who chooses the smaller difference (Macmillan &
+/// Creelman 2005, eq. 9.7). A negative d' means that the difference is felt the wrong way round; then the
+/// proportion correct with two intervals is returned.
 double nearest_is_right(double d_prime, double of_two) {
   if (d_prime <= 0) return of_two;
   const double apart = random::normal_cdf(d_prime / kSqrt2), beside = random::normal_cdf(d_prime / kSqrt6);
@@ -92,8 +91,8 @@ double mean_over_drift(double drift, double sd, Function function) {
   return sum / weights;
 }
 
-/// Returns the range of felt levels for which the observer gives this answer: from halfway to the lower
-/// neighbour to halfway to the upper one. At the ends the range is infinite.
+/// Returns the range of felt levels for which the observer gives this answer: it ends halfway to the levels
+/// of the neighbouring answers. For the lowest and the highest answer, the range has no outer end.
 std::pair<double, double> ends_of_category(const Question& q, int choice) {
   const double own = q.categories.at(static_cast<std::size_t>(choice));
   double low = -std::numeric_limits<double>::infinity(), high = -low;
@@ -112,16 +111,36 @@ int category_of(const Question& q, double level) {
   return choice;
 }
 
-/// Returns the criterion between rating `rating` and the next higher one, in SDs from the mean of noise. The
-/// criteria of the ratings lie symmetrically around `centre`.
+/// Returns the criterion between rating `rating` and the next higher one, in SDs from the mean sensation
+/// without a signal. The criteria of the ratings lie symmetrically around `centre`.
 double rating_criterion(double centre, int rating, int ratings) {
   return centre + kRatingStep_sd * (rating - 0.5 * (ratings - 2));
 }
 
 }  // namespace
 
+/// The threshold at the trial's value of the second dimension.
+double Observer::threshold(const Question& q) const {
+  double at = parameters_.threshold.value_or(q.default_threshold);
+  if (q.decides == Decides::side) return at;
+  const double rise = parameters_.gradient * q.second;
+  if (q.log_step != 0)
+    at *= random::exp(std::clamp(q.log_step * rise, -600.0, 600.0));
+  else
+    at += rise;
+  if (parameters_.floor) at = std::max(at, *parameters_.floor);
+  // a threshold cannot fall to 0, except for levels in dB
+  return q.decibel || rise == 0 ? at : std::max(at, 1e-9);
+}
+
+/// The bias at the trial's value of the second dimension.
+double Observer::bias(const Question& q) const {
+  const double at = parameters_.bias + parameters_.gradient * q.second;
+  return parameters_.floor ? std::max(at, *parameters_.floor) : at;
+}
+
 double Observer::strength(const Question& q, double from) const {
-  const double threshold = parameters_.threshold.value_or(q.default_threshold);
+  const double threshold = this->threshold(q);
   const auto capped = [](double exponent) { return random::exp(std::min(exponent, kLogStrongest)); };
   if (q.decibel) return capped((q.level - threshold) * 0.11512925464970228 * parameters_.slope);
   const double ratio = std::fabs(q.level - from) / std::fabs(threshold);
@@ -138,10 +157,10 @@ double Observer::sensitivity(const Question& q) const {
     case Middle::bias:
       break;
   }
-  return (q.level < parameters_.bias ? -2 : 2) * kZ75 * strength(q, parameters_.bias);
+  return (q.level < bias(q) ? -2 : 2) * kZ75 * strength(q, bias(q));
 }
 
-/// The sensation in the middle of a rating scale, in SDs from the mean of noise.
+/// The sensation in the middle of a rating scale, in SDs from the mean sensation without a signal.
 double Observer::centre(const Question& q) const {
   return q.middle == Middle::criterion ? parameters_.criterion : 0;
 }
@@ -151,8 +170,8 @@ double Observer::category_sd(const Question& q) const {
   return std::fabs(parameters_.threshold.value_or(q.default_threshold)) / (2 * kZ75);
 }
 
-/// Returns the number that the observer gives as answer. On a line, it scatters as on a scale of kLinePoints
-/// points.
+/// Returns the number that the observer gives as answer. A place on a line scatters as much as a rating on a
+/// scale of kLinePoints points.
 double Observer::value(const Question& q, random::Draws& draws) const {
   const auto& v = *q.value;
   double value = 0;
@@ -176,9 +195,9 @@ int Observer::confidence(const Question& q, int choice, random::Draws& draws) co
   return 1 + std::min(q.confidence - 1, static_cast<int>(felt * q.confidence));
 }
 
-/// Returns the drift (1 / square root of a second). A positive drift leads to the right answer
-/// (right_answer), to the answer for levels above the bias (side), to "yes" (presence), or away from the
-/// nearest end of the category (category).
+/// Returns the drift in s^-1/2. What a positive drift leads to depends on q.decides: the right answer
+/// (right_answer), the answer that is right for levels above the observer's bias (side), "yes" (presence), or
+/// the category that contains the level rather than its nearest neighbour (category).
 double Observer::drift(const Question& q) const {
   double half_logit = 0;
   switch (q.decides) {
@@ -186,8 +205,8 @@ double Observer::drift(const Question& q) const {
       half_logit = 0.5 * random::log(2 * random::exp(kLn2 * strength(q, 0)) - 1);
       break;
     case Decides::side:
-      half_logit = half_logit_of_normal(kZ75 * strength(q, parameters_.bias));
-      if (q.level < parameters_.bias) half_logit = -half_logit;
+      half_logit = half_logit_of_normal(kZ75 * strength(q, bias(q)));
+      if (q.level < bias(q)) half_logit = -half_logit;
       break;
     case Decides::presence:
       half_logit = half_logit_of_normal(sensitivity(q) - parameters_.criterion);
@@ -316,68 +335,6 @@ Setting Observer::adjust(const Adjustment& a) const {
   }
   setting.done_s = time_s + parameters_.travel_s;
   return setting;
-}
-
-namespace {
-
-/// Throws terms::UsageError that names the parameter out of range.
-void check(const Parameters& p) {
-  const auto require = [](bool good, const char* what) {
-    if (!good) throw terms::UsageError(std::string("--observer: ") + what);
-  };
-  require(!p.threshold || *p.threshold != 0, "threshold must not be 0");
-  require(p.slope > 0, "slope must be above 0");
-  require(p.scatter >= 0, "scatter must be 0 or more");
-  require(p.lapse >= 0 && p.lapse <= 1 && p.anticipation >= 0 && p.anticipation <= 1,
-          "lapse and anticipation must be probabilities from 0 to 1");
-  require(p.bound > 0 && p.residual_s >= 0 && p.travel_s >= 0,
-          "bound must be above 0, and residual and travel 0 or more");
-  require(p.drift_sd >= 0 && p.start_range >= 0 && p.start_range < 1,
-          "drift_sd must be 0 or more, and start_range at least 0 and below 1");
-  require(p.residual_range_s >= 0 && p.residual_range_s <= 2 * p.residual_s,
-          "residual_range must be from 0 to twice the residual");
-}
-
-}  // namespace
-
-Parameters parse(const std::string& text) {
-  Parameters p;
-  double threshold = 0;
-  const std::map<std::string, double*> known{{"threshold", &threshold},
-                                             {"slope", &p.slope},
-                                             {"lapse", &p.lapse},
-                                             {"bias", &p.bias},
-                                             {"criterion", &p.criterion},
-                                             {"scatter", &p.scatter},
-                                             {"bound", &p.bound},
-                                             {"residual", &p.residual_s},
-                                             {"travel", &p.travel_s},
-                                             {"drift_sd", &p.drift_sd},
-                                             {"start_range", &p.start_range},
-                                             {"residual_range", &p.residual_range_s},
-                                             {"anticipation", &p.anticipation}};
-  const std::string allowed =
-      "sim, or sim: and threshold, slope, lapse, bias, criterion, scatter, bound, residual, travel, "
-      "drift_sd, start_range, residual_range, anticipation with numbers, as in sim:threshold=6,slope=1.2";
-  const auto colon = text.find(':');
-  if (text.substr(0, colon) != "sim") throw terms::UsageError("--observer " + text + ": " + allowed);
-  for (std::size_t at = colon; at != std::string::npos;) {
-    const auto end = text.find(',', at + 1);
-    const auto part = text.substr(at + 1, end == std::string::npos ? end : end - at - 1);
-    const auto equals = part.find('=');
-    const auto found = known.find(part.substr(0, equals));
-    double value = 0;
-    const char* first = part.data() + (equals == std::string::npos ? part.size() : equals + 1);
-    const auto [last, error] = std::from_chars(first, part.data() + part.size(), value);
-    if (found == known.end() || error != std::errc{} || last != part.data() + part.size() ||
-        !std::isfinite(value))
-      throw terms::UsageError("--observer: \"" + part + "\" is not understood; write " + allowed);
-    *found->second = value;
-    if (found->first == "threshold") p.threshold = value;
-    at = end;
-  }
-  check(p);
-  return p;
 }
 
 }  // namespace turnpoint::observer

@@ -1,5 +1,6 @@
 #pragma once
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 #include <utility>
@@ -13,9 +14,9 @@ namespace turnpoint::observer {
 /// (first_passage.hpp). The drift is chosen so that, with the full bound, the answers follow a psychometric
 /// function of the level:
 /// - If one answer is right, a Weibull function with the exponent `slope`. If one of several intervals
-/// differs,
-///   or one of two matches a third, this is the function for two intervals; it gives d', and d' gives the
-///   proportion correct of an observer who makes one noisy observation of each interval (Finding).
+///   differs, or one of two matches a third, this is the function for two intervals; it gives d', and d'
+///   gives the proportion correct of an observer who makes one noisy observation of each interval (see
+///   Finding).
 /// - If the sign of the level decides, a normal distribution function of |level - bias|^slope, with the sign
 ///   of level - bias.
 /// - For yes/no and ratings, d' grows as level^slope, and the criterion lies at `criterion`.
@@ -27,13 +28,18 @@ struct Parameters {
   /// distance from the bias. For yes/no, d' is 1.349 at the threshold, which gives 75 % right answers with
   /// the default criterion. If empty: the middle of the levels that the protocol presents.
   std::optional<double> threshold;
+  /// Change of the threshold (of the bias, if the sign of the level decides) for each unit of a procedure's
+  /// second dimension; Question::log_step says in which unit it is.
+  double gradient = 0;
+  std::optional<double> floor;  ///< the threshold never falls below it
   double slope = 1;  ///< exponent of level / threshold; for levels in dB, exponent of the amplitude ratio
   double lapse = 0.02;
   double bias = 0;  ///< the level at which a signed task seems balanced
-  /// criterion of yes/no tasks, in SDs above the mean of noise; the false-alarm rate is Phi(-criterion)
+  /// criterion of yes/no tasks, in SDs above the mean sensation without a signal; the false-alarm rate is
+  /// Phi(-criterion)
   double criterion = 0.67448975019608171;
-  /// half the distance between the two boundaries, in square roots of a second; the boundary a of
-  /// EZ-diffusion is 0.2 times this
+  /// half the distance between the two decision boundaries of the diffusion, in square roots of a second; the
+  /// boundary a of EZ-diffusion is 0.2 times this
   double bound = 0.85;
   double residual_s = 0.35;  ///< non-decision time without `travel_s`
   double travel_s = 0.15;    ///< time to move the finger from the surface to the answer
@@ -76,7 +82,7 @@ struct ValueQuestion {
   bool typed = false;
   double low = 0, high = 1;
   int decimals = 0;
-  double modulus = 10;  ///< the magnitude of the threshold
+  double modulus = 10;  ///< the magnitude that the observer states at its threshold
 };
 
 /// The level at which the observer gives the middle of a rating scale. For `criterion`, ratings grow with the
@@ -88,35 +94,42 @@ enum class Middle { criterion, threshold, bias };
 struct Question {
   double level = 0;
   bool decibel = false;  ///< true if the level is in dB, that is, 20 log10 of a strength
+  /// how far the trial's value of the second dimension is above its origin; 0 if there is no second dimension
+  double second = 0;
+  /// 0: gradient * second is added to the threshold; otherwise the threshold is multiplied by
+  /// exp(log_step * gradient * second)
+  double log_step = 0;
   Decides decides = Decides::right_answer;
   /// for `side`: the answer that is right for levels above zero; for `presence` with two answers: "yes"
   int positive = 1;
   bool absent = false;         ///< for `presence`: true if the trial has no signal, whatever its level
   std::optional<int> correct;  ///< for `right_answer`: the right answer; empty if no answer is right
-  Finding finding = Finding::weibull;   ///< for `right_answer`: how the observer finds it
+  Finding finding = Finding::weibull;   ///< for `right_answer`: how the observer finds the right answer
   std::vector<double> categories = {};  ///< for `category`: the level for which each answer stands
   int answers = 2;
-  bool rating = false;  ///< the answers are the points of a scale, from low to high levels
+  bool rating = false;  ///< true if the answers are the points of a scale, from low to high levels
   Middle middle = Middle::criterion;
   std::optional<ValueQuestion> value;  ///< set if the answer is a number
-  int confidence = 0;                  ///< number of degrees of confidence that are asked for
-  double default_threshold = 1;        ///< the threshold, if the parameters have none
-  /// 0: no deadline; if time is short, the observer decides sooner and makes more errors
+  int confidence = 0;                  ///< number of degrees of confidence; 0 if confidence is not asked for
+  double default_threshold = 1;        ///< threshold that is used if the observer's parameters give none
+  /// deadline of the answer; 0 if there is none. If time is short, the observer decides sooner and makes more
+  /// errors
   double deadline_s = 0;
   /// If set, a signal asks for the answer at this time. The observer then gives the answer on which it has
   /// decided or, if it has not decided yet, the answer to which the evidence points so far. Because the
   /// answer is prepared, the observer then needs only half of its residual time, and the time to move; less
   /// if the deadline comes sooner.
   std::optional<double> signal_s = {};
-  random::Key key;  ///< key of the trial's random draws; the observer sets its stream
+  random::Key key;  ///< key of the trial's random draws; the observer sets the key's stream
 };
 
 struct Reply {
   std::optional<int> choice;
   std::optional<double> value;    ///< set if the question asks for a number; `choice` is then 0
   std::optional<int> confidence;  ///< from 1; higher if the observer is more likely to choose this answer
-  double response_time_s = 0;     ///< measured from response_zero; may be negative for an anticipation
-  double confidence_time_s = 0;   ///< measured from the answer
+  double response_time_s =
+      0;  ///< time of the answer after response_zero; may be negative for an anticipation
+  double confidence_time_s = 0;  ///< time from the answer to the statement of confidence
 };
 
 /// A slider to be adjusted: its starting position and its range.
@@ -126,7 +139,7 @@ struct Adjustment {
 };
 
 struct Move {
-  double time_s = 0;  ///< measured from response_zero
+  double time_s = 0;  ///< time after response_zero, from which response times count
   double value = 0;
 };
 
@@ -158,6 +171,8 @@ class Observer {
   /// Returns the probability that the evidence decides for the upper boundary.
   double upper(const Question& question, double drift) const;
   double latency_s(const Question& question) const;
+  double threshold(const Question& question) const;
+  double bias(const Question& question) const;
   double strength(const Question& question, double from) const;
   double drift(const Question& question) const;
   double sensitivity(const Question& question) const;
@@ -166,6 +181,19 @@ class Observer {
   double value(const Question& question, random::Draws& draws) const;
   int confidence(const Question& question, int choice, random::Draws& draws) const;
   Parameters parameters_;
+};
+
+/// Who answers in a simulated session: an Observer, or a separate program (station/programs), whose functions
+/// may throw terms::ProgramFailed.
+struct Respondent {
+  std::function<Reply(const Question&)> answer;
+  std::function<Setting(const Adjustment&)> adjust;
+
+  Respondent(std::function<Reply(const Question&)> answers, std::function<Setting(const Adjustment&)> adjusts)
+      : answer(std::move(answers)), adjust(std::move(adjusts)) {}
+  Respondent(const Observer& observer)
+      : answer([observer](const Question& question) { return observer.answer(question); }),
+        adjust([observer](const Adjustment& adjustment) { return observer.adjust(adjustment); }) {}
 };
 
 }  // namespace turnpoint::observer

@@ -28,7 +28,8 @@ class Resonance {
 class CellReadings {
  public:
   CellReadings(const Cells& cells, double rate_Hz);
-  /// The next frame. `warmth_K` is the temperature minus the temperature for which zero_N holds.
+  /// Returns the readings of the next frame. `warmth_K` is the present temperature minus the temperature at
+  /// which Cells::zero_N was measured.
   CellForces step(const CellForces& forces, double warmth_K);
 
  private:

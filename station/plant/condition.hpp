@@ -11,13 +11,13 @@ namespace turnpoint::plant {
 /// The state of the laboratory at one frame, with all faults that are active then.
 struct Condition {
   std::array<double, kMostTransducers> transducer_gain{};
-  std::array<bool, 3> bridge_open{};  ///< open wires of the cells a, b and lateral
+  std::array<bool, 3> bridge_open{};  ///< true for each of the cells a, b and lateral that has an open wire
   bool no_reference = false, lifted = false;
   double clip = 1e300;  ///< level at which the amplifier clips, as a fraction of full scale
   std::int64_t late_frames = 0;
-  double resonance = 1;  ///< factor on all resonances of the surface
-  double frequency = 1;  ///< factor on the frequencies of the drive
-  double warmth_K = 0;   ///< temperature minus surface_temperature_C
+  double resonance = 1;  ///< factor by which all resonance frequencies of the surface are multiplied
+  double frequency = 1;  ///< factor by which the frequencies of the drive are multiplied
+  double warmth_K = 0;   ///< present temperature minus Setup::surface_temperature_C
 };
 
 Condition condition_at(const Setup& setup, const std::vector<Fault>& faults, std::int64_t frame);

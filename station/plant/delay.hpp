@@ -11,13 +11,14 @@ namespace turnpoint::plant {
 class Delay {
  public:
   static constexpr int kTaps = 48;
-  static constexpr int kLeast = kTaps / 2;  ///< least whole delay, if there is a fraction
+  /// least number of whole frames in a delay that also has a fraction
+  static constexpr int kLeast = kTaps / 2;
 
   /// `longest` is the longest delay that will be read, in frames. `fraction` is in [0, 1).
   Delay(std::int64_t longest, double fraction);
 
   void push(double sample) { samples_[static_cast<std::size_t>(++newest_ & mask_)] = sample; }
-  /// The sample that is older than the newest one by `frames` plus the fraction. Zero before the first
+  /// Returns the sample that came `frames` plus the fraction before the newest one; 0 before the first
   /// sample.
   double read(std::int64_t frames) const {
     if (taps_.empty()) return whole(frames);
@@ -26,7 +27,7 @@ class Delay {
       sum += taps_[static_cast<std::size_t>(k)] * whole(frames - kLeast + 1 + k);
     return sum;
   }
-  /// The sample that is older than the newest one by `frames`, without the fraction.
+  /// Returns the sample that came `frames` whole frames before the newest one.
   double whole(std::int64_t frames) const {
     return samples_[static_cast<std::size_t>((newest_ - frames) & mask_)];
   }

@@ -17,8 +17,9 @@ struct FingerState {
   double contact_m = 0;  ///< position of the touching skin; stretched skin stays behind the bone
   double speed_m_s = 0;  ///< speed of the bone
   double normal_N = 0,
-         lateral_N = 0;          ///< lateral_N is positive towards larger x
-  double friction = 0;           ///< current coefficient: lateral_N / normal_N while the skin slides
+         lateral_N = 0;  ///< lateral_N is positive towards larger x
+  /// current coefficient of friction: lateral_N / normal_N while the skin slides
+  double friction = 0;
   double relative_friction = 1;  ///< factor by which the vibration reduces friction
 };
 
@@ -27,7 +28,7 @@ class FingerModel {
  public:
   FingerModel(const Finger& finger, double step_s, int frames_per_step, std::uint64_t seed);
 
-  /// Replaces all touches by this one. Its frames are those of step().
+  /// Replaces all touches by this one. Its frame numbers are counted like those of step().
   void touch(const Touch& touch);
   /// Ends every touch at this frame at the latest.
   void lift(std::int64_t frame);
@@ -48,7 +49,7 @@ class FingerModel {
   PinkNoise normal_noise_, friction_noise_;
   std::int64_t steps_ = 0;
   std::size_t touch_ = 0;
-  double pressed_ = 0;  // 0 to 1: how far the finger has landed
+  double pressed_ = 0;  // how far the finger has landed: 0 in the air, 1 with its full force
   double stretch_m_ = 0;
   FingerState state_;
 };

@@ -7,10 +7,10 @@
 namespace turnpoint::plant {
 
 /// Follows the amplitude of one tone in a signal, with a Hann window of 10 ms. A neighbouring tone at a
-/// distance of 1.05 kHz leaks in with 6e-4 of its amplitude. The amplitude is 5 ms late.
+/// distance of 1.05 kHz leaks in with 6e-4 of its amplitude. The amplitude is delayed by 5 ms.
 class LockIn {
  public:
-  static constexpr int kWindow = 80;  ///< number of steps in the window
+  static constexpr int kWindow = 80;  ///< number of steps in the Hann window
 
   /// `step_frames` is the number of frames in a step (an eighth of a ms). The samples of a step are summed
   /// before the window is applied.

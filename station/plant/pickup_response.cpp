@@ -42,8 +42,8 @@ std::vector<double> resonances_of(const SurfaceResponse& response) {
   return found;
 }
 
-/// Returns the filter's poles for these resonances. `loss` is half the width of a resonance relative to its
-/// frequency.
+/// Returns the poles of the filter for these resonance frequencies. `loss` is half the width of a resonance
+/// divided by its frequency.
 std::vector<Complex> poles_of(const std::vector<double>& resonances, double loss, double scale,
                               double rate_Hz) {
   std::vector<Complex> poles;
@@ -53,7 +53,7 @@ std::vector<Complex> poles_of(const std::vector<double>& resonances, double loss
 }
 
 /// Returns the columns of the least-squares fit: for each pole, the responses to the real and imaginary part
-/// of its weight; then those of the taps.
+/// of its weight; then the responses to the taps.
 Eigen::MatrixXcd basis_of(const std::vector<Complex>& poles, std::size_t taps,
                           std::span<const double> frequency_Hz, double rate_Hz) {
   const auto rows = static_cast<Eigen::Index>(frequency_Hz.size());

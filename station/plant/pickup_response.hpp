@@ -14,7 +14,7 @@ namespace turnpoint::plant {
 /// plate.
 struct SurfaceResponse {
   std::vector<double> frequency_Hz;
-  std::vector<std::vector<std::complex<double>>> at;  ///< [pick-up][frequency]
+  std::vector<std::vector<std::complex<double>>> at;  ///< the ratios, indexed by [pick-up][frequency]
 };
 SurfaceResponse surface_response(const physics::Surface& surface, std::span<const double> x_m, double low_Hz,
                                  double high_Hz);

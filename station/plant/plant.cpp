@@ -20,7 +20,7 @@ std::vector<double> places_of(const std::vector<Pickup>& pickups) {
 // The friction under the fingertip is the mean of this many equal parts.
 constexpr int kFingertipParts = 10;
 
-/// Interpolates values at positions that are `step_m` apart.
+/// Interpolates linearly between values at positions that are `step_m` apart.
 double between(const std::vector<double>& values, double step_m, double x_m) {
   const double place = std::clamp(x_m / step_m, 0.0, static_cast<double>(values.size() - 1));
   const auto k = std::min(static_cast<std::size_t>(place), values.size() - 2);

@@ -20,10 +20,13 @@ namespace turnpoint::plant {
 
 /// The true state of the laboratory at the frame that was captured last.
 struct Truth {
-  std::int64_t frame = -1;             ///< number of the captured frame; -1 before the first
+  std::int64_t frame = -1;             ///< number of the frame that was captured last; -1 before the first
   double normal_N = 0, lateral_N = 0;  ///< forces on the surface, from finger and load together
-  FingerState finger;  ///< state at the beginning of the newest step; a step is an eighth of a millisecond
-  CellForces reading_N{};   ///< readings with resonance, crosstalk, zero and drift: what the bridges carry
+  /// state of the finger at the beginning of the newest step; a step is an eighth of a millisecond
+  FingerState finger;
+  /// readings of the force cells that the bridges measure, with the cells' resonance, crosstalk, zero and
+  /// drift
+  CellForces reading_N{};
   double drive_um = 0;      ///< displacement of the drive edge at this frame
   double amplitude_um = 0;  ///< amplitude of all tones under the finger, rms over the fingertip
   double temperature_C = 0;
@@ -69,13 +72,13 @@ class Plant {
   const Truth& truth() const { return truth_; }
   /// Number of frames captured so far.
   std::int64_t frames() const { return captured_; }
-  /// Complex amplitude z (um) with which the named tone moves the drive edge, 5 ms late. The motion is Re(z
-  /// exp(2 pi i f n / rate)) at frame n of the laboratory.
+  /// Returns the complex amplitude z (um) with which this tone (an index) moves the drive edge, as it was 5
+  /// ms ago. The motion at frame n of the laboratory is Re(z exp(2 pi i f n / rate)).
   std::complex<double> tone_um(std::size_t tone) const;
   /// Displacement under a fingertip at x (rms over its length), per displacement of the drive edge.
   double gain_at(std::size_t tone, double x_m) const;
-  /// Displacement at a pick-up per displacement of the drive edge, which really moves at `frequency_Hz` (see
-  /// FaultKind::frequency_off).
+  /// Displacement at a pick-up per displacement of the drive edge, which moves at `frequency_Hz`. With
+  /// FaultKind::frequency_off, this differs from the frequency that is played.
   std::complex<double> pickup_response(std::size_t pickup, double frequency_Hz) const;
   /// Frequency (Hz) and quality factor of each simulated resonance.
   std::vector<std::pair<double, double>> resonances() const { return filters_[filter_].second.resonators(); }
@@ -113,8 +116,9 @@ class Plant {
   std::int64_t whole_delay_;
   std::vector<Fault> faults_;
   SurfaceResponse response_;
-  std::map<double, Gains> gains_;                         // key: frequency / resonance factor
-  std::vector<std::pair<double, PickupFilter>> filters_;  // pairs of a resonance factor and its filter
+  std::map<double, Gains> gains_;  // gains for each frequency, which is divided by Condition::resonance
+  // each value of Condition::resonance that the faults lead to, with the filter for it
+  std::vector<std::pair<double, PickupFilter>> filters_;
   std::size_t filter_ = 0;
   std::vector<Tone> tones_;
   std::vector<Delay> transducer_delays_, carrier_delay_, marker_delay_;

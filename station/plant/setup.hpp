@@ -19,15 +19,15 @@ inline constexpr std::size_t kMostTransducers = 8;
 /// Moves the drive edge of the surface. The motions of several transducers add up.
 struct Transducer {
   int channel = 0;               ///< playback channel that drives it
-  double um_per_full_scale = 4;  ///< peak displacement of the drive edge
+  double um_per_full_scale = 4;  ///< peak displacement of the drive edge for a tone at full scale
 };
 
 /// A piezo patch on the surface. It measures displacement and does not load the surface.
 struct Pickup {
-  int channel = 0;  ///< capture channel
-  double x_m = 0;   ///< distance from the drive edge
+  int channel = 0;  ///< capture channel of the pick-up
+  double x_m = 0;   ///< distance of the pick-up from the drive edge
   double full_scale_per_um = 0.1;
-  double noise_full_scale = 1e-4;  ///< rms of the noise in one sample
+  double noise_full_scale = 1e-4;  ///< rms of the noise in one captured sample
 };
 
 /// The cells a and b below the surface carry the normal force. A third cell measures the lateral force. For a
@@ -35,10 +35,11 @@ struct Pickup {
 ///   a = N (1 - x/L) - h T/L,   b = N x/L + h T/L,   lateral = T
 /// where x is counted from cell a.
 struct Cells {
-  double first_m = 0;                                       ///< position of cell a, from the drive edge
-  double span_m = 0.3;                                      ///< L, distance from cell a to cell b
-  double height_m = 0.0;                                    ///< h
-  double normal_Hz = 60, lateral_Hz = 180, damping = 0.05;  ///< second-order resonances of the cells
+  double first_m = 0;     ///< position of cell a, from the drive edge
+  double span_m = 0.3;    ///< L, distance from cell a to cell b
+  double height_m = 0.0;  ///< h, height of the surface above the pivots
+  /// resonance frequencies and damping of the cells
+  double normal_Hz = 60, lateral_Hz = 180, damping = 0.05;
   /// For the cells a, b and lateral: reading = crosstalk matrix times forces.
   std::array<std::array<double, 3>, 3> crosstalk{{{1, 0.02, -0.02}, {0.02, 1, 0.02}, {-0.02, 0.02, 1}}};
   std::array<double, 3> zero_N{};
@@ -51,12 +52,14 @@ struct Cells {
 struct Wires {
   std::optional<int> carrier_channel = 3;    ///< playback channel that excites the bridges
   double excitation_V_per_full_scale = 2.5;  ///< peak voltage of the excitation
-  double reference_V_at_full_scale = 3.0;    ///< excitation that is full scale on the reference channel
-  double gain = 200;                         ///< gain of the bridge amplifiers
-  double full_scale_V = 2.1;                 ///< amplified voltage that is full scale on a bridge's channel
-  double crosstalk_V_per_full_scale = 4e-3;  ///< from drive to each bridge: a tone of 0.25 gives 1 mV
+  /// voltage of the excitation that gives full scale on the reference channel
+  double reference_V_at_full_scale = 3.0;
+  double gain = 200;          ///< gain of the bridge amplifiers
+  double full_scale_V = 2.1;  ///< amplified voltage that is full scale on a bridge's channel
+  /// crosstalk from the drive to each bridge: a tone of 0.25 gives 1 mV
+  double crosstalk_V_per_full_scale = 4e-3;
   double a2_per_V = 1e-4, a3_per_V2 = 1e-4;
-  double noise_V_per_rtHz = 4e-9;            ///< density of noise at the bridge
+  double noise_V_per_rtHz = 4e-9;            ///< spectral density of the noise at the output of a bridge
   double converter_noise_full_scale = 7e-6;  ///< rms of one sample of the reference (110 dB in 20 kHz)
   int bits = 24;
 };
@@ -67,8 +70,8 @@ struct CaptureChannels {
   std::optional<int> reference = 0, bridge_a = 1, bridge_b = 2, lateral = 3, marker = 4;
 };
 
-/// The finger is on the surface from from_frame to before to_frame. These frames count captured frames and
-/// those that gaps lost.
+/// The finger is on the surface from from_frame up to the frame before to_frame. These frames count captured
+/// frames and those that gaps lost.
 struct Touch {
   std::int64_t from_frame = 0, to_frame = kNever;
 };
@@ -79,16 +82,18 @@ struct Finger {
   std::vector<Touch> touches;
   double from_m = 0.06, to_m = 0.26;
   double stroke_s = 2.5;  ///< duration of a stroke; 0.2 m in 2.5 s are 80 mm/s on average, at most 150 mm/s
-  double pause_s = 0.3;   ///< pause at each end
-  double land_s = 0.05;   ///< time in which the force rises or falls
+  double pause_s = 0.3;   ///< pause of the finger at each end of its path
+  double land_s = 0.05;   ///< time in which the force rises when the finger lands, and falls when it leaves
   double normal_N = 0.5;
-  double normal_noise = 0.15;       ///< relative standard deviation; pink from 0.1 to 25 Hz
+  /// relative standard deviation of the normal force; pink noise from 0.1 to 25 Hz
+  double normal_noise = 0.15;
   double friction = 0.8;            ///< coefficient of friction while the surface is at rest
-  double friction_drift_per_s = 0;  ///< friction is multiplied by exp(drift * time)
-  double friction_noise = 0.08;     ///< relative standard deviation; pink from 0.1 to 400 Hz
-  double film_Hz = 300;             ///< cut-off with which friction follows the amplitude
+  double friction_drift_per_s = 0;  ///< friction is multiplied by exp(drift * time in s)
+  /// relative standard deviation of the friction; pink noise from 0.1 to 400 Hz
+  double friction_noise = 0.08;
+  double film_Hz = 300;  ///< cut-off of the low-pass with which friction follows the amplitude
   double contact_N_per_m = 1000;
-  double fingertip_m = 0.010;  ///< length over which friction is averaged
+  double fingertip_m = 0.010;  ///< length of the fingertip, over which friction is averaged
 };
 
 /// A dead weight and a lateral force on the surface at x, in addition to the finger.
@@ -113,14 +118,14 @@ enum class FaultKind {
 
 /// The name of the enumerator, with spaces instead of underscores: "transducer dead".
 std::string_view name(FaultKind kind);
-/// Empty if no kind has this name.
+/// Returns the kind with this name; empty if there is none.
 std::optional<FaultKind> find_fault(std::string_view name);
 
-/// A fault and the captured frames during which it lasts: from from_frame to before to_frame.
+/// A fault and the captured frames during which it lasts: from from_frame up to the frame before to_frame.
 struct Fault {
   FaultKind kind = FaultKind::transducer_dead;
   std::int64_t from_frame = 0, to_frame = kNever;
-  std::optional<double> amount = {};  ///< if empty, the default of the kind
+  std::optional<double> amount = {};  ///< strength of the fault; if empty, the default of its kind
   int index = 0;
 };
 
@@ -139,7 +144,7 @@ struct Setup {
   physics::FrictionMap friction;
   Finger finger;
   double temperature_C = 23;
-  double surface_temperature_C = 23;  ///< temperature for which `surface` holds
+  double surface_temperature_C = 23;  ///< temperature at which `surface` describes the plate
   /// Relative change of all lengths, and of Young's modulus, per kelvin. The resonances of a plate change by
   /// half of the sum of both: longer lengths lower them, but the lower density raises them more.
   double expansion_per_K = 2.3e-5, modulus_per_K = -4.8e-4;

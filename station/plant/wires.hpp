@@ -15,8 +15,8 @@ class WiresModel {
  public:
   WiresModel(const Wires& wires, double volt_per_volt_N, int rate_Hz, std::uint64_t seed);
 
-  /// Takes the excitation and the drive in the next frame, both in units of full scale and after the loop
-  /// delay.
+  /// Takes the excitation and the drive in the next frame, both in units of full scale and after the delay
+  /// from playback to capture.
   void step(double excitation_full_scale, double drive_full_scale);
 
   double reference(std::int64_t frame, bool connected) const;

@@ -11,7 +11,7 @@ struct Axis {
   std::string label;  ///< quantity and unit: "Friction contrast (dB)"
   double low = 0, high = 1;
   AxisScale scale = AxisScale::linear;
-  bool counts = false;  ///< only whole numbers have a tick (linear axis)
+  bool counts = false;  ///< true if only whole numbers get a tick; for a linear axis
 };
 
 struct Tick {

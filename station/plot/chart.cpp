@@ -249,7 +249,7 @@ struct Place {
 
 /// How a chart's area is divided among title, legend and data.
 struct Division {
-  double left = 0, width = 0, legend_top = 0;  ///< left end and width of the chart; top of the legend
+  double left = 0, width = 0, legend_top = 0;  ///< left end and width of the data area; top of the legend
   std::vector<Tick> up;
   std::vector<Entry> entries;
   Labelled labelled;

@@ -117,7 +117,7 @@ RuleLabel lower(RuleLabel label) {
   return label;
 }
 
-/// Returns the frame that remains for the data after the labels of these rules got room outside it.
+/// Returns the frame that remains for the data after space outside it was given to the labels of these rules.
 Frame without_labels(Frame frame, const std::set<const Rule*>& rules) {
   double right = 0;
   for (const auto* rule : rules) {

@@ -49,11 +49,11 @@ struct RuleLabel {
   Box box;
 };
 
-/// The labels of the chart's rules, and the frame that remains for the data. A label stands beside its rule,
-/// in the free place nearest to the upper right end. If no place is free, the label goes outside the data,
-/// and the frame becomes smaller: the label of a vertical rule then stands above the data in a separate row,
-/// that of a horizontal rule to the right. `above` puts the labels of all vertical rules above the data, so
-/// that charts side by side keep the same height.
+/// The labels of the chart's rules (reference lines), and the frame that remains for the data. A label stands
+/// beside its rule, in the free place nearest to the upper right end. If no place is free, the label goes
+/// outside the data, and the frame becomes smaller: the label of a vertical rule then stands above the data
+/// in a separate row, that of a horizontal rule to the right. `above` puts the labels of all vertical rules
+/// above the data, so that charts side by side keep the same height.
 struct Labelled {
   Frame frame;
   std::vector<RuleLabel> labels;

@@ -40,8 +40,9 @@ std::uint64_t Adjustment::state_hash() const {
 
 namespace {
 
-/// Reads "start", or "start_below" and "start_above". In a list "start", the two sides are those of the
-/// middle between its lowest and its highest level.
+/// Reads "start", or "start_below" and "start_above". A list "start" is split at the middle between its
+/// lowest and its highest level: levels below it are starts from below, levels above it are starts from
+/// above.
 void read_starts(text::TableReader& reader, Spec& spec) {
   auto &below = spec.ascending.values, &above = spec.descending.values;
   below = reader.maybe_numbers("start_below", any_level);
@@ -58,7 +59,7 @@ void read_starts(text::TableReader& reader, Spec& spec) {
     return;
   }
   if (reader.has("start"))
-    reader.problem("start", "there are starts from below or above as well",
+    reader.problem("start", "\"start\" is not allowed together with \"start_below\" or \"start_above\"",
                    "give either \"start\", or \"start_below\" and \"start_above\"");
   if (below.size() != above.size())
     reader.problem(reader.has("start_below") ? "start_below" : "start_above",
@@ -84,7 +85,7 @@ extern const Description adjustment{
       const auto &below = spec.ascending.values, &above = spec.descending.values;
       if (!below.empty() && !above.empty() && spec.ascending.ends().second >= spec.descending.ends().first)
         problems.push_back({"start_below", "a start from below lies above a start from above",
-                            "all of them below all of \"start_above\""});
+                            "choose all of them below all of \"start_above\""});
       if (spec.repeats < 1) problems.push_back({"repeats", "below 1", "write a whole number of 1 or more"});
     },
     [](const Spec& spec, const Context& context, const random::Key& key) -> std::unique_ptr<Procedure> {

@@ -135,8 +135,8 @@ void ConstantStimuli::record(Answer answer) {
     ++recorded_;
     return;
   }
-  // Insert the trial at a random place among the remaining trials, but not as the very next one. If no trials
-  // remain, append it.
+  // Insert the unanswered trial at a random place among the remaining trials, but not as the very next one.
+  // If no trials remain, append it.
   random::Draws draws({key_.seed, random::Stream::level_order, key_.block, key_.attempt, 1 + requeued_++});
   const auto left = queue_.size() - position_;
   const auto offset = left == 0 ? 0 : 1 + draws.below(left);

@@ -6,9 +6,10 @@
 
 namespace turnpoint::procedure {
 
-/// Presents every value `repeats` times. Combinations of the balanced factors occur as equally often as
+/// Presents every value `repeats` times. Combinations of the balanced factors occur equally often, as far as
 /// possible. The order is shuffled so that at most max_run trials in a row have the same right answer.
-/// Unanswered trials are repeated later. Ends early if Stop::right is met.
+/// Unanswered trials are repeated later. Ends early if enough of the last answers were right (Stop::right,
+/// Stop::of_last).
 class ConstantStimuli : public Procedure {
  public:
   ConstantStimuli(const Spec& spec, const Context& context, const random::Key& key);
@@ -34,7 +35,8 @@ class ConstantStimuli : public Procedure {
   random::Key key_;
   std::vector<Item> queue_;
   std::size_t position_ = 0;
-  std::vector<bool> answers_;  ///< kept only for the rule "right of the last"
+  /// the answers so far; kept only if the protocol sets Stop::right and Stop::of_last
+  std::vector<bool> answers_;
   int recorded_ = 0, requeued_ = 0, total_ = 0;
 };
 

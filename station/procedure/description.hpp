@@ -20,6 +20,7 @@ enum class Choice {
   /// the answers update a posterior for an assumed psychometric function, and the posterior determines the
   /// levels; the report prints the procedure's own estimate and fits the psychometric function again
   posterior,
+  program,  ///< a separate program chooses the levels; the report prints the estimates that it gave
 };
 
 /// Everything that the rest of the station needs to know about one kind of procedure. Each kind defines its

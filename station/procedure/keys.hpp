@@ -18,7 +18,7 @@ void read_list(text::TableReader& reader, Spec& spec);
 /// Reads "start", "min" and "max".
 void read_span(text::TableReader& reader, Spec& spec);
 
-/// Adds problems with the starting level, its limits and its scale.
+/// Reports problems with the starting level, its limits and its scale.
 void validate_span(const Spec& spec, std::vector<Problem>& problems);
 
 /// True if all values are finite and above 0; also true for an empty list.

@@ -18,7 +18,7 @@ constexpr int kMostUnanswered = 3;
 constexpr double kSlack = 1e-6;
 constexpr double kLogOf10 = 2.302585092994045684;
 
-/// The number of steps of size 1 on a scale for which the level grows by a factor of e.
+/// The difference on a scale (in dB or log10 units) between two levels of which one is e times the other.
 double per_e(Scale scale) { return scale == Scale::dB ? 20 / kLogOf10 : 1 / kLogOf10; }
 
 /// Returns the position of a level on the scale on which the steps are counted.
@@ -123,7 +123,7 @@ Limits::Mean Limits::mean_of(Direction direction) const {
     if (series_[i].direction != direction) continue;
     ++mean.ended;
     if (!series_[i].midpoint) continue;
-    // running mean and variance by Welford's method
+    // update the mean and the sum of squares by Welford's method
     const double off = *series_[i].midpoint - mean.position;
     mean.position += off / ++mean.used;
     squares += off * (*series_[i].midpoint - mean.position);
@@ -161,7 +161,7 @@ std::map<std::string, Estimate> Limits::estimates() const {
   Mean both{0.5 * (up.position + down.position), {}, up.used + down.used, up.ended + down.ended};
   if (up.variance && down.variance) both.variance = 0.25 * (*up.variance + *down.variance);
   all["threshold"] = estimate_of(both, "");
-  auto difference = all["threshold"];  // copied from "threshold" because the two have the same basis
+  auto difference = all["threshold"];  // a copy, because both use the same series
   const auto& above = all["threshold ascending"];
   const auto& below = all["threshold descending"];
   difference.mean = difference.mode = above.mean - below.mean;

@@ -8,9 +8,9 @@ namespace turnpoint::procedure {
 
 /// The method of limits (Fechner 1860; Gescheider 1997, ch. 3). An ascending series starts at a low level and
 /// goes up by a fixed step until the tracked answer has come `n_change` times in a row; a descending series
-/// goes down until it has stayed away as often. The midpoint of a series lies halfway between the last level
-/// with the old answer and the first of these new answers. On a log10 or dB scale, steps multiply the level
-/// and the midpoint is geometric.
+/// goes down until that answer has been absent as many times in a row. The midpoint of a series lies halfway
+/// between the last level with the old answer and the first of these new answers. On a log10 or dB scale,
+/// steps multiply the level and the midpoint is geometric.
 ///
 /// A series has no midpoint if its first answers already are the new ones, or if it reaches `min` or `max`
 /// first. It is then left out. An unanswered trial is repeated at the same level, up to three times in a row;
@@ -28,7 +28,7 @@ class Limits : public Procedure {
   int recorded() const override { return static_cast<int>(answers_.size()); }
   int expected() const override;
   std::map<std::string, Estimate> estimates() const override;
-  /// Returns the midpoints of all series that have one.
+  /// Returns the midpoints of all series that have a midpoint.
   std::vector<double> reversals() const override;
   std::uint64_t state_hash() const override;
 
@@ -37,7 +37,8 @@ class Limits : public Procedure {
   struct Series {
     Direction direction = Direction::up;
     double start = 0;
-    std::optional<double> midpoint;  ///< position on the scale on which the steps are counted
+    /// position of the midpoint on the scale on which steps are counted; empty if there is none
+    std::optional<double> midpoint;
   };
   void set_starts(Direction direction, const SeriesStarts& starts, random::Draws& draws);
   /// Returns the position that is this number of steps away from the start of the current series, on the
@@ -60,7 +61,7 @@ class Limits : public Procedure {
   std::vector<Series> series_;
   std::size_t current_ = 0;
   int steps_ = 0;       ///< number of steps since the start of the current series
-  int changed_ = 0;     ///< number of new answers in a row
+  int changed_ = 0;     ///< number of answers in a row that differ from the series' first answers
   int unanswered_ = 0;  ///< number of unanswered trials in a row
   std::vector<Answer> answers_;
 };

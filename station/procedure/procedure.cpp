@@ -20,13 +20,14 @@ extern const Description best_pest;
 extern const Description adjustment;
 extern const Description accelerated_stochastic_approximation;
 extern const Description limits;
+extern const Description program;
 
 namespace {
 
 constexpr std::array kDescriptions{
     &constant_stimuli, &up_down, &weighted_up_down, &quest_plus, &psi,
     &psi_marginal,     &zest,    &best_pest,        &adjustment, &accelerated_stochastic_approximation,
-    &limits,
+    &limits,           &program,
 };
 
 }  // namespace

@@ -16,23 +16,36 @@ namespace turnpoint::procedure {
 /// A level to present. For constant stimuli, a proposal also contains the level of each balanced factor.
 struct Proposal {
   double level = 0;
+  std::optional<double> second = {};  ///< value of the second dimension, if the procedure has one
   /// pairs of a factor and the index of its level
-  std::vector<std::pair<std::string, std::size_t>> balanced;
+  std::vector<std::pair<std::string, std::size_t>> balanced = {};
 };
 
-/// The answer to a proposal. The procedure learns nothing from a trial without an answer (timeout,
-/// anticipation).
-/// one: the answer was right, or, if the procedure tracks an answer, it was that answer; zero: any other
-/// answer
-enum class Answer { one, zero, none };
+/// How the participant answered at the level that the procedure proposed.
+enum class Answer {
+  one,   ///< the answer was right; or, if the procedure measures how often one answer is given, it was that
+         ///< one
+  zero,  ///< any other answer
+  none   ///< no valid answer (timeout, anticipation), from which the procedure learns nothing
+};
 
 struct Estimate {
   double mode = 0, mean = 0;
   /// standard deviation of the estimate; empty if the estimate is a single number
   std::optional<double> sd;
+  /// central 95 % credible interval, if the estimate comes from a posterior
+  std::optional<std::pair<double, double>> interval;
   /// for a track: the data from which the estimate was computed, "reversals 5 to 12 of 12"; otherwise ""
   std::string basis;
 };
+
+/// The estimate of the threshold at one value of the second dimension.
+struct ThresholdAt {
+  double second = 0;
+  Estimate estimate;
+};
+
+class Programs;
 
 /// What constant stimuli need to know about the protocol: the number of levels of each balanced factor, and
 /// the right answer at a level (-1 if no answer is right). The right answer is needed to limit runs of equal
@@ -43,31 +56,39 @@ struct Context {
   /// true if the deadline is part of the design: unanswered trials then count as presented and are not
   /// repeated
   bool unanswered_are_data = false;
+  /// starts the programs of procedures that are programs; may be null if there are none
+  Programs* programs = nullptr;
 };
 
 /// Chooses the next level. Pure: it uses no clock and no file, and the same key and answers give the same
-/// levels. next() returns the same proposal until the next call of record().
+/// levels. next() returns the same proposal until the next call of record(). A procedure that is a separate
+/// program (procedure/program.hpp) is the exception: it may not be ready yet, and next() may throw
+/// terms::ProgramFailed.
 class Procedure {
  public:
   virtual ~Procedure() = default;
+  /// true if next() would not wait for a program
+  virtual bool ready() const { return true; }
   /// returns the next level to present; empty when the procedure is done
   virtual std::optional<Proposal> next() const = 0;
   /// records the answer to the proposal of next(); must not be called when the procedure is done
   virtual void record(Answer answer) = 0;
   /// Records the setting of an adjustment. Other kinds of procedures throw std::logic_error.
   virtual void record_setting(double setting);
-  virtual int recorded() const = 0;  ///< number of recorded trials that count
+  virtual int recorded() const = 0;  ///< number of recorded trials that count towards the total
   /// total number of trials; an estimate if a stopping rule decides when the procedure ends
   virtual int expected() const = 0;
   virtual std::map<std::string, Estimate> estimates() const { return {}; }
+  /// the threshold at each value of the second dimension, if the procedure has one
+  virtual std::vector<ThresholdAt> thresholds() const { return {}; }
   virtual std::optional<double> entropy_nats() const { return std::nullopt; }
   virtual std::vector<double> reversals() const { return {}; }
   /// hash of the discrete state (counters and indices), to check whether two procedures are in the same state
   virtual std::uint64_t state_hash() const = 0;
 };
 
-/// The key of a procedure in a session. `block` is the number of the block, `place` that of the procedure
-/// within it, so that interleaved procedures draw different numbers.
+/// The key of a procedure in a session. `block` is the number of the block, and `place` is the position of
+/// the procedure in the block's list, so that interleaved procedures draw different numbers.
 random::Key key_of(std::uint64_t seed, int block, std::size_t place, int attempt);
 
 /// Makes the procedure. Throws std::invalid_argument with the first problem of validate(). `key` needs seed,

@@ -15,6 +15,13 @@ constexpr double kLn10 = 2.302585092994045684;
 /// psychometric functions are flat.
 double saturating_exp(double x) { return random::exp(std::min(x, 700.0)); }
 
+/// (x / t)^slope for levels on a logarithmic scale, 10^(slope (x - t) / 20) for levels in dB.
+double strength(Scale scale, double threshold, double slope, double level) {
+  if (scale == Scale::linear) return saturating_exp(slope * (level - threshold) * (kLn10 / 20));
+  if (level <= 0) return 0;
+  return threshold <= 0 ? saturating_exp(700) : saturating_exp(slope * random::log(level / threshold));
+}
+
 double core(Function function, Scale scale, double threshold, double slope, double level) {
   const bool logs = scale != Scale::linear;
   if (logs && (level <= 0 || threshold <= 0)) return level <= 0 ? 0 : 1;
@@ -52,6 +59,30 @@ double normal_cdf(double z) {
     tail = density / ratio;
   }
   return z < 0 ? tail : 1 - tail;
+}
+
+double normal_quantile(double p) {
+  double low = -7.1, high = 7.1;
+  for (int i = 0; i < 60; ++i) {
+    const double middle = 0.5 * (low + high);
+    (normal_cdf(middle) < p ? low : high) = middle;
+  }
+  return 0.5 * (low + high);
+}
+
+double threshold_at(Scale scale, double threshold, double gradient, const std::optional<double>& floor,
+                    double from_origin) {
+  double at = threshold;
+  if (scale == Scale::linear)
+    at += gradient * from_origin;
+  else  // within these limits neither the threshold nor its ratio to a level overflows
+    at *= random::exp(
+        std::clamp(gradient * from_origin * (scale == Scale::dB ? kLn10 / 20 : kLn10), -600.0, 600.0));
+  return floor ? std::max(*floor, at) : at;
+}
+
+double detection_rate(Scale scale, double threshold, double slope, double criterion, double level) {
+  return normal_cdf(strength(scale, threshold, slope, level) - criterion);
 }
 
 double probability(Function function, Scale scale, const Psychometric& p, double level) {

@@ -7,12 +7,12 @@
 
 namespace turnpoint::procedure {
 
-/// QUEST+ (Watson 2017), psi (Kontsevich & Tyler 1999; QUEST+ on threshold and slope) and psi-marginal (Prins
-/// 2013; uses the entropy of the kept parameters). ZEST (King-Smith et al. 1994) and best PEST (Lieberman &
-/// Pentland 1982) use the same posterior of the threshold, and place the next trial at its mean and at the
-/// most likely threshold. An unanswered trial is repeated at the same level, up to three times in a row. If
-/// the last repeat is unanswered as well, one trial of the budget counts as used, so that the procedure
-/// always ends.
+/// QUEST+ (Watson 2017) over one or two dimensions, psi (Kontsevich & Tyler 1999; QUEST+ on threshold and
+/// slope) and psi-marginal (Prins 2013; uses the entropy of the kept parameters). ZEST (King-Smith et al.
+/// 1994) and best PEST (Lieberman & Pentland 1982) use the same posterior of the threshold, and place the
+/// next trial at its mean and at the most likely threshold. An unanswered trial is repeated at the same
+/// level, up to three times in a row. If the last repeat is unanswered as well, one trial of the budget
+/// counts as used, so that the procedure always ends.
 class QuestPlus : public Procedure {
  public:
   explicit QuestPlus(const Spec& spec);
@@ -22,12 +22,13 @@ class QuestPlus : public Procedure {
   int recorded() const override { return recorded_; }
   int expected() const override;
   std::map<std::string, Estimate> estimates() const override;
+  std::vector<ThresholdAt> thresholds() const override { return posterior_.thresholds(); }
   std::optional<double> entropy_nats() const override { return posterior_.entropy_nats(); }
   std::uint64_t state_hash() const override;
 
  private:
   bool done() const;
-  std::size_t chosen() const;  ///< index of the next stimulus
+  std::size_t chosen() const;  ///< index of the stimulus to present next
 
   Spec spec_;
   Posterior posterior_;

@@ -32,6 +32,14 @@ std::vector<Problem> advise(const Spec& spec) {
                       "use \"trials\" or \"reversals\""});
   if (!spec.stimuli.values.empty() && spec.stop.reversals)
     advice.push_back({"stop", "only staircases have reversals", "use \"trials\" or \"threshold_sd\""});
+  if (spec.second && spec.second->stimuli.values.size() == 1)
+    advice.push_back({"second.stimuli", "the grid has only one point, so the gradient cannot be estimated",
+                      "give two or more points, or leave \"second\" out"});
+  const auto& levels = spec.stimuli.values;
+  if (spec.signal_detection && spec.criterion.values.size() > 1 &&
+      (spec.scale == Scale::linear || levels.empty() || levels.front() > 0))
+    advice.push_back({"stimuli", "without trials without a signal the criterion is hardly known",
+                      "add the level 0, with scale = \"log10\""});
   if (spec.lapse.values.size() == 1 && spec.lapse.values[0] == 0)
     advice.push_back({"grid.lapse", "with a lapse rate of 0 only, a single slip is treated as impossible",
                       "add a value above 0, such as 0.02"});

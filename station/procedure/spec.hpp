@@ -1,4 +1,5 @@
 #pragma once
+#include <array>
 #include <cstddef>
 #include <map>
 #include <optional>
@@ -8,6 +9,7 @@
 #include <vector>
 
 #include "station/terms/psychometric.hpp"
+#include "station/text/toml.hpp"
 
 namespace turnpoint::procedure {
 
@@ -22,7 +24,8 @@ enum class Kind {
   best_pest,
   adjustment,
   accelerated_stochastic_approximation,
-  limits
+  limits,
+  program
 };
 using terms::Function;
 enum class Scale { linear, log10, dB };
@@ -51,6 +54,13 @@ struct Prior {
   std::vector<double> weights;                      ///< one weight for each value of the grid
 };
 
+/// The second dimension of the stimuli of a procedure with a posterior: another factor that it sets.
+struct Second {
+  std::string level;  ///< the factor
+  Grid stimuli;       ///< its values; each is combined with each level
+  double origin = 0;  ///< the value of the factor at which the threshold is that of `grid.threshold`
+};
+
 struct Stop {
   std::optional<int> trials, reversals, min_trials;
   std::optional<double> threshold_sd, entropy_nats;
@@ -69,6 +79,14 @@ struct SeriesStarts {
   std::pair<double, double> ends() const;
 };
 
+/// A separate program that chooses the levels (station/programs).
+struct Program {
+  std::string file;           ///< as written in the protocol: absolute, or as seen from the protocol's folder
+  text::Place place;          ///< of the key "program"
+  double limit_s = 2;         ///< longest time from a question to the program to its reply
+  text::Value settings = {};  ///< a table that the program gets as it is
+};
+
 /// The content of a [[procedure]] table, including the keys that it copies from another procedure. Members
 /// that the kind does not use are empty.
 struct Spec {
@@ -79,6 +97,8 @@ struct Spec {
   Scale scale = Scale::linear;
   /// the values that some factors have in all trials of this procedure
   std::map<std::string, std::variant<double, std::string>> with;
+  /// true if the procedure goes on from its state in the participant's earlier sessions
+  bool continues = false;
   /// name of the table from which `for_each` has made this procedure; "" if it was not made by `for_each`
   std::string family;
 
@@ -89,8 +109,8 @@ struct Spec {
   Shuffle shuffle = Shuffle::within_repeat;
   std::optional<int> max_run;
 
-  // The following members are for procedures that move one level. The first three are starting level and
-  // limits.
+  // The following members are for procedures that move one level up and down. `start` is the first level; the
+  // level stays between `min` and `max`.
   std::optional<double> start, min, max;
   /// sizes of the steps; each reversal switches to the next size, until the last size is reached
   std::vector<double> step, step_down, step_up;
@@ -101,23 +121,49 @@ struct Spec {
   std::optional<int> initial_down;
   int discard_reversals = 0;  ///< number of reversals at the start that the estimate leaves out
 
-  // The first two members are also used by adjustments: the starts from below and from above. The rest is for
-  // the method of limits, which also uses `step` (one step), `min` and `max`.
+  // The following members are for the method of limits, which also uses `step` (one step), `min` and `max`.
+  // Adjustments use the first two, for the starts from below and from above.
   SeriesStarts ascending, descending;
-  int series = 0;    ///< number of series in both directions together
-  int n_change = 1;  ///< a series ends when the new answer has come this many times in a row
+  int series = 0;  ///< number of series in both directions together
+  /// a series ends when the answer that differs from its first ones has come this many times in a row
+  int n_change = 1;
   Directions directions = Directions::alternate;
 
-  // The following members are for procedures with a posterior.
+  // The following members are for procedures with a posterior. The grids of gradient and floor are only used
+  // if there is a second dimension, and the grid of the criterion only if there is a criterion.
   Function function = Function::weibull;
-  Grid stimuli, threshold, slope, guess, lapse;
-  Prior prior_threshold, prior_slope, prior_guess, prior_lapse;
+  /// true for function = "signal-detection": the answers follow from d' and a criterion (detection_rate());
+  /// `function` is then not used
+  bool signal_detection = false;
+  std::optional<Second> second;
+  Grid stimuli, threshold, gradient, floor, slope, criterion, guess, lapse;
+  Prior prior_threshold, prior_gradient, prior_floor, prior_slope, prior_criterion, prior_guess, prior_lapse;
   /// nuisance parameters (psi-marginal): the posterior is summed over them before the entropy is computed
   std::vector<std::string> nuisance;
   Select select = Select::min_expected_entropy;
 
+  Program program;  ///< only for programs, which also use `min` and `max`
+
   Stop stop;
 };
+
+/// A parameter of a procedure with a posterior: its name, and its grid and prior in a specification.
+struct ParameterKeys {
+  const char* name;
+  Grid Spec::*grid;
+  Prior Spec::*prior;
+};
+
+/// All parameters, in the order in which Posterior counts its grid points. The first three determine the
+/// threshold at each stimulus, the next two the shape of the function, and the last two its asymptotes.
+inline constexpr std::array<ParameterKeys, 7> kParameters{
+    {{"threshold", &Spec::threshold, &Spec::prior_threshold},
+     {"gradient", &Spec::gradient, &Spec::prior_gradient},
+     {"floor", &Spec::floor, &Spec::prior_floor},
+     {"slope", &Spec::slope, &Spec::prior_slope},
+     {"criterion", &Spec::criterion, &Spec::prior_criterion},
+     {"guess", &Spec::guess, &Spec::prior_guess},
+     {"lapse", &Spec::lapse, &Spec::prior_lapse}}};
 
 /// True if the rule `right` of `of_last` is set and met. `answer_at(i)` says whether the i-th of `answers`
 /// answers was 1.

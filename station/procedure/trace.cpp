@@ -14,9 +14,10 @@ Trace trace(const Spec& spec, const Context& context, const std::string& answers
       throw terms::UsageError("answers: " + std::to_string(answers.size()) + " were given, but procedure " +
                               spec.name + " stops after " + std::to_string(trace.levels.size()));
     trace.levels.push_back(proposal->level);
+    if (proposal->second) trace.second.push_back(*proposal->second);
     procedure->record(c == '1' ? Answer::one : Answer::zero);
   }
-  if (const auto next = procedure->next()) trace.next = next->level;
+  if (const auto next = procedure->next()) trace.next = next->level, trace.next_second = next->second;
   trace.estimates = procedure->estimates();
   trace.entropy_nats = procedure->entropy_nats();
   trace.reversals = procedure->reversals();

@@ -10,8 +10,11 @@ namespace turnpoint::procedure {
 
 /// The levels that a procedure presents in response to given answers.
 struct Trace {
-  std::vector<double> levels;  ///< the level to which each answer was given
+  std::vector<double> levels;  ///< the level that was presented before each answer
   std::optional<double> next;  ///< the next level; empty if the procedure has stopped
+  /// if the procedure has a second dimension: its value at each answer, and the next one
+  std::vector<double> second;
+  std::optional<double> next_second;
   std::map<std::string, Estimate> estimates;
   std::optional<double> entropy_nats;
   std::vector<double> reversals;

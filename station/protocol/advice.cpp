@@ -106,7 +106,7 @@ void check_unused(AdviceList& advice) {
   const auto sources = sources_of(protocol);
   for (const auto& factor : protocol.factors) {
     const auto sets = [&](const Source& source) { return source.sets.count(factor.name) > 0; };
-    // what differs between groups need not be on the surface
+    // a factor that divides participants into groups need not change what the surface presents
     if (!is_group(factor) && !used.count(factor.name) && std::none_of(sources.begin(), sources.end(), sets))
       advice.add("factor." + factor.name + ".name", "the factor \"" + factor.name + "\" is not used", "");
   }

@@ -6,7 +6,7 @@
 #include "station/protocol/protocol.hpp"
 #include "station/protocol/sources.hpp"
 
-// Used only to implement advice(). Each function gives the advice on one subject.
+// The parts of advice(), which warns about likely mistakes in a protocol. Each function is for one subject.
 namespace turnpoint::protocol {
 
 /// Collects advice on a protocol, each piece at the line of its key.

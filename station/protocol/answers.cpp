@@ -36,8 +36,8 @@ std::vector<double> levels_of(const Source& source) {
   return levels;
 }
 
-/// The mean of the presented levels at which each choice is right. Empty if the right choice depends on other
-/// factors too, if a choice is never right, or if two choices have the same mean.
+/// Returns for each choice the mean of the presented levels at which this choice is right. Empty if the right
+/// choice depends on other factors too, if a choice is never right, or if two choices have the same mean.
 std::vector<double> categories(const Protocol& protocol, const std::string& level) {
   const auto& task = protocol.task;
   for (const auto& [id, comparison] : task.correct_answer)

@@ -22,7 +22,7 @@ std::vector<int> williams_row(int n, int row) {
   return order;
 }
 
-/// Which of its sessions this is for the sequence, from 0. A sequence may be absent from some sessions.
+/// Returns how many earlier sessions contain this sequence. A sequence may be absent from some sessions.
 int number_of(const Sequence& sequence, int session) {
   const auto& sessions = sequence.block.audience.sessions;
   const auto earlier = [&](int other) { return other < session; };
@@ -37,7 +37,8 @@ void unroll(const Sequence& sequence, const Protocol& protocol, const Visit& vis
   if (factor == protocol.factors.end() || factor->levels.empty())
     throw std::invalid_argument("sequence " + sequence.name + ": the factor \"" + sequence.over +
                                 "\" has no levels");
-  // Neighbouring places belong to different groups, so each group goes through all rows of the square.
+  // Participants at neighbouring places belong to different groups, so each group goes through all rows of
+  // the square.
   const int row = visit.place / group_count(protocol), number = number_of(sequence, visit.session);
   const auto levels = static_cast<int>(factor->levels.size());
   auto order = williams_row(levels, sequence.one_per_session ? row : row + number);

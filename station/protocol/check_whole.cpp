@@ -71,7 +71,7 @@ void check_scored(text::TableReader& file, const Reading& reading) {
   }
   for (const auto& part : protocol.plan) {
     const auto& block = block_of(part);
-    // such blocks judge movements, so they need no correct answers
+    // blocks of strokes judge movements, so they need no correct answers
     if (block.kind != BlockKind::trials) continue;
     for (const auto* key : {"pass", "feedback"})
       if (key == std::string("pass") ? block.pass.has_value() : block.feedback != Feedback::none)
@@ -109,6 +109,31 @@ void check_limits(const Reading& reading) {
   }
 }
 
+// Checks procedures with a criterion, which need a task of yes and no, and follow "yes".
+void check_detection(const Reading& reading) {
+  const auto& protocol = reading.protocol;
+  const auto& task = protocol.task;
+  for (const auto& spec : protocol.procedures) {
+    if (!spec.signal_detection || task.choices.empty()) continue;
+    const auto rule = answer_rule(protocol, spec.level);
+    const bool scored = !task.correct_answer.empty();
+    if (task.kind != TaskKind::single_interval || (scored && rule.kind != AnswerKind::presence)) {
+      reading.findings.add(
+          reading.places.of(key_of(spec, "function")),
+          "procedure \"" + spec.name +
+              "\": signal detection needs a task in which people say whether there was a signal",
+          "use kind = \"single-interval\" in [task], with one answer that is right at level 0 and "
+          "another that is right above");
+      continue;
+    }
+    const auto& yes = task.choices.at(static_cast<std::size_t>(rule.positive)).id;
+    if (scored && spec.tracks != yes)
+      reading.findings.add(reading.places.of(key_of(spec, "tracks")),
+                           "procedure \"" + spec.name + "\": the answer \"" + spec.tracks + "\" means \"no\"",
+                           "tracks = \"" + yes + "\"");
+  }
+}
+
 void check_adjustment(const Reading& reading) {
   const auto& protocol = reading.protocol;
   const bool adjusting = protocol.task.kind == TaskKind::adjustment;
@@ -135,8 +160,8 @@ bool has_change(const Task& task) {
                      [](const auto& scenes) { return scenes.size() > 1; });
 }
 
-// Returns the name of a block without a deadline, if any. Each block uses the deadline of its instruction, or
-// else that of [timing].
+// Returns the name of a block without a deadline, if any. A block uses the deadline of its instruction or, if
+// that has none, the deadline of [timing].
 std::optional<std::string> block_without_deadline(const Protocol& protocol) {
   for (const auto& block : all_blocks(protocol)) {
     const auto fixed = block.fixed.find("instruction");
@@ -206,6 +231,7 @@ void check_whole(text::TableReader& file, Reading& reading) {
   check_timing(file, reading);
   check_scored(file, reading);
   check_limits(reading);
+  check_detection(reading);
   check_adjustment(reading);
   const auto sources = sources_of(reading.protocol);
   const auto needed = factors_used(reading.protocol);

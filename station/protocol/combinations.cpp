@@ -14,6 +14,7 @@ namespace {
 // value that the block fixes, or otherwise all levels of the factor.
 std::vector<FactorValue> values_of(const Factor& factor, const Source& source) {
   if (factor.name == source.level) return {source.levels.begin(), source.levels.end()};
+  if (factor.name == source.second) return {source.seconds.begin(), source.seconds.end()};
   if (source.spec)
     if (const auto with = source.spec->with.find(factor.name); with != source.spec->with.end())
       return {with->second};

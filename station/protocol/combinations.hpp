@@ -19,8 +19,9 @@ std::vector<Combination> combinations_of(const Protocol& protocol);
 /// The scene's expression that contains factors, if exactly one expression does; otherwise null.
 const Linear* only_expression(const Scene& scene);
 
-/// True if roving the scene's strength also moves its edge. This is the case for an edge defined by friction.
-/// It is not the case in a zone, because the tones of a zone are designed without roving.
+/// True if the random change of the scene's strength (rove_dB) also moves its edge. This is the case for an
+/// edge defined by friction. It is not the case in a zone, because the tones of a zone are designed without
+/// this change.
 bool edge_moves_with_strength(const Scene& scene);
 
 /// Chooses at most `most` combinations of one scene, including the extreme values, so that results for the

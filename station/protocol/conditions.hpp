@@ -23,7 +23,7 @@ struct FactorWords {
 };
 FactorWords words_of(const std::string& factor);
 
-/// A level of a factor in words: a name as it is, "mark 150 mm" for a number.
+/// Returns a level of a factor in words: a named level as it is, a number with name and unit ("mark 150 mm").
 std::string level_in_words(const std::string& factor, const FactorValue& value);
 
 }  // namespace turnpoint::protocol

@@ -17,7 +17,7 @@ using procedure::Kind;
 using text::number;
 using text::Problem;
 
-/// A displacement below this is far too small to be felt, but is no mere rounding error.
+/// A displacement below this is far too small to be felt.
 constexpr double least_displacement_um = 0.001;
 
 std::string trimmed(const std::string& text) {
@@ -188,7 +188,8 @@ void check_blocks(AdviceList& advice) {
     advice.add(key_of(protocol.plan.back(), "practice"), "all blocks are practice: nothing is measured",
                "add a block without \"practice\"");
   else if (practice > rest)
-    advice.add(practice_key, "there are more practice trials than other trials", "less practice");
+    advice.add(practice_key, "there are more practice trials than other trials",
+               "plan fewer practice trials");
 }
 
 void check_instructions(AdviceList& advice) {

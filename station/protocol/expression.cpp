@@ -18,8 +18,8 @@ struct SyntaxError {
 };
 
 // A recursive-descent parser for an expression, or for one side of a comparison. Every result is linear in
-// each of its factors, so that its extremes are at the ends of their ranges: a factor is never multiplied by
-// itself.
+// each of its factors, so its extremes are at the ends of the factors' ranges. Therefore no factor may be
+// multiplied by itself.
 class Parser {
  public:
   Parser(const std::string& source, std::size_t begin, std::size_t end, const std::vector<Factor>& factors)

@@ -10,8 +10,8 @@
 namespace turnpoint::protocol {
 
 /// Parses arithmetic on numeric factors: numbers, factor names, + - * / and parentheses, and abs() around the
-/// whole expression. Only constants divide, and no factor is multiplied by itself. Problems give the column
-/// inside the text and suggest the nearest factor name.
+/// whole expression. A divisor must be a constant, and no factor may be multiplied by itself. Problems give
+/// the column inside the text and suggest the nearest factor name.
 std::optional<Linear> parse_linear(const std::string& source, const text::Place& place,
                                    const std::vector<Factor>& factors, text::Findings& findings);
 

@@ -24,7 +24,7 @@ struct Character {
   std::string bytes;
 };
 
-// The text is valid UTF-8, because the reader of TOML files refuses any other.
+// Splits a text into characters. The text is valid UTF-8, because the reader of TOML files refuses any other.
 std::vector<Character> characters(const std::string& text) {
   std::vector<Character> list;
   for (const char byte : text) {
@@ -48,10 +48,11 @@ class Search {
     std::string missing;
     collect(value, missing);
     if (!missing.empty())
-      found.push_back(
-          {place, "\"" + key + "\" has characters that no font on this machine can draw: " + missing,
-           "other characters, or install a font for them; fonts-noto-core and fonts-noto-cjk together cover "
-           "almost all scripts"});
+      found.push_back({place,
+                       "\"" + key + "\" has characters that no font on this machine can draw: " + missing,
+                       "use other characters, or install a font for them; fonts-noto-core and fonts-noto-cjk "
+                       "together cover "
+                       "almost all scripts"});
     for (const auto& entry : value.entries) look(key + "." + entry.key, entry.place, entry.value);
     for (const auto& item : value.items)
       for (const auto& entry : item.entries) look(key + "." + entry.key, entry.place, entry.value);

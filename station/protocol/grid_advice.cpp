@@ -34,6 +34,14 @@ void check_level(AdviceList& advice, const Spec& spec) {
              "use a scene with \"" + spec.level + "\" in its arithmetic");
 }
 
+void check_second(AdviceList& advice, const Spec& spec) {
+  if (spec.second && !depends_on(advice.protocol, spec.second->level))
+    advice.add(
+        key_of(spec, "second.level"),
+        "no scene of the task depends on \"" + spec.second->level + "\", so the threshold cannot either",
+        "use a scene with \"" + spec.second->level + "\" in its arithmetic");
+}
+
 // Reports levels that differ only by a rounding error, because they were probably meant to be the same level.
 void check_values(AdviceList& advice, const Spec& spec) {
   auto values = spec.values;
@@ -148,6 +156,7 @@ double chance(const Protocol& protocol) {
 void advise_on_grids(AdviceList& advice) {
   for (const auto& spec : advice.protocol.procedures) {
     check_level(advice, spec);
+    check_second(advice, spec);
     check_values(advice, spec);
     check_steps(advice, spec);
     check_rates(advice, spec);

@@ -44,7 +44,7 @@ const std::map<std::string, std::vector<std::string>>& identifying_words() {
   return words;
 }
 
-/// Ids that protocols commonly give to items which ask for such data.
+/// Ids that protocols commonly give to questions for personal data.
 const std::vector<std::string>& identifying_ids() {
   static const std::vector<std::string> ids{
       "name", "first_name", "last_name", "surname", "initials",  "birthday", "birth_date", "date_of_birth",
@@ -68,7 +68,7 @@ bool has_word(const std::string& text, const std::string& word, bool alone) {
   return false;
 }
 
-/// Returns the identifying word in the question; "" if there is none.
+/// Returns a word that shows that the question asks for personal data; "" if there is none.
 std::string identifying_word(const Localised& question) {
   for (const auto& [language, text] : question) {
     const auto found = identifying_words().find(language.substr(0, 2));

@@ -16,22 +16,23 @@ using Answers = std::map<std::string, FactorValue>;
 bool holds(const AnswerCondition& rule, const Answers& answers);
 bool holds(const std::vector<AnswerCondition>& rules, const Answers& answers);
 
-/// Returns the interludes that come before the block with index `next` of these blocks (from block_order()),
-/// in the order in which they come. With next = blocks.size(), those that come after the last block. Only
-/// those of this visit.
+/// Returns the interludes (questionnaires, explanations, ...) of this visit that come before block number
+/// `next` of `blocks` (from block_order()), in order. With next = blocks.size(), returns those after the last
+/// block.
 std::vector<const Interlude*> interludes_before(const Protocol& protocol, const std::vector<Block>& blocks,
                                                 std::size_t next, const Visit& visit);
 
-/// The answer to an item as a value that rules can compare: a number if the item's answer is one.
+/// The answer to an item as a value that rules can compare: a number if the answer is a number.
 FactorValue answer_value(const Item& item, const std::string& answer);
 
-/// A picture of an explanation: its name in the protocol, and the path under which it is opened.
+/// A picture of an explanation: the path under which it is opened, and the place of its name in the protocol
+/// file.
 struct Picture {
   std::string path;
   Place place;
 };
 std::vector<Picture> pictures(const Protocol& protocol);
-/// The path of a picture; relative ones belong to the folder of the protocol file.
+/// The path of a picture; a relative path starts from the folder of the protocol file.
 std::string picture_path(const Protocol& protocol, const std::string& picture);
 
 }  // namespace turnpoint::protocol

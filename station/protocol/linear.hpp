@@ -17,7 +17,7 @@ using Factors = std::map<std::string, FactorValue>;
 
 /// A product of different numeric factors and a coefficient, such as `2 * ref * weber`.
 struct FactorProduct {
-  std::vector<std::string> factors;  ///< sorted; two or more
+  std::vector<std::string> factors;  ///< the names of two or more factors, sorted
   double coefficient = 0;
   bool operator==(const FactorProduct&) const = default;
 };

@@ -57,7 +57,7 @@ Protocol load(const std::string& path) {
     if (!is_picture(picture.path))
       findings.add(picture.place,
                    "the picture " + picture.path + " does not exist, or is neither PNG nor JPEG",
-                   "a path relative to the protocol file");
+                   "write a path relative to the protocol file");
   findings.throw_if_any();
   return protocol;
 }

@@ -18,7 +18,7 @@ namespace turnpoint::protocol {
 /// A text in each of the protocol's languages.
 using Localised = std::map<std::string, std::string>;
 
-/// How the values of a factor that nothing else sets are drawn.
+/// How the values of a factor are drawn if nothing else sets the factor.
 enum class FactorDraw {
   levels,              ///< one of the levels in each trial; a factor with a range is not drawn
   without_repetition,  ///< the levels in shuffled order; each once before any comes again
@@ -30,13 +30,14 @@ enum class FactorDraw {
 struct Factor {
   std::string name;
   FactorDraw draw = FactorDraw::levels;
-  double mean = 0, sd = 0;  ///< mean and standard deviation for FactorDraw::normal
+  double mean = 0, sd = 0;  ///< mean and standard deviation, if `draw` is FactorDraw::normal
   std::optional<std::pair<double, double>> range;
   std::vector<FactorValue> levels;
   Place place;
 };
 
-/// An edge definition: one of turning, peak, p70, p50, p25, p10, or friction = m.
+/// What counts as the edge of a scene's vibration: a named point (turning, peak, p70, p50, p25 or p10), or
+/// the place with a given relative friction.
 struct Edge {
   std::string name;                ///< "friction" for an edge defined by friction
   std::optional<double> friction;  ///< relative friction in (0, 1)
@@ -123,19 +124,20 @@ struct ValueAnswer {
   bool typed = false;
   double low = 0, high = 1;
   int decimals = 0;             ///< values are multiples of 10^-decimals
-  std::vector<Anchor> anchors;  ///< texts along the line, at ascending values
+  std::vector<Anchor> anchors;  ///< texts along the line, in the order of their values
 };
 
 /// Asks after each answer how sure the participant is.
 struct Confidence {
   Localised question;
-  std::vector<Localised> labels;  ///< from the least sure to the surest
+  std::vector<Localised> labels;  ///< the possible answers, from the least sure to the surest
 };
 
 struct Task {
   TaskKind kind = TaskKind::single_interval;
   std::vector<std::vector<std::string>> intervals;  ///< scene names; an interval is a sequence of scenes
-  std::string standard, target;                     ///< scenes of a task with `standard` and `target`
+  /// the two scenes that the task compares, if its kind has a standard and a target
+  std::string standard, target;
   Odd odd = Odd::either;
   std::optional<double> duration_s, gap_s;
   std::optional<Distribution> foreperiod_s;  ///< time from the start of an interval to its second scene
@@ -147,10 +149,12 @@ struct Task {
   Localised question;
   /// If the answer is a value, there is one choice, which says that a value was given.
   std::vector<Choice> choices;
-  std::vector<Anchor> anchors;  ///< rating on points: texts at some of the choices, which are 1, 2, ...
-  bool rating = false;          ///< the choices are the points of a scale, in ascending order
+  /// for a rating: texts at some of the choices, which are the points 1, 2, ...
+  std::vector<Anchor> anchors;
+  bool rating = false;  ///< true if the choices are the points of a scale, in ascending order
   std::optional<ValueAnswer> value;
-  std::optional<double> modulus;  ///< the number given to `standard`, which begins each trial
+  /// the number that stands for `standard`, the scene at the start of each trial
+  std::optional<double> modulus;
   std::optional<Confidence> confidence;
   std::string correct_scene;  ///< 2ifc: the interval that contains this scene is the correct answer
   /// id of each choice, with the condition under which the choice is right
@@ -166,7 +170,7 @@ using terms::ResponseZero;
 /// answer counts from the signal to the end of the window; earlier and later ones make the trial void, and it
 /// is repeated.
 struct ResponseSignal {
-  Linear after_s;  ///< counted from response_zero
+  Linear after_s;  ///< time of the signal in s, counted from response_zero
   double window_s = 0;
 };
 
@@ -175,7 +179,8 @@ struct Timing {
   Place response_zero_place;
   /// for a single interval: the longest time for which the tones are presented
   std::optional<double> explore_s;
-  /// counted from response_zero; empty if each instruction gives its own, or if there is a signal
+  /// deadline of the answer, counted from response_zero; empty if each instruction gives its own deadline, or
+  /// if there is a response signal
   std::optional<Linear> deadline_s;
   Distribution iti_s;
   Linear anticipation_s;
@@ -208,14 +213,14 @@ enum class BlockKind {
   friction_table  ///< measures friction at several displacements, with this finger on this surface
 };
 
-/// How the finger strokes in a block of strokes.
+/// How the finger strokes in a block of strokes (any block that is not of the kind `trials`).
 struct Strokes {
   double duration_s = 0;  ///< length of each trial
   std::string scene;      ///< friction table: the scene whose strength is changed
   /// Friction table: the part of the surface in which displacement and friction are averaged.
   double from_mm = 0, to_mm = 0;
-  std::vector<double> levels_um;  ///< friction table: displacements, as rms over that part, ascending
-  int repeats = 0;                ///< friction table: trials at each displacement
+  std::vector<double> levels_um;  ///< friction table: displacements, as rms from from_mm to to_mm, ascending
+  int repeats = 0;                ///< friction table: number of trials at each displacement
   /// Friction table: trials after the block are planned with the measured table instead of the rig's.
   bool used = false;
 };
@@ -225,7 +230,7 @@ struct Strokes {
 struct Block {
   std::string name;
   BlockKind kind = BlockKind::trials;
-  Strokes strokes;  ///< for blocks other than `trials`
+  Strokes strokes;  ///< how the finger strokes, in blocks of a kind other than `trials`
   std::vector<std::string> procedures;
   std::string level;           ///< for practice with fixed levels: the factor to which the levels belong
   std::vector<double> levels;  ///< the fixed levels, presented in shuffled order
@@ -245,10 +250,10 @@ struct Block {
 
 struct Sequence {
   std::string name;
-  std::string over;  ///< the factor whose level differs between the blocks
+  std::string over;  ///< the factor whose level differs between the blocks of the sequence
   int cycles = 1;
   bool mirror = false;
-  bool one_per_session = false;  ///< each session has one level; the square is that of the sessions
+  bool one_per_session = false;  ///< each session has one level; the Latin square orders the sessions
   Block block;
 };
 
@@ -263,7 +268,7 @@ struct Instruction {
 struct AnswerCondition {
   std::string about;
   Relation relation = Relation::equal;
-  bool unequal = false;  ///< `!=`; `relation` is then `equal`
+  bool unequal = false;  ///< true for the comparison `!=`; `relation` is then `equal`
   FactorValue value;
   std::string source;
   Place place;
@@ -272,7 +277,7 @@ struct AnswerCondition {
 /// A scale of points (`choices`, which are 1, 2, ...) or a line (`value`).
 struct Scale {
   std::vector<Choice> choices;
-  std::vector<Anchor> anchors;  ///< texts at some of the points
+  std::vector<Anchor> anchors;  ///< texts at some of the points of the scale
   std::optional<ValueAnswer> value;
 };
 
@@ -281,10 +286,10 @@ struct Item {
   std::string id;
   Localised question;
   std::vector<Choice> choices;
-  bool rating = false;          ///< the choices are the points of a scale, in ascending order
-  std::vector<Anchor> anchors;  ///< texts at some of the points
+  bool rating = false;          ///< true if the choices are the points of a scale, in ascending order
+  std::vector<Anchor> anchors;  ///< texts at some of the points of the scale
   std::optional<ValueAnswer> value;
-  std::vector<AnswerCondition> when;  ///< asked only if all of them hold
+  std::vector<AnswerCondition> when;  ///< the item is asked only if all of these conditions hold
   /// what a simulated participant answers; if empty, the answer is drawn at random
   std::optional<FactorValue> simulated;
   Place place;
@@ -308,13 +313,13 @@ struct ExplanationPage {
 
 enum class InterludeKind { questionnaire, consent, explanation, screening };
 
-/// What comes before, between or after the blocks.
+/// A part of the session before, between or after the blocks, such as a questionnaire.
 struct Interlude {
   InterludeKind kind = InterludeKind::questionnaire;
   std::string name;
   /// number of parts of the plan (blocks and sequences) that are above the interlude in the file
   std::size_t above = 0;
-  Audience audience;       ///< the sessions and groups that have it
+  Audience audience;       ///< the sessions and groups that have this interlude
   std::string after_each;  ///< name of a block or sequence: the interlude comes after each of its blocks
   /// items of a questionnaire; a consent has a single item, "consent", with the choices agree and refuse
   std::vector<Item> items;
@@ -338,12 +343,14 @@ struct Analysis {
 /// The rules by which the report of a study leaves out participants. Shares and medians are over all trials
 /// of a participant, without practice. An empty rule excludes nobody.
 struct Exclusion {
-  std::optional<int> fewer_trials_than;                       ///< answered experimental trials
-  std::optional<double> accuracy_below;                       ///< of the answered experimental trials
-  std::optional<double> catch_accuracy_below;                 ///< of the answered catch trials
-  std::optional<double> timeouts_above, anticipations_above;  ///< shares of the experimental trials
+  std::optional<int> fewer_trials_than;  ///< number of answered experimental trials
+  /// proportion correct in the answered experimental trials
+  std::optional<double> accuracy_below;
+  /// proportion correct in the answered catch trials
+  std::optional<double> catch_accuracy_below;
+  std::optional<double> timeouts_above, anticipations_above;  ///< proportions of the experimental trials
   std::optional<double> median_time_below_s, median_time_above_s;
-  bool incomplete = false;  ///< a session was not completed
+  bool incomplete = false;  ///< exclude participants who did not complete a session
 };
 
 enum class ResumePolicy { ask, resume, restart, block };
@@ -364,7 +371,7 @@ struct TriggerCode {
   TriggerEvent event = TriggerEvent::trial;
   /// the condition's name, as in conditions(); "" for trials that belong to no condition
   std::string condition;
-  int code = 0;  ///< 1 to 255
+  int code = 0;  ///< the code, from 1 to 255
 };
 
 /// Which events get a trigger code, and the codes that the file gives explicitly instead of the defaults.
@@ -381,8 +388,9 @@ struct Sensing {
   std::optional<std::pair<double, double>> normal_N, speed_mm_s;
   double fraction = 0.8;  ///< required fraction of the strokes' time with force and speed in range
   int strokes = 2;        ///< least number of strokes in a trial
-  /// How often a trial with a wrong movement is presented again. After the last repetition, or with 0 at
-  /// once, the trial counts, and its row says what was wrong.
+  /// How often a trial with a wrong movement is presented again. If the movement is still wrong in the last
+  /// repetition (or in the first presentation, if `repeats` is 0), the trial counts, and its row says what
+  /// was wrong.
   int repeats = 0;
   /// Whether pages show bars with normal force and speed, and whether the bars also move during stimuli.
   bool guidance = false, live_guidance = false;
@@ -405,7 +413,7 @@ struct Protocol {
   std::optional<SessionPlan> sessions;  ///< empty: the protocol does not say how many sessions there are
   std::vector<std::variant<Block, Sequence>> plan;  ///< blocks and sequences in the order of the file
   std::map<std::string, Instruction> instructions;
-  std::vector<Interlude> interludes;  ///< in the order of the file
+  std::vector<Interlude> interludes;  ///< all interludes in the order of the file
   Analysis analysis;
   std::optional<Exclusion> exclusion;
   Triggers triggers;
@@ -421,8 +429,8 @@ Protocol load(const std::string& path);
 /// Like load(), for text that is already in memory (a resumed session). `path` is only used in messages.
 Protocol parse(const std::string& source, const std::string& path);
 
-/// Returns the blocks of a session in their order: those of its number and the participant's group, with the
-/// square, cycles and mirror of each sequence.
+/// Returns the blocks of this visit's session in order: those for its session number and group. Each sequence
+/// is expanded by its Latin square, its cycles and `mirror`.
 std::vector<Block> block_order(const Protocol& protocol, const Visit& visit);
 
 }  // namespace turnpoint::protocol

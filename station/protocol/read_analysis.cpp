@@ -55,6 +55,12 @@ std::string without_effect(const std::string& word, const Protocol& protocol) {
     return "the level decides which answer is right, not how difficult the trial is";
   if (word == "ez" && task.choices.size() > 2 && task.kind != TaskKind::oddity)
     return "EZ-diffusion is a model of two answers";
+  const auto& by = protocol.analysis.by;
+  for (const auto& spec : protocol.procedures)
+    if (word == "psychometric" && spec.second &&
+        std::find(by.begin(), by.end(), spec.second->level) == by.end())
+      return "the threshold depends on \"" + spec.second->level +
+             "\", so one curve does not describe all trials";
   if (word == "psychometric") return "";
   if (task.kind == TaskKind::single_interval && task.correct_answer.empty())
     return "without \"correct\" in [task], no answer is right or wrong";

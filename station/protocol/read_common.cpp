@@ -87,7 +87,7 @@ std::optional<FactorValue> read_factor_value(const text::Value& value, const Fac
   const bool is_number = value.kind == Value::Kind::number || value.kind == Value::Kind::integer;
   if (numeric != is_number || (!numeric && value.kind != Value::Kind::string)) {
     findings.add(value.place, "a value of \"" + factor.name + "\" is " + describe(value),
-                 numeric ? "write a number" : "write one of the factor's names in quotes");
+                 numeric ? "write a number" : "write one of the names in the factor's list, in quotes");
     return std::nullopt;
   }
   const FactorValue result = numeric ? FactorValue(value.number) : FactorValue(value.string);

@@ -21,8 +21,7 @@ void check_rules(TableReader& reader, const Reading& reading) {
     reader.problem("catch_accuracy_below", "no block has catch trials",
                    "add \"catch\" to a block, or leave this rule out");
   const auto& task = protocol.task;
-  // A task without choices does not count as unscored here: that mistake has been reported by the reader of
-  // [task].
+  // Do not report a task without choices again: the reader of [task] has reported that mistake.
   const bool unscored =
       judges(task) || task.kind == TaskKind::adjustment ||
       (task.kind == TaskKind::single_interval && !task.choices.empty() && task.correct_answer.empty());
@@ -51,7 +50,7 @@ void read_exclusion(TableReader& file, Reading& reading) {
   if (rules.median_time_below_s && rules.median_time_above_s &&
       *rules.median_time_below_s >= *rules.median_time_above_s)
     reader.problem("median_time_below_s", "every median time would be excluded",
-                   "a value below \"median_time_above_s\"");
+                   "write a value below \"median_time_above_s\"");
   check_rules(reader, reading);
   reader.finish();
   if (table->entries.empty())

@@ -68,7 +68,7 @@ void read_level(const text::Value& item, Factor& factor, text::Findings& finding
     factor.levels.push_back(value);
 }
 
-/// Reads how the values of a factor are drawn.
+/// Reads the key "draw", which says how the values of a factor are drawn.
 void read_draw(TableReader& reader, Factor& factor, bool has_levels, Reading& reading) {
   const auto* draw = reader.take("draw");
   if (!draw) return;

@@ -191,7 +191,7 @@ void read_break(TableReader& reader, Block& block, const Reading& reading) {
 }
 
 void read_plan(TableReader& file, Reading& reading) {
-  std::vector<std::pair<const Value*, bool>> tables;  // each table, and true if it is a sequence
+  std::vector<std::pair<const Value*, bool>> tables;  // each table, with true for a [[sequence]]
   for (const auto* table : file.tables("block")) tables.emplace_back(table, false);
   for (const auto* table : file.tables("sequence")) tables.emplace_back(table, true);
   const auto above = [](const auto& a, const auto& b) {

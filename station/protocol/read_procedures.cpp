@@ -113,13 +113,38 @@ void check_spec(const Value& table, const Spec& spec, text::Findings& findings) 
   }
 }
 
+/// Checks the factor of the second dimension and its values.
+void check_second(const Value& table, const Spec& spec, const Reading& reading, text::Findings& findings) {
+  const auto* second = table.find("second");
+  if (!spec.second || spec.second->level.empty() || !second) return;
+  TableReader reader(second->value, "second", findings);
+  const auto* factor = read_numeric_factor(reader, "level", reading);
+  if (!factor || is_broken(*factor)) return;
+  for (const double value : spec.second->stimuli.values) {
+    const auto& levels = factor->levels;
+    const bool inside = factor->range
+                            ? value >= factor->range->first && value <= factor->range->second
+                            : std::find(levels.begin(), levels.end(), FactorValue(value)) != levels.end();
+    if (inside) continue;
+    return reader.problem("stimuli", "\"stimuli\" has " + text::number(value),
+                          factor->range ? "the range of \"" + factor->name + "\" is " +
+                                              describe(Range{factor->range->first, factor->range->second})
+                                        : "a level of \"" + factor->name + "\"");
+  }
+}
+
+/// True if the procedure chooses the value of this factor.
+bool chooses(const Spec& spec, const std::string& factor) {
+  return factor == spec.level || (spec.second && factor == spec.second->level);
+}
+
 /// Reads the values that factors have in all trials of the procedure.
 void read_with(TableReader& reader, Spec& spec, const Reading& reading, text::Findings& findings) {
   const auto& factors = reading.protocol.factors;
   const auto* with = reader.maybe_table("with");
   for (const auto& entry : with ? with->entries : std::vector<text::Entry>{}) {
     const auto* factor = find_factor(factors, entry.key);
-    const bool twice = entry.key == spec.level ||
+    const bool twice = chooses(spec, entry.key) ||
                        std::find(spec.balance.begin(), spec.balance.end(), entry.key) != spec.balance.end();
     if (!factor || twice)
       findings.add(entry.place,
@@ -139,7 +164,7 @@ std::vector<Spec> family_of(const Value& table, const Spec& spec, const Reading&
   const auto* factor = key->value.kind == Value::Kind::string
                            ? find_factor(reading.protocol.factors, key->value.string)
                            : nullptr;
-  const bool twice = factor && (factor->name == spec.level || spec.with.count(factor->name) > 0);
+  const bool twice = factor && (chooses(spec, factor->name) || spec.with.count(factor->name) > 0);
   if (!factor || factor->levels.empty() || twice) {
     findings.add(key->value.place,
                  "\"for_each\" is " + describe(key->value) +
@@ -193,9 +218,11 @@ Spec read_procedure(const Value& table, const Reading& reading, text::Findings& 
   const auto* factor = read_numeric_factor(reader, "level", reading);
   if (factor) spec.level = factor->name;
   procedure::description(spec.kind).read(reader, spec);
+  check_second(table, spec, reading, findings);
   check_tracks(reader, spec, reading);
   check_balance(reader, spec, reading);
   read_with(reader, spec, reading, findings);
+  if (reader.take("continues")) spec.continues = reader.boolean("continues", "false");
   reader.take("for_each");
   if (factor && !is_broken(*factor)) check_levels(reader, spec, *factor);
   if (findings.problems.empty()) check_spec(table, spec, findings);

@@ -1,6 +1,8 @@
 #include <algorithm>
 #include <set>
 
+#include "station/procedure/description.hpp"
+#include "station/protocol/advice_list.hpp"
 #include "station/protocol/expression.hpp"
 #include "station/protocol/reading.hpp"
 #include "station/protocol/sources.hpp"
@@ -40,13 +42,13 @@ void read_session_numbers(TableReader& reader, Audience& audience, const Reading
   }
 }
 
-/// The sessions and groups that have this part as words, for messages.
+/// Returns the session and the group of a visit in words, for messages.
 std::string visit_words(const Protocol& protocol, const Visit& visit) {
   const auto words = in_words(protocol, visit);
   return words.empty() ? "the session" : words;
 }
 
-/// Each session of each group needs a block.
+/// Reports a planned session in which a group has no block.
 void check_blocks(const Reading& reading) {
   const auto& protocol = reading.protocol;
   for (const auto& visit : different_visits(protocol)) {
@@ -59,7 +61,8 @@ void check_blocks(const Reading& reading) {
   }
 }
 
-/// With one level in each session, there must be a session for each level.
+/// Reports sequences over a factor of which each participant has only one level, and sequences with one level
+/// per session if the number of sessions differs from the number of levels.
 void check_sequences(const Reading& reading) {
   const auto& protocol = reading.protocol;
   for (const auto& part : protocol.plan) {
@@ -81,7 +84,8 @@ void check_sequences(const Reading& reading) {
   }
 }
 
-/// Nothing else may set a factor of which each participant has one level.
+/// Checks factors with one level for each participant: nothing else may set them, and each level of
+/// "instruction" needs a table.
 void check_group_factors(const Reading& reading) {
   const auto& protocol = reading.protocol;
   for (const auto& factor : protocol.factors) {
@@ -100,7 +104,7 @@ void check_group_factors(const Reading& reading) {
   }
 }
 
-/// A rule can only ask for what the same session has.
+/// Reports rules about an answer or a score that the same session does not have.
 void check_rules(const Reading& reading) {
   const auto& protocol = reading.protocol;
   const auto audience_of = [&](const std::string& name) -> const Audience* {
@@ -123,6 +127,47 @@ void check_rules(const Reading& reading) {
     for (const auto& rule : interlude.pass) check(interlude, rule);
     for (const auto& item : interlude.items)
       for (const auto& rule : item.when) check(interlude, rule);
+  }
+}
+
+/// On each day, at most one block may run the procedure, and it must limit the trials: otherwise the first
+/// day would finish it.
+template <class Report>
+void check_days_of(const procedure::Spec& spec, const Protocol& protocol, const Report& report) {
+  for (const auto& visit : different_visits(protocol)) {
+    int blocks = 0;
+    for (const auto& block : block_order(protocol, visit)) {
+      if (std::find(block.procedures.begin(), block.procedures.end(), spec.name) == block.procedures.end())
+        continue;
+      if (block.practice)
+        return report("block \"" + block.name + "\" is practice", "use it in a block that is no practice");
+      if (!block.trials)
+        return report("block \"" + block.name + "\" does not say how many trials a day has",
+                      "add \"trials\" to the block");
+      if (++blocks > 1)
+        return report(visit_words(protocol, visit) + " has two blocks with it",
+                      "use it in one block of a session");
+    }
+  }
+}
+
+/// A procedure that continues needs a session in which to continue, and a block that ends before it is done.
+void check_continuing(const Reading& reading) {
+  const auto& protocol = reading.protocol;
+  for (const auto& spec : protocol.procedures) {
+    if (!spec.continues) continue;
+    const auto report = [&](const std::string& what, const std::string& allowed) {
+      reading.findings.add(reading.places.of(key_of(spec, "continues")),
+                           "procedure \"" + spec.name + "\" continues on another day, but " + what, allowed);
+    };
+    const auto choice = procedure::description(spec.kind).choice;
+    if (choice != procedure::Choice::track && choice != procedure::Choice::posterior)
+      report("this kind of procedure does not follow from its answers alone",
+             "use a staircase, QUEST+ or another procedure with a posterior");
+    else if (!protocol.sessions)
+      report("the file plans no sessions", "add [sessions]");
+    else
+      check_days_of(spec, protocol, report);
   }
 }
 
@@ -169,6 +214,7 @@ void check_visits(const Reading& reading) {
   check_sequences(reading);
   check_group_factors(reading);
   check_rules(reading);
+  check_continuing(reading);
 }
 
 }  // namespace turnpoint::protocol

@@ -108,7 +108,7 @@ void read_times(TableReader& reader, Task& task) {
   }
 }
 
-/// Reads texts at values of a scale. Both ends must have one.
+/// Reads the labels at values of a scale. Both ends of the scale must have a label.
 std::vector<Anchor> read_anchors(TableReader& reader, double low, double high, const Reading& reading) {
   std::vector<Anchor> anchors;
   reader.require("labels", "write what the ends mean: [ { at = 1, text = { en = \"not at all\" } }, ... ]");
@@ -146,7 +146,7 @@ Scale read_scale(const Value& table, const std::string& path, const Reading& rea
     if (steps < 10 || steps > 1000)
       reader.problem(reader.has("decimals") ? "decimals" : "line",
                      "the line has " + text::number(steps) + " steps of its smallest decimal",
-                     "from 10 to 1000, because a finger cannot choose between more places");
+                     "use 10 to 1000, because a finger cannot choose between more places");
     value.anchors = read_anchors(reader, value.low, value.high, reading);
     scale.value = std::move(value);
   }
@@ -264,7 +264,8 @@ void read_confidence(TableReader& reader, Task& task, const Reading& reading) {
   if (task.kind == TaskKind::adjustment)
     reader.problem("confidence", "an adjustment cannot have a \"confidence\"", "use another kind of task");
   if (task.device == Device::buttons)
-    reader.problem("device", "confidence is given on the screen", "\"touch\" or \"either\"");
+    reader.problem("device", "the confidence is stated on the screen, so buttons alone are not enough",
+                   "use \"touch\" or \"either\"");
   task.confidence = std::move(confidence);
 }
 

@@ -8,9 +8,9 @@
 #include "station/protocol/protocol.hpp"
 #include "station/text/reader.hpp"
 
-// Used only to implement load() and parse(). There is one function for each part of a protocol file. It reads
-// its tables into the protocol and reports problems. Call the functions in the order of their declaration,
-// because later ones rely on earlier ones.
+// The functions with which load() and parse() read a protocol file, one for each part of the file. A function
+// reads its tables into the protocol and reports problems. Call the functions in the order of their
+// declaration, because later ones rely on earlier ones.
 namespace turnpoint::protocol {
 
 struct Reading {
@@ -63,7 +63,7 @@ ValueAnswer read_typed(text::TableReader& reader);
 /// Reads the list `choices`.
 std::vector<Choice> read_choice_list(text::TableReader& reader, const std::string& path,
                                      const Reading& reading);
-/// Reads a name and reports it if the file has no such scene.
+/// Reads the name of a scene. Reports a problem if the file has no such scene.
 std::string read_scene_name(text::TableReader& reader, const std::string& key, const std::string& what,
                             const Reading& reading);
 

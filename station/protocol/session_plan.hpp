@@ -21,16 +21,18 @@ struct SessionPlan {
   text::Place place;
 };
 
-/// For whom a part of the plan is. An empty list means: for all.
+/// The sessions and groups that have a part of the plan, such as a block. An empty list stands for all.
 struct Audience {
-  std::vector<int> sessions;        ///< numbers of planned sessions, from 1
-  std::vector<std::string> groups;  ///< levels of the factors that are drawn per participant
+  std::vector<int> sessions;  ///< numbers of the planned sessions, from 1
+  std::vector<std::string>
+      groups;  ///< groups of participants, by the name of the level that they were assigned
 };
 
-/// Whose session it is. A number alone is the place of a participant with one session.
+/// Which session of which participant is run. If only one number is given, it is the participant's place in
+/// the counterbalancing, and the session is the first.
 struct Visit {
   Visit(int place_in_design = 0, int number = 1) : place(place_in_design), session(number) {}
-  int place;    ///< in the counterbalancing, from 0
+  int place;    ///< the participant's place in the counterbalancing, from 0
   int session;  ///< number of the planned session, from 1
   bool operator==(const Visit&) const = default;
 };

@@ -43,7 +43,15 @@ void add_block(const Protocol& protocol, const Block& block, const std::string& 
     if (spec) sets.insert(spec->balance.begin(), spec->balance.end());
     if (spec)
       for (const auto& [name, value] : spec->with) sets.insert(name);
-    sources.push_back({&block, what, level, std::move(levels), std::move(sets), spec});
+    Source source;
+    source.block = &block, source.what = what, source.level = level, source.spec = spec;
+    source.levels = std::move(levels);
+    if (spec && spec->second) {
+      source.second = spec->second->level, source.seconds = spec->second->stimuli.values;
+      sets.insert(source.second);
+    }
+    source.sets = std::move(sets);
+    sources.push_back(std::move(source));
   };
   for (const auto& name : block.procedures)
     if (const auto* spec = find_procedure(protocol, name); spec && !spec->level.empty())
@@ -132,6 +140,11 @@ const procedure::Spec* find_procedure(const Protocol& protocol, const std::strin
   for (const auto& spec : protocol.procedures)
     if (spec.name == name) return &spec;
   return nullptr;
+}
+
+bool is_program(const Protocol& protocol, const std::string& name) {
+  const auto* spec = find_procedure(protocol, name);
+  return spec != nullptr && spec->kind == procedure::Kind::program;
 }
 
 const Block& block_of(const std::variant<Block, Sequence>& part) {

@@ -16,6 +16,9 @@ struct Source {
   std::string level;  ///< name of the factor whose levels the source presents
   /// values that this factor can take; for a staircase or slider, evenly spaced samples
   std::vector<double> levels;
+  /// name of the factor of the procedure's second dimension, and its values; "" if there is none
+  std::string second = {};
+  std::vector<double> seconds = {};
   /// names of all factors that the source or its block sets; the values of other factors are drawn at random
   std::set<std::string> sets;
   const procedure::Spec* spec = nullptr;
@@ -36,11 +39,14 @@ std::vector<std::string> scenes_used(const Protocol& protocol);
 /// Returns a value for each factor: its first level or, if it has no levels, the middle of its range.
 Factors any_factors(const Protocol& protocol);
 
-/// The values that a factor takes if nothing sets it: its levels, or evenly spaced values of the range from
-/// which it is drawn. Empty if it is not drawn.
+/// Values that stand for all that a factor can be where it is drawn at random, that is, where neither a
+/// procedure nor a block sets it: its levels, or evenly spaced values of its range. Empty if it is never
+/// drawn.
 std::vector<FactorValue> drawn_values(const Factor& factor);
 
 const procedure::Spec* find_procedure(const Protocol& protocol, const std::string& name);
+/// True if this is the name of a procedure whose levels a separate program chooses.
+bool is_program(const Protocol& protocol, const std::string& name);
 const Block& block_of(const std::variant<Block, Sequence>& part);
 
 /// The blocks of all participants: a sequence gives one block for each level of its factor.

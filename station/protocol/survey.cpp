@@ -30,8 +30,8 @@ namespace {
 // between them can be interpolated. Other zones need a grid of plans.
 constexpr std::size_t most_plans_of_a_scene = 120, most_plans_of_a_zone = 6, most_plans_of_a_zone_grid = 36;
 
-// Returns a text for messages that says where this rig can place a boundary that is defined as the scene's
-// edge is.
+// Returns a text for messages that says where this rig can place a boundary that is defined in the same way
+// as the scene's edge.
 std::string reach(const scene::Scene& scene, const rig::Rig& rig, const scene::Planner& planner) {
   if (!scene.boundary_m) return "";
   physics::MapOptions options;
@@ -115,11 +115,9 @@ struct Answer {
   std::optional<scene::DrivePlan> plan;
   std::optional<scene::Cues> cues_roved_down;
   std::string refused, allowed;
-  Place place;  ///< place of the key that the rig cannot satisfy
+  Place place;  ///< place in the file of the key that the rig cannot satisfy
 };
 
-// True if the scene can be planned with a thousandth of its strength. Then the strength is what prevents
-// planning.
 bool can_plan(const scene::Scene& scene, scene::Planner& planner) {
   try {
     planner.plan(scene);
@@ -129,6 +127,8 @@ bool can_plan(const scene::Scene& scene, scene::Planner& planner) {
   }
 }
 
+// True if the scene can be planned with a thousandth of its strength: then the strength is what prevents
+// planning.
 bool is_too_strong(scene::Scene scene, scene::Planner& planner) {
   scene.rove_dB -= 60;
   return can_plan(scene, planner);
@@ -156,8 +156,8 @@ Place strength_place(const Scene& scene) {
   return strongest ? strongest->displacement_um.place : scene.place;
 }
 
-// Returns the key to blame if a scene cannot be planned: its strength, one of its tones, the edge or the
-// start of its zone, or else its boundary.
+// Returns the place of the key to blame if a scene cannot be planned: its strength, one of its tones, the
+// edge or the start of its zone, or else its boundary.
 Place blamed_place(const Protocol& protocol, const KeyPlaces& places, const Scene& from,
                    const scene::Scene& scene, scene::Planner& planner) {
   if (is_too_strong(scene, planner)) return strength_place(from);
@@ -188,7 +188,8 @@ void plan_range(const Protocol& protocol, const rig::Rig& rig, const std::vector
   for (std::size_t i = begin; i < end && !stop.stop_requested(); ++i) {
     const auto& combination = combinations[i];
     const auto& from = protocol.scenes.at(combination.scene);
-    // Rove upwards, because the limits must hold for the strongest stimulus that can be drawn.
+    // Plan with the largest strength that rove_dB allows: the limits must hold for the strongest stimulus
+    // that can be drawn.
     const auto scene = resolve(protocol, combination.scene, combination.factors, from.rove_dB);
     try {
       answers[i].plan = planner.plan(scene);
@@ -201,7 +202,7 @@ void plan_range(const Protocol& protocol, const rig::Rig& rig, const std::vector
       if (explained.insert(combination.scene).second) try {
           answers[i].place = blamed_place(protocol, places, from, scene, planner);
           answers[i].allowed = reach(scene, rig, planner);
-          // no boundary has this edge on this rig, so there is nothing to suggest
+          // this rig cannot present any boundary with this kind of edge, so there is nothing to suggest
         } catch (const std::domain_error&) {
         }
     }
@@ -242,7 +243,7 @@ void plan_scenes(const Protocol& protocol, const rig::Rig& rig, const std::stop_
   const auto combinations = planned(protocol, all);
   const auto answers = plan_all(protocol, rig, combinations, stop, progress);
   std::map<std::string, Trouble> unreachable, inexact;
-  // text of the first warning of each code; each code is reported only once
+  // the text of the first warning with each warning code, because each code is reported only once
   std::map<std::string, std::string> told;
   for (std::size_t i = 0; i < answers.size(); ++i) {
     const auto& combination = combinations[i];
@@ -305,7 +306,7 @@ void check_devices(const Protocol& protocol, const rig::Rig& rig, Survey& survey
         "use a rig with [contact], or another \"response_zero\"");
 }
 
-/// The shortest time from the beginning of an interval, or of its second scene, to what comes next.
+/// The shortest time from the beginning of an interval, or of its second scene, to the next event.
 double shortest_event_s(const Protocol& protocol) {
   const auto& task = protocol.task;
   const double length_s = task.duration_s.value_or(protocol.timing.explore_s.value_or(0));
@@ -339,7 +340,7 @@ void check_triggers(const Protocol& protocol, const rig::Rig& rig, Survey& surve
 
 void check_sensing(const Protocol& protocol, const rig::Rig& rig, Survey& survey) {
   if (!protocol.sensing) return;
-  if (rig.capture && !rig.capture->bridges.empty()) {
+  if (rig::has_force_cells(rig)) {
     if (rig.capture->uri != "sim:" && !rig.capture->forces)
       survey.problems.push_back(
           {protocol.sensing->place,
@@ -347,12 +348,13 @@ void check_sensing(const Protocol& protocol, const rig::Rig& rig, Survey& survey
            "calibrate them with `turnpoint calibrate --forces`, or leave out [sensing]"});
     return;
   }
-  survey.problems.push_back({protocol.sensing->place,
-                             "the rig has no force cells, so the finger's movement is not known",
-                             "leave out [sensing], or use a rig with \"bridges\" in [capture]"});
+  survey.problems.push_back(
+      {protocol.sensing->place, "the rig has no force cells, so the finger's movement is not known",
+       "leave out [sensing], or use a rig with \"bridges\" in [capture] or with [force_cells]"});
 }
 
-/// Plans the strongest trials of friction tables.
+/// Plans each friction table's trials with the largest displacement, and reports those that the rig cannot
+/// play.
 void check_friction_tables(const Protocol& protocol, const rig::Rig& rig, Survey& survey) {
   for (const auto& part : protocol.plan) {
     const auto& block = block_of(part);
@@ -369,7 +371,7 @@ void check_friction_tables(const Protocol& protocol, const rig::Rig& rig, Survey
       survey.problems.push_back({block.place,
                                  "friction table \"" + block.name + "\" at " +
                                      text::number(strokes.levels_um.back()) + " um: " + error.what(),
-                                 "smaller displacements, or another scene"});
+                                 "use smaller displacements, or another scene"});
     }
   }
 }

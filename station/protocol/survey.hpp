@@ -21,10 +21,10 @@ struct Sight {
   std::string block;
   Factors factors;  ///< the factors on which the scene depends
   double lowest_Hz = 0, highest_Hz = 0;
-  std::vector<physics::Tone> tones;  ///< tones at the drive edge, with the strength roved upwards
+  std::vector<physics::Tone> tones;  ///< tones at the drive edge, at the largest strength that rove_dB allows
   physics::Model field_model = physics::Model::mode;
   std::optional<double> boundary_mm;
-  /// largest displacement anywhere on the surface, with the strength roved upwards
+  /// largest displacement anywhere on the surface, at the largest strength that rove_dB allows
   double displacement_um = 0;
   double lowest_friction = 1;
   std::string model;
@@ -32,9 +32,9 @@ struct Sight {
   /// standard deviation of the boundary, computed from the standard deviations in the rig file
   double uncertainty_mm = 0;
   bool inside_tolerance = true;
-  scene::Cues cues;  ///< the cues when the strength is roved upwards
-  /// The cues when the strength is roved downwards. Set only for edges defined by friction, where roving
-  /// changes more than the strength.
+  scene::Cues cues;  ///< properties that could give the answer away, at the largest strength
+  /// The cues at the smallest strength that rove_dB allows. Set only for edges defined by friction, because
+  /// there the random change of strength changes the edge too.
   std::optional<scene::Cues> cues_roved_down;
 };
 

@@ -15,7 +15,7 @@ const char* name(TriggerEvent event);
 /// the last condition. Codes above 255 mean that the protocol has too many conditions.
 std::vector<TriggerCode> trigger_codes(const Protocol& protocol);
 
-/// The code of an event in a trial with these factors; 0 if the event has none.
+/// Returns the trigger code of an event in a trial with these factors; 0 if the event has no code.
 int trigger_code(const Protocol& protocol, TriggerEvent event, const Factors& factors);
 
 }  // namespace turnpoint::protocol

@@ -13,24 +13,25 @@ bool is_group(const Factor& factor);
 /// levels.
 int group_count(const Protocol& protocol);
 
-/// The levels that the participant at this place has in all sessions. Neighbouring places belong to different
-/// groups.
+/// The levels that the participant at this place in the counterbalancing has in all sessions. Neighbouring
+/// places belong to different groups.
 Factors group_of(const Protocol& protocol, int place);
 
-/// The names of all groups: that of place p is number p modulo their count. Empty if there are no groups.
+/// The names of all groups: the participant at place p belongs to group number p modulo their count. Empty if
+/// there are no groups.
 std::vector<std::string> group_names(const Protocol& protocol);
 
 /// Number of planned sessions; 1 if the protocol plans none.
 int session_count(const Protocol& protocol);
 
-/// True if this part of the plan belongs to the session.
+/// True if a part of the plan for this audience belongs to the session of this visit.
 bool is_for(const Audience& audience, const Protocol& protocol, const Visit& visit);
 
 /// Each planned session of each group. The blocks of other visits differ from these only in their order.
 std::vector<Visit> different_visits(const Protocol& protocol);
 
 /// How people call a visit: "session 2", "session 2, group trained", "group trained"; "" if the protocol has
-/// neither.
+/// neither planned sessions nor groups.
 std::string in_words(const Protocol& protocol, const Visit& visit);
 
 }  // namespace turnpoint::protocol

@@ -83,6 +83,8 @@ py::list tables(const std::string& database, const std::string& session, const s
     named["self_tests"] = columns(one.self_tests);
     named["answers"] = columns(one.answers);
     named["friction_tables"] = columns(one.friction_tables);
+    named["programs"] = columns(one.programs);
+    named["estimates"] = columns(one.estimates);
     list.append(named);
   }
   return list;

@@ -61,15 +61,15 @@ std::vector<ProtocolTables> read_tables(const std::string& database, const store
         selection.protocol_id, empty_table(store::names_of(columns.trials)),
         empty_table(store::names_of(columns.intervals)), empty_table(store::names_of(columns.events)),
         empty_table(store::names_of(columns.sessions)), empty_table(store::names_of(columns.self_tests)),
-        empty_table(store::names_of(columns.answers)),
-        empty_table(store::names_of(columns.friction_tables))});
+        empty_table(store::names_of(columns.answers)), empty_table(store::names_of(columns.friction_tables)),
+        empty_table(store::names_of(columns.programs)), empty_table(store::names_of(columns.estimates))});
     const auto into = [](MemoryTable& table) {
       return [&table](const std::vector<Cell>& cells) { add_row(table, cells); };
     };
-    store::for_each_row(
-        selected.database, selection, columns,
-        {into(tables.trials), into(tables.intervals), into(tables.events), into(tables.sessions),
-         into(tables.self_tests), into(tables.answers), into(tables.friction_tables)});
+    store::for_each_row(selected.database, selection, columns,
+                        {into(tables.trials), into(tables.intervals), into(tables.events),
+                         into(tables.sessions), into(tables.self_tests), into(tables.answers),
+                         into(tables.friction_tables), into(tables.programs), into(tables.estimates)});
   }
   return all;
 }

@@ -10,13 +10,13 @@ namespace turnpoint::python {
 /// A table in memory, column by column.
 struct MemoryTable {
   std::vector<std::string> columns;
-  std::vector<std::vector<store::Cell>> cells;  ///< cells[column][row]
+  std::vector<std::vector<store::Cell>> cells;  ///< indexed by [column][row]
 };
 
 /// The tables that export_data() would write for one protocol.
 struct ProtocolTables {
   std::string protocol_id;
-  MemoryTable trials, intervals, events, sessions, self_tests, answers, friction_tables;
+  MemoryTable trials, intervals, events, sessions, self_tests, answers, friction_tables, programs, estimates;
 };
 
 /// Reads into memory what store::export_data() would write with the format csv. Texts that are empty count as
@@ -29,12 +29,13 @@ std::vector<ProtocolTables> read_tables(const std::string& database, const store
 struct SignalTable {
   std::string session_id, stream;
   std::vector<std::int64_t> trial_index, segment_id;
-  std::vector<double> time_s;  ///< from the start of the segment, rounded to 1 us
+  /// time of each point from the start of the segment (program run), rounded to 1 us
+  std::vector<double> time_s;
   std::vector<std::string> channels;
-  std::vector<std::vector<double>> values;  ///< values[channel][point]; NaN where a point is missing
+  std::vector<std::vector<double>> values;  ///< indexed by [channel][point]; NaN where a point is missing
 };
 
-/// Reads the signals that store::export_data() would write with the format signals. Throws StoreError if
+/// Reads the signals that store::export_data() would write in its format "signals". Throws StoreError if
 /// there are none.
 std::vector<SignalTable> read_signals(const std::string& database, const store::ExportOptions& options);
 

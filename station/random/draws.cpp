@@ -37,7 +37,8 @@ double Draws::uniform() { return static_cast<double>(bits() >> 11) * 0x1p-53; }
 
 std::uint64_t Draws::below(std::uint64_t n) {
   if (n == 0) throw std::invalid_argument("below: n must be at least 1");
-  // reject numbers from the largest multiple of n on, because they would make small remainders more likely
+  // reject numbers at or above the largest multiple of n, because they would make small remainders more
+  // likely
   const std::uint64_t limit = ~std::uint64_t{0} - ~std::uint64_t{0} % n;
   for (;;)
     if (const auto b = bits(); b < limit) return b % n;

@@ -57,7 +57,8 @@ std::optional<double> false_alarms(const NamedFit& named) {
   return std::nullopt;
 }
 
-/// Marks the threshold (or PSE) on the curve: a rule with its value and, at the curve, its interval.
+/// Marks the threshold (or PSE) on the curve: a thin line labelled with its value and, at the curve, its
+/// interval.
 void mark_threshold(const NamedFit& named, const SessionData& data, int series, const std::string& name,
                     plot::Chart& panel) {
   const auto& fit = named.fit;
@@ -249,8 +250,8 @@ std::optional<plot::Figure> confusion_figure(const Summary& summary) {
   figure.chart_height_px = 380;
   for (const auto& confusion : summary.confusions) {
     if (confusion.rows.empty()) continue;
-    plot::HeatMap shares{edges(summary.data.choices.size()),       edges(confusion.rows.size()), {}, 0, 1,
-                         "Share of the stimulus's trials (0 to 1)"};
+    plot::HeatMap shares{edges(summary.data.choices.size()),           edges(confusion.rows.size()), {}, 0, 1,
+                         "Share of trials with this stimulus (0 to 1)"};
     for (const auto& row : confusion.rows)
       for (const int count : row.answers) shares.values.push_back(static_cast<double>(count) / row.trials);
     plot::Chart chart;

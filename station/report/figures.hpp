@@ -11,6 +11,9 @@ namespace turnpoint::report {
 /// Plots the proportion of answers at each level with its Wilson interval, and the fitted curve with its
 /// band. The area of a marker is proportional to the number of trials.
 std::optional<plot::Figure> psychometric_figure(const Summary& summary);
+/// Plots the threshold along the second dimension with its band, one panel per procedure and block. Markers
+/// are trials; open markers are answers that were wrong, or not the tracked answer.
+std::optional<plot::Figure> threshold_curve_figure(const Summary& summary);
 /// Plots the levels in order of presentation, one panel per procedure. Open markers are wrong answers.
 std::optional<plot::Figure> trace_figure(const Summary& summary);
 /// Draws one histogram of the response times for each instruction. All have the same time axis.

@@ -26,7 +26,7 @@ std::vector<Reading> readings(const analysis::Finger& finger, const std::string&
   return list;
 }
 
-/// Adds the mean of readings, with a bar from the smallest to the largest.
+/// Adds one marker: the mean of the readings in `group`, with a bar from the smallest to the largest reading.
 void add_mean(plot::Points& points, std::span<const Reading> group) {
   Reading mean;
   double low = group.front().value, high = low;
@@ -117,7 +117,8 @@ std::vector<double> extent(const std::vector<AtBoundary>& values) {
   return all;
 }
 
-/// Plots where the finger met the boundary, and the friction beside it, against the planned boundary.
+/// Makes two charts against the planned boundary: the felt minus the planned boundary, and the friction on
+/// both sides of it.
 std::vector<plot::Chart> boundary_charts(const Summary& summary) {
   const auto& [shift_mm, mu_low, mu_high] = summary.finger->boundaries;
   std::vector<double> planned;

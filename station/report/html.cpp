@@ -76,7 +76,7 @@ std::string fit_table(const NamedFit& named, const SessionData& data) {
   return html + notes(named.fit.statements) + notes(named.intervals.statements);
 }
 
-/// Rows for the settings by the side from which the slider started.
+/// Returns table rows with the settings, separately for sliders that started from below and from above.
 std::string side_rows(const analysis::Settings& settings, const SessionData& data) {
   std::string html;
   for (const auto& [name, side] :
@@ -259,56 +259,6 @@ std::string detection_section(const Summary& summary) {
          "have the log-linear correction; 95 % intervals are those of Gourevitch and Galanter.</p>\n";
 }
 
-/// Says why a procedure's own estimate differs from the fit.
-std::string why_estimates_differ(const SessionData& data) {
-  bool posterior = false, track = false, series = false;
-  std::set<std::string> settles_at;
-  for (const auto& estimate : data.estimates) {
-    posterior |= estimate.choice == procedure::Choice::posterior;
-    track |= estimate.choice == procedure::Choice::track;
-    series |= estimate.choice == procedure::Choice::series;
-    if (estimate.choice == procedure::Choice::track && estimate.settles_at)
-      settles_at.insert(number(100 * *estimate.settles_at) + " %");
-  }
-  std::string why;
-  if (posterior)
-    why +=
-        "A procedure with a posterior estimates the mean of that posterior, with the prior and the grid of "
-        "the protocol. The fit uses the same answers, but a prior of its own, which is nearly flat, and "
-        "shows medians. The fewer answers there are, the further the two are apart. ";
-  if (track) why += "A staircase estimates from the last levels that it tried; the fit uses all answers. ";
-  if (series)
-    why +=
-        "The method of limits takes the middle between the last level with the old answer and the first "
-        "with the new one, in each series. If ascending series change at higher levels than descending "
-        "ones, the participant tended to repeat answers (habituation); if at lower levels, to expect the "
-        "change, or some answers changed by chance. The fit uses all answers, as if neither happened. ";
-  if (!settles_at.empty())
-    why += fmt::format(
-        "A staircase settles where {} of the answers are right (or are the tracked answer), which need not "
-        "be the threshold of the fit.",
-        fmt::join(settles_at, " or "));
-  return why;
-}
-
-std::string estimate_section(const SessionData& data) {
-  if (data.estimates.empty()) return "";
-  std::string html =
-      "<h2>The procedure's own estimate</h2>\n<table><tr><th>Procedure</th><th>Block</th>"
-      "<th>Parameter</th><th>Estimate</th><th>Standard deviation</th><th>Taken from</th></tr>";
-  for (const auto& estimate : data.estimates) {
-    const auto mean =
-        estimate.sd ? text::estimated(estimate.mean, *estimate.sd) : text::number(estimate.mean, 3);
-    const bool level = estimate.parameter.starts_with("threshold") || estimate.parameter == "pse";
-    html += "<tr><td>" + escaped(estimate.procedure) + "</td><td>" + escaped(estimate.block) + "</td><td>" +
-            escaped(level ? in_unit(estimate.parameter, data) : estimate.parameter) +
-            "</td><td class=\"n\">" + minus(mean) + "</td><td class=\"n\">" +
-            (estimate.sd ? number(*estimate.sd, 2) : "") + "</td><td>" + escaped(estimate.basis) +
-            "</td></tr>";
-  }
-  return html + "</table>\n<p class=\"soft\">" + why_estimates_differ(data) + "</p>\n";
-}
-
 std::string trend(const std::optional<analysis::Trend>& trend, const char* unit) {
   if (!trend) return "too few trials";
   return estimated(trend->per_100_trials, trend->interval) + unit + " per 100 trials";
@@ -361,8 +311,9 @@ std::string to_html(const Summary& summary) {
     if (!summary.fits.empty())
       html += "<h2>Psychometric function</h2>\n" + picture(psychometric_figure(summary));
     for (const auto& named : summary.fits) html += fit_table(named, data);
-    html += confusion_section(summary) + estimate_section(data) + detection_section(summary) +
-            discrimination_section(summary) + signal_section(summary) + trade_section(summary);
+    html += threshold_curve_section(summary) + confusion_section(summary) + estimate_section(data) +
+            detection_section(summary) + discrimination_section(summary) + signal_section(summary) +
+            trade_section(summary);
   } else {
     html += settings_section(summary);
   }

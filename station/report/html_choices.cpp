@@ -61,7 +61,7 @@ std::string confusion_section(const Summary& summary) {
 
 namespace {
 
-/// An estimate whose interval may be open at either end.
+/// Returns a table cell with an estimate whose interval may have no limit at either end.
 std::string open_cell(const analysis::Estimate& estimate) {
   const auto& ends = estimate.interval;
   if (std::isfinite(ends.low) && std::isfinite(ends.high)) return cell(estimate);
@@ -107,7 +107,7 @@ std::string discrimination_section(const Summary& summary) {
   return html + "</table>\n<p class=\"soft\">" + notes +
          "No preference for an answer is assumed. 95 % intervals: Clopper and Pearson for the proportion "
          "correct, "
-         "with both ends turned into d\u2032. The value itself has the log-linear correction.</p>\n";
+         "with both ends converted to d\u2032. The value itself has the log-linear correction.</p>\n";
 }
 
 }  // namespace turnpoint::report

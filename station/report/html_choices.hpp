@@ -8,7 +8,7 @@ namespace turnpoint::report {
 /// The confusion matrices of a report; "" if there are none.
 std::string confusion_section(const Summary& summary);
 
-/// The table of d' by the models of the data; "" if there are none.
+/// The table of d', computed with each model in SessionData::deciding; "" if that list is empty.
 std::string discrimination_section(const Summary& summary);
 
 }  // namespace turnpoint::report

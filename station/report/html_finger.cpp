@@ -66,18 +66,18 @@ std::string finger_section(const Summary& summary) {
             "<p class=\"soft\">All conditions together. Filled markers: means of 3 or more trials at one "
             "planned boundary. Open markers: single trials, side by side if they have the same boundary. The "
             "felt boundary is where friction changed under the finger; the planned one is the place that the "
-            "scene\u2019s <code>edge</code> names. They should agree for an edge of friction, <code>{ "
-            "friction = \u2026 }</code>; other edges are defined at other places. Along the strip: means of "
+            "scene\u2019s <code>edge</code> names. They should agree for an edge that friction "
+            "defines, <code>{ friction = \u2026 }</code>; other edges are defined at other places. Along the "
+            "strip: means of "
             "the strokes in bins of 2 mm, with bars of one standard error, where 3 or more strokes were "
             "made.</p>\n";
   html += repeats_table(summary.data.repeats);
   return html +
          "<p class=\"soft\">Answered trials without practice. Force and speed are means over a trial\u2019s "
-         "strokes; with more than 40 trials, a marker is the mean of several, with a bar from the smallest "
-         "to "
-         "the largest. Friction is lateral force / normal force, in the scene presented last. 95 % "
-         "intervals: "
-         "Student\u2019s t over trials; of single trials, 1.96 standard errors.</p>\n";
+         "strokes; with more than 40 trials, a marker is the mean of several trials, with a bar from the "
+         "smallest to the largest. Friction is lateral force divided by normal force, in the scene "
+         "presented last. 95 % intervals: Student\u2019s t over trials; for a single trial, 1.96 standard "
+         "errors.</p>\n";
 }
 
 }  // namespace turnpoint::report

@@ -21,17 +21,22 @@ std::string minus(std::string text);
 std::string number(double value, int digits = 3);
 /// Formats a value and its interval. Both are rounded to the digits that the width of the interval justifies.
 std::string estimated(double value, const analysis::Interval& interval);
-/// A cell of a table.
+/// A table cell with an estimate and its interval.
 std::string cell(const std::optional<analysis::Estimate>& estimate);
 std::string notes(const std::vector<analysis::Statement>& statements);
 std::string picture(const std::optional<plot::Figure>& figure);
-/// The name of a condition, or "all trials" if there is only one.
+/// The name of a condition, or "all trials" if there is only one condition.
 std::string name_of(const std::string& condition);
+
+/// The section on the procedures' own estimates; "" if there are none.
+std::string estimate_section(const SessionData& data);
+/// The section on the threshold along the second dimension of the stimuli; "" if there is none.
+std::string threshold_curve_section(const Summary& summary);
 
 /// The section on accuracy at the response signal; "" if there was none.
 std::string signal_section(const Summary& summary);
 
-/// The section on the finger's force, speed and friction; "" if no force cells recorded.
+/// The section on the finger's force, speed and friction; "" if no force cells recorded data.
 std::string finger_section(const Summary& summary);
 
 }  // namespace turnpoint::report

@@ -65,7 +65,7 @@ std::optional<plot::Figure> signal_figure(const Summary& summary) {
     chart.layers.push_back(points);
   }
   if (times.size() < 2) return std::nullopt;
-  chart.x = plot::fitted("Time from the zero of the response to the answer (s)", times, 0.06);
+  chart.x = plot::fitted("Time from response zero to the answer (s)", times, 0.06);
   chart.y = plot::fitted("Sensitivity d\u2032", heights, 0.08);
   plot::Figure figure;
   figure.title = "Sensitivity over time";
@@ -80,14 +80,11 @@ std::string signal_section(const Summary& summary) {
       "<h2>Accuracy at the response signal</h2>\n" + picture(signal_figure(summary)) + curve_table(summary);
   for (const auto& curve : summary.curves) html += notes(curve.statements);
   return html + lag_table(summary) +
-         "<p class=\"soft\">Only answers within the window after the signal. The curve is d\u2032(t) = "
-         "asymptote (1 \u2212 "
-         "exp(\u2212rate (t \u2212 intercept))); t is the mean response time at a lag, so it includes the "
-         "time that people "
-         "need to answer the signal. Medians and 95 % credible intervals with flat priors; the criterion is "
-         "free at each "
-         "lag. d\u2032 at each lag has the log-linear correction and the interval of Gourevitch and "
-         "Galanter.</p>\n";
+         "<p class=\"soft\">Only answers within the window after the signal are used. The curve is "
+         "d\u2032(t) = asymptote (1 \u2212 exp(\u2212rate (t \u2212 intercept))); t is the mean response "
+         "time at a lag, so it includes the time that people need to answer the signal. The values are "
+         "medians with 95 % credible intervals and flat priors; each lag has its own criterion. d\u2032 at "
+         "each lag has the log-linear correction and the interval of Gourevitch and Galanter.</p>\n";
 }
 
 }  // namespace turnpoint::report

@@ -139,6 +139,22 @@ Json strip_json(const std::vector<analysis::FrictionCurve>& curves) {
   return json;
 }
 
+Json threshold_curves_json(const std::vector<ThresholdCurve>& curves) {
+  Json json = Json::array();
+  for (const auto& curve : curves) {
+    Json points = Json::array();
+    for (const auto& point : curve.points)
+      points.push_back({{"second", value(point.second)},
+                        {"threshold", value(point.threshold)},
+                        {"interval", value(point.interval)}});
+    json.push_back({{"procedure", curve.procedure},
+                    {"block", curve.block},
+                    {"second", curve.label},
+                    {"points", points}});
+  }
+  return json;
+}
+
 Json repeats_json(const std::vector<analysis::RepeatedTrials>& repeats) {
   Json json = Json::array();
   for (const auto& at : repeats)
@@ -161,7 +177,7 @@ Json confusion_json(const analysis::Confusion& confusion, const SessionData& dat
     entry["stimulus"] =
         row.stimulus ? Json(data.choices.at(static_cast<std::size_t>(*row.stimulus))) : Json(nullptr);
     entry["level"] = value(row.level);
-    entry["answers"] = row.answers;  // in the order of "choices"
+    entry["answers"] = row.answers;  // the number of each answer, in the order of "choices"
     entry["trials"] = row.trials;
     entry["correct"] = proportion_json(row.right);
     json["rows"].push_back(std::move(entry));
@@ -272,7 +288,10 @@ std::string to_json(const Summary& summary) {
                                  {"parameter", estimate.parameter},
                                  {"mean", value(estimate.mean)},
                                  {"sd", value(estimate.sd)},
+                                 {"interval", estimate.interval ? value(*estimate.interval) : Json(nullptr)},
+                                 {"unit", estimate.unit},
                                  {"basis", estimate.basis}});
+  json["threshold_curves"] = threshold_curves_json(data.threshold_curves);
   json["bias"] = nullptr;
   if (summary.bias)
     json["bias"] = {{"share_second", value(summary.bias->share_second)},

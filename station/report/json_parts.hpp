@@ -9,7 +9,7 @@
 
 namespace turnpoint::report {
 
-// How numbers and intervals become JSON. There is no NaN and no infinity in JSON: they become null.
+// Functions that convert numbers and intervals to JSON. JSON has no NaN and no infinity; both become null.
 
 using Json = nlohmann::ordered_json;
 

@@ -10,6 +10,7 @@
 #include "station/analysis/psychometric_fit.hpp"
 #include "station/analysis/speed_accuracy.hpp"
 #include "station/analysis/trial_record.hpp"
+#include "station/procedure/continuation.hpp"
 #include "station/procedure/description.hpp"
 
 namespace turnpoint::report {
@@ -40,9 +41,30 @@ struct ProcedureEstimate {
   double mean = 0;           ///< the estimate; a threshold is in the unit of the level
   std::optional<double> sd;  ///< SD of the posterior or of the averaged reversals, or a standard error
   std::string basis;         ///< the data from which it was computed, such as "reversals 5 to 12 of 12"
+  std::string unit;          ///< unit of the estimate; "" if it has none
+  /// central 95 % credible interval, if the estimate comes from a posterior
+  std::optional<analysis::Interval> interval;
   procedure::Choice choice = procedure::Choice::track;  ///< how the procedure chose its levels
   /// the proportion of right (or tracked) answers at the level on which the procedure converges, if known
   std::optional<double> settles_at;
+};
+
+/// The threshold along the second dimension of a procedure in one block, and the answers that it was learned
+/// from.
+struct ThresholdCurve {
+  struct Point {
+    double second = 0, threshold = 0;
+    analysis::Interval interval;  ///< central 95 % credible interval
+  };
+  struct Trial {
+    double second = 0, level = 0;
+    bool one = false;  ///< the answer was right, or the tracked answer
+  };
+  std::string block, procedure;
+  std::string label;    ///< name and unit of the second dimension, for an axis: "Boundary (mm)"
+  bool ratios = false;  ///< true if thresholds are compared by their ratio (the procedure's scale)
+  std::vector<Point> points;
+  std::vector<Trial> trials;
 };
 
 /// A name and its text, for the head or the health table of a report.
@@ -57,6 +79,9 @@ struct MeasuredTrial {
 
 /// All data for a report. They come from a database (desk/report_data.cpp) or from a simulated session.
 struct SessionData {
+  /// the trials of the participant's earlier sessions, for procedures that continue; set it before
+  /// add_trials()
+  procedure::EarlierTrials earlier = {};
   std::string title;  ///< title of the protocol
   std::string participant, session_id, run_mode, status;
   std::vector<Fact> facts;  ///< rows for the head of the report: protocol, date, rig, ...
@@ -69,8 +94,8 @@ struct SessionData {
   terms::Function function = terms::Function::weibull;
   analysis::Scale scale = analysis::Scale::linear;
   std::string level_label;           ///< name and unit, for an axis: "Contrast (dB)"
-  std::string level_unit;            ///< "" for a level without a unit
-  std::vector<std::string> choices;  ///< ids in the order of their indices
+  std::string level_unit;            ///< unit of the level; "" if it has none
+  std::vector<std::string> choices;  ///< ids of the choices, in the order of their indices
   int positive = 1;                  ///< if has_noise(): the choice that means "yes"
   /// false for a single-interval task without right answers, such as ratings; the report then leaves out
   /// accuracy
@@ -80,12 +105,20 @@ struct SessionData {
   /// parts of the report that the protocol chooses; if empty, the report has all parts that suit the design
   std::optional<std::vector<std::string>> show;
   std::vector<ProcedureEstimate> estimates;
+  std::vector<ThresholdCurve> threshold_curves;  ///< empty if no procedure has a second dimension
+  /// True if the threshold differs between the trials of one condition, because a procedure has a second
+  /// dimension. No psychometric function is fitted then.
+  bool thresholds_differ = false;
   std::vector<analysis::TrialRecord> trials;
-  /// answered trials in which force cells recorded, without practice; empty if the rig has none
+  /// answered trials, without practice, in which force cells recorded data; empty if the rig has no force
+  /// cells
   std::vector<analysis::FingerTrial> finger;
-  std::vector<analysis::FrictionCurve> strip;     ///< empty if no force cells recorded
-  std::vector<analysis::RepeatedTrials> repeats;  ///< by level; empty if the protocol repeats no trials
-  std::vector<MeasuredTrial> measured;            ///< empty if no pick-up measured the surface
+  /// friction along the strip; empty if no force cells recorded data
+  std::vector<analysis::FrictionCurve> strip;
+  /// trials repeated because of the finger's movement, by level; empty if the protocol repeats none
+  std::vector<analysis::RepeatedTrials> repeats;
+  /// measured vibration of each trial; empty if no pick-up measured the surface
+  std::vector<MeasuredTrial> measured;
   /// Set if the answers determined the levels: the intervals then come from the posterior under this prior.
   /// Empty if the levels were fixed before the session: the intervals then come from bootstraps.
   std::optional<analysis::Prior> prior;

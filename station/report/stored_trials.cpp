@@ -4,12 +4,16 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <string>
+#include <tuple>
+#include <utility>
 
 #include "station/analysis/psychometric_posterior.hpp"
 #include "station/procedure/description.hpp"
 #include "station/protocol/answers.hpp"
 #include "station/protocol/conditions.hpp"
 #include "station/protocol/sources.hpp"
+#include "station/report/stored_estimates.hpp"
 #include "station/text/number.hpp"
 
 namespace turnpoint::report {
@@ -70,7 +74,7 @@ analysis::TrialRecord record_of(const records::TrialRow& row, const records::Blo
   return record;
 }
 
-/// Adds what force cells measured in a trial, if the trial counts.
+/// Adds what force cells measured in a trial, unless the trial is practice or was not answered.
 void add_finger(const records::TrialRow& row, const analysis::TrialRecord& trial, report::SessionData& data) {
   const auto& finger = row.finger;
   if (finger.sensing.empty() || trial.type == terms::TrialType::practice ||
@@ -79,7 +83,7 @@ void add_finger(const records::TrialRow& row, const analysis::TrialRecord& trial
   analysis::FingerTrial added;
   added.trial_index = row.trial_index;
   added.condition = trial.instruction;
-  // this cannot be seen from `sensing`, which may also say that the finger moved too fast
+  // `sensing` does not show whether forces were measured: it may also say that the finger moved too fast
   added.measured = finger.contact_s.has_value();
   added.normal_N = finger.normal_N;
   added.speed_mm_s = finger.speed_mm_s;
@@ -91,7 +95,7 @@ void add_finger(const records::TrialRow& row, const analysis::TrialRecord& trial
   data.finger.push_back(std::move(added));
 }
 
-/// True for blocks of strokes, in which nothing is asked.
+/// True for a block in which the finger only strokes the surface and no question is asked.
 bool nothing_asked(const protocol::Protocol& protocol, const std::string& block) {
   return std::any_of(protocol.plan.begin(), protocol.plan.end(), [&](const auto& part) {
     return protocol::block_of(part).name == block &&
@@ -155,6 +159,7 @@ void choose_function(const protocol::Protocol& protocol, report::SessionData& da
   data.scale = rises && positive && !decibel ? analysis::Scale::log10 : analysis::Scale::linear;
   for (const auto& spec : protocol.procedures) {
     if (procedure::description(spec.kind).choice != procedure::Choice::posterior) continue;
+    if (spec.signal_detection) continue;  // the fit has no criterion, but a rate of false alarms
     // A Weibull function needs levels above 0, or levels in dB.
     if (spec.function != terms::Function::weibull || decibel || positive) data.function = spec.function;
     return;
@@ -192,8 +197,8 @@ bool same_function(const procedure::Spec& spec, const report::SessionData& data)
   return linear == (data.scale == analysis::Scale::linear) && spec.function == data.function;
 }
 
-/// Returns the prior for the posterior intervals. It depends only on the levels that the protocol can
-/// present, never on the answers. Empty if no procedure is adaptive.
+/// Returns the prior for the intervals that are computed from a posterior. It depends only on the levels that
+/// the protocol can present, never on the answers. Empty if no procedure is adaptive.
 std::optional<analysis::Prior> prior_of(const protocol::Protocol& protocol, const report::SessionData& data) {
   std::optional<Range> levels, slopes;
   const auto widen = [](std::optional<Range>& range, const Range& by) {
@@ -202,7 +207,7 @@ std::optional<analysis::Prior> prior_of(const protocol::Protocol& protocol, cons
   for (const auto& spec : protocol.procedures) {
     if (!procedure::follows_answers(spec)) continue;
     widen(levels, levels_of(spec, protocol));
-    if (same_function(spec, data))
+    if (same_function(spec, data) && !spec.signal_detection)
       for (const double slope : spec.slope.values) widen(slopes, {slope, slope});
   }
   if (!levels) return std::nullopt;
@@ -226,55 +231,13 @@ void set_level_words(const std::string& level, report::SessionData& data) {
     for (auto& trial : data.trials)
       if (trial.level) trial.level = std::fabs(*trial.level);
   }
-  if (name[0] >= 'a' && name[0] <= 'z') name[0] = static_cast<char>(name[0] - 'a' + 'A');
   data.level_unit = words.unit;
-  data.level_label = name + " (" + (words.unit.empty() ? "no unit" : words.unit) + ")";
+  data.level_label = axis_label(name, words.unit);
 }
 
-/// Returns the place of a procedure among those of its block, which is part of the key of its draws.
-std::size_t place_in_block(const procedure::Spec& spec, const std::string& block,
-                           const protocol::Protocol& protocol) {
-  for (const auto& part : protocol.plan) {
-    const auto& names = protocol::block_of(part).procedures;
-    if (protocol::block_of(part).name == block)
-      return static_cast<std::size_t>(std::find(names.begin(), names.end(), spec.name) - names.begin());
-  }
-  return 0;
-}
-
-/// Recomputes the final estimates of adaptive procedures from the stored answers.
-void add_estimates(const std::vector<const records::BlockRecord*>& blocks, const protocol::Protocol& protocol,
-                   report::SessionData& data) {
-  for (const auto& spec : protocol.procedures) {
-    if (!procedure::follows_answers(spec)) continue;
-    const auto& kind = procedure::description(spec.kind);
-    const bool posterior = kind.choice == procedure::Choice::posterior;
-    const double least = spec.tracks.empty() ? 1.0 / data.alternatives : 0;
-    for (const auto* block : blocks) {
-      if (block->start.practice) continue;
-      const auto key =
-          procedure::key_of(data.seed, block->start.block_index,
-                            place_in_block(spec, block->start.name, protocol), block->start.attempt);
-      const auto replayed = procedure::make_procedure(spec, {}, key);
-      for (const auto& row : block->trials) {
-        if (row.procedure != spec.name || row.type != terms::TrialType::experimental ||
-            row.outcome == terms::Outcome::fault || row.outcome == terms::Outcome::aborted ||
-            !replayed->next())
-          continue;
-        if (row.outcome != terms::Outcome::answered) {
-          replayed->record(procedure::Answer::none);
-          continue;
-        }
-        const bool one = spec.tracks.empty() ? row.correct.value_or(false) : row.response == spec.tracks;
-        replayed->record(one ? procedure::Answer::one : procedure::Answer::zero);
-      }
-      if (replayed->recorded() == 0) continue;
-      for (const auto& [parameter, estimate] : replayed->estimates())
-        data.estimates.push_back({block->start.name, spec.name, parameter, estimate.mean, estimate.sd,
-                                  posterior ? "mean of its posterior" : estimate.basis, kind.choice,
-                                  kind.settles_at(spec, least, 1)});
-    }
-  }
+/// Unit of a parameter that a separate program estimated: that of the level for thresholds.
+std::string unit_of_program(const std::string& parameter, const report::SessionData& data) {
+  return parameter.starts_with("threshold") || parameter == "pse" ? data.level_unit : "";
 }
 
 }  // namespace
@@ -320,7 +283,53 @@ void add_trials(const std::vector<records::BlockRecord>& blocks, const protocol:
   data.conditions = protocol::conditions(protocol);
   data.show = protocol.analysis.show;
   data.exclusion = {protocol.analysis.exclude_below_s, protocol.analysis.exclude_mad};
+  data.thresholds_differ =
+      std::any_of(protocol.procedures.begin(), protocol.procedures.end(), [&](const procedure::Spec& spec) {
+        const auto& by = protocol.analysis.by;
+        return spec.second && std::find(by.begin(), by.end(), spec.second->level) == by.end();
+      });
   add_estimates(counted, protocol, data);
+}
+
+void add_program_estimates(const std::vector<records::BlockRecord>& blocks,
+                           const std::vector<records::EventRow>& events, report::SessionData& data) {
+  // The newest event about a block counts: an interrupted session may have ended the block twice.
+  std::map<std::tuple<int, std::string, std::string>, std::pair<int, records::EstimateRow>> newest;
+  for (const auto& event : events)
+    for (const auto& row : event.estimates)
+      newest.insert_or_assign({row.block_index, row.procedure, row.parameter}, std::pair(row.attempt, row));
+  for (const auto& [key, found] : newest)
+    for (const auto& block : blocks) {
+      if (block.start.block_index != std::get<0>(key) || block.start.attempt != found.first ||
+          block.start.practice)
+        continue;
+      const auto& row = found.second;
+      data.estimates.push_back({block.start.name,
+                                row.procedure,
+                                row.parameter,
+                                row.mean,
+                                row.sd,
+                                row.basis,
+                                unit_of_program(row.parameter, data),
+                                std::nullopt,
+                                procedure::Choice::program,
+                                {}});
+    }
+}
+
+void add_estimator(const std::string& program, const std::map<std::string, procedure::Estimate>& estimates,
+                   report::SessionData& data) {
+  for (const auto& [parameter, estimate] : estimates)
+    data.estimates.push_back({"all blocks",
+                              program,
+                              parameter,
+                              estimate.mean,
+                              estimate.sd,
+                              estimate.basis,
+                              unit_of_program(parameter, data),
+                              std::nullopt,
+                              procedure::Choice::program,
+                              {}});
 }
 
 }  // namespace turnpoint::report

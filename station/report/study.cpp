@@ -42,13 +42,13 @@ void count_trials(const SessionData& data, StudyPerson& person) {
 
 std::string percent(double share) { return text::number(100 * share, 3) + " %"; }
 
-/// One rule of exclusion: the rule in words, and a function that returns how a participant breaks it ("" for
-/// one who does not).
+/// One rule of exclusion: the rule in words, and how one participant breaks it ("" if the participant does
+/// not break it).
 struct StudyRule {
   std::string words, broken;
 };
 
-/// Adds the rule that a share must not be below (or above) a limit.
+/// Adds the exclusion rule that a proportion, such as accuracy, must not be below (or above) a limit.
 void add_share(std::vector<StudyRule>& rules, const std::string& what, const std::optional<double>& limit,
                const char* side, const std::optional<double>& found) {
   if (!limit) return;
@@ -141,7 +141,7 @@ void add_measures(const Summary& summary, StudyPerson& person) {
     measures.add(judged.condition, "exponent of Stevens' law", "", judged.exponent);
 }
 
-/// Returns the lower asymptote, which the hierarchical fit takes as known.
+/// Returns the lower asymptote of the psychometric function, which the hierarchical fit takes as known.
 double known_guess(const NamedFit& named) {
   if (named.fit.options.guess == analysis::Guess::fixed) return named.fit.options.guess_value;
   if (named.fit.options.guess == analysis::Guess::tied_to_lapse) return 0;
@@ -204,7 +204,7 @@ void finish_study(Study& study) {
       if (std::find(conditions.begin(), conditions.end(), named.name) == conditions.end())
         conditions.push_back(named.name);
   }
-  // the conditions of the protocol come first, whatever order the first participant had
+  // sort by condition in the order of the protocol, because the first participant may have had another order
   const auto place = [&conditions](const PersonMeasure& measure) {
     return std::find(conditions.begin(), conditions.end(), measure.condition) - conditions.begin();
   };

@@ -16,21 +16,21 @@ namespace turnpoint::report {
 /// their number.
 struct StudyPerson {
   std::string person;
-  std::vector<std::string> sessions;       ///< ids
-  std::string group;                       ///< "" if the protocol has no groups
-  bool incomplete = false;                 ///< a session was not completed
-  int presented = 0, answered = 0;         ///< experimental trials
-  double timeouts = 0, anticipations = 0;  ///< shares of the presented trials
+  std::vector<std::string> sessions;       ///< ids of the participant's sessions
+  std::string group;                       ///< the participant's group; "" if the protocol has no groups
+  bool incomplete = false;                 ///< true if a session was not completed
+  int presented = 0, answered = 0;         ///< numbers of presented and of answered experimental trials
+  double timeouts = 0, anticipations = 0;  ///< proportions of the presented trials
   std::optional<double> accuracy, catch_accuracy, median_time_s;
   /// rules that exclude the participant; empty if the participant is included
   std::vector<std::string> excluded;
-  std::vector<NamedFit> fits;  ///< one for each condition; without bands
+  std::vector<NamedFit> fits;  ///< one fit for each condition, without confidence bands
   std::vector<analysis::PersonMeasure> measures;
 };
 
 /// The hierarchical fit of one condition.
 struct GroupFit {
-  std::string condition;  ///< "" if there is only one
+  std::string condition;  ///< name of the condition; "" if there is only one
   std::string positive;   ///< the answer whose probability the curve shows
   analysis::MixedResult result;
 };
@@ -46,7 +46,7 @@ struct Study {
   std::vector<analysis::Statement> statements;
 };
 
-/// Number of replicates for the intervals of single participants.
+/// Number of bootstrap replicates for the intervals of single participants.
 constexpr int kStudyReplicates = 400;
 
 /// Analyses the trials of one participant, from all sessions together, and applies the rules.
@@ -68,7 +68,7 @@ std::optional<plot::Figure> group_trade_figure(const Study& study);
 
 /// A table that becomes a CSV file with one header row.
 struct Table {
-  std::string name;  ///< file name
+  std::string name;  ///< name of the CSV file
   std::string csv;
 };
 /// Tidy tables for other programs: answers.csv (one row for each participant, condition and level),

@@ -22,7 +22,7 @@ plot::Line curve_of(const analysis::MixedOptions& options, const analysis::Psych
   return line;
 }
 
-/// The group's function, with the mean of the participants' lower asymptotes.
+/// The group's psychometric function, with the mean of the participants' lower asymptotes.
 analysis::Psychometric group_parameters(const analysis::MixedFit& fit) {
   double guess = 0;
   for (const auto& person : fit.persons)

@@ -87,13 +87,11 @@ std::string group_section(const Study& study) {
     html += notes(group.result.statements);
   }
   return html +
-         "<p class=\"soft\">Partial pooling: intercept and slope on the function\u2019s axis differ between "
-         "participants as a bivariate normal distribution; maximum likelihood with Laplace\u2019s "
-         "approximation. "
-         "95 % intervals of the group: delta method and Student\u2019s t. Those of participants do not "
-         "include "
-         "the uncertainty of the distribution itself; in simulations of 10 participants with 70 trials each "
-         "they contain the true value in 93 %.</p>\n";
+         "<p class=\"soft\">Partial pooling: across participants, intercept and slope on the function\u2019s "
+         "axis follow a bivariate normal distribution. The fit is maximum likelihood with Laplace\u2019s "
+         "approximation. 95 % intervals of the group: delta method and Student\u2019s t. The intervals of "
+         "participants do not include the uncertainty of the distribution; in simulations of 10 "
+         "participants with 70 trials each, they contained the true value in 93 % of the cases.</p>\n";
 }
 
 std::string means_section(const Study& study) {
@@ -119,12 +117,11 @@ std::string means_section(const Study& study) {
             (effect.standardised ? number(*effect.standardised, 2) : "\u2013") + "</td></tr>";
   return html +
          "</table>\n<p class=\"soft\">Each participant counts once, with estimates from the "
-         "participant\u2019s own "
-         "trials. 95 % intervals: Student\u2019s t, for effects that of the participants\u2019 own "
-         "differences, in standard deviations of these differences (d<sub>z</sub>). Between groups: "
-         "Welch\u2019s t "
-         "for the difference of the means, in pooled standard deviations (d<sub>s</sub>). They "
-         "are not corrected for the number of comparisons.</p>\n";
+         "participant\u2019s own trials. 95 % intervals of means: Student\u2019s t. Effects within "
+         "participants: Student\u2019s t of the participants\u2019 differences, in standard deviations of "
+         "these differences (d<sub>z</sub>). Effects between groups: Welch\u2019s t of the difference of "
+         "the means, in pooled standard deviations (d<sub>s</sub>). The intervals are not corrected for the "
+         "number of comparisons.</p>\n";
 }
 
 }  // namespace

@@ -88,7 +88,7 @@ NamedFit fit_of(const SessionData& data, const std::string& name, const std::vec
   return result;
 }
 
-/// Removes the measures that belong to parts which the protocol does not show.
+/// Removes the measures that belong to parts of the report which the protocol does not show.
 void hide(const SessionData& data, analysis::Trade& trade) {
   for (auto& entry : trade.instructions) {
     if (!shows(data, "ez")) {
@@ -131,6 +131,7 @@ std::vector<analysis::Detection> detections_of(const SessionData& data) {
 }  // namespace
 
 std::vector<NamedFit> fits_of(const SessionData& data) {
+  if (data.thresholds_differ) return {};
   const auto instructions = analysis::conditions_of(data.trials, data.conditions);
   if (instructions.size() < 2) return {fit_of(data, "", data.trials, 0)};
   std::vector<NamedFit> fits;
@@ -179,7 +180,7 @@ std::string describe_intervals(const NamedFit& named, const SessionData& data) {
   };
   const bool two_sided = data.design == Design::two_sided;
   std::string text =
-      "Posterior medians. 95 % credible intervals: central, posterior on a grid, because the answers "
+      "Medians and central 95 % credible intervals of a posterior on a grid, because the answers "
       "determined the levels. Prior: " +
       std::string(two_sided ? "PSE" : "threshold") + " uniform" +
       (options.scale == analysis::Scale::log10 ? " in its logarithm" : "") + " from " +

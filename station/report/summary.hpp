@@ -29,20 +29,24 @@ struct Summary {
   analysis::OutcomeCounts outcomes;
   std::vector<NamedFit> fits;
   std::vector<analysis::Trace> traces;
-  std::optional<analysis::Bias> bias;           ///< only if there are two answers
-  std::vector<analysis::Confusion> confusions;  ///< only for three or more answers, and for categories
+  std::optional<analysis::Bias> bias;  ///< response bias; only if the task has two answers
+  /// confusion matrices; only for three or more answers, or if the answers are categories
+  std::vector<analysis::Confusion> confusions;
   std::optional<analysis::Proportion> catch_trials;
-  std::map<int, analysis::Proportion> confidence;  ///< right answers by degree of confidence
+  /// proportion of right answers for each degree of confidence
+  std::map<int, analysis::Proportion> confidence;
   analysis::Fatigue fatigue;
   analysis::Trade trade;
   std::vector<analysis::Detection> detections;            ///< d' and criterion, if the report shows them
-  std::vector<analysis::Discrimination> discriminations;  ///< d' where data.deciding has a model
-  std::vector<analysis::SpeedAccuracyCurve> curves;       ///< for a response signal, one for each condition
+  std::vector<analysis::Discrimination> discriminations;  ///< d' computed with each model in data.deciding
+  /// one for each condition; only with a response signal
+  std::vector<analysis::SpeedAccuracyCurve> curves;
   /// for an adjustment task: one entry for each procedure and condition
   std::vector<analysis::Settings> settings;
   /// for ratings and numbers: one entry for each condition
   std::vector<analysis::Judgements> judgements;
-  std::optional<analysis::Finger> finger;  ///< empty if no force cells recorded
+  /// force and friction of the finger; empty if no force cells recorded data
+  std::optional<analysis::Finger> finger;
 };
 
 /// Returns only the psychometric fits: one to all trials, or one per instruction if there are several

@@ -31,7 +31,7 @@ std::vector<std::string> split(const std::string& line, char separator) {
 
 bool parse_number(std::string cell, char decimal, double& value) {
   if (decimal == ',') {
-    if (cell.find('.') != std::string::npos) return false;  // 1.234 would be ambiguous
+    if (cell.find('.') != std::string::npos) return false;  // with decimal commas, 1.234 could also mean 1234
     std::replace(cell.begin(), cell.end(), ',', '.');
   }
   const auto [end, error] = std::from_chars(cell.data(), cell.data() + cell.size(), value);

@@ -10,7 +10,8 @@
 
 namespace turnpoint::rig {
 
-/// The taper of the surface as given in the file; exactly one form is set. Half-widths, SI units.
+/// The half-width W of the surface along its length x, as given in the file; exactly one form is set. SI
+/// units.
 struct Taper {
   double half_width_m = 0;      ///< half-width at the driven wide end; for a profile, taken from its table
   std::optional<double> slope;  ///< linear taper: W(x) = half_width_m - slope x
@@ -28,11 +29,11 @@ enum class PlateTheory { kirchhoff, mindlin, elastic, automatic };
 /// Parameters of the surface, fitted to measured boundaries. Part of the rig's calibration. SI units.
 struct SurfaceFit {
   struct Parameter {
-    std::string name;      ///< name as physics::name() writes it
-    double change = 0;     ///< the estimate minus the value in the rig file
+    std::string name;      ///< name of the parameter, as physics::name() writes it
+    double change = 0;     ///< the fitted estimate minus the value in the rig file
     double sd = 0;         ///< standard deviation of the estimate
-    double stated_sd = 0;  ///< standard deviation in the rig file
-    /// correlations of its error with those of the parameters before it in the list
+    double stated_sd = 0;  ///< standard deviation of the parameter that the rig file states
+    /// correlations of this parameter's error with the errors of the parameters before it in the list
     std::vector<double> correlations;
   };
   std::vector<Parameter> parameters;
@@ -45,10 +46,10 @@ struct Surface {
   std::optional<double> modulus_Pa;
   std::optional<double> poisson;
   std::optional<double> yield_Pa;
-  double tension_Pa = 0;  ///< tension as a stress; 0 means a plate
+  double tension_Pa = 0;  ///< tension of a membrane, as a stress; 0 means a plate
   double thickness_m = 0;
   double length_m = 0;
-  /// quality factor; infinity means no loss
+  /// quality factor of the vibration; infinity means no loss
   double quality_factor = std::numeric_limits<double>::infinity();
   Edges edges = Edges::supported;
   Bending bending = Bending::automatic;
@@ -60,7 +61,7 @@ struct Surface {
          modulus_sd_Pa = 0, decay_length_sd_m = 0, clamp_line_sd_m = 0, temperature_sd_K = 0;
   /// Relative change of every length, and of Young's modulus, per kelvin; 0 if not known.
   double expansion_per_K = 0, modulus_per_K = 0;
-  SurfaceFit fit;  ///< empty if there is no calibration with measured boundaries
+  SurfaceFit fit;  ///< fitted parameters; empty if no calibration has measured boundaries
 };
 
 /// One drive element with its band, output channel and displacement of the drive edge at full scale.
@@ -68,11 +69,12 @@ struct Transducer {
   std::string name;
   int channel = 0;
   double low_Hz = 0, high_Hz = 0;
-  std::optional<double> m_per_full_scale;  ///< constant response; if empty, use `response`
+  /// displacement at full scale if it is the same at all frequencies; if empty, use `response`
+  std::optional<double> m_per_full_scale;
   struct ResponsePoint {
     double frequency_Hz, m_per_full_scale, phase_rad;
   };
-  std::vector<ResponsePoint> response;  ///< from response_csv, in order of frequency
+  std::vector<ResponsePoint> response;  ///< measured response from response_csv, in order of frequency
 };
 
 /// Longest period of the audio stream. The audio thread reports to the amplifier's guard once per period, and
@@ -86,7 +88,7 @@ struct Output {
   int bits = 24;
   int period_frames = 384;
   int periods = 4;
-  /// time from the moment when a sample leaves the buffer to the analog output
+  /// delay from the moment when a sample leaves the buffer until it appears at the analog output
   double converter_delay_s = 0;
   /// number of channels of an ALSA device that has more channels than are used; 0: no more than are used
   int device_channels = 0;
@@ -110,34 +112,48 @@ inline constexpr int trigger_code_bits = 15;
 
 /// Where pulses of another device come in, such as those of a scanner.
 struct Sync {
-  std::string uri;             ///< `sim:`, `gpio:line=NAME` or `capture:`
-  std::optional<int> channel;  ///< captured channel, for `capture:`
+  std::string uri;             ///< where the pulses arrive: `sim:`, `gpio:line=NAME` or `capture:`
+  std::optional<int> channel;  ///< captured channel of the pulses, if the uri is `capture:`
 };
 
 /// What a pick-up captures per unit of drive on one output channel; part of the calibration.
 struct PickUpResponse {
-  int channel = 0;        ///< captured channel
-  int drive_channel = 0;  ///< output channel
+  int channel = 0;        ///< captured channel of the pick-up
+  int drive_channel = 0;  ///< output channel of the transducer
   struct Point {
     double frequency_Hz = 0;
     double amplitude = 0;  ///< captured amplitude for a tone of full scale; 1 is full scale of the capture
-    double phase_rad = 0;  ///< phase without the delay of the loop
+    double phase_rad = 0;  ///< phase, with the delay from playback to capture removed
   };
-  std::vector<Point> points;  ///< in order of frequency
+  std::vector<Point> points;  ///< the measured points, in order of frequency
 };
 
-/// The calibration of three force cells with dead weights: converts the ratios of bridge to reference to
-/// forces.
+/// The calibration of three force cells, made with dead weights. It converts the ratio of each bridge's
+/// output to the reference signal into forces.
 struct ForceCells {
   /// Rows: cells a, b, lateral. Columns: normal force (N), lateral force (N), moment (N mm).
   using Matrix = std::array<std::array<double, 3>, 3>;
   Matrix matrix{};
-  /// changes of the matrix if one source of error changes by one standard deviation
+  /// for each source of error: the change of the matrix if this source changes by one standard deviation
   std::vector<Matrix> changes;
-  double carrier_Hz = 0;           ///< the calibration holds only for this carrier
+  double carrier_Hz = 0;  ///< the calibration holds only for this carrier; 0: a converter with its own clock
   double reference_amplitude = 0;  ///< amplitude of the reference during the calibration; 1 is full scale
-  std::array<double, 3> rotation_rad{};  ///< phase of each bridge against the reference
-  std::array<double, 3> rated_ratio{};   ///< ratio of bridge to reference at the rated load of each cell
+  std::array<double, 3> rotation_rad{};  ///< phase of each bridge signal against the reference signal
+  /// ratio of bridge to reference signal at the rated load of each cell
+  std::array<double, 3> rated_ratio{};
+};
+
+/// Force cells on a converter with a clock of its own, which the kernel offers as a device of its subsystem
+/// IIO.
+struct CellConverter {
+  std::string uri;  ///< `iio:DEVICE`, with the name or label of the device
+  /// names of the channels of two cells below the surface (the first nearer to the wide edge) and of the
+  /// lateral one
+  std::array<std::string, 3> channels;
+  double rate_Hz = 1000;                          ///< samples of each channel per second
+  std::optional<double> sampling_frequency = {};  ///< what is written to the attribute of the driver
+  std::string trigger = {};                       ///< name of the trigger; "": the one that the device has
+  double delay_s = 0;                             ///< by how much the converter's filter delays the samples
 };
 
 /// What the station captures of its own output: `sim:` (a simulated plate; only in simulated sessions) or
@@ -147,7 +163,8 @@ struct Capture {
   int channels = 2;           ///< number of channels of the capture device
   std::vector<int> pick_ups;  ///< captured channels with vibration sensors
   int reference = 0;          ///< captured channel that is wired to `excitation_channel`
-  /// output channel of the pilot, which finds the delay of the loop; set for `alsa:`
+  /// output channel of the excitation and of the pilot (a chirp that shows the delay from playback to
+  /// capture); set for `alsa:`
   std::optional<int> excitation_channel;
   std::vector<PickUpResponse> responses;  ///< empty without a calibration of the pick-ups
   /// captured channel that is wired to the output of a marker with codes, which are read back from it
@@ -155,6 +172,8 @@ struct Capture {
   /// captured channels of the force cells: two below the surface (the first nearer to the wide edge) and the
   /// lateral one; empty without force cells
   std::vector<int> bridges = {};
+  /// force cells that are not captured by the card; `bridges` is then empty
+  std::optional<CellConverter> converter = {};
   std::optional<ForceCells> forces = {};  ///< empty without a calibration of the force cells
 };
 
@@ -179,7 +198,7 @@ struct Friction {
   double pressure_Pa = 5000;
   double floor = 0.1;
   double fingertip_m = 0.010;
-  std::vector<std::pair<double, double>> table;  ///< pairs of (displacement_m, relative_friction)
+  std::vector<std::pair<double, double>> table;  ///< measured pairs of (displacement_m, relative_friction)
 };
 
 /// A fingertip on the surface as a mechanical impedance at ultrasonic frequencies, with its standard
@@ -188,10 +207,10 @@ struct Finger {
   double impedance_Ns_per_m = 55, impedance_sd_Ns_per_m = 15;
   /// a phase above zero means that force leads velocity, as for a mass
   double phase_rad = 0, phase_sd_rad = 0;
-  double contact_m = 0.008;  ///< diameter of the contact
+  double contact_m = 0.008;  ///< diameter of the contact between finger and surface
 };
 
-/// Limits that must never be exceeded.
+/// Limits for driving the surface, which must never be exceeded.
 struct Limits {
   double displacement_m = 0;
   double continuous_s = 30;
@@ -220,6 +239,9 @@ struct Rig {
   Limits limits;
   std::vector<std::string> defaults_used;  ///< `key = value` for each default that was used
 };
+
+/// True if the rig has force cells, calibrated or not.
+bool has_force_cells(const Rig& rig);
 
 /// Returns the transducers whose vibration cannot be proven: the rig captures with a card, but the
 /// calibration contains no response of a pick-up to them.

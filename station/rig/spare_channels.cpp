@@ -78,7 +78,7 @@ void read_loop(TableReader& reader, const Rig& rig, Capture& capture) {
   check_spare(reader, "excitation_channel", *capture.excitation_channel, rig);
 }
 
-/// A captured channel that nothing else uses.
+/// Reports a captured channel that does not exist or that is used for something else.
 void check_captured(TableReader& reader, const std::string& key, int channel, const Capture& capture) {
   const auto& pick_ups = capture.pick_ups;
   const auto what = "channel " + std::to_string(channel);
@@ -97,8 +97,9 @@ void read_bridges(TableReader& reader, Capture& capture) {
     const int channel = static_cast<int>(number);
     const auto same = std::count(channels.begin(), channels.end(), number);
     if (channels.size() != 3 || number != channel || same > 1) {
-      reader.problem("bridges", "needs the channels of three cells",
-                     "three different whole numbers: two cells below the surface, and the lateral cell");
+      reader.problem(
+          "bridges", "\"bridges\" needs the channels of three cells",
+          "write three different whole numbers: two cells below the surface, and the lateral cell");
       return;
     }
     check_captured(reader, "bridges", channel, capture);
@@ -143,7 +144,7 @@ Capture read_capture(const text::Value& table, const Rig& rig, text::Findings& f
   for (const double channel : reader.numbers("pickups", {0, 31, Range::Ends::closed})) {
     if (channel != std::floor(channel) || channel >= capture.channels || !seen.insert(channel).second)
       reader.problem("pickups", "channel " + text::number(channel) + " is not a captured channel of its own",
-                     "different whole numbers from 0 to " + std::to_string(capture.channels - 1));
+                     "write different whole numbers from 0 to " + std::to_string(capture.channels - 1));
     capture.pick_ups.push_back(static_cast<int>(channel));
   }
   const bool has_bridges = reader.has("bridges");
@@ -157,13 +158,57 @@ Capture read_capture(const text::Value& table, const Rig& rig, text::Findings& f
   return capture;
 }
 
+/// A name of the kernel, which may not contain what separates names in messages and files.
+void check_name(TableReader& reader, const std::string& key, const std::string& name) {
+  if (name.find_first_of(" \t/,\"") == std::string::npos) return;
+  reader.problem(key, "\"" + name + "\" is not the name of a channel or trigger",
+                 "a name without spaces, slashes and commas, such as \"voltage0-voltage1\"");
+}
+
+CellConverter read_converter(const text::Value& table, Rig& rig, text::Findings& findings) {
+  TableReader reader(table, "force_cells", findings);
+  CellConverter converter;
+  converter.uri = read_uri(reader, {"iio:*"}, "\"iio:DEVICE\", with the name or label of an IIO device");
+  const std::array keys{"a", "b", "lateral"};
+  for (std::size_t k = 0; k < keys.size(); ++k) {
+    auto& name = converter.channels[k];
+    name = reader.string(keys[k], "the name of a channel, such as \"voltage0-voltage1\"");
+    check_name(reader, keys[k], name);
+    for (std::size_t other = 0; other < k; ++other)
+      if (!name.empty() && converter.channels[other] == name)
+        reader.problem(keys[k], "channel \"" + name + "\" is also that of \"" + keys[other] + "\"",
+                       "a channel of its own for each cell");
+  }
+  // Below 80 samples a second the contact of a finger is not seen in time; the grid has 1000 points a second.
+  converter.rate_Hz = reader.number("rate_Hz", {80, 1000, Range::Ends::closed, "Hz"});
+  converter.sampling_frequency = reader.maybe_number("sampling_frequency", {0, 1e9, Range::Ends::open_low});
+  converter.trigger = reader.maybe_string("trigger").value_or("");
+  check_name(reader, "trigger", converter.trigger);
+  converter.delay_s = 1e-3 * reader.number("delay_ms", {0, 1000, Range::Ends::closed, "ms"}, 0);
+  reader.finish();
+  if (!rig.capture || !rig.capture->uri.starts_with("alsa:"))
+    reader.problem("uri", "force cells on a converter need pick-ups on the card that plays",
+                   "add [capture] with uri = \"alsa:NAME\"");
+  else if (!rig.capture->bridges.empty())
+    reader.problem("uri", "[capture] already has force cells", "leave out \"bridges\" or [force_cells]");
+  return converter;
+}
+
 }  // namespace
+
+bool has_force_cells(const Rig& rig) {
+  return rig.capture && (!rig.capture->bridges.empty() || rig.capture->converter);
+}
 
 void read_spare_channels(TableReader& file, Rig& rig) {
   if (const auto* table = file.maybe_table("marker")) rig.marker = read_marker(*table, rig, file.findings());
   if (const auto* table = file.maybe_table("noise")) rig.noise = read_noise(*table, rig, file.findings());
   if (const auto* table = file.maybe_table("capture"))
     rig.capture = read_capture(*table, rig, file.findings());
+  if (const auto* table = file.maybe_table("force_cells")) {
+    const auto converter = read_converter(*table, rig, file.findings());
+    if (rig.capture) rig.capture->converter = converter;
+  }
   if (const auto* table = file.maybe_table("sync")) rig.sync = read_sync(*table, rig, file.findings());
 }
 

@@ -133,7 +133,8 @@ double scale_to_friction(const physics::Surface& surface, const physics::Frictio
                       text::number(scene.zone->friction, 4), text::number(mean_at(high), 4)));
     low = high, high *= 2;
   }
-  // Regula falsi (Illinois): the mean friction falls smoothly as the scale rises, so a few steps are enough.
+  // Find the scale by regula falsi (Illinois variant): the mean friction falls smoothly as the scale rises,
+  // so a few steps are enough.
   double at_low = low == 0 ? 1 - scene.zone->friction : mean_at(low) - scene.zone->friction;
   double at_high = mean_at(high) - scene.zone->friction;
   for (int i = 0; i < 60 && high - low > 1e-10 * high; ++i) {

@@ -55,13 +55,14 @@ std::string key_of(const Scene& scene) {
   return key;
 }
 
-/// How the surface moves for a set of tones, per metre of displacement at the drive edge. Roving changes only
-/// this displacement, so one solution serves all roved strengths. `fields` are computed with the chosen
-/// model, or with `mode` if the chosen model is coarser than `mode`, because a coarser model is not good
-/// enough for checking the rig's limits.
+/// How the surface moves for a set of tones, per metre of displacement at the drive edge. Roving (a random
+/// change of strength in each trial) changes only this displacement, so one solution serves all strengths.
+/// `fields` are computed with the chosen model, or with `mode` if the chosen model is coarser than `mode`,
+/// because a coarser model is not good enough for checking the rig's limits.
 struct Solution {
   physics::PlanChoice choice;
-  std::vector<double> frequencies_Hz;  ///< computed with the chosen model, rounded to 1 / kGridPerHz
+  /// the tones' frequencies by the chosen model, rounded to 1 / kGridPerHz
+  std::vector<double> frequencies_Hz;
   std::vector<physics::ToneField> fields;
   std::vector<std::optional<double>> resonances_Hz;
   double uncertainty_m = 0;
@@ -258,8 +259,8 @@ DrivePlan Planner::plan(const Scene& scene) {
   auto& plans = state_->plans;
   const auto key = key_of(scene);
   if (const auto found = plans.find(key); found != plans.end()) return found->second;
-  // With roving, almost every scene is new. Clear the cache when it is full, because it would otherwise grow
-  // during the session.
+  // With roving, each trial has another strength, so almost every scene is new. Clear the cache when it is
+  // full, because it would otherwise grow during the session.
   if (plans.size() >= kRemembered) plans.clear();
   // These errors of the physics library mean that the rig cannot present the scene: the surface does not have
   // this edge, or the zone lies beyond the strip.

@@ -27,14 +27,14 @@ class Unreachable : public terms::UsageError {
 /// One tone as the drive will play it.
 struct DrivenTone {
   double frequency_Hz = 0;
-  double amplitude_m = 0;  ///< peak displacement at the drive edge
-  double phase_rad = 0;    ///< phase at the drive edge
+  double amplitude_m = 0;  ///< peak displacement of the drive edge
+  double phase_rad = 0;    ///< phase of the motion of the drive edge
   std::string transducer;
   int channel = 0;
-  double full_scale = 0;  ///< peak value at the converter; 1 is full scale
+  double full_scale = 0;  ///< peak value of the tone at the converter; 1 is full scale
   /// phase at the converter: `phase_rad` minus the phase shift of the transducer
   double output_phase_rad = 0;
-  std::optional<double> boundary_m;  ///< where the scene's edge would be with this tone alone
+  std::optional<double> boundary_m;  ///< where the boundary would be with this tone alone
   std::optional<double> turning_point_m, last_peak_m, nearest_resonance_Hz;
   /// peak displacement at the tone's last maximum, or the largest peak displacement if there is no maximum
   double displacement_m = 0;
@@ -46,16 +46,17 @@ struct DrivenTone {
 /// are separate.
 struct DrivePlan {
   Scene scene;
-  std::vector<DrivenTone> tones;  ///< in order of falling frequency
+  std::vector<DrivenTone> tones;  ///< all tones, in order of falling frequency
   physics::Model model = physics::Model::mode;
   bool inside_tolerance = true;
-  double error_bound_m = 0;    ///< model error of the boundary
-  double level_bound_dB = 0;   ///< model error of the level at the last maximum
-  double amplitude_bound = 0;  ///< relative model error of the amplitude
-  /// standard deviation of the boundary, from the standard deviations in the rig file
+  double error_bound_m = 0;    ///< upper limit of the model's error in the boundary's position
+  double level_bound_dB = 0;   ///< upper limit of the model's error in the level at the last maximum
+  double amplitude_bound = 0;  ///< upper limit of the model's relative error in the amplitude
+  /// standard deviation of the boundary's position, from the standard deviations in the rig file
   double uncertainty_m = 0;
-  std::string reason;                                             ///< why this model was chosen
-  physics::PlateTheory theory = physics::PlateTheory::kirchhoff;  ///< plate theory, if the surface is a plate
+  std::string reason;  ///< why the planner chose this model
+  /// the plate theory used, if the surface is a plate
+  physics::PlateTheory theory = physics::PlateTheory::kirchhoff;
   /// How far the boundary would move with the next more exact plate theory; empty for membranes.
   std::optional<double> shear_shift_m;
   std::optional<double> boundary_m;     ///< predicted position of the boundary
@@ -78,18 +79,20 @@ struct DrivePlan {
 struct UnderFinger {
   /// position of the finger: as the scene says, or at the last maximum of the highest tone
   double finger_m = 0;
-  double free_m = 0;          ///< displacement at `finger_m` without a finger
-  double displacement_m = 0;  ///< displacement at `finger_m` under the finger
-  /// smallest and largest displacement for fingers one standard deviation from the rig's finger
+  double free_m = 0;          ///< displacement of the surface at `finger_m` without a finger
+  double displacement_m = 0;  ///< displacement of the surface at `finger_m` under the finger
+  /// smallest and largest displacement under fingers that differ from the rig's finger by one standard
+  /// deviation
   double least_m = 0, most_m = 0;
-  /// at `finger_m`: friction without a finger's load, and under the finger
+  /// relative friction at `finger_m`: from the vibration without a finger, and from the vibration under the
+  /// finger
   double free_friction = 1, friction = 1;
-  double lowest_friction = 1;  ///< lowest friction for any position of the finger
+  double lowest_friction = 1;  ///< lowest relative friction that the finger meets at any position
   /// for a finger in the zone: mean friction, and rms deviation from this mean
   std::optional<double> zone_friction, residual;
-  /// how far the edge of the highest tone is shifted for a moving finger
+  /// how far the boundary of the highest tone shifts under a moving finger
   std::optional<double> boundary_shift_m;
-  /// friction under a finger at each of these places
+  /// positions along the surface, and the friction under a finger at each of them
   std::vector<double> profile_x_m, profile_friction;
 };
 
@@ -101,7 +104,7 @@ class Planner {
   ~Planner();
   Planner(Planner&&) noexcept;
   Planner& operator=(Planner&&) noexcept;
-  /// Copies the caches as well. Another thread can use the copy.
+  /// Copies the planner with its caches, so that another thread can use the copy.
   Planner(const Planner& other);
 
   /// Returns the plan with the cheapest model that meets the scene's tolerance. Throws Unreachable if the

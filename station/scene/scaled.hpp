@@ -13,8 +13,8 @@ struct Stretch {
 double mean_displacement_m(Planner& planner, const DrivePlan& plan, const Stretch& stretch);
 
 /// Returns the plan with all amplitudes multiplied by `factor`; a factor of 0 removes the tones. Of the
-/// predicted frictions, only the lowest on the whole surface (`lowest_friction`) is computed again. The
-/// figures of the zone and the audible products are removed, because they would no longer be right.
+/// predicted frictions, only the lowest on the whole surface (`lowest_friction`) is computed again.
+/// `zone_friction`, `residual` and `audible_products` are cleared, because they would no longer be right.
 DrivePlan scaled(Planner& planner, DrivePlan plan, double factor);
 
 }  // namespace turnpoint::scene

@@ -11,7 +11,7 @@ namespace turnpoint::scene {
 struct ToneTarget {
   std::optional<double> boundary_m, frequency_Hz;
   physics::Edge edge;
-  double displacement_m = 0;  ///< peak at the tone's last maximum
+  double displacement_m = 0;  ///< peak displacement at the tone's last maximum along the surface
   double phase_rad = 0;
 };
 
@@ -19,7 +19,7 @@ struct ToneTarget {
 struct ZoneTarget {
   double from_m = 0;
   double friction = 1;  ///< desired mean over the zone, relative to the friction of the surface at rest
-  int tones = 1;        ///< largest number of tones
+  int tones = 1;        ///< largest number of tones that may be used
   /// if set, the tones are designed for this friction, and then their amplitudes are scaled to give
   /// `friction`
   std::optional<double> design_friction;
@@ -29,7 +29,7 @@ struct ZoneTarget {
 /// computed for a finger at `finger_m` and does not change when the finger moves.
 struct FingerTarget {
   double displacement_m = 0;
-  double finger_m = 0;  ///< place of the finger
+  double finger_m = 0;  ///< position of the finger for which the drive is computed
 };
 
 /// The accuracy that a scene requires of its plan. An empty value means no requirement.
@@ -43,8 +43,8 @@ struct Scene {
   std::string name;
   std::optional<double> boundary_m;
   physics::Edge edge;
-  /// values at the last maximum of the free surface; for a boundary alone, exactly one of displacement_m,
-  /// friction and under_finger is set
+  /// strength, given by values at the last maximum of the vibration without a finger. If the scene gives only
+  /// a boundary, exactly one of displacement_m, friction and under_finger is set.
   std::optional<double> displacement_m, friction;
   std::optional<FingerTarget> under_finger;
   std::vector<ToneTarget> tones;

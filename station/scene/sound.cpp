@@ -17,7 +17,7 @@ std::optional<SoundBound> sound_bound(const rig::Rig& rig, std::span<const physi
   };
   std::map<long, Band> bands;
   const auto surface = surface_of(rig);
-  // The model `edge` gives no field, so use `mode` instead.
+  // The model `edge` does not compute a displacement field, so use the model `mode` instead.
   const auto with_field = model == physics::Model::edge ? physics::Model::mode : model;
   for (const auto& tone : tones) {
     if (!(tone.amplitude_m > 0)) continue;

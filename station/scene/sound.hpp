@@ -14,17 +14,17 @@ namespace turnpoint::scene {
 /// (physics/airborne.hpp).
 struct SoundBound {
   double level_dB = 0;      ///< rms level of all tones in the band, re 20 uPa
-  double allowed_dB = 0;    ///< limit of the band, see terms::allowed_sound_dB()
+  double allowed_dB = 0;    ///< highest level allowed in the band, see terms::allowed_sound_dB()
   double frequency_Hz = 0;  ///< frequency of the loudest tone in the band
 };
 
-/// Computes the bound for tones with amplitudes at the drive edge. Empty if there is no tone, or if the
-/// surface is too wide for the bound to hold (see physics::loudest_sound()).
+/// Computes this upper bound for tones whose amplitudes are given at the drive edge. Empty if there is no
+/// tone, or if the surface is too wide for the bound to hold (see physics::loudest_sound()).
 std::optional<SoundBound> sound_bound(const rig::Rig& rig, std::span<const physics::Tone> tones,
                                       physics::Model model);
 
-/// The distance between the participant's ear and the surface for which the bound is computed. The ear must
-/// not be closer.
+/// Distance from the surface at which sound_bound() computes the level. The participant's ear must not be
+/// closer to the surface.
 inline constexpr double kEarDistance_m = 0.4;
 
 }  // namespace turnpoint::scene

@@ -15,7 +15,7 @@ using text::number;
 static_assert(terms::kAudible_Hz == physics::audible_limit_Hz);
 
 /// An edge defined by a percentage, a peak or a turning point does not depend on the displacement, so one map
-/// is enough. The map covers the frequencies that this rig can play.
+/// for each edge definition is enough. The map covers the frequencies that this rig can play.
 const physics::BoundaryMap& ToneDesigner::map_for(const physics::Edge& edge) {
   const auto key = physics::format(edge);
   auto found = maps_.find(key);
@@ -47,8 +47,8 @@ double ToneDesigner::frequency_for(double boundary_m, const physics::Edge& edge,
   } else if (const auto frequency = map_for(edge).frequency_Hz(boundary_m)) {
     return *frequency;
   }
-  // The rig's tones cannot put the edge there. Use a map over all frequencies, so that the message can say
-  // whether the surface itself could.
+  // No frequency that the rig can play puts the edge at `boundary_m`. Use a map over all frequencies, so that
+  // the message can say whether any other frequency does.
   const physics::BoundaryMap whole(surface, options);
   if (const auto frequency = whole.frequency_Hz(boundary_m)) return *frequency;
   throw Unreachable(fmt::format("no frequency puts the {} edge at {} mm: {}", physics::format(edge),

@@ -4,8 +4,9 @@
 
 namespace turnpoint::scene {
 
-/// Assigns the tone to the first transducer whose band contains its frequency. Fills in transducer, channel,
-/// full_scale and output phase. If no band contains it, throws Unreachable with a list of the bands.
+/// Assigns the tone to the first transducer whose band contains its frequency. Fills in the tone's
+/// transducer, channel, full_scale and output phase. If no band contains it, throws Unreachable with a list
+/// of the bands.
 void assign_transducer(const rig::Rig& rig, DrivenTone& tone);
 
 /// Return the lowest and the highest frequency that the transducers can play. The lowest is at least

@@ -13,11 +13,12 @@ namespace {
 
 constexpr int points = 301;
 
-/// For each tone of a plan: the displacement at evenly spaced points, and the load of a finger at these
-/// points. The last load is that at the finger's position.
+/// For each tone of a plan: the displacement of the free surface at evenly spaced points, and the load that a
+/// finger puts on the surface at each of these points. `loads` has one more entry at its end, for the
+/// finger's planned position.
 struct Loaded {
   std::vector<double> x_m;
-  std::vector<physics::ToneField> fields;  ///< displacements in m
+  std::vector<physics::ToneField> fields;  ///< one field for each tone; displacements in m
   std::vector<std::vector<physics::FingerLoad>> loads;
 };
 

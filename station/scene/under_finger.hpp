@@ -17,27 +17,28 @@ physics::Finger finger_of(const rig::Rig& rig);
 /// and phase.
 std::vector<physics::Finger> fingers_of(const rig::Rig& rig);
 
-/// How far an edge is shifted for a moving finger, positive towards the tip, and the range of this shift over
-/// fingers_of().
+/// How far a moving finger shifts an edge, positive towards the narrow tip of the surface, and the range of
+/// this shift over all fingers from fingers_of().
 struct FingerShift {
   double shift_m = 0, least_m = 0, most_m = 0;
 };
 
-/// Returns the shift at one frequency. Empty if the edge is not a peak or a percentage, or if the edge does
-/// not exist under a finger.
+/// Returns how far the rig's finger shifts this edge for a tone of this frequency. Empty if the edge is not a
+/// peak or a percentage, or if there is no such edge under a finger.
 std::optional<FingerShift> finger_shift(const rig::Rig& rig, double frequency_Hz, const physics::Edge& edge);
 
 /// Computes the result of Planner::under_finger() for a surface whose plate theory is already chosen.
 UnderFinger finger_figures(const physics::Surface& surface, const physics::FrictionMap& friction,
                            const rig::Rig& rig, physics::Model field_model, const DrivePlan& plan);
 
-/// The fraction of its displacement that a tone keeps under the rig's finger, at the tone's last maximum. The
-/// two values are the smallest and the largest over the tones.
+/// The fraction of a tone's displacement that is left under the rig's finger, when the finger is at the
+/// tone's last maximum along the surface. The two values are the smallest and the largest over the tones.
 struct FingerShares {
   double least = 1, most = 0;
 };
 
-/// Returns these fractions; empty if no tone has a last maximum. Takes 5 ms per tone, on a thick plate 0.1 s.
+/// Returns the fractions of the displacement that remain under a finger, for tones of these frequencies;
+/// empty if no tone has a last maximum. Takes 5 ms per tone, on a thick plate 0.1 s.
 std::optional<FingerShares> finger_shares(const rig::Rig& rig, const std::vector<double>& frequencies_Hz);
 
 }  // namespace turnpoint::scene

@@ -9,7 +9,8 @@ namespace turnpoint::sensing {
 
 namespace {
 
-// Eight independent sums or maxima are kept side by side, so that they can be computed in parallel.
+// Sums and maxima are computed as eight independent partial results, so that the processor can work on them
+// in parallel.
 constexpr int kLanes = 8;
 
 double energy_of(const double* y, int frames) noexcept {
@@ -60,7 +61,7 @@ AlignedBlocks::AlignedBlocks(int rate_Hz, int channels, std::vector<int> inputs,
 
 void AlignedBlocks::check(const CaptureBlock& block) const {
   if (block.rate_Hz != rate_Hz_ || block.channels != channels_)
-    throw std::logic_error("sensing: captured block with another rate or number of channels");
+    throw std::logic_error("sensing: captured block has an unexpected rate or number of channels");
 }
 
 // The capture may begin in the middle of an aligned block. The first frames of that block then count as lost.

@@ -11,7 +11,7 @@ namespace turnpoint::sensing {
 struct AlignedBlock {
   std::int64_t first_frame = 0;
   std::int64_t frames = 0;
-  bool lost = false;                   ///< some of the frames are missing
+  bool lost = false;                   ///< true if some of the frames are missing
   double largest = 0;                  ///< largest absolute sample of all inputs, before the filter
   const double* const* row = nullptr;  ///< row[i][n]: frame n of input i
   const double* energy = nullptr;      ///< energy[i]: sum of the squares of row i
@@ -30,7 +30,8 @@ class AlignedBlocks {
   AlignedBlocks& operator=(const AlignedBlocks&) = delete;
 
   /// Calls `sink(const AlignedBlock&)` for each complete block. Ignores frames that it has already received.
-  /// Throws std::logic_error for a block with another rate or number of channels.
+  /// Throws std::logic_error if a block's rate or number of channels differs from that given to the
+  /// constructor.
   template <class Sink>
   void push(const CaptureBlock& block, Sink&& sink) {
     check(block);
@@ -57,7 +58,7 @@ class AlignedBlocks {
 
   int rate_Hz_, channels_, block_frames_, step_;
   std::vector<int> inputs_;
-  std::int64_t capacity_;  ///< frames of a block and of the filter's margins on both sides
+  std::int64_t capacity_;  ///< frames of one block, plus the filter's margins on both sides
   std::int64_t filled_ = 0;
   std::int64_t next_ = 0;  ///< number of the next frame to receive
   bool started_ = false;
@@ -67,12 +68,12 @@ class AlignedBlocks {
   AlignedBlock block_;
 };
 
-/// Gain (0 to 1) of the filter in AlignedBlocks at this frequency; `step` is its step in frames. Its phase is
-/// zero.
+/// Gain (0 to 1) of the high-pass filter in AlignedBlocks at this frequency; `step` is the filter's step in
+/// frames. The filter does not change the phase.
 double high_pass_gain(double frequency_Hz, int rate_Hz, int step) noexcept;
 
-/// The step (in frames) with which the filter's gain is largest at 48 kHz, or as near to 48 kHz as the rate
-/// allows.
+/// Returns the filter step (in frames) whose largest gain is at 48 kHz, or as near to 48 kHz as the sampling
+/// rate allows.
 int high_pass_step(int rate_Hz) noexcept;
 
 }  // namespace turnpoint::sensing

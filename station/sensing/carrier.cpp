@@ -16,7 +16,7 @@ namespace {
 
 constexpr int middle_rate_Hz = 8000;
 constexpr double attenuation_dB = 100;
-constexpr double reference_tolerance = 0.03, quadrature_share = 0.05, overload_share = 1.5;
+constexpr double reference_tolerance = 0.03, quadrature_share = 0.05;
 
 double pass_Hz(Band band) { return band == Band::force ? 400 : 1000; }
 double stop_Hz(Band band) { return band == Band::force ? 600 : 2000; }

@@ -11,29 +11,31 @@
 
 namespace turnpoint::sensing {
 
-/// The possible carriers for the excitation of the bridges; the first is the default. Each is 25 Hz above a
-/// multiple of 300 Hz, and so at least 25 Hz away from every harmonic of 50 and 60 Hz mains. There are only
-/// five, because amplifier and filter treat each carrier differently, so each needs its own calibration.
+/// The possible carrier frequencies for the excitation of the strain-gauge bridges; the first is the default.
+/// Each is 25 Hz above a multiple of 300 Hz, and so at least 25 Hz away from every harmonic of 50 and 60 Hz
+/// mains. There are only five, because amplifier and filter treat each carrier differently, so each needs its
+/// own calibration.
 inline constexpr std::array carriers_Hz{10525.0, 6325.0, 8425.0, 12625.0, 14725.0};
 
-/// A carrier, and its distance from the nearest product of the drive tones.
+/// A carrier, and its distance from the nearest distortion product of the drive tones.
 struct CarrierChoice {
   double carrier_Hz = carriers_Hz.front();
   double clearance_Hz = 0;
 };
-/// A clearance (distance from the nearest product of drive tones) that keeps the products far outside the
-/// filter of either band.
+/// With this clearance (distance from the nearest distortion product of the drive tones), the products are
+/// far outside the filter of either band.
 inline constexpr double enough_clearance_Hz = 1500;
 
 /// Chooses the first of carriers_Hz with enough clearance, or else the one with the most clearance. Products
 /// of the drive tones f are the tones themselves, the differences k |f_i - f_j| up to k = 4, and 2 f_i - f_j,
-/// all folded at the sampling rate. Each plan lists the tones of one stimulus of a block. Tones of different
-/// plans never sound together, but all plans get the same carrier.
+/// all after aliasing at the sampling rate. Each plan lists the tones of one stimulus of a block. Tones of
+/// different plans never sound together, but all plans get the same carrier.
 ///
-/// Many tones leave no carrier with enough clearance. For random plans from 22.4 to 46 kHz with tones at
-/// least 1 kHz apart, there is such a carrier in 98 % of plans with two tones, 58 % with three and 11 % with
-/// four. A clearance above the stop edge of Band::force (600 Hz) still keeps the products out of the force.
-/// It is reached in 99 % of plans with three tones, 81 % with four, 15 % with six, and hardly any with eight.
+/// With many tones, there is often no carrier with enough clearance. For random plans from 22.4 to 46 kHz
+/// with tones at least 1 kHz apart, there is one in 98 % of plans with two tones, 58 % with three and 11 %
+/// with four. A clearance above the stop edge of Band::force (600 Hz) still keeps the products out of the
+/// force. This clearance is reached in 99 % of plans with three tones, 81 % with four, 15 % with six, and
+/// hardly any with eight.
 CarrierChoice choose_carrier(std::span<const std::vector<double>> plans, int rate_Hz);
 
 /// Bandwidth of the force signal and rate of its points. `force` passes 0 to 400 Hz, stops 600 Hz and above,
@@ -45,21 +47,25 @@ constexpr int points_per_second(Band band) { return band == Band::force ? 1000 :
 
 inline constexpr std::size_t bridge_count = 3;
 
-/// Wiring and calibration of three bridges with a common carrier: the two cells a and b below the surface,
-/// and the lateral cell.
+/// Wiring and calibration of the strain-gauge bridges in three force cells, with a common carrier: the cells
+/// a and b below the surface, and the lateral cell.
 struct BridgeOptions {
-  int rate_Hz = 192000;  ///< must be a multiple of 8000
+  int rate_Hz = 192000;  ///< sampling rate; must be a multiple of 8000
   double carrier_Hz = carriers_Hz.front();
   Band band = Band::force;
-  int channels = 4;                                ///< number of channels in a captured frame
-  int reference = 0;                               ///< channel that captures the excitation itself
-  std::array<int, bridge_count> bridges{1, 2, 3};  ///< channels of a, b and the lateral cell
-  double reference_amplitude = 0.5;  ///< amplitude of the reference at calibration; full scale is 1
-  /// Ratio of bridge to reference at the rated load of each cell.
+  int channels = 4;   ///< number of channels in a captured frame
+  int reference = 0;  ///< captured channel of the excitation itself
+  /// captured channels of cells a and b and of the lateral cell
+  std::array<int, bridge_count> bridges{1, 2, 3};
+  double reference_amplitude = 0.5;  ///< amplitude of the reference signal at calibration; full scale is 1
+  /// Ratio of bridge signal to reference signal at the rated load of each cell.
   std::array<double, bridge_count> full_scale{0.4, 0.4, 0.4};
   /// Phase of each bridge's resistive part against the reference, from bridge_rotation_rad().
   std::array<double, bridge_count> rotation_rad{};
 };
+
+/// A reading above this many times the one at the rated load is an overload.
+inline constexpr double overload_share = 1.5;
 
 /// The reason why a point must not be used. `none` means that it may be used.
 enum class WireFault {
@@ -69,19 +75,19 @@ enum class WireFault {
   overload,    ///< a bridge above 1.5 times full scale: a wire is off, or the cell is overloaded
 };
 
-/// The bridges relative to the reference at one point in time.
+/// The signals of the three bridges, divided by the reference signal, at one point in time.
 struct BridgePoint {
   std::int64_t index = 0;  ///< point k is exactly at playback frame k * rate / points_per_second()
   /// In-phase and quadrature part of bridge / reference. NaN if a captured frame is missing that the filter
   /// needs for this point.
   std::array<double, bridge_count> ratio{}, quadrature{};
-  double reference = 0;  ///< amplitude of the reference; full scale is 1
+  double reference = 0;  ///< amplitude of the reference signal; full scale is 1
   WireFault fault = WireFault::none;
   std::size_t bridge = 0;  ///< the bridge with the fault `quadrature` or `overload`
 };
 
-/// Phase between the resistive part of a bridge and the reference, from one point with and one without a
-/// load. A constant capacitive part cancels.
+/// Computes the phase between the resistive part of a bridge and the reference from two points: one with a
+/// load and one without. A constant capacitive part cancels.
 double bridge_rotation_rad(const BridgePoint& without, const BridgePoint& with, std::size_t bridge);
 
 /// Demodulates the bridges with the phase of the played carrier, divides them by the reference, and reduces
@@ -95,8 +101,8 @@ class BridgeDemodulator {
 
   /// Takes captured frames and calls `take` for each complete point. Frames must have the numbers at which
   /// they were played, so subtract the loop delay, rounded to whole frames. Frames that are left out count as
-  /// missing; frames that were already received are ignored. Throws std::logic_error for a block with another
-  /// rate or number of channels.
+  /// missing; frames that were already received are ignored. Throws std::logic_error if a block's rate or
+  /// number of channels differs from the options.
   template <typename Take>
   void push(const CaptureBlock& block, Take&& take) {
     check(block);
@@ -110,7 +116,7 @@ class BridgeDemodulator {
         take(point_);
   }
 
-  /// Playback frames from one point to the next.
+  /// Number of playback frames from one point to the next.
   int frames_per_point() const { return options_.rate_Hz / points_per_second(options_.band); }
 
  private:

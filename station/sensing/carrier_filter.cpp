@@ -31,7 +31,7 @@ CarrierFilter::CarrierFilter(const std::vector<double>& taps, int factor, std::u
       filled_(taps.size()) {
   const float nan = std::numeric_limits<float>::quiet_NaN();
   std::fill(kept_.begin(), kept_.end(), Quad{{nan, nan, nan, nan}});
-  const double scale = 0x1p-30;  // factor 2, divided by the full scale of 2^31
+  const double scale = 0x1p-30;  // 2 / 2^31: the factor 2 of the filter, and the full scale of a sample
   for (std::int64_t n = 0; n <= half_; ++n) {
     const double tap = scale * taps[static_cast<std::size_t>(half_ + n)] * (n == 0 ? 0.5 : 1);
     const std::uint64_t phase = increment * static_cast<std::uint64_t>(n);
@@ -44,7 +44,7 @@ CarrierFilter::CarrierFilter(const std::vector<double>& taps, int factor, std::u
 
 std::int64_t CarrierFilter::take(std::int64_t first, const std::int32_t* frames,
                                  std::int64_t count) noexcept {
-  // Output m is complete with the frame m * factor + half.
+  // Output m is complete once it has the frame m * factor + half.
   const std::int64_t since = ((first - half_) % factor_ + factor_) % factor_;
   const std::int64_t needed = since == 0 ? 1 : factor_ - since + 1;
   const std::int64_t taken = std::min(count, needed);
@@ -73,7 +73,8 @@ void CarrierFilter::append(const std::int32_t* frames, std::int64_t count) noexc
 
 void CarrierFilter::finish(std::int64_t centre) noexcept {
   const Quad* middle = kept_.data() + filled_ - 1 - half_;
-  // Each part has two sums, so that an addition need not wait for the previous one.
+  // Real part and imaginary part are each added up in two sums, so that an addition need not wait for the
+  // previous one.
   Lanes re[2] = {}, im[2] = {};
   const auto add = [&](std::ptrdiff_t n, std::size_t k) {
     const Lanes after = lanes_of(middle[n].value), before = lanes_of(middle[-n].value);

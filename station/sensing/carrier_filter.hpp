@@ -10,8 +10,9 @@ namespace turnpoint::sensing {
 /// Mixes four captured channels s down from a carrier, filters them with the taps h, and keeps every
 /// `factor`-th result: z = 2 sum h(n) s e^(-i phase), where full scale is 1 and phase is the carrier's phase
 /// at the frame's absolute number. The taps include the carrier; their symmetry saves half of the
-/// multiplications. Output m is centred on frame m * factor, so no delay is left. An output is NaN if a frame
-/// that contributes to it is missing or came before the first frame. Allocates only in the constructor.
+/// multiplications. Output m is centred on frame m * factor, so the filter causes no delay. An output is NaN
+/// if a frame that contributes to it is missing or came before the first frame. Allocates only in the
+/// constructor.
 class CarrierFilter {
  public:
   static constexpr std::size_t inputs = 4;
@@ -31,8 +32,8 @@ class CarrierFilter {
   const std::array<std::complex<double>, inputs>& output() const noexcept { return output_; }
 
  private:
-  /// The four inputs of a frame, or a tap for each of them. Single precision holds the 24 bits of a
-  /// converter, and adds noise of -138 dB (rms).
+  /// The four inputs of a frame, or one filter tap (coefficient) for each of them. Single precision holds the
+  /// 24 bits of a converter, and adds noise of -138 dB (rms).
   struct alignas(16) Quad {
     float value[inputs];
   };
@@ -44,8 +45,8 @@ class CarrierFilter {
   std::uint64_t increment_;
   std::array<int, inputs> channels_;
   std::int64_t stride_;
-  std::vector<Quad> even_, odd_;  ///< taps times the cosine, and the sine, of the carrier
-  std::vector<Quad> kept_;        ///< recent frames, the newest last
+  std::vector<Quad> even_, odd_;  ///< filter taps times cosine (even_) or sine (odd_) of the carrier
+  std::vector<Quad> kept_;        ///< the most recent frames, the newest last
   std::size_t filled_ = 0;
   bool ready_ = false;
   std::int64_t output_index_ = 0;

@@ -18,7 +18,7 @@ std::vector<double> low_pass(double pass_Hz, double stop_Hz, double rate_Hz, dou
   const double transition = 2 * std::numbers::pi * (stop_Hz - pass_Hz) / rate_Hz;
   const double beta = 0.1102 * (attenuation_dB - 8.7);
   const int half = static_cast<int>(std::ceil((attenuation_dB - 7.95) / (2.285 * transition) / 2));
-  const double cut_off = (pass_Hz + stop_Hz) / rate_Hz;  // as a fraction of half the rate
+  const double cut_off = (pass_Hz + stop_Hz) / rate_Hz;  // as a fraction of half the sampling rate
   std::vector<double> taps;
   for (int k = -half; k <= half; ++k) {
     const double x = std::numbers::pi * cut_off * k, place = static_cast<double>(k) / (half + 1);

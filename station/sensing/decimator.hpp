@@ -8,12 +8,12 @@ namespace turnpoint::sensing {
 
 /// Designs a linear-phase low-pass filter of odd length by the window method: an ideal low-pass with its edge
 /// in the middle between pass_Hz and stop_Hz, times a Kaiser window (Kaiser 1974). The gain at 0 Hz is
-/// exactly 1. Ripple and stop band are `attenuation_dB` below it (60 dB or more).
+/// exactly 1. Ripple and stop band are `attenuation_dB` below this gain (60 dB or more).
 std::vector<double> low_pass(double pass_Hz, double stop_Hz, double rate_Hz, double attenuation_dB);
 
 /// Filters eight signals at once and keeps every `factor`-th result. Each sample has an index, and output m
-/// is centred on the index m * factor, so no delay is left. An output is NaN if a sample that contributes to
-/// it is NaN or came before the first sample. Allocates only in the constructor.
+/// is centred on the index m * factor, so the filter causes no delay. An output is NaN if a sample that
+/// contributes to it is NaN or came before the first sample. Allocates only in the constructor.
 class Decimator {
  public:
   static constexpr std::size_t lanes = 8;

@@ -14,11 +14,11 @@ namespace turnpoint::sensing {
 namespace {
 
 constexpr std::size_t fewest_strokes = 3, fewest_bins = 6;
-// The fit finds the largest step that fits the noise. Therefore a step counts only if it exceeds the
-// half-width of its 95 % interval by this factor.
+// Even in pure noise, the fit finds some step. Therefore a step counts only if it exceeds the half-width of
+// its 95 % interval by this factor.
 constexpr double certain_rise = 2;
-// The final fit uses the bins within this distance of the step. Farther away, friction changes again, because
-// the vibration has nodes.
+// The final fit uses only the bins within `reach_widths` widths of the step, or within `least_reach_mm` if
+// that is farther. Still farther away, friction changes again, because the vibration has nodes.
 constexpr double least_reach_mm = 20, reach_widths = 2.5;
 constexpr double narrowest_mm = 0.5, widest_mm = 17;
 
@@ -69,8 +69,8 @@ Step search(const std::vector<Bin>& bins) {
   return best;
 }
 
-/// Residuals larger than this scale have a limited influence on the fit: 1.48 times the median residual,
-/// which is the standard deviation of normal noise.
+/// Returns the scale of the loss function: residuals larger than this scale have a limited influence on the
+/// fit. It is 1.48 times the median residual, which is the standard deviation if the noise is normal.
 double scale_of(const Step& step, const std::vector<Bin>& bins) {
   std::vector<double> size;
   for (const Bin& bin : bins) size.push_back(std::abs(step.miss(bin)));
@@ -146,7 +146,8 @@ std::vector<Bin> usable(const FrictionProfile& profile, int direction) {
   return bins;
 }
 
-/// The step in one direction of movement, with the sum of squared deviations of its jackknife pseudo-values.
+/// The step fitted to the strokes in one direction, with the sum of squared deviations of its jackknife
+/// pseudo-values.
 struct OneWay {
   Step step;
   double felt_mm = 0;

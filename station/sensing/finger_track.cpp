@@ -40,7 +40,7 @@ void FingerTracker::judge_contact() {
 
 std::optional<FingerPoint> FingerTracker::push(const ForcePoint& point) {
   if (count_ > 0 && point.index != at(0).point.index + 1)
-    throw std::logic_error("a point of the grid of forces was left out");
+    throw std::logic_error("finger track: a force point was left out");
   ++count_;
   at(0) = {point, false};
   judge_contact();
@@ -53,8 +53,8 @@ std::optional<FingerPoint> FingerTracker::push(const ForcePoint& point) {
   finger.position_mm = finger.speed_mm_s = std::numeric_limits<double>::quiet_NaN();
   double normal = 0;
   bool contact = true;  // true if the finger is in contact at all points of the window
-  // Sums over the window, for the fit of a line by weighted least squares: w N^2 t^i and w N M t^i, with
-  // weight w, normal force N, moment M and time t.
+  // Sums over the window, for fitting a line by weighted least squares: the sums of w N^2 t^i and of w N M
+  // t^i, with weight w, normal force N, moment M and time t.
   double square = 0, square_t = 0, square_tt = 0, product = 0, product_t = 0;
   for (std::int64_t k = -half; k <= half; ++k) {
     const Force& force = at(half - k).point.force;

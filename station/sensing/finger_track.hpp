@@ -9,10 +9,10 @@ namespace turnpoint::sensing {
 
 /// Below this normal force, position and speed are too uncertain to be given (they are NaN).
 inline constexpr double least_normal_N = 0.1;
-/// Contact begins when the normal force has been above this value for this long.
+/// Contact begins when the normal force has been above contact_N for contact_s.
 inline constexpr double contact_N = 0.05, contact_s = 0.02;
 
-/// The finger at one point in time; `index` is that of the ForcePoint.
+/// The finger at one point in time; `index` is the index of the ForcePoint from which it was computed.
 struct FingerPoint {
   std::int64_t index = 0;
   double normal_N = 0, lateral_N = 0;  ///< the measured forces, without further filtering
@@ -23,14 +23,15 @@ struct FingerPoint {
   bool contact = false;
 };
 
-/// Turns forces into the track of the finger. Around each point, it fits a straight line to the positions
-/// (moment / normal force), which gives position and speed. The weights are Gaussian in time, times the
-/// squared normal force, because a position is more precise if the finger presses harder. For the position,
-/// the fit acts as a low-pass filter without ringing, which halves the amplitude at 20 Hz; for the speed, as
-/// the derivative of that filter. A change of force during the movement causes no bias.
+/// Turns force points into the finger's position and speed over time. Around each point in time, it fits a
+/// straight line to the positions (moment / normal force), which gives position and speed. The weights are
+/// Gaussian in time, times the squared normal force, because a position is more precise if the finger presses
+/// harder. For the position, the fit acts as a low-pass filter without ringing, which halves the amplitude at
+/// 20 Hz; for the speed, as the derivative of that filter. A change of force during the movement causes no
+/// bias.
 ///
-/// Contact begins at the first of 20 ms of points above 0.05 N, and ends below 0.03 N. Results come 38 ms
-/// late. Allocates only in the constructor.
+/// Contact begins at the first point of a run of 20 ms above 0.05 N, and ends when the force falls below 0.03
+/// N. Results come 38 ms late. Allocates only in the constructor.
 class FingerTracker {
  public:
   explicit FingerTracker(Band band = Band::force);
@@ -48,13 +49,13 @@ class FingerTracker {
   Entry& at(std::int64_t ago);
   void judge_contact();
 
-  std::vector<double> weights_;  ///< Gaussian weights for the distances 0 ... half from the middle, in points
+  std::vector<double> weights_;  ///< weights_[k]: Gaussian weight of a point k points from the middle
   std::vector<Entry> ring_;
   std::int64_t count_ = 0, above_ = 0, points_for_contact_;
   double rate_Hz_;
 };
 
-/// The track of a whole recording.
+/// Computes the finger's position and speed over a whole recording.
 std::vector<FingerPoint> finger_track(const std::vector<ForcePoint>& forces, Band band = Band::force);
 
 }  // namespace turnpoint::sensing

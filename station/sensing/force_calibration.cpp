@@ -70,8 +70,9 @@ Fit fit(const std::vector<DeadWeight>& weights, const Loads& loads, const Loads&
   return result;
 }
 
-/// Returns the changes of all loads if one source of error changes by one standard deviation, for each
-/// source. The sources are each place, each direction of the pulley, and the masses as a whole.
+/// For each source of error: the changes of all loads if this source changes by one standard deviation. The
+/// sources are the position of each place, the pulley's friction in each direction, and a common error of all
+/// masses.
 std::vector<Loads> load_changes(const std::vector<DeadWeight>& weights, const WeightErrors& errors) {
   std::vector<Loads> all;
   const auto source = [&](auto change) {

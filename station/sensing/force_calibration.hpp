@@ -9,22 +9,23 @@
 
 namespace turnpoint::sensing {
 
-/// Force on the surface at one point in time. The moment is normal force times position, so the position is
+/// Force on the surface at one point in time. `moment_Nmm` is normal force times position, so the position is
 /// moment_Nmm / normal_N. Positions count from the wide edge.
 struct Force {
   double normal_N = 0, lateral_N = 0, moment_Nmm = 0;
 };
 struct ForcePoint {
   std::int64_t index = 0;
-  Force force;  ///< NaN if the bridges are NaN or have a wire fault
+  Force force;  ///< NaN if the bridge signals are NaN or have a wire fault
 };
 
-/// Readings of the cells a, b and of the lateral cell: bridge / reference, without the tare.
+/// Readings of the force cells (a and b below the surface, then the lateral cell): bridge signal divided by
+/// reference signal, after subtracting the tare.
 using Readings = std::array<double, bridge_count>;
 
 /// One known load: a weight on the surface, with or without a pull along the surface by a string over a
-/// pulley. The string must pull at the height of the surface, because the fit includes the moment of that
-/// height.
+/// pulley. The string must pull at the height of the surface, as a finger does, because the fitted matrix
+/// also corrects for the moment of a pull at this height.
 struct DeadWeight {
   double normal_N = 0, lateral_N = 0, position_mm = 0;
   Readings readings{};
@@ -36,7 +37,7 @@ struct WeightErrors {
   double place_mm = 0.2;
   double pulley_share = 0.01;
   double mass_share = 2e-4;
-  double reading_N = 0.2e-3;  ///< noise and drift of one reading
+  double reading_N = 0.2e-3;  ///< noise and drift of one reading, as a force
 };
 
 /// Standard deviations of the measured forces, position and friction under one load.
@@ -54,7 +55,7 @@ class ForceCalibration {
       : matrix_(matrix), changes_(std::move(changes)) {}
 
   Force force(const Readings& readings) const;
-  /// Uncertainty that comes from the errors of the weights, without the noise of the readings.
+  /// Uncertainty that comes from the errors of the calibration weights, without the noise of the readings.
   ForceSd sd(const Readings& readings) const;
   const Matrix& matrix() const { return matrix_; }
   const std::vector<Matrix>& changes() const { return changes_; }
@@ -64,13 +65,13 @@ class ForceCalibration {
   std::vector<Matrix> changes_;  ///< changes of the matrix by one standard deviation of each source of error
 };
 
-/// Measured minus stated load of one weight, after the fit.
+/// Measured load minus true load of one weight, after the fit.
 struct WeightResidual {
   double normal_N = 0, lateral_N = 0, position_mm = 0;
 };
 struct WeightFit {
   ForceCalibration calibration;
-  std::vector<WeightResidual> residuals;  ///< in the order of the weights
+  std::vector<WeightResidual> residuals;  ///< one for each weight, in the order of the weights
   /// Root mean square of the residuals of normal force, lateral force and moment, relative to the value
   /// expected from WeightErrors. A misfit above 1 enlarges the standard deviations by the same factor.
   std::array<double, 3> misfit{};
@@ -82,9 +83,9 @@ struct WeightFit {
 /// terms::UsageError if the weights do not determine the fit.
 WeightFit fit_weights(const std::vector<DeadWeight>& weights, const WeightErrors& errors = {});
 
-/// How far each weight lies from where the other weights put it: the largest deviation among its normal
-/// force, lateral force and moment, in standard deviations that include the scatter of the others. 0 if the
-/// fit is not determined without this weight.
+/// For each weight: how far its load is from what a fit to the other weights gives. The figure is the largest
+/// deviation among its normal force, lateral force and moment, in standard deviations that include the
+/// scatter of the other weights. 0 if the other weights do not determine a fit.
 std::vector<double> deviations(const std::vector<DeadWeight>& weights, const WeightErrors& errors = {});
 
 enum class TareState {
@@ -95,7 +96,7 @@ enum class TareState {
   incomplete,  ///< fewer than 300 ms, missing frames, or a wire fault
 };
 
-/// Readings without a finger, and their state.
+/// Readings without a finger on the surface, and whether they can be used as the tare.
 struct Tare {
   TareState state = TareState::incomplete;
   Readings readings{};

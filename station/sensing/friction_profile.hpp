@@ -17,15 +17,15 @@ struct Bins {
 };
 
 /// Friction in each bin during one stroke: the sum of |lateral force| over the sum of normal force. (A mean
-/// of quotients would give too much weight to moments of little force.) NaN in bins where the finger was not,
+/// of quotients would give too much weight to times of little force.) NaN in bins where the finger was not,
 /// or pressed with less than least_normal_N.
 struct StrokeFriction {
   int direction = 0;
   std::vector<double> friction;
 };
 
-/// Mean friction and standard error in each bin, over the strokes in one direction. The mean is NaN without
-/// strokes, the standard error with fewer than two.
+/// Mean friction and standard error in each bin, over the strokes in one direction. The mean is NaN if there
+/// is no stroke; the standard error is NaN if there are fewer than two.
 struct MeanFriction {
   std::vector<double> friction, se;
 };
@@ -45,7 +45,7 @@ struct StripPart {
   double from_mm = 0, to_mm = std::numeric_limits<double>::infinity();
 };
 
-/// Friction of all these strokes together, within a part of the strip: the sum of |lateral force| over the
+/// Mean friction over all the given strokes, within a part of the strip: the sum of |lateral force| over the
 /// sum of normal force. Only points with contact and a normal force of least_normal_N or more count; NaN if
 /// there are none.
 double mean_friction(std::span<const FingerPoint> track, std::span<const Stroke> strokes,

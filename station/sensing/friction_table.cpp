@@ -13,10 +13,12 @@ namespace turnpoint::sensing {
 namespace {
 
 constexpr std::size_t fewest_strokes_of_level = 3;
-/// ln friction must fall by at least this much from level to level, so that a table can be inverted.
+/// ln friction must fall by at least this much from level to level, so that the displacement can be computed
+/// from the friction.
 constexpr double least_fall = 1e-6;
 
-/// For each displacement: ln friction of its strokes, relative to the neighbouring strokes at rest.
+/// For each displacement: the values of ln friction of the strokes at this displacement, relative to the
+/// strokes at rest just before and after.
 using ByLevel = std::map<double, std::vector<double>>;
 
 /// Returns the sequence that never rises and is closest to the values in weighted least squares: pool
@@ -140,7 +142,8 @@ FrictionTable friction_table(std::span<const TableStroke> strokes, std::uint64_t
                             {std::exp(ends.low), std::min(1.0, std::exp(ends.high))}});
   }
   if (table.half_displacement_m && halves.size() > 1) {
-    // The half displacement is interpolated between two levels, so use the degrees of freedom of two levels.
+    // The displacement that halves friction is interpolated between two levels, so use the degrees of freedom
+    // of two levels.
     const double scatter_of_two = 2 * (*std::ranges::min_element(counts) - 1);
     table.half_displacement_sd_m = std::sqrt(analysis::variance(halves));
     table.half_displacement_interval =

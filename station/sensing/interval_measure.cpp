@@ -12,10 +12,10 @@ using terms::ProofCause;
 
 namespace {
 
-constexpr double kLowest_Hz = 5000;    // products below this frequency are not looked for
-constexpr double kApart_Hz = 20;       // smallest distance of a product from every tone
+constexpr double kLowest_Hz = 5000;    // distortion products below this frequency are ignored
+constexpr double kApart_Hz = 20;       // distortion products closer than this to a tone are ignored
 constexpr double kUnseenNoise = 0.05;  // a tone with a larger relative standard error is not judged
-constexpr double kVibrates_dB = -10;   // below this level relative to the plan, the onset is not measured
+constexpr double kVibrates_dB = -10;   // the onset is not measured if the level relative to the plan is lower
 
 }  // namespace
 
@@ -36,7 +36,8 @@ void IntervalProof::State::measure_tones() {
   vibrates_ = planned > 0 && result_.ratio_dB > kVibrates_dB;
 }
 
-// For each tone of the line, adds what the pick-up with the best response to this line measured.
+// Adds a ToneProof for each tone of the line (all tones of one frequency). The figures are from the pick-up
+// that responds best to this line.
 void IntervalProof::State::measure_tone(std::size_t stretch, const PlannedLine& line, std::size_t place) {
   ToneProof made;
   made.stretch = static_cast<int>(stretch);
@@ -84,8 +85,8 @@ void IntervalProof::State::measure_residual() {
   if (result_.residual_dB >= plan_.limits.residual_dB.flag - 20) measure_products();
 }
 
-// Looks for the strongest product of the tones (harmonic, combination, ...) in the residual of the worst
-// window.
+// Looks for the strongest distortion product of the tones (harmonic, combination, ...) in the window with the
+// largest residual.
 void IntervalProof::State::measure_products() {
   const auto rest = unexplained();
   if (rest.empty()) return;
@@ -104,7 +105,8 @@ void IntervalProof::State::measure_products() {
   }
 }
 
-// Returns the samples of the worst window minus the fitted tones; empty if that window is not valid.
+// Returns the samples of the window with the largest residual, minus the fitted tones; empty if that window
+// is not valid.
 std::span<const double> IntervalProof::State::unexplained() {
   if (!worst_ || !windows_[*worst_].valid) return {};
   const Window& window = windows_[*worst_];
@@ -154,7 +156,8 @@ void IntervalProof::State::find_lost() {
   if (result_.lost_frames > 0) findings_.push_back({ProofCause::gap, Proof::lost});
 }
 
-// If a planned tone is missing, looks for a vibration within 8 % of its frequency and returns where it is.
+// If a planned tone is missing, looks for a vibration within 8 % of its frequency. Returns the frequency of
+// that vibration.
 std::optional<double> IntervalProof::State::found_elsewhere(const ToneProof& tone) {
   if (result_.residual_dB < plan_.limits.residual_dB.stop - 20) return std::nullopt;
   const auto rest = unexplained();
@@ -213,7 +216,7 @@ void IntervalProof::State::judge_rest() {
   const Proof residual = judged(std::max(result_.residual_dB, product), limits.residual_dB);
   findings_.push_back({ProofCause::residual, residual});
   if (result_.largest_sample >= limits.clipped) findings_.push_back({ProofCause::clipped, Proof::refused});
-  // A limiter makes odd products and reduces the level of the tones.
+  // Clipping makes odd distortion products and reduces the level of the tones.
   if (product >= limits.residual_dB.flag && is_odd(result_.product->kind) && result_.ratio_dB < -0.1)
     findings_.push_back({ProofCause::clipped, residual});
   if (result_.onset_error_us)

@@ -11,11 +11,11 @@ namespace turnpoint::sensing {
 
 namespace {
 
-constexpr double kWindow_s = 0.2;     // approximate length of a joint fit
+constexpr double kWindow_s = 0.2;     // approximate length of the windows for the joint fits
 constexpr double kShortest_s = 0.01;  // a shorter steady stretch is not measured
 // time that the plate needs to follow a change: 7 time constants at Q 60
 constexpr double kSettle_s = 0.005;
-// how far before and after the rising ramp the onset is looked for
+// the onset is looked for from this time before the rising ramp to this time after it
 constexpr double kBefore_s = 0.02, kAfter_s = 0.06;
 
 std::vector<int> inputs_of(const IntervalPlan& plan) {
@@ -119,7 +119,7 @@ void IntervalProof::State::add_onset() {
   points_.reserve(static_cast<std::size_t>((onset_end_ - onset_first_) / block + 1) * lines.size());
 }
 
-// Windows that extend beyond the end do not count, even if they are already filled.
+// Windows that extend beyond the end of the burst do not count, even if they are already filled.
 void IntervalProof::State::end_at(std::int64_t playback_frame) noexcept {
   const auto end =
       static_cast<std::int64_t>(std::floor(static_cast<double>(playback_frame) + plan_.delay_frames));

@@ -10,13 +10,13 @@
 
 namespace turnpoint::sensing {
 
-/// The plan of an interval, with which the capture is compared.
+/// What was planned for an interval. The measurement (proof) compares the captured samples with it.
 struct IntervalPlan {
   drive::PreparedBurst burst;  ///< the planned burst; its start is an absolute frame
   int rate_Hz = 192000;
   int capture_channels = 6;
-  std::vector<PickUp> pick_ups;  ///< there must be at least one
-  double delay_frames = 0;       ///< loop delay, measured by the most recent pilot
+  std::vector<PickUp> pick_ups;  ///< the calibrated pick-ups; at least one
+  double delay_frames = 0;       ///< delay from playback to capture, measured by the newest pilot
   ProofLimits limits;
 };
 
@@ -44,7 +44,8 @@ class IntervalProof {
   /// Takes captured frames in order. Ignores frames that it does not need.
   void push(const CaptureBlock& block);
 
-  /// Call this if the burst was stopped. From this absolute playback frame on, the burst is not judged.
+  /// Call this if the burst was stopped. The result then contains only what was played before this absolute
+  /// playback frame.
   void stopped(std::int64_t frame) noexcept;
 
   /// True once all needed frames have been received.

@@ -39,8 +39,8 @@ Finding concluded(const std::vector<Finding>& findings) {
   Finding all;
   for (const Finding& finding : findings)
     if (severity(finding.verdict) > severity(all.verdict)) all = finding;
-  // A burst that begins late is only refused, but the residual that the delay causes may stop the session. So
-  // if the session is to be stopped, choose the cause among the findings `stopped` and `refused`.
+  // A late start alone only makes the trial refused, but the residual that the delay causes may stop the
+  // session. So if the session is to be stopped, choose the cause among the findings `stopped` and `refused`.
   const int least = std::min(severity(all.verdict), severity(Proof::refused));
   for (const Finding& finding : findings)
     if (all.verdict != Proof::ok && severity(finding.verdict) >= least)

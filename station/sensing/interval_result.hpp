@@ -14,24 +14,28 @@ struct Limits {
   double flag = 0, refuse = 0, stop = 0;
 };
 
-/// All limits of a proof, with the station's defaults. Infinity means never.
+/// Limits for judging the measured vibration of one interval (its proof), with the station's defaults. An
+/// infinite limit is never exceeded.
 struct ProofLimits {
-  Limits level_dB{0.5, 1, 3};  ///< measured level relative to the plan, without a finger
-  /// the same with a finger (which loads the plate), or if contact is not known
+  Limits level_dB{0.5, 1, 3};  ///< limits for the measured level relative to the plan, without a finger
+  /// limits of the level if a finger loads the plate, or if it is not known whether one does
   Limits level_in_contact_dB{1.5, 3, 1e9};
-  Limits phase_deg{10, 30, 1e9};      ///< measured phase minus calibrated phase
-  Limits residual_dB{-40, -30, -20};  ///< what the tones do not explain, and each product, re the plan
-  Limits onset_us{200, 1000, 1e9};    ///< time of the half level, measured minus planned
-  Limits silence_dB{-70, -50, 1e9};   ///< vibration between trials, relative to the plan
-  double clipped = 0.98;              ///< a sample of at least this fraction of full scale refuses the trial
-  double dead_dB = -40;               ///< a tone below this level, relative to the plan, is missing
+  Limits phase_deg{10, 30, 1e9};  ///< limits for the measured phase minus the calibrated phase
+  /// limits for the part of the vibration that the tones do not explain, and for each distortion product,
+  /// relative to the planned vibration
+  Limits residual_dB{-40, -30, -20};
+  Limits onset_us{200, 1000, 1e9};  ///< limits for the error of the onset (the time at half level)
+  /// limits for the vibration between trials, relative to the planned vibration
+  Limits silence_dB{-70, -50, 1e9};
+  double clipped = 0.98;  ///< a trial is refused if a sample reaches this fraction of full scale
+  double dead_dB = -40;   ///< a tone below this level, relative to the plan, counts as missing
   /// If all tones of a channel are between these levels, one of its two transducers is dead.
   double half_low_dB = -7.5, half_high_dB = -4.5;
   /// a pick-up whose response is this far below its best response cannot judge a tone
   double unseen_dB = -26;
 };
 
-/// What was measured of one tone, in one part of the burst in which nothing changes (a stretch).
+/// What was measured for one tone, in one part of the burst in which nothing changes (a stretch).
 struct ToneProof {
   int stretch = 0;  ///< number of the stretch, from 0; each change of the burst begins another one
   int tone = 0;     ///< index in the burst's tone set
@@ -39,26 +43,28 @@ struct ToneProof {
   double frequency_Hz = 0;
   bool seen = false;          ///< true if a pick-up can judge this tone; otherwise the figures below are 0
   int pick_up = -1;           ///< the pick-up that measured this tone, counted from 0; -1 if none
-  double ratio_dB = 0;        ///< measured / planned level, over the whole stretch
-  double worst_ratio_dB = 0;  ///< ratio in the window of 0.2 s that deviates most; this is judged
+  double ratio_dB = 0;        ///< measured level relative to the planned level, over the whole stretch
+  double worst_ratio_dB = 0;  ///< ratio in the window of 0.2 s that deviates most; the limits apply to it
   double phase_error_deg = 0;
 };
 
 /// What the pick-ups measured of one interval.
 struct IntervalResult {
-  /// `unproven` if no pick-up can judge one of the tones, or if the interval is too short to measure.
+  /// `unproven` if there is a tone that no pick-up can judge, or if the interval is too short to measure.
   terms::Proof verdict = terms::Proof::unproven;
   terms::ProofCause cause = terms::ProofCause::none;
   std::vector<ToneProof> tones;
-  double ratio_dB = 0;  ///< measured / planned level of all judged tones together
+  double ratio_dB = 0;  ///< measured level of all judged tones together, relative to the planned level
   /// rms of everything that the tones do not explain, relative to the plan, in the worst window of 0.2 s. A
   /// high-pass filter (high_pass_gain()) comes first, so hum and friction noise hardly count.
   double residual_dB = -200;
-  std::optional<Product> product;        ///< the strongest product, in the window with the largest residual
-  std::optional<double> onset_error_us;  ///< time of the half level, measured minus planned
-  std::optional<double> found_Hz;        ///< if the cause is `frequency`: the frequency of the vibration
-  double largest_sample = 0;             ///< largest sample of the pick-ups, as a fraction of full scale
-  std::int64_t lost_frames = 0;          ///< lost frames within the interval, rounded up to blocks of 1 ms
+  /// the strongest distortion product, in the window with the largest residual
+  std::optional<Product> product;
+  /// time at which the envelope reaches half its level, measured minus planned
+  std::optional<double> onset_error_us;
+  std::optional<double> found_Hz;  ///< if the cause is `frequency`: the frequency of the vibration
+  double largest_sample = 0;       ///< largest sample of the pick-ups, as a fraction of full scale
+  std::int64_t lost_frames = 0;    ///< lost frames within the interval, rounded up to blocks of 1 ms
 };
 
 /// A verdict on one measured quantity, and the cause that the quantity points to.
@@ -67,12 +73,12 @@ struct Finding {
   terms::Proof verdict = terms::Proof::ok;
 };
 
-/// The verdict on a deviation of this size.
+/// Returns the verdict on a deviation of this size.
 terms::Proof judged(double value, const Limits& limits);
 
-/// The most severe verdict (from best to worst: ok, flagged, unproven, lost, refused, stopped) and its cause.
-/// If there are several causes, the first in the order of terms::ProofCause is taken, because it explains the
-/// others. A vibration that begins late, for example, also has wrong phases and a residual.
+/// Returns the most severe verdict (from best to worst: ok, flagged, unproven, lost, refused, stopped) and
+/// its cause. If there are several causes, the first in the order of terms::ProofCause is taken, because it
+/// explains the others. A vibration that begins late, for example, also has wrong phases and a residual.
 Finding concluded(const std::vector<Finding>& findings);
 
 }  // namespace turnpoint::sensing

@@ -23,8 +23,9 @@ struct Window {
   std::size_t stretch = 0;
   std::int64_t first = 0, end = 0;  // first captured frame, and the one after the last
   bool valid = false;
-  std::vector<std::complex<double>> amplitude;  // [pick-up][line], captured complex amplitude
-  std::vector<double> residual;                 // [pick-up], mean square after the high-pass filter
+  std::vector<std::complex<double>> amplitude;  // captured complex amplitudes, [pick-up][line]
+  std::vector<double> residual;                 // mean squares of what the tones do not explain, after the
+                                                // high-pass filter, [pick-up]
 };
 
 struct Measured {
@@ -69,13 +70,14 @@ struct IntervalProof::State {
   std::size_t current_ = 0;           // index of the window that is being filled
   std::int64_t begin_ = 0, end_ = 0;  // the burst's first captured frame, and the one after its last
   std::int64_t next_ = 0;             // first captured frame that has not been received
-  std::vector<std::uint8_t> good_;    // 1 for each aligned block of the burst that was captured
-  std::size_t main_ = 0;              // the pick-up with the best response to the plan
+  std::vector<std::uint8_t> good_;    // for each aligned block of the burst: 1 if it was captured
+  std::size_t main_ = 0;              // index of the pick-up that captures the planned tones most strongly
 
   JointFit fit_;
-  std::vector<std::complex<double>> products_;  // sums of the current window, [pick-up][line]
+  // sums of sample times sinusoid in the current window, [pick-up][line]
+  std::vector<std::complex<double>> products_;
   std::vector<double> energy_;
-  std::int64_t summed_ = 0;  // frames in products_ and energy_
+  std::int64_t summed_ = 0;  // number of frames that products_ and energy_ contain
   std::vector<std::uint64_t> phases_, increments_;
   std::vector<double> raw_, worst_raw_;  // samples of the main pick-up in the current and in the worst window
   std::optional<std::size_t> worst_;
@@ -83,7 +85,8 @@ struct IntervalProof::State {
 
   bool onset_planned_ = false;
   std::int64_t onset_first_ = 0, onset_end_ = 0;  // captured frames in which the lock-in looks for the onset
-  double onset_frame_ = 0;                        // captured frame at which the plan reaches the half level
+  // captured frame at which the planned envelope reaches half its level
+  double onset_frame_ = 0;
   std::unique_ptr<HannWindow> hann_;
   std::vector<std::complex<double>> points_;  // lock-in points of the main pick-up, [point][line]
   std::int64_t first_point_ = 0;

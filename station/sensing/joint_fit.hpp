@@ -8,9 +8,9 @@
 namespace turnpoint::sensing {
 
 /// Fits several sinusoids of known frequencies to a window of frames by least squares. All are fitted
-/// together, so that they do not leak into each other. The fit needs only the sums of the samples' products
-/// with each sinusoid (ToneSums::plain) and the sum of their squares, because the normal matrix has a closed
-/// form. Allocates only in its constructor.
+/// together, so that no sinusoid affects the result of another. The fit needs only the sums of the samples'
+/// products with each sinusoid (ToneSums::plain) and the sum of their squares, because the normal matrix has
+/// a closed form. Allocates only in its constructor.
 class JointFit {
  public:
   explicit JointFit(std::size_t most_tones);
@@ -31,7 +31,8 @@ class JointFit {
   bool factorise() noexcept;
 
   std::size_t stride_, unknowns_ = 0;
-  std::vector<double> matrix_;  ///< normal matrix, then its Cholesky factor in the lower triangle
+  /// normal matrix; after factorise(), its Cholesky factor in the lower triangle
+  std::vector<double> matrix_;
   std::vector<double> right_, solution_;
 };
 

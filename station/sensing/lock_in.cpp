@@ -37,7 +37,7 @@ bool HannWindow::take(const AlignedBlock& block, const ToneSums& sums) noexcept 
   }
   if (++taken_ < blocks_) return false;
   // The Hann weight n frames after the middle of block k is (1 - cos(a + 2 pi n / window)) / 2, where a is
-  // the angle of the middle.
+  // the angle of the block's middle (angle_).
   std::fill(values_.begin(), values_.end(), std::complex<double>{});
   for (std::size_t b = 0; b < blocks_; ++b) {
     const auto* one = kept_.data() + (newest_ + 1 + b) % blocks_ * kParts * count_;

@@ -10,8 +10,8 @@
 
 namespace turnpoint::sensing {
 
-/// Combines sums over blocks into points of a lock-in amplifier with a Hann window. LockIn and IntervalProof
-/// use it.
+/// Combines sums over blocks into points of a lock-in amplifier with a Hann window. Both LockIn and
+/// IntervalProof use this class.
 class HannWindow {
  public:
   HannWindow(std::size_t tones, std::size_t inputs, int block_frames, int window_frames);
@@ -32,17 +32,18 @@ class HannWindow {
   std::size_t newest_ = 0;
   std::size_t taken_ = 0;
   std::int64_t centre_ = 0;
-  std::int64_t expected_ = 0;               ///< first frame of the next block
-  std::vector<std::complex<double>> kept_;  ///< [block][part: plain, cosine, sine][input][tone]
+  std::int64_t expected_ = 0;  ///< number of the first frame of the next block
+  /// sums of the newest blocks, [block][part: plain, cosine, sine][input][tone]
+  std::vector<std::complex<double>> kept_;
   std::vector<std::complex<double>>
-      angle_;  ///< e^(i 2 pi n / window) for the middle n of block k of the window
+      angle_;  ///< angle_[k]: e^(i 2 pi n / window), n is the middle frame of block k
   std::vector<std::complex<double>> values_;
 };
 
-/// Distance of the points of a lock-in amplifier, and length of its window, in frames.
+/// Distance between the points of a lock-in amplifier, and length of its window, in frames.
 struct LockInShape {
-  int block_frames = 192;    ///< distance of the points: 1 ms at 192 kHz
-  int window_frames = 1920;  ///< 10 ms at 192 kHz
+  int block_frames = 192;    ///< distance from one point to the next: 1 ms at 192 kHz
+  int window_frames = 1920;  ///< length of the window: 10 ms at 192 kHz
 
   /// The shape with a point every 1 ms and a window of 10 ms.
   static LockInShape of_rate(int rate_Hz) noexcept;
@@ -53,9 +54,9 @@ struct LockInShape {
 /// A e^(i theta). The phase is that of the playback (drive::Partial), also while a tone glides.
 ///
 /// The low-pass filter is a Hann window: linear phase and an odd number of taps (1919 at 192 kHz). A point
-/// belongs to the centre of its window, so no delay is left. A neighbouring tone at a distance of 1.05 kHz
-/// leaks in with 6e-4 of its amplitude. The points do not depend on the sizes of the captured blocks.
-/// Allocates only in its constructor.
+/// belongs to the centre of its window, so the filter causes no delay. A neighbouring tone at a distance of
+/// 1.05 kHz leaks in with 6e-4 of its amplitude. The points do not depend on the sizes of the captured
+/// blocks. Allocates only in its constructor.
 class LockIn {
  public:
   /// `inputs` are the captured channels; captured frame n carries what was played at frame n - delay.
@@ -66,7 +67,8 @@ class LockIn {
 
   /// Calls `sink(double playback_frame, std::span<const std::complex<double>> values)` for each new point.
   /// The values are in units of full scale, in the order [input][tone], and NaN if the window contains lost
-  /// frames. Throws std::logic_error for a block with another rate or number of channels.
+  /// frames. Throws std::logic_error if a block's rate or number of channels differs from that given to the
+  /// constructor.
   template <class Sink>
   void push(const CaptureBlock& block, Sink&& sink) {
     blocks_.push(block, [&](const AlignedBlock& aligned) {

@@ -18,8 +18,8 @@ double phase_slope_rad(const PickUp& pick_up, int drive_channel, double frequenc
 }
 
 std::optional<PhaseDrift> DriftTracker::take(std::span<const ToneProof> tones, double applied) {
-  // The phase is not exactly linear in the frequency, so repeat the step, each time from the fraction that
-  // the previous step has found.
+  // The phase is not exactly linear in the frequency, so the drift is computed in several steps, each of
+  // which starts from the result of the previous step.
   constexpr int steps = 5;
   PhaseDrift drift;
   double more = 0;

@@ -9,17 +9,17 @@
 
 namespace turnpoint::sensing {
 
-/// How far the resonances of the surface have moved since the calibration, relative to their frequencies. A
-/// warmer plate is softer: about -2.3e-4 per kelvin for aluminium.
+/// The relative change of the surface's resonance frequencies since the calibration. A warmer plate is
+/// softer: about -2.3e-4 per kelvin for aluminium.
 struct PhaseDrift {
   double share = 0;
-  double sd = 0;  ///< standard error; 0 if only one tone was measured
+  double sd = 0;  ///< standard error of `share`; 0 if only one tone was measured
   int tones = 0;
 };
 
-/// Follows the resonances by the phases of tones that are played anyway. If all resonance frequencies rise by
-/// the fraction s, a response H(f) becomes H(f / (1 + s)), so the phase at a frequency changes by -s d phase
-/// / d ln f. The slope d phase / d ln f comes from the calibration.
+/// Measures the drift of the resonances from the phases of the tones that a session plays anyway. If all
+/// resonance frequencies rise by the fraction s, a response H(f) becomes H(f / (1 + s)), so the phase at a
+/// frequency changes by -s d phase / d ln f. The slope d phase / d ln f comes from the calibration.
 class DriftTracker {
  public:
   explicit DriftTracker(std::vector<PickUp> pick_ups) : pick_ups_(std::move(pick_ups)) {}

@@ -31,7 +31,7 @@ std::optional<std::complex<double>> response(const PickUp& pick_up, int drive_ch
   const auto& f = transfer->frequency_Hz;
   const std::size_t points = std::min<std::size_t>(4, f.size());
   const std::size_t first = std::min(*below > 0 ? *below - 1 : 0, f.size() - points);
-  std::complex<double> sum = 0;  // the sum is a Lagrange interpolation
+  std::complex<double> sum = 0;  // Lagrange interpolation between the points
   for (std::size_t i = first; i < first + points; ++i) {
     double weight = 1;
     for (std::size_t j = first; j < first + points; ++j)

@@ -5,20 +5,20 @@
 
 namespace turnpoint::sensing {
 
-/// The response of a pick-up to one output channel, from the calibration: the captured complex amplitude (of
-/// full scale) for a tone of full scale, at ascending frequencies. It does not include the loop delay. Values
-/// in between are interpolated by cubics through four points, separately for real and imaginary part, so the
-/// phase must turn by less than about half a radian between neighbours.
+/// The response of a pick-up to one output channel, from the calibration: the captured complex amplitude,
+/// relative to full scale, for a tone played at full scale, at ascending frequencies. It does not include the
+/// loop delay. Values in between are interpolated by cubics through four points, separately for real and
+/// imaginary part, so the phase must turn by less than about half a radian between neighbours.
 struct Transfer {
   int drive_channel = 0;
   std::vector<double> frequency_Hz;
   std::vector<std::complex<double>> response;
 };
 
-/// A sensor of the vibration on one captured channel.
+/// A sensor that measures the vibration of the surface; it is captured on one channel.
 struct PickUp {
   int channel = 0;
-  std::vector<Transfer> transfers;  ///< at most one for each output channel
+  std::vector<Transfer> transfers;  ///< responses to the output channels, at most one for each
 };
 
 /// The interpolated response to an output channel at a frequency; empty if the calibration does not cover it.

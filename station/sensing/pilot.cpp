@@ -16,11 +16,11 @@ constexpr double kLeastLikeness = 0.8;
 constexpr double kLargestEcho = 0.5;
 // largest accepted difference between the phase of the carrier and that expected from the envelope
 constexpr double kLargestTurn = M_PI / 3;
-constexpr std::int64_t kMargin_frames = 64;  // extra captured frames on both sides
+constexpr std::int64_t kMargin_frames = 64;  // extra captured frames before and after the pilot
 
-/// The analytic pilot of amplitude 1 at the time n, in frames from its start; n may have a fraction. Its
-/// imaginary part is played. The frequency rises as in a burst that glides: the phase is
-/// increment n + curvature n (n - 1) / 2.
+/// The value of the analytic (complex) pilot signal with amplitude 1 at the time n, in frames from its start;
+/// n may have a fraction. Its imaginary part is played. The frequency rises as in a burst that glides: the
+/// phase is increment n + curvature n (n - 1) / 2.
 Complex pilot_at(const Pilot& pilot, double n) {
   const auto frames = static_cast<double>(pilot.frames);
   const double u = (n + 0.5) / frames;
@@ -126,7 +126,8 @@ std::optional<Place> coarse_place(const Pilot& pilot, const std::vector<double>&
   return Place{static_cast<double>(best) * static_cast<double>(factor), likeness};
 }
 
-/// Correlation of the samples with an analytic pilot that starts at `frame`, which may have a fraction.
+/// Correlation of the samples with the analytic (complex) pilot signal that starts at `frame`, which may have
+/// a fraction.
 Complex correlation_at(const Pilot& pilot, const std::vector<double>& samples, double frame) {
   const auto size = static_cast<std::int64_t>(samples.size());
   const auto first = std::clamp<std::int64_t>(static_cast<std::int64_t>(std::floor(frame)) - 1, 0, size);
@@ -152,7 +153,8 @@ double envelope_place(const Pilot& pilot, const std::vector<double>& samples, do
   return coarse + (static_cast<double>(best - reach) + offset) * step;
 }
 
-/// Phase of the correlation between -90 and 90 degrees. It is 0 if the carrier fits with either polarity.
+/// Phase of the correlation between -90 and 90 degrees. It is 0 if the carriers are exactly in phase or
+/// exactly opposite.
 double carrier_phase(Complex correlation) {
   const double phase = std::arg(correlation * Complex(0, 1));
   return std::remainder(phase, M_PI);
@@ -188,7 +190,7 @@ PilotListener::PilotListener(const Pilot& pilot, std::int64_t start_frame, int c
 
 void PilotListener::push(const CaptureBlock& block) {
   if (block.rate_Hz != pilot_.rate_Hz || block.channels != channels_)
-    throw std::logic_error("sensing: captured block with another rate or number of channels");
+    throw std::logic_error("sensing: captured block has an unexpected rate or number of channels");
   const std::int64_t next = start_frame_ - kMargin_frames + static_cast<std::int64_t>(samples_.size());
   if (block.first_frame > next) lost_ = lost_ || !complete();
   for (std::int64_t n = std::max<std::int64_t>(0, next - block.first_frame);

@@ -19,19 +19,22 @@ struct PlannedLine {
   /// The complex amplitude that each pick-up should capture, relative to `phase` and before the high-pass
   /// filter.
   std::vector<std::complex<double>> expected;
-  std::vector<double> seen;  ///< response of each pick-up relative to its best response; 0 if not calibrated
+  /// each pick-up's response as a fraction of its largest response; 0 if not calibrated
+  std::vector<double> seen;
 };
 
 std::vector<PlannedLine> planned_lines(const Stretch& stretch, const std::vector<PickUp>& pick_ups,
                                        int rate_Hz);
 
-/// The pick-up with the best response to these lines.
+/// Returns the index of the pick-up that captures these lines (tones) most strongly. `pick_ups` is the number
+/// of pick-ups.
 std::size_t main_pick_up(const std::vector<PlannedLine>& lines, std::size_t pick_ups);
 
-/// Mean square that a pick-up should capture of the lines, after the high-pass filter.
+/// Returns the mean square of the samples that a pick-up should capture if all lines play as planned, after
+/// the high-pass filter.
 double planned_power(const std::vector<PlannedLine>& lines, std::size_t pick_up);
 
-/// A ratio of amplitudes in dB, at least -200.
+/// Converts a ratio of amplitudes to dB; the result is at least -200.
 inline double in_dB(double ratio) { return 20 * std::log10(std::max(ratio, 1e-10)); }
 
 }  // namespace turnpoint::sensing

@@ -70,8 +70,8 @@ std::vector<Product> products_of(std::span<const double> frequencies_Hz, int rat
 double amplitude_at(std::span<const double> samples, double frequency_Hz, int rate_Hz) {
   const std::size_t count = samples.size();
   const double turn = 2 * M_PI * frequency_Hz / rate_Hz, bend = 2 * M_PI / static_cast<double>(count);
-  // e and w are computed by rotating them by a constant angle for each sample. At the start of each chunk
-  // they are computed exactly, so that the error stays below 1e-13.
+  // For each sample, e (at the tone's phase) and w (at the window's phase) are rotated by a constant angle.
+  // At the start of each chunk they are computed exactly, so that the error stays below 1e-13.
   constexpr std::size_t chunk = 512;
   const std::complex<double> step = std::polar(1.0, turn), window_step = std::polar(1.0, bend);
   double re = 0, im = 0;

@@ -5,8 +5,8 @@
 
 namespace turnpoint::sensing {
 
-/// New frequencies that arise from the tones in a nonlinear plate, clamp or amplifier: subharmonics (a
-/// rattling part answers at f/2 or f/3), harmonics, and combinations to third order.
+/// Distortion products: new frequencies that arise from the tones in a nonlinear plate, clamp or amplifier:
+/// subharmonics (a rattling part answers at f/2 or f/3), harmonics, and combinations to third order.
 enum class ProductKind {
   half,             ///< f_i / 2
   third,            ///< f_i / 3
@@ -21,18 +21,18 @@ enum class ProductKind {
 struct Product {
   ProductKind kind = ProductKind::half;
   int i = 0, j = 0;         ///< indices of the tones in the list of frequencies, from 0
-  double frequency_Hz = 0;  ///< frequency in the samples; above half of the rate, that of the alias
-  double level_dB = 0;      ///< rms relative to that of all planned tones at the same pick-up
+  double frequency_Hz = 0;  ///< frequency in the samples, after aliasing if it is above half the rate
+  double level_dB = 0;      ///< rms relative to the rms of all planned tones at the same pick-up
 };
 
-/// Such as "2 f1 - f3". Tones are counted from 1.
+/// The product's name, such as "2 f1 - f3". Tones are numbered from 1.
 std::string name(const Product& product);
 
 /// True for products that a symmetric limiter makes: 3 f, 2 f_i - f_j, 2 f_i + f_j.
 bool is_odd(ProductKind kind);
 
-/// The products of these tones between `low_Hz` and 0.49 of the rate, without those less than `apart_Hz` from
-/// a tone. If two products are less than `apart_Hz` apart, only the first is kept.
+/// Returns the products of these tones from `low_Hz` to 0.49 of the sampling rate, except those less than
+/// `apart_Hz` from a tone. If two products are less than `apart_Hz` apart, only the first is kept.
 std::vector<Product> products_of(std::span<const double> frequencies_Hz, int rate_Hz, double low_Hz,
                                  double apart_Hz);
 

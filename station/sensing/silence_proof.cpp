@@ -12,8 +12,8 @@ namespace {
 
 constexpr double kSilence_s = 0.05;
 
-/// The reference for silence: the planned mean square of the burst's first steady tones, at the channel of
-/// the pick-up with the best response to them.
+/// What the silence is compared with: the planned mean square of the burst's first steady tones, at the
+/// channel of the pick-up that captures them most strongly.
 struct Compared {
   int channel = 0;
   double power = 0;

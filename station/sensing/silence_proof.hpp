@@ -11,19 +11,19 @@ namespace turnpoint::sensing {
 struct SilenceResult {
   terms::Proof verdict = terms::Proof::unproven;  ///< `unproven` if fewer than 50 ms were captured
   terms::ProofCause cause = terms::ProofCause::none;
-  double level_dB = -200;  ///< rms of the loudest 50 ms, relative to the plan, after the high-pass filter
+  double level_dB = -200;  ///< rms of the loudest 50 ms, relative to the burst, after the high-pass filter
 };
 
 /// Measures whether the surface is at rest between two intervals. Allocates only in its constructor. For an
 /// ordinary thread.
 class SilenceProof {
  public:
-  /// The silence is compared with the plan's burst; use that of the interval before or after. The pick-up
-  /// with the best response to this burst measures the silence.
+  /// The silence is compared with the burst in `plan`, so pass the plan of the interval before or after the
+  /// silence. The silence is measured with the pick-up that captures this burst most strongly.
   explicit SilenceProof(const IntervalPlan& plan);
 
-  /// Takes captured frames, all of which should be silent. Leave out the loop delay and the few milliseconds
-  /// in which the plate rings after a burst.
+  /// Takes captured frames, all of which should be silent. Do not pass the frames just after a burst, which
+  /// still contain its end because of the loop delay, and the ringing of the plate for a few milliseconds.
   void push(const CaptureBlock& block);
 
   SilenceResult result() const noexcept;
@@ -32,7 +32,7 @@ class SilenceProof {
   void take(const AlignedBlock& block) noexcept;
 
   Limits limits_;
-  double planned_ = 0;  ///< planned mean square of the burst
+  double planned_ = 0;  ///< planned mean square of the burst's samples
   AlignedBlocks blocks_;
   int window_blocks_;
   int blocks_taken_ = 0;  ///< number of blocks in the current window

@@ -7,9 +7,9 @@
 
 namespace turnpoint::sensing {
 
-/// A movement of the finger in one direction, as a range of points of its track.
+/// A movement of the finger in one direction, as a range of indices into the track of the finger.
 struct Stroke {
-  /// points of the stroke without 5 mm at each end, where the skin's deflection changes direction
+  /// the points of the stroke except 5 mm at each end, where the direction of the skin's deflection changes
   std::size_t first = 0, end = 0;
   int direction = 0;  ///< 1 towards larger positions, -1 towards smaller positions
 };

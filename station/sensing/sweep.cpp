@@ -12,9 +12,9 @@ namespace {
 using Amplitude = std::complex<double>;
 
 constexpr double kStep_Hz = 20;
-// the window is flat over this time on both sides of its centre, and then falls to 0 within this time
+// the window is flat for kFlat_s on both sides of its centre, and then falls to 0 within kFall_s
 constexpr double kFlat_s = 0.06, kFall_s = 0.03;
-constexpr std::size_t kNoiseEvery = 16;  // noise is measured at a sixteenth of the frequencies
+constexpr std::size_t kNoiseEvery = 16;  // noise is measured at every sixteenth frequency
 
 /// Fourier transform at one frequency, in a window around the sample `centre`, with the phase of frame
 /// `origin` as reference.

@@ -53,7 +53,7 @@ ToneSums::ToneSums(std::vector<FollowedTone> tones, std::size_t inputs, int bloc
       phase_(tones_.size()),
       turn_(tones_.size()) {
   if (block_frames % 2 != 0 || window_frames % block_frames != 0)
-    throw std::logic_error("sensing: blocks of a lock-in must be even, and its window whole blocks");
+    throw std::logic_error("sensing: a lock-in needs blocks of even length and a window of whole blocks");
   for (const FollowedTone& tone : tones_) part_of_frame_.push_back(of_fraction(tone.partial.increment));
   for (std::size_t t = 0; t < tones_.size(); ++t) fill(t);
 }
@@ -93,7 +93,7 @@ void ToneSums::fill(std::size_t tone) noexcept {
     for (std::size_t part = 0; part < kParts; ++part) {
       const double f = factor(part, static_cast<double>(n) + 0.5);
       double* column = table_.data() + (part * 2 * half + n) * columns_ + tone;
-      // the factor sin is an odd function, so with it, even columns become odd and odd ones even
+      // the factor sin is an odd function: it turns even columns into odd ones, and odd ones into even ones
       const bool swaps = part == 2;
       column[0] = f * (swaps ? e.imag() : e.real());
       column[half * columns_] = f * (swaps ? e.real() : e.imag());
@@ -160,7 +160,8 @@ void ToneSums::glide(const AlignedBlock& block, std::size_t tone, const drive::P
   }
 }
 
-// i e^(-i phase), where the phase is that of the block's middle plus the phase since the middle.
+// Multiplies the sum by i e^(-i phase), where the phase is that of the middle of the block; the table already
+// contains the phase relative to the middle.
 std::complex<double> ToneSums::rotated(std::size_t input, std::size_t tone, std::size_t part) const noexcept {
   const double* even = sums_.data() + (part * 2 * inputs_ + input) * columns_ + tone;
   const double* odd = even + inputs_ * columns_;

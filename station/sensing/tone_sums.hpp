@@ -10,7 +10,7 @@
 
 namespace turnpoint::sensing {
 
-/// A sinusoid of the playback. Frame 0 of the partial is played at the absolute frame `origin_frame`. The
+/// A sinusoid that is played. Frame 0 of the partial is played at the absolute frame `origin_frame`. The
 /// partial's amplitude is not used. A gliding partial must begin before the first frame for which sums are
 /// computed.
 struct FollowedTone {
@@ -18,13 +18,13 @@ struct FollowedTone {
   std::int64_t origin_frame = 0;
 };
 
-/// Sums of captured samples over aligned blocks, each multiplied by a tone of the playback. For a signal A
-/// sin(phase + theta) with the tone's phase, the mean of these products is A e^(i theta) / 2.
+/// Multiplies captured samples by the tones that are played, and sums the products over aligned blocks. For a
+/// signal A sin(phase + theta) with the tone's phase, the mean of these products is A e^(i theta) / 2.
 ///
-/// The tone's phase in the middle of a block is the playback's own integer, so no error grows with time.
-/// Within the block, the sines come from a table. Their symmetry about the middle saves half of the work: a
-/// tone costs one multiplication per frame and input. Gliding tones cost about 70 times as much. Allocates
-/// only in its constructor.
+/// The tone's phase in the middle of a block is computed with the same integers as in the playback, so errors
+/// do not grow with time. Within the block, the sines come from a table. Their symmetry about the middle
+/// saves half of the work: a tone costs one multiplication per frame and input. Gliding tones cost about 70
+/// times as much. Allocates only in its constructor.
 class ToneSums {
  public:
   enum class Parts {
@@ -45,7 +45,7 @@ class ToneSums {
   std::complex<double> cosine(std::size_t input, std::size_t tone) const noexcept;
   std::complex<double> sine(std::size_t input, std::size_t tone) const noexcept;
 
-  /// The phase of the tone that is captured at this frame, in 2^-64 cycles.
+  /// The playback phase of the tone at the time that this captured frame contains, in 2^-64 cycles.
   std::uint64_t phase_at(std::size_t tone, std::int64_t captured_frame) const noexcept;
 
   std::size_t tones() const noexcept { return tones_.size(); }
@@ -66,11 +66,12 @@ class ToneSums {
   int block_frames_, window_frames_;
   std::int64_t delay_;
   double delay_fraction_;
-  std::size_t columns_;        ///< number of tones, rounded up to a multiple of the loops' width
-  std::vector<double> table_;  ///< [part: 1, cos, sin][parity: even, odd][frame after the middle][column]
+  std::size_t columns_;  ///< number of tones, rounded up to a multiple of kWidth
+  /// sines of the tones, [part: 1, cos, sin][parity: even, odd][frame after the middle][column]
+  std::vector<double> table_;
   std::vector<double>
-      folded_;  ///< [parity][input][frame after the middle]: sum and difference of mirrored frames
-  std::vector<double> sums_;  ///< [part: 1, cos, sin][parity: even, odd][input][column]
+      folded_;  ///< sums and differences of mirrored frames, [parity][input][frame after the middle]
+  std::vector<double> sums_;  ///< results of compute(), [part: 1, cos, sin][parity: even, odd][input][column]
   /// by how much the phase of each tone changes in delay_fraction_ of a frame
   std::vector<std::uint64_t> part_of_frame_;
   std::vector<std::uint64_t> phase_;        ///< phase of each tone in the middle of the block

@@ -9,8 +9,8 @@
 namespace turnpoint::sensing {
 namespace {
 
-constexpr double filter_s = 0.02;   // a point's filter extends this far to both sides
-constexpr double tracker_s = 0.04;  // the fit of position and speed extends this far to both sides
+constexpr double filter_s = 0.02;   // a force point needs captured frames up to this far before and after it
+constexpr double tracker_s = 0.04;  // position and speed need force points up to this far before and after
 constexpr double now_s = 0.1;       // time over which now() averages
 constexpr double idle_s = 1;  // while no trial is expected, only the newest capture of this length is kept
 // longest capture that is kept; in a longer trial, its beginning is lost
@@ -58,7 +58,7 @@ void TrialFinger::keep_from(std::int64_t index) {
 }
 
 void TrialFinger::push(const CaptureBlock& block) {
-  // After a long pause of the capture, begin again, instead of filtering frames that do not exist.
+  // If the capture has paused for long, start again instead of filtering frames that do not exist.
   if (block.first_frame > next_frame_ + static_cast<std::int64_t>(idle_s * setup_.bridges.rate_Hz)) {
     demodulator_ = BridgeDemodulator(setup_.bridges);
     points_.clear();
@@ -67,6 +67,18 @@ void TrialFinger::push(const CaptureBlock& block) {
   demodulator_.push(block, [this](const BridgePoint& point) { points_.push_back(point); });
   if (points_.empty()) return;
   keep_from(points_.back().index - points_in(intervals_.empty() ? idle_s : longest_s));
+}
+
+void TrialFinger::push(const BridgePoint& point) {
+  if (!points_.empty() && point.index <= points_.back().index) return;
+  if (!points_.empty() && point.index > points_.back().index + points_in(idle_s)) points_.clear();
+  while (!points_.empty() && points_.back().index + 1 < point.index) {
+    BridgePoint lost{.index = points_.back().index + 1};
+    lost.ratio.fill(std::numeric_limits<double>::quiet_NaN());
+    points_.push_back(lost);
+  }
+  points_.push_back(point);
+  keep_from(point.index - points_in(intervals_.empty() ? idle_s : longest_s));
 }
 
 std::int64_t TrialFinger::known_at() const {
@@ -85,7 +97,7 @@ ForcesState TrialFinger::state_of(std::int64_t first, std::int64_t end) const {
   return next == end ? ForcesState::ok : ForcesState::lost;
 }
 
-/// Computes the mean and standard deviation of the readings in these points.
+/// Computes the mean and standard deviation of the readings in the points `quiet`.
 void TrialFinger::describe(const std::vector<BridgePoint>& quiet) {
   read_.reset(), noise_.reset();
   if (static_cast<std::int64_t>(quiet.size()) < points_in(tare_s) / 2) return;
@@ -107,7 +119,8 @@ void TrialFinger::take_tare() {
   std::vector<BridgePoint> quiet;
   for (const auto& point : points_) {
     if (point.index < end - points_in(tare_s) || point.index >= end) continue;
-    // Frames from before the beginning of the capture are missing; later ones must be complete.
+    // Skip the first points after the capture began, because their filters lack frames. All later points must
+    // be complete.
     if (quiet.empty() && std::isnan(point.ratio[0])) continue;
     quiet.push_back(point);
   }
@@ -154,7 +167,7 @@ std::optional<FingerNow> TrialFinger::now() {
   if (first < index_at(quiet_until_)) return std::nullopt;
   take_tare();
   if (!zero_ || loaded_ || state_of(first, newest) != ForcesState::ok) return std::nullopt;
-  // The tracker returns a point only once it has points from after it.
+  // The track ends before the newest point, because the position at a point needs the points after it.
   FingerNow now;
   double speed_sum = 0;
   int points = 0, moving = 0;

@@ -19,6 +19,9 @@ struct FingerSetup {
   ForceCalibration calibration{{}, {}};
   MovementWindow window;
   double length_mm = 0;  ///< length of the strip, in which a step of friction is looked for
+  /// The cells have a converter with a clock of its own, whose points are pushed; otherwise they are captured
+  /// by the card that plays.
+  bool own_clock = false;
 };
 
 /// Whether the forces of a trial are known.
@@ -30,10 +33,11 @@ enum class ForcesState {
 };
 const char* name(ForcesState state);
 
-/// The finger in one trial. The track covers the trial from before the first interval to the end of the last.
+/// What the finger did in one trial. The track covers the trial from before the first interval to the end of
+/// the last.
 struct TrialForces {
   ForcesState state = ForcesState::lost;
-  double tare_moved_N = 0;  ///< change of the zero since the previous tare
+  double tare_moved_N = 0;  ///< change of the force zero since the previous tare
   /// Reading of each cell (a, b, lateral) before the trial and its standard deviation, relative to the cell's
   /// full scale; empty if captured frames are missing.
   std::optional<Readings> zero, noise;
@@ -47,16 +51,16 @@ struct TrialForces {
 
 /// The finger at this moment: what may be shown to a participant.
 struct FingerNow {
-  double normal_N = 0;    ///< mean over a tenth of a second
-  double speed_mm_s = 0;  ///< mean over a tenth of a second; NaN if it is not known
+  double normal_N = 0;    ///< mean over the last tenth of a second
+  double speed_mm_s = 0;  ///< mean over the last tenth of a second; NaN if it is not known
   bool contact = false;
 };
 
 /// Measures the finger in one trial after another from captured frames, which must have the numbers at which
-/// they were played. Not thread-safe; allocates.
+/// they were played, or from points (`FingerSetup::own_clock`). Not thread-safe; allocates.
 class TrialFinger {
  public:
-  /// The cells are read for this long before the trial, without a finger on the surface.
+  /// Before the trial, the force cells are read for this long without a finger on the surface (tare).
   static constexpr double tare_s = 0.4;
   /// Captured frames are needed up to this long after the last interval.
   static constexpr double tail_s = 0.06;
@@ -67,19 +71,23 @@ class TrialFinger {
   struct Range {
     std::int64_t first_frame = 0, end_frame = 0;
   };
-  /// The intervals of the next trial. The tare is taken from what was captured before `quiet_until`. Points
-  /// that the trial does not need are dropped.
+  /// Announces the intervals of the next trial. The tare is taken from what was captured before
+  /// `quiet_until`. Points that the trial does not need are dropped.
   void expect(std::int64_t quiet_until, std::vector<Range> intervals);
   /// Call this if playback was cut at this frame. An interval that had begun ends there, and later ones do
   /// not take place.
   void cut(std::int64_t frame);
   void push(const CaptureBlock& block);
+  /// Takes a point of cells that have a clock of their own. Points that were left out count as lost; points
+  /// that were already received are ignored.
+  void push(const BridgePoint& point);
 
-  /// The playback frame before which the result of the expected trial is not known.
+  /// The result of the expected trial is known once all playback frames before this one have been captured.
   std::int64_t known_at() const;
   /// True if a finger touched the surface in this interval; empty if that is not known.
   std::optional<bool> contact(std::size_t interval);
-  /// The finger in the newest captured frames. Empty if no trial is expected, or its forces are not known.
+  /// What the finger does in the newest captured frames. Empty if no trial is expected, or its forces are not
+  /// known.
   std::optional<FingerNow> now();
   /// Returns what was measured in the expected trial. Frames that have not been captured when this is called
   /// count as lost.
@@ -100,14 +108,14 @@ class TrialFinger {
   double points_per_s_;
   std::int64_t next_frame_ = 0;  ///< number of the next captured frame, if none is missing
   std::deque<BridgePoint> points_;
-  std::optional<Readings> zero_;  ///< the newest tare
-  /// mean and standard deviation of what was captured for the newest tare, relative to full scale
+  std::optional<Readings> zero_;  ///< readings at the newest tare (cells without a finger)
+  /// mean and standard deviation of the readings from which the newest tare was taken, relative to full scale
   std::optional<Readings> read_, noise_;
   bool tared_ = false;   ///< take_tare() has been called for the expected trial
   bool loaded_ = false;  ///< something lay on the surface during the tare
   double tare_moved_N_ = 0;
   std::int64_t quiet_until_ = 0;
-  std::vector<Range> intervals_;  ///< empty: no trial is expected
+  std::vector<Range> intervals_;  ///< intervals of the expected trial; empty if no trial is expected
 };
 
 }  // namespace turnpoint::sensing

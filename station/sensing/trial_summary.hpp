@@ -10,13 +10,13 @@ namespace turnpoint::sensing {
 struct MovementWindow {
   static constexpr double any = std::numeric_limits<double>::infinity();
 
-  double least_normal_N = 0, most_normal_N = any;      ///< ends included
-  double least_speed_mm_s = 0, most_speed_mm_s = any;  ///< ends included
+  double least_normal_N = 0, most_normal_N = any;      ///< allowed normal force, ends included
+  double least_speed_mm_s = 0, most_speed_mm_s = any;  ///< allowed speed, ends included
   double fraction = 0.8;  ///< required fraction of the strokes' time with force and speed in range
-  int strokes = 0;        ///< least number of strokes
+  int strokes = 0;        ///< least number of strokes in a trial
 };
 
-/// Whether a movement was the requested one. If it had several faults, the first in this list is given.
+/// Whether the participant moved as asked. If a movement has several faults, the first in this list is given.
 enum class Movement {
   ok,
   strokes,  ///< too few strokes
@@ -42,7 +42,7 @@ struct TrialSummary {
   double speed_in_window = none;
 };
 
-/// Summarises the track of one trial.
+/// Summarises the forces and the movement of the finger in one trial.
 TrialSummary summarise(std::span<const FingerPoint> track, Band band, std::span<const Stroke> strokes,
                        const MovementWindow& window);
 

@@ -11,9 +11,9 @@ namespace turnpoint::sensing {
 
 namespace {
 
-constexpr double kLikeness = 0.9;  // least correlation with the ideal wave
-constexpr double kQuiet = 0.15;    // largest power of the silent bits, relative to that of the code
-constexpr int kScale_bits = 12;    // samples are scaled so that sums of their squares are exact
+constexpr double kLikeness = 0.9;  // least accepted correlation with a code's ideal wave
+constexpr double kQuiet = 0.15;    // largest accepted power of the silent bits, relative to that of the code
+constexpr int kScale_bits = 12;    // samples lose this many bits, so that sums of their squares are exact
 constexpr double kFull = 0x1p31 / (1 << kScale_bits);
 
 }  // namespace
@@ -41,7 +41,8 @@ void TriggerDecoder::push(std::int64_t value) {
   const auto at = static_cast<std::size_t>(next_) & mask;
   sums_[at] = sum_, squares_[at] = square_;
   sum_ += value, square_ += static_cast<std::uint64_t>(value * value);
-  // The running sums are known up to frame next_. So this call can find a code whose silent bit ends there.
+  // The running sums are known up to frame next_, so this call can find a code whose final silent bit ends at
+  // that frame.
   const auto frame = next_ - (drive::trigger_half_bits + 2 * drive::trigger_quiet_bits) * half_;
   ++next_;
   if (frame - 2 * drive::trigger_quiet_bits * half_ - 1 < origin_) return;
@@ -97,7 +98,7 @@ std::optional<TriggerDecoder::Candidate> TriggerDecoder::candidate(std::int64_t 
                         2 * mean * static_cast<double>(sum(from, from + quiet_frames)) / n + mean * mean;
     if (rest > kQuiet * power) return std::nullopt;
   }
-  // The correlation falls linearly on both sides of its peak.
+  // The correlation falls linearly on both sides of its peak, so its neighbours give the peak between frames.
   const auto before = static_cast<double>(correlation(frame - 1, pattern));
   const auto after = static_cast<double>(correlation(frame + 1, pattern));
   const double fall = at - std::min(before, after);

@@ -7,11 +7,11 @@
 
 namespace turnpoint::sensing {
 
-/// A code that was found on a captured channel.
+/// A trigger code that was found on a captured channel.
 struct DecodedTrigger {
   double frame = 0;  ///< captured frame at which the code begins
   int code = 0;
-  double amplitude = 0;  ///< 1 is full scale
+  double amplitude = 0;  ///< amplitude of the code; 1 is full scale
 };
 
 /// Finds the codes of drive/trigger_code.hpp on one captured channel. It knows only the form of a code, not
@@ -46,8 +46,8 @@ class TriggerDecoder {
   const int channel_;
   const std::int64_t half_;
   const std::int64_t least_sum_;
-  // Running sums of all values, and of their squares, up to each frame, in ring buffers. The squares wrap
-  // around.
+  // Running sums of all values, and of their squares, up to each frame, in ring buffers. The sums of squares
+  // may overflow; their differences are still right.
   std::vector<std::int64_t> sums_;
   std::vector<std::uint64_t> squares_;
   std::int64_t next_ = 0, origin_ = 0;

@@ -12,10 +12,10 @@ namespace turnpoint::session {
 
 namespace {
 
-/// A standard error from fewer strokes would be meaningless.
+/// A standard error from fewer strokes than this would be meaningless.
 constexpr int kFewest = 3;
 
-/// Frames in which the last interval was presented.
+/// Returns the first frame of the last interval, and the frame after its end.
 std::pair<std::int64_t, std::int64_t> last_interval(const records::TrialRow& row) {
   int last = 0;
   for (const auto& tone : row.tones) last = std::max(last, tone.interval_index);

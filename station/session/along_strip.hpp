@@ -6,8 +6,8 @@
 
 namespace turnpoint::session {
 
-/// Friction along the strip, relative to the planned boundary, from the stored signals of trials. Trials with
-/// different boundaries can be combined, because distances count from each trial's own boundary.
+/// Collects the friction along the strip from the stored signals of trials. Trials with different boundaries
+/// can be combined, because each position is a distance from the trial's own planned boundary.
 class AlongStrip {
  public:
   /// Adds the strokes of a trial's last interval. A trial without a boundary adds nothing.

@@ -37,10 +37,9 @@ std::optional<CardCapture> card_capture_of(const rig::Rig& rig) {
   plan.setup.channels = rig.capture->channels;
   plan.setup.pick_ups = calibrated_pick_ups(*rig.capture);
   plan.pilot = pilot_of(rig);
-  if (!rig.capture->bridges.empty()) {
-    plan.pilot.carrier_Hz = sensing::carriers_Hz.front();
-    plan.setup.finger = calibrated_finger(rig);
-  }
+  if (!rig.capture->bridges.empty()) plan.pilot.carrier_Hz = sensing::carriers_Hz.front();
+  plan.setup.finger = calibrated_finger(rig);
+  plan.cells = cell_plan_of(rig);
   plan.reference = rig.capture->reference;
   plan.triggers = trigger_setup_of(rig);
   return plan;
@@ -49,7 +48,7 @@ std::optional<CardCapture> card_capture_of(const rig::Rig& rig) {
 CaptureFeed::CaptureFeed(std::unique_ptr<drive::Capture> capture, const CardCapture& plan)
     : capture_(std::move(capture)),
       plan_(plan),
-      // The pilot is played up to one buffer length after it was scheduled, and captured up to one more
+      // The pilot is played up to one buffer length after it was scheduled. It is captured up to one more
       // buffer length later.
       longest_wait_s_(0.5 + 2.0 * plan.device.periods * plan.device.period_frames / plan.device.rate_Hz),
       watch_(plan.setup),
@@ -83,9 +82,9 @@ void CaptureFeed::listen(std::int64_t start_frame) {
                                                            plan_.reference, longest_wait_s_);
   const std::lock_guard lock(mutex_);
   const auto counters = capture_->counters();
-  // A first guess at how captured frames correspond to playback frames. It makes the pilot arrive late,
-  // because the pilot has not been played yet. The listener needs some frames from before the pilot, and the
-  // next block may begin with the next frame.
+  // A first guess at the delay: the newest captured frame gets the number kBefore_frames before the pilot,
+  // although the pilot will be played later. The listener needs frames from before the pilot, and the next
+  // block may begin with the next frame.
   shift_ = start_frame - counters.frames - kBefore_frames;
   numbering_ = counters.numbering;
   aligned_ = false;
@@ -101,21 +100,21 @@ void CaptureFeed::run(const std::stop_token& stop) {
       if (take(*block)) conclude();
     {
       const std::lock_guard lock(mutex_);
-      if (numbering != numbering_) aligned_ = false;  // frames were lost after those that were just taken
+      if (numbering != numbering_) aligned_ = false;  // frames were lost after the block that was taken last
     }
     std::this_thread::sleep_for(std::chrono::milliseconds(2));
   }
 }
 
-// Takes over a block. Returns true once enough has been captured to contain the whole pilot.
+// Passes a captured block to the pilot's listener or, once the delay from playback to capture is known, to
+// the vibration watch. Returns true once enough has been captured to contain the whole pilot.
 bool CaptureFeed::take(const drive::CapturedBlock& captured) {
   const std::lock_guard lock(mutex_);
   const sensing::CaptureBlock block{captured.used(), plan_.device.channels, captured.first_frame + shift_,
                                     plan_.device.rate_Hz};
   if (captured.numbering != numbering_) aligned_ = false;
   if (listener_) {
-    // Start listening again: a gap makes the pilot incomplete, and frames from before this block are not
-    // needed.
+    // The listener notices by itself if frames of the pilot are missing.
     listener_->push(block);
     return listener_->complete();
   }

@@ -8,21 +8,23 @@
 #include "station/drive/alsa_capture.hpp"
 #include "station/rig/rig.hpp"
 #include "station/sensing/pilot.hpp"
+#include "station/session/cell_feed.hpp"
 #include "station/session/triggers.hpp"
 #include "station/session/vibration_watch.hpp"
 
 namespace turnpoint::session {
 
-/// What a rig captures with the card that plays, and how the two are aligned.
+/// What a rig captures with the same sound card that plays, and how captured and played frames are aligned.
 struct CardCapture {
   drive::OutputConfig device;
   CaptureSetup setup;
   sensing::Pilot pilot;
-  int reference = 0;  ///< captured channel on which the pilot comes back
+  int reference = 0;  ///< captured channel on which the pilot is recorded
   TriggerSetup triggers;
+  std::optional<CellPlan> cells = {};  ///< calibrated force cells that the card does not capture
 };
 
-/// Returns nothing unless the rig's [capture] is `alsa:`.
+/// Returns nothing unless the rig's section [capture] names an `alsa:` device.
 std::optional<CardCapture> card_capture_of(const rig::Rig& rig);
 
 /// Passes captured samples to a VibrationWatch, numbered by playback frames. A pilot establishes this
@@ -37,9 +39,10 @@ class CaptureFeed {
   TriggerCapture& triggers() { return triggers_; }
 
   bool aligned() const;
-  /// Call this after the playback was restarted: the numbering is then unknown until the next pilot.
+  /// Call this after the playback was restarted: the delay from playback to capture is then unknown until the
+  /// next pilot.
   void misalign();
-  /// All playback frames before this one have been captured and passed to the watch.
+  /// All playback frames before this one have been captured and passed to the vibration watch.
   std::int64_t end_frame() const;
 
   enum class Pilot { awaited, heard, missing };
@@ -65,7 +68,7 @@ class CaptureFeed {
   std::unique_ptr<sensing::PilotListener> listener_;  ///< null: no pilot is awaited
   Pilot pilot_ = Pilot::missing;
   std::int64_t shift_ = 0;       ///< playback frame minus captured frame; while listening, only a first guess
-  std::uint32_t numbering_ = 0;  ///< the value of the capture's `numbering` for which shift_ is right
+  std::uint32_t numbering_ = 0;  ///< value of the capture's `numbering` for which shift_ holds
   bool aligned_ = false;
   std::int64_t end_frame_ = 0;
   // The last member, so that the thread is joined before the objects that it uses are destroyed.

@@ -8,7 +8,8 @@
 
 namespace turnpoint::session {
 
-/// Decides what the bars on the participant's page show, and when they stand still. Pure.
+/// Decides what the bars on the participant's page show, and when they stand still. Uses no clock and no
+/// device.
 class Guide {
  public:
   /// shortest time between two movements of the bars
@@ -21,7 +22,7 @@ class Guide {
   /// The bars as they were last shown; empty without guidance.
   const std::optional<Guidance>& bars() const { return bars_; }
 
-  /// Shows the finger as it is now. Returns true if the bars have changed.
+  /// Moves the bars to the finger's present force and speed. Returns true if the bars have changed.
   bool move(const std::optional<sensing::FingerNow>& finger);
   /// Stops the bars during a stimulus, unless the protocol asks for live guidance. Returns true if this
   /// changed what is shown.

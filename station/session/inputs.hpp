@@ -33,16 +33,17 @@ enum class InputKind {
   /// trials are kept
   stop,
   pause,  ///< the participant or the operator wants a pause
-  xrun,   ///< the drive lost frames; value 1: frames of the last stimulus, 0: frames of silence
+  xrun,   ///< the drive lost frames; value 1: during the last stimulus, 0: in silence
   heard,  ///< value = index of an interval that has been played completely; never logged
-  /// what the pick-ups measured of interval `value`, in `measured`; comes before `heard` of the interval.
-  /// With the last interval, `forces` says what the force cells measured in the trial. Either may be null.
+  /// the pick-ups have measured the interval with the index `value`; the result is in `measured`. Comes
+  /// before `heard` of this interval. With the last interval, `forces` says what the force cells measured in
+  /// the trial. Either may be null.
   measured,
   /// drive, amplifier or panel has a fault: `fault` is its kind, `text` the detail; the trial is void
   fault,
   failure,      ///< the session cannot continue; `text` says what happened
   glitch,       ///< interference on the button or contact line named in `text`; only logged
-  sync,         ///< a pulse of another device; `text` names its frame; only logged
+  sync,         ///< a pulse from another device; `text` gives its frame; only logged
   notice,       ///< `text` says what happened; only logged
   arm,          ///< the operator clears a latched fault of the amplifier and arms it
   disarm,       ///< the operator switches the amplifier off; it stays off until it is armed again

@@ -113,11 +113,11 @@ Interludes::Reply Interludes::reply(const Page& page, const std::function<bool(c
   while (!gate_.stop_asked()) {
     auto waited = stage_.wait_until(kForever);
     if (!waited) continue;
-    // the rig's response buttons answer trials, not questions
+    // ignore the rig's response buttons, because they answer trials, not questions
     const bool button = waited->kind == InputKind::button;
     const auto input = gate_.received(std::move(*waited));
     if (gate_.handle_on_page(page, input) == Flow::stop) return std::nullopt;
-    // a press from before this page was meant for the previous one
+    // ignore a press that was made before this page appeared: it was meant for the previous page
     if (!button && input.time_ns >= shown_ns && accepts(input)) return input;
   }
   return std::nullopt;
@@ -132,7 +132,8 @@ void Interludes::simulate(InputKind kind, int value, double number) {
   stage_.simulate(std::move(input));
 }
 
-/// Gives the answer that the item states for a simulated participant, or else a random one.
+/// Gives the answer that the protocol states for a simulated participant, or a random answer if it states
+/// none.
 void Interludes::simulate_answer(const protocol::Interlude& interlude, std::size_t index) {
   const auto& item = interlude.items[index];
   const auto* first = setup_.protocol.interludes.data();

@@ -51,7 +51,7 @@ class Interludes {
     std::string block;
     int attempt = 0, right = 0, trials = 0;
   };
-  /// What somebody did on a page; empty if the session stops.
+  /// What the participant or the operator did on a page; empty if the session stops.
   using Reply = std::optional<Input>;
 
   Flow run(const protocol::Interlude& interlude);
@@ -66,7 +66,8 @@ class Interludes {
   void simulate(InputKind kind, int value, double number = 0);
   void keep_answer(const protocol::Interlude& interlude, const std::string& item, const std::string& answer,
                    double response_time_s);
-  /// The answers of this questionnaire at this occasion, in the order of its items.
+  /// The items of this questionnaire that have been answered since the last block, in the order of the
+  /// answers.
   std::vector<std::string> given(const protocol::Interlude& interlude) const;
   protocol::Answers answers() const;
 

@@ -11,7 +11,8 @@ namespace turnpoint::session {
 
 namespace {
 
-// Ignore a button press on a page within this time, because nobody can have read the page yet.
+// Ignore a button press within this time after a page has appeared, because nobody can have read the page
+// yet.
 constexpr std::int64_t kReading_ns = 500'000'000;
 
 /// Returns the answer that a button chooses. If an answer has the button's name, the button chooses that
@@ -84,7 +85,7 @@ void OperatorGate::keep(const std::function<void()>& write) {
     try {
       return write();
     } catch (const store::StoreError& error) {
-      // In a simulated session nobody could free space, so end it.
+      // In a simulated session nobody can free space on the disk, so end the session.
       if (error.kind() != store::ErrorKind::disk_full || !setup_.observer.empty()) throw;
       detail = error.what();
     }
@@ -92,8 +93,8 @@ void OperatorGate::keep(const std::function<void()>& write) {
   }
 }
 
-/// Waits until somebody presses Continue because there is space again (returns true), or stops the session
-/// (returns false).
+/// Returns true when somebody has freed disk space and pressed Continue, and false if somebody stops the
+/// session.
 bool OperatorGate::space_again(const std::string& detail) {
   stage_.close_amplifier();
   show(pages_.fault(FaultKind::disk_full, detail, director_));
@@ -208,14 +209,14 @@ Flow OperatorGate::show_and_wait(Page page, double at_least_s) {
     const auto input = received(std::move(*waited));
     if (interrupt(page, input) == Flow::stop) return Flow::stop;
     if (shows_ != shows) {
-      // The operator has now repaired the fault. There may be an earlier fault or pause page below this one;
-      // it ends too, so do not show it again.
+      // Another page has covered this one: a fault, which the operator has now repaired, or a pause. If this
+      // page also showed a fault or a pause, it ends too, and is not shown again.
       if (holds) return Flow::go_on;
       shown_ns = stage_.now_ns();
       show(page);
       continue;
     }
-    // A press from before this page was meant for the previous one.
+    // Ignore a press that was made before this page appeared: it was meant for the previous page.
     if (input.kind == InputKind::next && input.time_ns >= shown_ns) return Flow::go_on;
     if (buttons_turn && input.kind == InputKind::answer && input.time_ns >= shown_ns + kReading_ns)
       return Flow::go_on;
@@ -235,7 +236,7 @@ Flow OperatorGate::interrupt(const Page& page, const Input& input) {
   const bool paused = page.kind == PageKind::paused;
   note(input);
   if (stop_asked_) return Flow::stop;
-  if (paused) pause_asked_ = fault_.has_value();  // a fault does not end a pause
+  if (paused) pause_asked_ = fault_.has_value();  // the pause continues after the fault
   if (fault_) return recover();
   return page.kind == PageKind::fault ? Flow::go_on : pause_if_asked();
 }

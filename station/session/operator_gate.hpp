@@ -14,9 +14,10 @@ namespace turnpoint::session {
 /// Whether the session continues or ends.
 enum class Flow { go_on, stop };
 
-/// Handles everything that can delay the next stimulus of a session: pages that somebody has to leave, an
-/// amplifier that the operator has to arm, faults that the operator has to repair, and a full disk. All
-/// inputs of the session pass through this object. It remembers inputs that have to be handled later.
+/// Handles everything that can delay the next stimulus of a session: pages that stay until somebody presses
+/// Continue, an amplifier that the operator has to arm, faults that the operator has to repair, and a full
+/// disk. All inputs of the session pass through this object. It remembers inputs that have to be handled
+/// later.
 class OperatorGate {
  public:
   /// All references must outlive this object. `display` may be null.
@@ -63,7 +64,7 @@ class OperatorGate {
   void stop(const std::string& reason);
   bool stop_asked() const { return stop_asked_; }
   const std::string& stop_reason() const { return stop_reason_; }
-  /// If somebody has asked for a pause, shows its page until somebody presses Continue.
+  /// If somebody has asked for a pause, shows the pause page until somebody presses Continue.
   Flow pause_if_asked();
   /// The latest fault, if nobody has dealt with it yet.
   const std::optional<Fault>& fault() const { return fault_; }

@@ -11,9 +11,9 @@ using terms::FaultKind;
 
 /// The content of the participant's screen. The session decides what it contains; a display only draws it.
 enum class PageKind {
-  /// the text of the block, or of its speed or accuracy instruction, and Continue
+  /// the block's text or its speed or accuracy instruction, and a Continue button
   instructions,
-  cue,  ///< get ready: shows where to slide the finger, and the mark; no answers
+  cue,  ///< get ready: shows where to slide the finger, and the mark of the question
   /// free exploration, or interval number `interval` of `intervals`; answers are accepted if `answers_open`
   stimulus,
   pause,     ///< the gap between two intervals, in silence
@@ -21,7 +21,7 @@ enum class PageKind {
   feedback,  ///< shows whether the answer was right (`correct`), or the message after a late answer (`text`)
   interval,  ///< pause between trials; empty except for the progress
   rest,      ///< a break of `remaining_s`; Continue appears once it is over
-  /// the surface is silent; after the answer, the participant says how sure it was
+  /// the surface is silent; after the answer, the participant says how sure he or she is
   confidence,
   /// a question of a questionnaire or a consent: a text, perhaps long, and answers of equal size
   question,
@@ -47,10 +47,11 @@ struct AnswerButton {
 struct ValueEntry {
   double low = 0, high = 1;
   int decimals = 0;
-  /// along a line: where the texts are (0 to 1), and the texts
+  /// texts along the line, and their positions on it, from 0 (left end) to 1
   std::vector<double> places;
   std::vector<std::string> texts;
-  std::string first;  ///< number pad only: a sentence that gives the number of the standard; may be ""
+  std::string first;  ///< number pad only: first line, which says what number stands for the standard
+                      ///< stimulus; may be ""
 };
 
 /// The bars that guide the finger: normal force and speed. Lateral force, friction and position are left out
@@ -73,20 +74,21 @@ struct SummaryLine {
 
 struct Page {
   PageKind kind = PageKind::interval;
-  std::string title;  ///< block title or headline
+  std::string title;  ///< title of the block, or headline of the page
   std::string text;   ///< the question, instruction or message, in the session's language
   std::vector<AnswerButton> answers;
   bool answers_open = false;
   bool back = false;            ///< the participant can return to the previous question or page
-  bool playing = false;         ///< an example is being presented
-  std::string picture;          ///< on an explanation: path of the picture; may be ""
-  bool answer_now = false;      ///< the response signal has been given
-  std::optional<bool> correct;  ///< whether the answer was right; for feedback only
+  bool playing = false;         ///< true while an example is being presented
+  std::string picture;          ///< path of an explanation's picture; "" if there is none
+  bool answer_now = false;      ///< true once the response signal has been given
+  std::optional<bool> correct;  ///< whether the answer was right; used only for feedback
   /// "", "speed", "accuracy", ...: determines the block's style, which never differs by colour alone
   std::string instruction;
-  /// position of the mark, measured from the wide end; empty if none is shown
+  /// position of the mark on the surface to which the question refers, measured from the wide end; empty if
+  /// there is none
   std::optional<double> mark_mm;
-  double length_mm = 0;  ///< length of the surface, for its drawing
+  double length_mm = 0;  ///< length of the surface, for drawing it
   double wide_half_width_mm = 0, narrow_half_width_mm = 0;
   bool wide_end_left = true;
   /// number of the current interval, counted from 1, and total number of intervals
@@ -98,7 +100,7 @@ struct Page {
   double remaining_s = 0;  ///< remaining time of a break
   /// for an adjustment: position, limits and step of the slider
   double slider = 0, slider_min = 0, slider_max = 1, slider_step = 0;
-  ValueEntry value;                  ///< what a line or a number pad needs
+  ValueEntry value;                  ///< settings of the rating line or the number pad
   std::optional<Guidance> guidance;  ///< bars that guide the finger, if the page has them
   std::string language;
   /// "disarmed" or "faulted" while the operator has to act (on a fault page); otherwise "armed", "enabled",
@@ -118,7 +120,8 @@ class Display {
  public:
   virtual ~Display() = default;
   virtual void show(const Page& page) = 0;
-  /// Moves the bars of the page that is shown. Called on the session thread, some twenty times a second.
+  /// Moves the bars for force and speed on the page that is shown. Called on the session thread, about twenty
+  /// times a second.
   virtual void guide(const Guidance& /*guidance*/) {}
 };
 

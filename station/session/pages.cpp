@@ -14,7 +14,7 @@ namespace {
 
 using trial::Phase;
 
-/// Returns the position of the mark in the question: the value of the factor `mark_mm`.
+/// Returns the position of the mark to which the trial's question refers: the value of the factor `mark_mm`.
 std::optional<double> mark_of(const trial::TrialSpec& spec) {
   const auto found = spec.factors.find("mark_mm");
   if (found == spec.factors.end()) return std::nullopt;
@@ -49,8 +49,8 @@ PageKind kind_of(Phase phase) {
   }
 }
 
-/// The letters by which the questions of these tasks refer to the intervals. They are the same in every
-/// language.
+/// The letters by which the questions of ABX and match-to-sample tasks refer to the intervals. They are the
+/// same in every language.
 std::vector<std::string> interval_names(protocol::TaskKind kind) {
   if (kind == protocol::TaskKind::abx) return {"A", "B", "X"};
   if (kind == protocol::TaskKind::match_to_sample) return {"X", "A", "B"};

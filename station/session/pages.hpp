@@ -9,30 +9,31 @@
 
 namespace turnpoint::session {
 
-/// Makes the pages of one session, with texts in its language, the drawing of the surface, and the progress.
+/// Makes the pages of one session. They contain texts in the session's language, the size of the surface for
+/// its drawing, and the progress.
 class Pages {
  public:
   Pages(const Setup& setup);
 
-  /// Shows a block's instructions: the text of its speed or accuracy instruction if it has one, otherwise the
-  /// task's question.
+  /// Makes the page with a block's instructions: the text of its speed or accuracy instruction if it has one,
+  /// otherwise the task's question.
   Page instructions(const protocol::Block& block, const trial::Director& director) const;
-  /// Adds the mark that the block's first trial will ask about.
+  /// Adds the mark on the surface that the question of the block's first trial refers to.
   void add_mark(Page& page, const trial::TrialSpec& first) const;
   /// Makes the page for one phase of a trial.
   Page of_phase(trial::Phase phase, int interval, const trial::TrialSpec& spec, const protocol::Block& block,
                 const trial::Result& result, const trial::Director& director) const;
-  /// Returns the text that tells the participant what to change after a wrong movement. `word` is the word
-  /// for this movement in the trial's row.
+  /// Returns the text that tells the participant what to change after a wrong movement. `word` is the name of
+  /// the wrong movement in the trial's row, such as "light".
   std::string movement(const std::string& word) const;
   /// Adds the slider of an adjustment to the page of a phase.
   void add_slider(Page& page, const trial::SliderSpan& span, double setting) const;
-  /// The page between two trials, with the progress only.
+  /// Makes the page between two trials, which shows only the progress.
   Page between_trials(const protocol::Block* block, const trial::Director& director) const;
-  /// A question of a questionnaire, or the form of a consent.
+  /// Makes the page with a question of a questionnaire or with a consent form.
   Page question(const protocol::Item& item, const trial::Director& director) const;
   Page explanation(const protocol::ExplanationPage& explanation, const trial::Director& director) const;
-  /// What a participant reads before the session ends because of a refusal or a screening.
+  /// Makes the page before a session ends early because of a refused consent or a screening.
   Page farewell(const protocol::Localised& text, const trial::Director& director) const;
   Page rest(const protocol::Block& block, double min_s, const trial::Director& director) const;
   Page practice_again(const protocol::Block& block, const trial::Director& director) const;

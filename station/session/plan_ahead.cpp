@@ -129,7 +129,7 @@ PlanAhead::Planned PlanAhead::plan(const trial::TrialSpec& trial, double drift) 
   return planned;
 }
 
-/// Plans the scene of a friction table with the displacement that is the trial's level.
+/// Plans a trial of a friction table, whose level is the displacement of the surface.
 scene::DrivePlan PlanAhead::plan_strokes(const trial::TrialSpec& trial) {
   const auto& strokes = *trial.strokes;
   if (*trial.level == 0) {

@@ -43,12 +43,13 @@ class PlanAhead {
   void begin(const trial::TrialSpec& trial);
   /// True if take() would return at once.
   bool ready(const trial::TrialSpec& trial);
-  /// Returns the plans of a trial, and waits for them if necessary. If planning failed, throws its exception.
+  /// Returns the plans of a trial, and waits for them if necessary. If planning failed, throws the planner's
+  /// exception.
   const Planned& take(const trial::TrialSpec& trial);
 
-  /// Says that the resonance frequencies of the surface have risen by the fraction `share`. All frequencies
-  /// are then multiplied by 1 + share, so that boundaries stay where they were planned. Plans that were made
-  /// before are made again.
+  /// Call this when the resonance frequencies of the surface have risen by the fraction `share`. All
+  /// frequencies are then multiplied by 1 + share, so that boundaries stay where they were planned. Plans
+  /// that were made before are made again.
   void set_drift(double share);
 
  private:
@@ -61,7 +62,7 @@ class PlanAhead {
   rig::Rig rig_;
   const protocol::Protocol& protocol_;
   const std::uint64_t seed_;
-  scene::Planner planner_;  // used by the worker thread only, while it plans
+  scene::Planner planner_;  // only the worker thread uses it, while it plans
   std::mutex mutex_;
   std::condition_variable_any changed_;
   bool planning_ = false;

@@ -8,12 +8,16 @@
 #include <charconv>
 #include <chrono>
 #include <filesystem>
+#include <limits>
+#include <map>
 #include <set>
 #include <utility>
 
+#include "station/protocol/sources.hpp"
 #include "station/store/open.hpp"
 #include "station/store/people.hpp"
 #include "station/store/read.hpp"
+#include "station/terms/usage_error.hpp"
 
 namespace turnpoint::session {
 
@@ -21,7 +25,7 @@ namespace {
 
 using std::chrono::sys_days;
 
-/// The day at the beginning of an ISO 8601 date; empty if there is none.
+/// Returns the day of an ISO 8601 date or date and time; empty if the text does not begin with one.
 std::optional<sys_days> day_of(const std::string& date) {
   int year = 0;
   unsigned month = 0, day = 0;
@@ -44,11 +48,25 @@ std::string text_of(const sys_days& day) {
 }
 
 /// True if this session counts as done.
-bool counts(const store::SessionRecord& session, const Setup& setup) {
-  if (session.start.run_mode != setup.run_mode || !session.start.planned_session) return false;
+bool counts(const store::SessionRecord& session, const protocol::Protocol& protocol, terms::RunMode mode) {
+  if (session.start.run_mode != mode || !session.start.planned_session) return false;
   if (session.status == records::SessionStatus::completed) return true;
-  return setup.protocol.sessions->incomplete == protocol::Unfinished::count && session.trials > 0 &&
+  return protocol.sessions->incomplete == protocol::Unfinished::count && session.trials > 0 &&
          session.status != records::SessionStatus::running;
+}
+
+/// The sessions that a person has had with a protocol.
+std::vector<store::SessionRecord> sessions_of(store::Database& database, const store::Bearer& person,
+                                              const std::string& protocol_id) {
+  const auto mine = store::People(database).same_as(person);
+  store::SessionFilter filter;
+  filter.protocol_id = protocol_id;
+  auto sessions = store::list_sessions(database, filter);
+  std::erase_if(sessions, [&](const auto& session) {
+    const store::Bearer bearer{session.start.station_id, session.start.participant};
+    return std::find(mine.begin(), mine.end(), bearer) == mine.end();
+  });
+  return sessions;
 }
 
 /// Refuses a session that comes too early after the last one.
@@ -72,7 +90,7 @@ void check_days(const Setup& setup, const std::vector<const store::SessionRecord
   if (!setup.early.empty())
     next.overruled = std::move(problem);
   else
-    next.problem = std::move(problem),
+    next.problem = std::move(problem), next.too_early = true,
     next.allowed = "come back on that day, or give the reason to begin earlier with --early; it is stored";
 }
 
@@ -95,7 +113,8 @@ NextSession next_session(const Setup& setup, const std::vector<store::SessionRec
   std::vector<const store::SessionRecord*> done;
   std::set<int> numbers;
   for (const auto& session : earlier)
-    if (counts(session, setup)) done.push_back(&session), numbers.insert(*session.start.planned_session);
+    if (counts(session, setup.protocol, setup.run_mode))
+      done.push_back(&session), numbers.insert(*session.start.planned_session);
   int number = 1;
   while (numbers.count(number) > 0) ++number;
   next.number = setup.planned_session.value_or(number);
@@ -115,15 +134,53 @@ NextSession next_session(const Setup& setup) {
   std::vector<store::SessionRecord> earlier;
   if (setup.protocol.sessions && std::filesystem::exists(setup.database)) {
     auto database = store::open_reader(setup.database);
-    const auto mine = store::People(database).same_as({station_id(), setup.participant});
-    store::SessionFilter filter;
-    filter.protocol_id = setup.protocol.id;
-    for (auto& session : store::list_sessions(database, filter))
-      if (std::find(mine.begin(), mine.end(),
-                    store::Bearer{session.start.station_id, session.start.participant}) != mine.end())
-        earlier.push_back(std::move(session));
+    earlier = sessions_of(database, {station_id(), setup.participant}, setup.protocol.id);
   }
   return next_session(setup, earlier, local_time());
+}
+
+procedure::EarlierTrials earlier_trials(const std::string& database_path, const protocol::Protocol& protocol,
+                                        const store::SessionRecord& session) {
+  procedure::EarlierTrials earlier;
+  const auto continues = [](const auto& spec) { return spec.continues; };
+  if (!protocol.sessions || std::ranges::none_of(protocol.procedures, continues) ||
+      !std::filesystem::exists(database_path))
+    return earlier;
+  const auto& start = session.start;
+  auto database = store::open_reader(database_path);
+  // Of several sessions with the same number, the newest counts.
+  std::map<int, const store::SessionRecord*> before;
+  const auto all = sessions_of(database, {start.station_id, start.participant}, protocol.id);
+  for (const auto& other : all) {
+    if (!counts(other, protocol, start.run_mode) || other.session_index >= session.session_index ||
+        *other.start.planned_session >= start.planned_session.value_or(0))
+      continue;
+    auto& newest = before[*other.start.planned_session];
+    if (newest == nullptr || newest->session_index < other.session_index) newest = &other;
+  }
+  for (const auto& [number, other] : before) {
+    if (other->start.protocol_version != protocol.version)
+      throw terms::UsageError(fmt::format(
+          "participant {} had session {} with version {} of {}, and procedures that continue need the same "
+          "version in all sessions; this file is version {}",
+          start.participant, number, other->start.protocol_version, protocol.id, protocol.version));
+    trial::add_earlier_trials(protocol, store::read_session(database, *other).blocks, earlier);
+  }
+  for (const auto& [name, trials] : earlier) {
+    const auto& spec = *protocol::find_procedure(protocol, name);
+    procedure::continue_from(trials, spec, *procedure::make_procedure(spec, {}, {}));
+  }
+  return earlier;
+}
+
+procedure::EarlierTrials earlier_trials(const Setup& setup, const NextSession& next) {
+  store::SessionRecord session;
+  session.start.participant = setup.participant;
+  session.start.station_id = station_id();
+  session.start.run_mode = setup.run_mode;
+  session.start.planned_session = next.number;
+  session.session_index = std::numeric_limits<int>::max();
+  return earlier_trials(setup.database, setup.protocol, session);
 }
 
 std::string station_id() {

@@ -9,10 +9,10 @@
 
 namespace turnpoint::session {
 
-// Functions that the real and the virtual stage share. They work on a stream of the drive.
+// Functions that the real and the virtual stage share. They use an audio stream (drive::Stream).
 
-/// The burst of one interval of the current trial. It is kept because the reports of the drive name only the
-/// burst.
+/// The burst of one interval of the current trial. It is kept because the drive's reports give only the
+/// burst's number, not the interval.
 struct Presented {
   std::uint32_t burst = 0;
   std::int64_t start_frame = 0, end_frame = 0;
@@ -26,7 +26,8 @@ inline std::optional<int> interval_of(const std::vector<Presented>& presented, s
   return std::nullopt;
 }
 
-/// Schedules the intervals of a trial. Returns nothing if the stream's clock is not known yet.
+/// Schedules the intervals of a trial. Returns nothing if the stream does not know yet at which time it plays
+/// which frame.
 inline std::vector<Onset> schedule(drive::Stream& stream, std::span<const drive::PreparedBurst> intervals,
                                    std::int64_t earliest_ns, std::vector<Presented>& presented) {
   const auto earliest = stream.frame_at(earliest_ns);
@@ -47,7 +48,7 @@ inline std::vector<Onset> schedule(drive::Stream& stream, std::span<const drive:
   return {};
 }
 
-/// The intervals with the frames at which they were scheduled.
+/// Returns the bursts of the intervals, with the start frames at which they were scheduled.
 inline std::vector<drive::PreparedBurst> scheduled(std::span<const drive::PreparedBurst> intervals,
                                                    const std::vector<Presented>& presented) {
   std::vector<drive::PreparedBurst> bursts(intervals.begin(), intervals.end());

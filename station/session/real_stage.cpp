@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
 #include <cstring>
 #include <deque>
@@ -16,23 +17,25 @@ namespace turnpoint::session {
 
 namespace {
 
-constexpr std::int64_t kPoll_ns = 5'000'000;        // interval between two polls of drive and guard
+constexpr std::int64_t kPoll_ns = 5'000'000;        // time between two polls of drive and amplifier guard
 constexpr std::int64_t kClocks_ns = 1'000'000'000;  // interval between two comparisons of the clocks
 // time from switching the amplifier on to the first stimulus
 constexpr std::int64_t kSettle_ns = 50'000'000;
 constexpr std::int64_t kFirstBlocks_ns = 500'000'000;
-// longest wait for the first position of a restarted device
+// longest wait until a restarted sound device reports its position
 constexpr std::int64_t kFirstPosition_ns = 500'000'000;
 // longest wait for the report that an interval was played completely
 constexpr std::int64_t kHeard_ns = 1'000'000'000;
-constexpr std::int64_t kPilot_ns = 1'000'000'000;               // longer than a pilot can take to come back
-constexpr double kTare_s = sensing::TrialFinger::tare_s + 0.1;  // the filter needs the rest
-constexpr std::int64_t kMeasured_ns = 1'000'000'000;  // longest wait for what was captured of an interval
-// A proof needs captured frames from before the onset, so expect() must be called at least this long before
-// the onset.
+constexpr std::int64_t kPilot_ns = 1'000'000'000;               // longest wait for the captured pilot
+constexpr double kTare_s = sensing::TrialFinger::tare_s + 0.1;  // 0.1 s longer than the tare, for the filter
+constexpr std::int64_t kMeasured_ns = 1'000'000'000;  // longest wait for the captured frames of an interval
+// The measurement of an interval (its proof) needs captured frames from before the onset, so expect() must be
+// called at least this long before the onset.
 constexpr std::int64_t kExpected_ns = 50'000'000;
 // time from the end of the last stimulus to switching the amplifier off
 constexpr std::int64_t kTail_ns = 20'000'000;
+// longest wait for a converter of force cells that was connected again
+constexpr std::int64_t kConverter_ns = 1'500'000'000;
 
 class RealStage : public Stage {
  public:
@@ -47,6 +50,7 @@ class RealStage : public Stage {
     reference_ = capture->reference;
     has_cells_ = capture->setup.finger.has_value();
     feed_ = std::make_unique<CaptureFeed>(devices_.open_capture(capture->device), *capture);
+    if (capture->cells) cells_ = std::make_unique<CellFeed>(*capture->cells, devices_.open_cells);
   }
 
   std::int64_t now_ns() override { return system::monotonic_ns(); }
@@ -140,6 +144,7 @@ class RealStage : public Stage {
 
   Refusal open_amplifier() override {
     if (const auto refusal = align()) return refusal;
+    if (const auto refusal = await_cells()) return refusal;
     closing_ = false;
     if (amplifier() == drive::AmplifierState::enabled) return std::nullopt;
     opened_ns_ = now_ns();
@@ -200,13 +205,32 @@ class RealStage : public Stage {
                              pilot_.channel, reference_)};
   }
 
+  /// Waits for the converter of the force cells, if it has one of its own and was disconnected. A device that
+  /// is connected again is found within a second.
+  Refusal await_cells() {
+    if (!cells_ || cells_->problem().empty()) return std::nullopt;
+    closing_ = true;
+    const auto until_ns = now_ns() + kConverter_ns;
+    wait_for([&] { return cells_->problem().empty() || now_ns() > until_ns; });
+    if (auto problem = cells_->problem(); !problem.empty())
+      return Fault{FaultKind::capture, std::move(problem)};
+    await_tare();
+    return std::nullopt;
+  }
+
+  /// The playback frame before which everything has been measured that is measured at all.
+  std::int64_t measured_until() const {
+    const auto captured = feed_->end_frame();
+    return cells_ && cells_->problem().empty() ? std::min(captured, cells_->end_frame()) : captured;
+  }
+
   /// The force cells are read before each trial, which needs captured frames since the pilot.
   void await_tare() {
     const auto rate_Hz = stream_->config().output.rate_Hz;
     const auto until_ns = now_ns() + static_cast<std::int64_t>(1e9 * feed_->longest_wait_s());
     const auto wanted = stream_->frame_at(now_ns()).value_or(0) +
                         static_cast<std::int64_t>(kTare_s * static_cast<double>(rate_Hz));
-    wait_for([&] { return feed_->end_frame() >= wanted || !feed_->aligned() || now_ns() > until_ns; });
+    wait_for([&] { return measured_until() >= wanted || !feed_->aligned() || now_ns() > until_ns; });
   }
 
   /// Reports the intervals whose samples have been captured: first the measurements of an interval, then that
@@ -216,7 +240,7 @@ class RealStage : public Stage {
       const auto [interval, limit_ns] = unmeasured_.front();
       auto& watch = feed_->watch();
       const auto index = static_cast<std::size_t>(interval);
-      if (feed_->aligned() && feed_->end_frame() < watch.known_at(index) && now < limit_ns) return;
+      if (feed_->aligned() && measured_until() < watch.known_at(index) && now < limit_ns) return;
       unmeasured_.pop_front();
       Input input;
       input.time_ns = now;
@@ -246,6 +270,7 @@ class RealStage : public Stage {
       closing_ = false;
     }
     while (const auto event = stream_->poll()) hear(*event, now);
+    if (cells_) follow_cells(now);
     measure(now);
     if (feed_) take_captured();
     look_at_samples();
@@ -260,7 +285,8 @@ class RealStage : public Stage {
     if (now >= clocks_due_ns_) look_at_clocks(now);
   }
 
-  /// Collects the trigger codes that were read back, and reports pulses of other devices that were captured.
+  /// Passes on the trigger codes that were found in the captured signal, and reports the captured pulses of
+  /// other devices.
   void take_captured() {
     const auto news = feed_->triggers().take();
     triggers_->captured(news);
@@ -270,7 +296,7 @@ class RealStage : public Stage {
     }
   }
 
-  /// A pulse on a GPIO line has only a time; adds the playback frame at that time.
+  /// Adds the playback frame to a pulse on a GPIO line, for which only the time is known.
   Input with_frame(Input input) {
     if (input.kind == InputKind::sync && input.text.empty())
       if (const auto frame = stream_->frame_at(input.time_ns)) input.text = fmt::format("frame {}", *frame);
@@ -304,6 +330,15 @@ class RealStage : public Stage {
     push(InputKind::notice, now,
          fmt::format("the capture has lost {} frames in {} overruns, and has had {} gaps of unknown length",
                      counters.lost_frames, counters.overruns, counters.unknown_gaps));
+  }
+
+  /// Passes on what the converter of the force cells has sent. Samples that it has lost make the forces of a
+  /// trial unknown only if the trial needs them.
+  void follow_cells(std::int64_t now) {
+    auto playback = stream_->clock();
+    playback.time_ns += std::llround(1e9 * stream_->config().converter_delay_s);
+    cells_->follow(playback, feed_->watch());
+    for (auto& news : cells_->news()) push(InputKind::notice, now, std::move(news));
   }
 
   /// Returns the time of the frame that comes `frames` after an onset.
@@ -390,9 +425,10 @@ class RealStage : public Stage {
   std::optional<Triggers> triggers_;
   bool has_cells_ = false;
   std::unique_ptr<CaptureFeed> feed_;  ///< null if nothing is captured
+  std::unique_ptr<CellFeed> cells_;    ///< null unless the force cells have a converter of their own
   sensing::Pilot pilot_;
   int reference_ = 0;
-  /// An interval that was played, and how long to wait for its captured samples.
+  /// An interval that was played, and the time until which to wait for its captured samples.
   struct Unmeasured {
     int interval = 0;
     std::int64_t limit_ns = 0;
@@ -400,16 +436,16 @@ class RealStage : public Stage {
   std::deque<Unmeasured> unmeasured_;
   std::vector<Presented> presented_;
   Onset first_onset_;        ///< onset of the trial's first interval
-  std::size_t unheard_ = 0;  ///< number of intervals for which no `heard` report has come yet
+  std::size_t unheard_ = 0;  ///< number of intervals not yet reported as played
   /// time at which the converter was lost during a trial; the surface has been silent since then
   std::optional<std::int64_t> lost_ns_;
   drive::UnderrunLimit underruns_;
   system::ClockWatch clocks_;
   std::int64_t clocks_due_ns_ = 0;
-  std::int64_t quiet_ns_ = 0;   ///< time from which the surface is silent
+  std::int64_t quiet_ns_ = 0;   ///< time from which the surface no longer vibrates
   std::int64_t opened_ns_ = 0;  ///< time at which the amplifier was enabled
   bool closing_ = false, fault_told_ = false;
-  std::uint32_t numbering_ = 0;  ///< the capture's `numbering` when a gap was last reported
+  std::uint32_t numbering_ = 0;  ///< the capture's `numbering` at the last reported loss of frames
   std::int64_t saturated_ = 0;   ///< number of samples clipped so far
   /// set if the converter runs at the wrong rate, until the device has been reopened
   Refusal wrong_rate_;

@@ -3,9 +3,11 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <optional>
 #include <stdexcept>
 #include <string>
 
+#include "station/protocol/sources.hpp"
 #include "station/session/planned_session.hpp"
 #include "station/text/number.hpp"
 #include "station/trial/question.hpp"
@@ -15,8 +17,8 @@ namespace turnpoint::session {
 
 namespace {
 
-/// Advances the director to a block that the log contains. Finishes its current block first, or repeats the
-/// recorded restart of the block or session.
+/// Advances the director to a block that the log contains. For this, finishes the director's current block,
+/// or repeats a restart of the block or session that is in the log.
 void enter_stored(trial::Director& director, const records::BlockStart& block) {
   const auto here = [&] {
     return director.block_index() == block.block_index && director.attempt() == block.attempt;
@@ -31,10 +33,32 @@ void enter_stored(trial::Director& director, const records::BlockStart& block) {
         " is not the block that the protocol runs next; the session and the protocol do not belong together");
 }
 
+/// Refuses a session because the separate program of a procedure would not present the stored level.
+[[noreturn]] void refuse_program(const std::string& procedure, const records::TrialRow& trial,
+                                 const std::string& now, const store::StoredSession& stored,
+                                 const programs::Programs& programs) {
+  std::string path = procedure, change = "does not give the same levels for the same seed and answers";
+  for (const auto& program : programs.started()) {
+    if (program.procedure != procedure) continue;
+    path = program.path;
+    const auto* before = as_recorded(program, stored.events);
+    if (before != nullptr && before->sha256 != program.sha256)
+      change = fmt::format(
+          "has changed since it was stored: its version was {} (SHA-256 {}) and is {} (SHA-256 {})",
+          before->version, before->sha256, program.version, program.sha256);
+  }
+  throw std::runtime_error(
+      fmt::format("resume: stored trial {} cannot be replayed: program {} {}, but level {} is stored. The "
+                  "program {}. The "
+                  "session was left as it is; put the program back that gave these levels",
+                  trial.trial_index, path, now, trial.level.value_or(0), change));
+}
+
 /// Lets the director process a stored trial again. Throws std::runtime_error if the director would have
 /// presented another level or has another state afterwards. In that case the log comes from a different
 /// program or protocol.
-void replay(trial::Director& director, const records::TrialRow& trial, const protocol::Protocol& protocol) {
+void replay(trial::Director& director, const records::TrialRow& trial, const protocol::Protocol& protocol,
+            const store::StoredSession& stored, const programs::Programs& programs) {
   const auto mismatch = [&trial](const std::string& what) {
     throw std::runtime_error(
         fmt::format("resume: stored trial {} cannot be replayed: {}; the database, the protocol or this "
@@ -42,7 +66,13 @@ void replay(trial::Director& director, const records::TrialRow& trial, const pro
                     trial.trial_index, what));
   };
   const auto spec = director.next();
+  const bool by_program = protocol::is_program(protocol, trial.procedure);
+  if (!spec && by_program)
+    refuse_program(trial.procedure, trial, "is done before this trial", stored, programs);
   if (!spec) mismatch("the session would already have ended");
+  if (spec->level != trial.level && by_program && spec->procedure == trial.procedure)
+    refuse_program(trial.procedure, trial, fmt::format("now gives level {}", spec->level.value_or(0)), stored,
+                   programs);
   if (spec->level != trial.level)
     mismatch(fmt::format("this program would present level {}, but level {} is stored",
                          spec->level.value_or(0), trial.level.value_or(0)));
@@ -66,15 +96,15 @@ void replay(trial::Director& director, const records::TrialRow& trial, const pro
   if (director.state_hash() != trial.state_hash) mismatch("the state of the procedures differs afterwards");
 }
 
-/// Checks that the simulated observer of this program gives the stored answer, because a session must not mix
+/// Checks that the simulated observer gives the stored answer, because a session must not mix
 /// the answers of two different observers. Adjustments are not checked, because their rows contain no answer
 /// of the observer.
-void check_observer(const Setup& setup, const store::StoredSession& stored, const trial::TrialSpec& spec,
+void check_observer(const Setup& setup, const observer::Respondent& observer,
+                    const store::StoredSession& stored, const trial::TrialSpec& spec,
                     const records::TrialRow& trial) {
   constexpr double tolerance_s = 1e-3;
   if (trial.outcome != terms::Outcome::answered || !trial.response_time_s || spec.slider || spec.strokes)
     return;
-  const observer::Observer observer(observer::parse(setup.observer));
   const auto reply = observer.answer(trial::question_of(spec, setup.protocol, stored.session.start.seed));
   const auto& choices = setup.protocol.task.choices;
   const auto answer = reply.value    ? std::optional(text::exact(*reply.value))
@@ -83,23 +113,35 @@ void check_observer(const Setup& setup, const store::StoredSession& stored, cons
   if (answer == trial.response && reply.confidence == trial.confidence &&
       std::fabs(reply.response_time_s - *trial.response_time_s) < tolerance_s)
     return;
-  throw std::runtime_error(
-      "resume: trial " + std::to_string(trial.trial_index) +
-      " was not answered as the simulated observer \"" + setup.observer +
-      "\" of this program would answer; only the earlier version that recorded the session can continue it");
+  throw std::runtime_error("resume: trial " + std::to_string(trial.trial_index) +
+                           " was not answered as the simulated observer \"" + setup.observer +
+                           "\" would answer now; only the version that recorded the session can continue it");
 }
 
 }  // namespace
 
-trial::Director replayed(const Setup& setup, const store::StoredSession& stored) {
-  trial::Director director(setup.protocol, visit_of(stored.session), stored.session.start.seed);
+const records::ProgramRow* as_recorded(const records::ProgramRow& program,
+                                       const std::vector<records::EventRow>& events) {
+  const records::ProgramRow* last = nullptr;
+  for (const auto& event : events)
+    for (const auto& stored : event.programs)
+      if (stored.role == program.role && stored.procedure == program.procedure) last = &stored;
+  return last;
+}
+
+trial::Director replayed(const Setup& setup, const store::StoredSession& stored,
+                         programs::Programs& programs) {
+  trial::Director director(setup.protocol, visit_of(stored.session), stored.session.start.seed, &programs,
+                           earlier_trials(setup.database, setup.protocol, stored.session));
+  const auto observer =
+      setup.observer.empty() ? std::nullopt : std::optional(programs.respondent(setup.observer));
   for (const auto& block : stored.blocks) {
     enter_stored(director, block.start);
     for (const auto& trial : block.trials)
       if (trial.type != terms::TrialType::warmup) {
         const auto spec = director.next();
-        replay(director, trial, setup.protocol);
-        if (spec && !setup.observer.empty()) check_observer(setup, stored, *spec, trial);
+        replay(director, trial, setup.protocol, stored, programs);
+        if (spec && observer) check_observer(setup, *observer, stored, *spec, trial);
       }
   }
   switch (setup.resume_at) {

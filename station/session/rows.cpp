@@ -78,7 +78,7 @@ std::string value_of(const Input& input) {
   return std::to_string(input.value);
 }
 
-/// The interval and the scene to which tones belong, and when that scene begins.
+/// The interval and the scene to which a group of tones belongs, and the start and length of that scene.
 struct Placed {
   int interval = 0, scene = 0;
   std::int64_t onset_frame = 0, length_frames = 0;

@@ -29,25 +29,26 @@ void set_scene(records::TrialRow& row, const scene::DrivePlan& scene, std::int64
 /// yet.
 void add_measured(records::TrialRow& row, const sensing::IntervalResult& measured, int interval, bool first);
 
-/// A playback frame and its time from the start of the segment.
+/// A playback frame, and its time since the start of the segment (the run of the program).
 struct FrameTime {
   std::int64_t frame = 0;
   double time_s = 0;
 };
-/// The movement that the protocol asks for.
+/// Returns the ranges of force and speed that the protocol asks for.
 sensing::MovementWindow window_of(const protocol::Sensing& sensing);
 /// The friction, relative to the surface at rest, at which the scene's boundary is planned; empty if the
-/// boundary is not an edge of friction.
+/// boundary is not defined by friction.
 std::optional<double> friction_level(const scene::Scene& scene);
-/// Which friction of a trial is to be computed from the signals of the force cells: at which level, and in
-/// which part of the surface.
+/// What to compute from a trial's force signals: `friction_level` defines the boundary to look for, and
+/// `part` is the part of the surface over which friction is averaged.
 struct Asked {
-  /// see friction_level(); empty: the felt boundary is where friction is half-way up the step
+  /// friction at which the boundary is planned, see friction_level(); if empty, the measured boundary lies
+  /// where friction is half-way up its step
   std::optional<double> friction_level;
   sensing::StripPart part;  ///< the part of the surface in which friction is averaged
 };
-/// The part of the surface in which the trial's friction is averaged: the part that its friction table
-/// describes, or the whole surface.
+/// Returns the part of the surface in which the trial's friction is averaged: in a trial for a friction
+/// table, the part that the table describes; otherwise the whole surface.
 sensing::StripPart part_of(const trial::TrialSpec& spec);
 /// Adds what the force cells measured in a trial: the summary, the felt boundary, friction, and the signal of
 /// the finger.

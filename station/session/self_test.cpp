@@ -67,8 +67,9 @@ CheckRow judged(const ToneReading& reading) {
     return not_possible(name, "the pick-ups are not calibrated for this transducer");
   const bool good = reading.proof == terms::Proof::ok || reading.proof == terms::Proof::flagged;
   CheckRow check{name, verdict(good), reading.ratio_dB, kToneLimit_dB, "dB", ""};
-  check.what = fmt::format("a quiet tone of {:.1f} kHz came back with {:+.2f} dB",
-                           1e-3 * reading.frequency_Hz, reading.ratio_dB);
+  check.what =
+      fmt::format("a quiet tone of {:.1f} kHz was measured at {:+.2f} dB relative to its calibration",
+                  1e-3 * reading.frequency_Hz, reading.ratio_dB);
   if (reading.cause != terms::ProofCause::none) check.what += fmt::format(": {}", describe(reading.cause));
   return check;
 }

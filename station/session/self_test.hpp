@@ -12,10 +12,12 @@ namespace turnpoint::session {
 using records::CheckRow;
 using records::Verdict;
 
-/// Readings of the self-test. In each, `missing` says why nothing could be measured; "" if it was measured.
+/// The following structs are readings of the self-test. In each, `missing` says why nothing could be
+/// measured; it is "" after a measurement.
 
-/// The external monitor must shut the gate of the amplifier if the heartbeat stops. This reading was taken
-/// after the heartbeat was stopped while the enable line was high.
+/// The external monitor (a circuit, see deploy/README.md) must shut the gate of the amplifier if the
+/// station's heartbeat signal stops. This reading was taken after the heartbeat was stopped while the enable
+/// line was high.
 struct GateReading {
   std::string missing;
   bool opened = false;  ///< the gate was open while the heartbeat ran
@@ -23,10 +25,10 @@ struct GateReading {
       dropped_s;  ///< time from the stop of the heartbeat until the gate was shut; empty: never
 };
 
-/// The result of asking somebody to press and release the stop or a response button.
+/// The result of asking somebody to press and release the stop button or a response button.
 struct PressReading {
   std::string missing;
-  std::string button;  ///< name of the button; "" for the stop
+  std::string button;  ///< name of the button; "" for the stop button
   bool pressed = false, released = false;
 };
 
@@ -35,16 +37,16 @@ struct ToneReading {
   std::string missing;
   std::string transducer;
   double frequency_Hz = 0;
-  double ratio_dB = 0;  ///< measured level relative to the calibration
+  double ratio_dB = 0;  ///< measured level of the tone relative to its calibration
   terms::Proof proof = terms::Proof::unproven;
   terms::ProofCause cause = terms::ProofCause::none;
 };
 
-/// One force cell without a finger on the surface.
+/// The reading of one force cell while no finger is on the surface.
 struct CellReading {
   std::string missing;
-  std::string cell;                 ///< "a", "b" or "lateral"
-  std::string fault;                ///< why the cell could not be read although it should; "" if it was
+  std::string cell;                 ///< name of the cell: "a", "b" or "lateral"
+  std::string fault;                ///< why the cell could not be read; "" if it was read
   double zero_N = 0, noise_mN = 0;  ///< mean force, and the standard deviation of the force signal
 };
 
@@ -59,12 +61,12 @@ struct ClockReading {
 inline constexpr double kGateLimit_s = 0.25;
 inline constexpr double kZeroLimit_N = 1;    ///< a tenth of a cell's rated load
 inline constexpr double kNoiseLimit_mN = 2;  ///< the same limit as for the tare before a trial
-inline constexpr double kToneLimit_dB = 1;   ///< the same deviation at which a stimulus is refused
+inline constexpr double kToneLimit_dB = 1;   ///< a stimulus with a larger deviation is refused
 inline constexpr double kHottest_C = 80;     ///< above this temperature, boards reduce their clock frequency
-inline constexpr double kLeastDisk_MiB = 200;  ///< space that a session needs
+inline constexpr double kLeastDisk_MiB = 200;  ///< free disk space that a session needs
 inline constexpr double kLongestPress_s = 20;  ///< how long the self-test waits for a press or a release
 
-/// Each of these functions judges one reading. They are pure.
+/// Each of these functions judges one reading; they use no device.
 CheckRow judged(const GateReading& reading);
 CheckRow judged(const PressReading& reading);
 CheckRow judged(const ToneReading& reading);
@@ -82,9 +84,9 @@ class SelfTestRig {
   virtual GateReading drop_heartbeat() = 0;
   virtual PressReading press_stop() = 0;
   virtual std::vector<PressReading> press_buttons() = 0;
-  /// One reading for each transducer.
+  /// Returns one reading for each transducer.
   virtual std::vector<ToneReading> play_tones() = 0;
-  /// Called after play_tones().
+  /// Must be called after play_tones(), during which the cells are captured.
   virtual std::vector<CellReading> read_cells() = 0;
   virtual std::optional<double> hottest_C() = 0;
   virtual ClockReading clock() = 0;
@@ -94,7 +96,7 @@ class SelfTestRig {
 /// Runs all checks. A part that throws has failed; the other parts are still checked.
 std::vector<CheckRow> self_test(SelfTestRig& rig);
 
-/// True if no check failed. Checks that were not possible do not count.
+/// True if no check failed. Checks that were not possible count as not failed.
 bool passed(const std::vector<CheckRow>& checks);
 
 }  // namespace turnpoint::session

@@ -25,7 +25,8 @@ void require(const std::optional<Fault>& refusal, const char* what) {
   if (refusal) throw std::runtime_error(std::string(what) + ": " + terms::describe(*refusal));
 }
 
-/// Its destructor starts the heartbeat again and switches the amplifier off, even after an exception.
+/// Enables the amplifier. The destructor starts the heartbeat again and switches the amplifier off, even
+/// after an exception.
 class GateOpened {
  public:
   explicit GateOpened(drive::Amplifier& amplifier) : amplifier_(amplifier) {
@@ -116,8 +117,8 @@ class StageRig : public SelfTestRig {
       amplifier.hold_heartbeat();
       const auto held_ns = system::monotonic_ns();
       if (!until([&] { return amplifier.gate() == false; }, kGate_ns)) return reading;
-      // The external monitor must have shut the gate. After a fault the guard shuts it too, and the reading
-      // would say nothing about the monitor.
+      // Make sure that the external monitor has shut the gate. If the guard shut it after a fault, the
+      // reading would say nothing about the monitor.
       if (amplifier.state() == drive::AmplifierState::faulted)
         throw std::runtime_error("the amplifier was switched off for another reason: " +
                                  terms::describe(amplifier.fault()));
@@ -183,9 +184,8 @@ class StageRig : public SelfTestRig {
   std::vector<CellReading> read_cells() override {
     CellReading reading;
     if (!parts_.capture || !parts_.capture->finger) {
-      const auto& rig = *parts_.rig;
-      reading.missing = rig.capture && !rig.capture->bridges.empty() ? "the force cells are not calibrated"
-                                                                     : "the rig has no force cells";
+      reading.missing = rig::has_force_cells(*parts_.rig) ? "the force cells are not calibrated"
+                                                          : "the rig has no force cells";
       return {reading};
     }
     std::vector<CellReading> readings;
@@ -197,7 +197,7 @@ class StageRig : public SelfTestRig {
       } else {
         reading.fault = forces_ && forces_->state == sensing::ForcesState::wire
                             ? "a wire of the bridges or of the reference is off"
-                            : "captured frames were missing";
+                            : "samples of the cells were missing";
       }
       readings.push_back(reading);
     }

@@ -17,21 +17,23 @@ struct Request {
   enum class Kind { press_stop, release_stop, press_button };
   Kind kind = Kind::press_stop;
   int button = 0;    ///< index of the response button
-  std::string name;  ///< its name
+  std::string name;  ///< name of the response button
 };
 /// Puts a request to the operator. The self-test then waits until it is fulfilled.
 using AskOperator = std::function<void(const Request&)>;
 
-/// The parts of the station that the self-test uses. All pointers must outlive the rig.
+/// The parts of the station that the self-test uses. Everything that the pointers refer to must outlive the
+/// SelfTestRig.
 struct SelfTestParts {
   const rig::Rig* rig = nullptr;
-  Stage* stage = nullptr;                 ///< runs in real time
+  Stage* stage = nullptr;                 ///< the stage under test; it must run in real time
   drive::Amplifier* amplifier = nullptr;  ///< the amplifier of the stage; null if the stage simulates it
-  /// The stage on which tones are played: `stage` itself, or a stage in a simulated room; null if the rig
-  /// captures nothing.
+  /// The stage with which tones are played and captured: `stage` itself or, in a simulated rig, a stage whose
+  /// output goes through a simulated plate back to its capture. Null if the rig captures nothing.
   Stage* room = nullptr;
-  std::optional<CaptureSetup> capture;  ///< how the room captures; empty if the rig captures nothing
-  AskOperator ask;                      ///< empty if nobody is there; then no button is tested
+  std::optional<CaptureSetup> capture;  ///< what `room` captures; empty if it captures nothing
+  /// asks the operator; empty if nobody is there, and then no button is tested
+  AskOperator ask;
   std::string data_folder;
   std::function<system::Clocks()> clocks = system::read_clocks;
   std::string sensors = "/sys/class/hwmon";

@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "station/limits/finger_account.hpp"
+#include "station/programs/programs.hpp"
 #include "station/protocol/visits.hpp"
 #include "station/session/planned_session.hpp"
 #include "station/session/replay.hpp"
@@ -127,7 +128,7 @@ drive::StreamConfig simulated_stream(const rig::Rig& rig) {
   config.virtual_lead_frames = std::int64_t{config.output.periods} * config.output.period_frames;
   const bool hardware = config.output.uri.starts_with("alsa:") && config.output.allow_plugin.empty();
   if (hardware) config.output.uri = "null:";
-  // Without a reader, skip the computation of samples: half an hour has 300 million frames.
+  // If nothing reads the samples, do not compute them: half an hour has 300 million frames.
   if (config.output.uri == "null:" && !simulates_capture(rig)) config.samples = drive::Samples::passed;
   return config;
 }
@@ -152,9 +153,10 @@ struct Begun {
   Earlier earlier;
 };
 
-Begun begin(const Setup& setup, Stage& stage) {
+Begun begin(const Setup& setup, Stage& stage, programs::Programs& programs) {
   const auto next = next_session(setup);
   if (!next.problem.empty()) throw terms::UsageError(next.problem + "; " + next.allowed);
+  auto earlier = earlier_trials(setup, next);
   // With one seed for all participants, the planned sessions still have different orders.
   const auto stated =
       setup.protocol.seed
@@ -165,28 +167,38 @@ Begun begin(const Setup& setup, Stage& stage) {
       store::SessionLog::begin(setup.database, start_of(setup, seed, stage.realtime_rights(), next.number),
                                segment("start", stage.now_ns()));
   if (!next.overruled.empty()) log.annotate("begun early (" + setup.early + "): " + next.overruled);
-  trial::Director director(setup.protocol, visit_of(log.session()), seed);
+  trial::Director director(setup.protocol, visit_of(log.session()), seed, &programs, std::move(earlier));
   return {std::move(log), std::move(director), {}};
 }
 
 /// Replays the stored trials first and writes afterwards, so that a session that cannot be resumed stays
 /// unchanged.
-Begun resume(const Setup& setup, Stage& stage) {
+Begun resume(const Setup& setup, Stage& stage, programs::Programs& programs) {
   auto stored = store::read_session(setup.database, setup.resume_session);
-  auto director = replayed(setup, stored);
+  auto director = replayed(setup, stored, programs);
   auto log =
       store::SessionLog::resume(setup.database, setup.resume_session, segment("resume", stage.now_ns()));
+  for (const auto& program : programs.started()) {
+    const auto* before = as_recorded(program, stored.events);
+    if (before != nullptr && before->sha256 != program.sha256)
+      log.annotate(
+          fmt::format("program {} has changed since the session was interrupted: version {} (SHA-256 {}) "
+                      "was replaced by {} ({}); it repeated all stored trials alike",
+                      program.path, before->version, before->sha256, program.version, program.sha256));
+  }
   if (log.session().trials != stored.session.trials)
     throw std::runtime_error("resume: another process has added trials to session " + setup.resume_session +
                              " meanwhile; resume the session again");
   return {std::move(log), std::move(director), {std::move(stored.events), std::move(stored.blocks)}};
 }
 
-Summary run_on(const Setup& setup, Display* display, std::unique_ptr<Stage> stage, Monitor* monitor) {
+Summary run_on(const Setup& setup, Display* display, std::unique_ptr<Stage> stage,
+               programs::Programs& programs, Monitor* monitor) {
   auto account = account_of(setup, stage->now_ns());
-  auto begun = setup.resume_session.empty() ? begin(setup, *stage) : resume(setup, *stage);
+  auto begun =
+      setup.resume_session.empty() ? begin(setup, *stage, programs) : resume(setup, *stage, programs);
   SessionRun run(setup, std::move(begun.director), std::move(begun.log), begun.earlier, std::move(stage),
-                 std::move(account), display, monitor);
+                 std::move(account), display, monitor, &programs);
   return run.run();
 }
 
@@ -200,22 +212,24 @@ Summary run(const Setup& setup, Display* display, Inputs& inputs, Monitor* monit
 
 Summary run(const Setup& setup, Display* display, Inputs& inputs, std::unique_ptr<SimulatedRoom> room,
             Monitor* monitor) {
-  const observer::Observer observer(observer::parse(setup.observer));
+  programs::Programs programs(setup.protocol.path);
+  auto observer = programs.respondent(setup.observer);
   if (room && setup.protocol.sensing) room->ask_for(window_of(*setup.protocol.sensing));
   return run_on(setup, display,
-                virtual_stage(simulated_stream(setup.rig), observer, inputs, std::move(room),
+                virtual_stage(simulated_stream(setup.rig), std::move(observer), inputs, std::move(room),
                               trigger_setup_of(setup.rig)),
-                monitor);
+                programs, monitor);
 }
 
 Summary run(const Setup& setup, Display* display, Inputs& inputs, Devices devices, Monitor* monitor) {
   auto capture = card_capture_of(setup.rig);
   if (capture && capture->setup.finger && setup.protocol.sensing)
     capture->setup.finger->window = window_of(*setup.protocol.sensing);
+  programs::Programs programs(setup.protocol.path);
   return run_on(
       setup, display,
       real_stage(session_stream(setup.rig), std::move(devices), inputs, capture, trigger_setup_of(setup.rig)),
-      monitor);
+      programs, monitor);
 }
 
 }  // namespace turnpoint::session

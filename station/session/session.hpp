@@ -35,7 +35,8 @@ struct Setup {
   /// The current calibration, which is already applied to `rig`: the SHA-256 of its file, and the file's
   /// text. Both are "" if there is no calibration.
   std::string calibration_id, calibration_text;
-  std::vector<limits::SoundLevel> sound;  ///< measured levels at full scale, in order of frequency
+  /// measured sound levels of tones at full scale, in order of frequency
+  std::vector<limits::SoundLevel> sound;
   /// version of the consent form that the participant signed; "" if the study needs none
   std::string consent_version;
   /// The latency of the touch panel. It is stored with each answer that was given by touch, but never
@@ -46,14 +47,15 @@ struct Setup {
   std::string response_offset_quality;
   /// what is known about room, surface and finger; stored with the session
   records::Conditions conditions = {};
-  /// run the self-test before the first block; without a simulated observer, the operator has then armed the
-  /// amplifier
+  /// run the self-test before the first block; in a session with a person, it runs after the operator has
+  /// armed the amplifier
   bool self_test = false;
   /// the operator's reason to continue if a check of the self-test fails; with "", the operator is asked
   std::string despite = {};
   /// the planned session to run; empty: the participant's next one
   std::optional<int> planned_session = {};
-  /// the operator's reason to begin before the least number of days has passed; "" if there is none
+  /// the operator's reason to begin before the protocol's minimum number of days has passed; "" if there is
+  /// none
   std::string early = {};
   /// where the kernel lists its temperature sensors
   std::string thermometers = "/sys/class/hwmon";
@@ -67,7 +69,7 @@ struct Summary {
   std::uint64_t seed = 0;
   int blocks = 0, trials = 0, answered = 0, timeouts = 0, anticipations = 0, voided = 0;
   std::optional<double> accuracy;  ///< proportion correct of scored, answered, experimental trials
-  double duration_s = 0;           ///< measured on the session's clock
+  double duration_s = 0;           ///< duration of the session on its own clock
   int xruns = 0;
   /// number of trigger codes that were sent; of codes that were sent but not found in the captured signal;
   /// and of codes that were found but not sent
@@ -84,8 +86,8 @@ struct Summary {
 /// `inputs`. If the amplifier is real or the session is live, the surface stays silent until an operator has
 /// pushed InputKind::arm; the same holds after each fault of the amplifier. `monitor` may be null.
 ///
-/// If the setup has an observer, the session runs on the virtual clock and uses no hardware. Of `inputs`,
-/// only a stop has an effect, and only between trials. `display` may then be null.
+/// If the setup has an observer, the session runs on the virtual clock and uses no hardware. The only input
+/// with an effect is a request to stop, and it is read only between trials. `display` may then be null.
 ///
 /// Throws text::BadInput for a setup that cannot run, store::StoreError, and std::system_error for devices.
 Summary run(const Setup& setup, Display* display, Inputs& inputs, Monitor* monitor = nullptr);

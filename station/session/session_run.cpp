@@ -8,13 +8,14 @@ namespace turnpoint::session {
 
 SessionRun::SessionRun(const Setup& setup, trial::Director director, store::SessionLog log,
                        const Earlier& earlier, std::unique_ptr<Stage> stage, limits::FingerAccount account,
-                       Display* display, Monitor* monitor)
+                       Display* display, Monitor* monitor, programs::Programs* programs)
     : setup_(setup),
       log_(std::move(log)),
       stage_(std::move(stage)),
       account_(std::move(account)),
       display_(display),
       monitor_(monitor),
+      programs_(programs),
       plans_(setup.rig, setup.protocol, log_.session().start.seed),
       director_(std::move(director)),
       pages_(setup),
@@ -61,7 +62,8 @@ Summary SessionRun::run() {
 Flow SessionRun::run_parts() {
   while (director_.block() != nullptr) {
     // after a block's last trial, a resumed session only has to leave the block
-    const bool resumed_at_end = !director_.next();
+    const bool resumed_at_end = !next_trial();
+    if (gate_.stop_asked()) return Flow::stop;
     if (!resumed_at_end && interludes_.before(director_.block_index()) == Flow::stop) return Flow::stop;
     if (run_block() == Flow::stop) return Flow::stop;
   }
@@ -72,23 +74,24 @@ Flow SessionRun::run_block() {
   const auto block = *director_.block();
   gate_.keep(
       [&] { log_.begin_block(trial::block_start(block, director_.block_index(), director_.attempt())); });
-  const auto first = director_.next();
-  if (!first) return leave_block();
+  const auto first = next_trial();
+  if (!first) return gate_.stop_asked() ? Flow::stop : leave_block();
   plans_.begin(*first);
   auto page = director_.attempt() > 0 && block.practice ? pages_.practice_again(block, director_)
                                                         : pages_.instructions(block, director_);
   pages_.add_mark(page, *first);
   if (gate_.show_and_wait(std::move(page), 0) == Flow::stop) return Flow::stop;
   int trials = 0;
-  while (const auto spec = director_.next()) {
+  while (const auto spec = next_trial()) {
     if (run_trial(*spec) == Flow::stop) return Flow::stop;
     ++trials;
     if (rest_if_due(trials) == Flow::stop) return Flow::stop;
   }
-  return leave_block();
+  return gate_.stop_asked() ? Flow::stop : leave_block();
 }
 
 Flow SessionRun::leave_block() {
+  log_estimates();
   for (auto& e : director_.estimates()) summary_.estimates.push_back(std::move(e));
   if (director_.block()->kind == protocol::BlockKind::friction_table && finish_friction_table() == Flow::stop)
     return Flow::stop;
@@ -100,7 +103,7 @@ Flow SessionRun::leave_block() {
 Flow SessionRun::rest_if_due(int trials) {
   const auto& block = *director_.block();
   if (!block.break_after || trials % block.break_after->trials != 0) return Flow::go_on;
-  if (!director_.next()) return Flow::go_on;  // a block's last trial is not followed by a break
+  if (!next_trial()) return Flow::go_on;  // a block's last trial is not followed by a break
   return gate_.show_and_wait(pages_.rest(block, block.break_after->min_s, director_),
                              block.break_after->min_s);
 }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "station/limits/finger_account.hpp"
+#include "station/programs/programs.hpp"
 #include "station/sensing/friction_table.hpp"
 #include "station/sensing/phase_drift.hpp"
 #include "station/session/guidance.hpp"
@@ -27,9 +28,10 @@ namespace turnpoint::session {
 class SessionRun {
  public:
   /// `director` must be in the state that corresponds to the log, and to `earlier`, which is empty for a new
-  /// session.
+  /// session. `programs` starts the separate programs of the session; null if it has none.
   SessionRun(const Setup& setup, trial::Director director, store::SessionLog log, const Earlier& earlier,
-             std::unique_ptr<Stage> stage, limits::FingerAccount account, Display* display, Monitor* monitor);
+             std::unique_ptr<Stage> stage, limits::FingerAccount account, Display* display, Monitor* monitor,
+             programs::Programs* programs = nullptr);
 
   /// Runs until the last block has ended or somebody stops the session.
   Summary run();
@@ -41,13 +43,14 @@ class SessionRun {
     trial::Machine machine;
     records::TrialRow row;
     std::optional<trial::Slider> slider;  ///< the slider of an adjustment
-    std::optional<double> value;          ///< the answer, if it is a number
+    std::optional<double> value;          ///< the participant's answer, if it is a number
     std::vector<Onset> onsets;            ///< onsets of all intervals; set once the intervals are scheduled
     std::size_t begun = 0;                ///< number of intervals whose presentation has begun
     std::size_t measured = 0;  ///< number of intervals for which pick-ups have reported a measurement
     bool decided = false;
     bool outside = false;  ///< the finger did not move in the way that the protocol asks for
-    std::optional<double> friction_level = {};  ///< relative friction at which the last boundary is planned
+    /// the boundary of the trial's last scene is where the relative friction has this value
+    std::optional<double> friction_level = {};
     /// true if the answer came from a button, so that the touch panel's latency does not apply
     bool by_button = false;
   };
@@ -60,11 +63,17 @@ class SessionRun {
   Flow run_parts();
   Flow run_block();
   Flow leave_block();
-  Flow play_example(const protocol::Example& example, Page page);  // session_run_example.cpp
-  Flow pass_self_test();                                           // session_run_self_test.cpp
+  Flow play_example(const protocol::Example& example, Page page);  // in session_run_example.cpp
+  Flow pass_self_test();                                           // in session_run_self_test.cpp
   Flow rest_if_due(int trials_in_block);
   int trial_index() const { return log_.session().trials; }
   void finish(records::SessionStatus status, const std::string& reason);
+
+  // Procedures and observers that are separate programs (session_run_programs.cpp).
+  std::optional<trial::TrialSpec> next_trial();
+  void plan_ahead();
+  void log_programs();
+  void log_estimates();
 
   // One trial (session_run_trial.cpp).
   Flow run_trial(const trial::TrialSpec& spec);
@@ -100,7 +109,7 @@ class SessionRun {
   void move_bars();
   void hold_bars(trial::Phase phase, const Running& trial);
 
-  // Blocks of strokes (session_run_strokes.cpp).
+  // Blocks in which the finger strokes the surface and nothing is asked (session_run_strokes.cpp).
   bool is_training() const;
   void judge_strokes(const Input& input, Running& trial);
   Flow finish_friction_table();
@@ -118,6 +127,9 @@ class SessionRun {
   limits::FingerAccount account_;
   Display* display_;
   Monitor* monitor_;
+  programs::Programs* programs_;
+  /// why a program failed while the next trial was being planned; next_trial() deals with it
+  std::optional<std::string> failed_program_;
   PlanAhead plans_;
   trial::Director director_;
   Pages pages_;
@@ -133,7 +145,8 @@ class SessionRun {
   std::vector<std::string> thermometers_;
   std::array<std::optional<double>, 2> first_C_;
   std::array<bool, 2> warm_{};
-  std::optional<sensing::DriftTracker> drift_;  ///< empty without pick-ups
+  /// follows the drift of the resonances; empty without pick-ups
+  std::optional<sensing::DriftTracker> drift_;
   /// the newest drift that was found in the running trial
   std::optional<sensing::PhaseDrift> newest_drift_;
   /// fraction by which the frequencies of tones are raised, to follow the resonances
@@ -142,8 +155,8 @@ class SessionRun {
   std::int64_t guide_due_ns_ = 0;
 };
 
-/// Returns how far the boundary of a tone moves (in m, towards the narrow edge) if all resonance frequencies
-/// of the surface rise by the fraction `share`.
+/// Returns how far the place where a tone's vibration ends moves (in m, towards the narrow edge) if all
+/// resonance frequencies of the surface rise by the fraction `share`.
 double boundary_shift_m(const physics::Surface& surface, double frequency_Hz, double share);
 
 }  // namespace turnpoint::session

@@ -34,7 +34,7 @@ std::optional<trial::Event> SessionRun::event_in_trial(const Input& input, Runni
     return trial::Event{input.time_ns, trial::EventKind::answer, 0};
   }
   // If a number is expected, a button or a touch beside the number pad is no answer. A button cannot give a
-  // confidence either.
+  // confidence rating either.
   if (input.kind == InputKind::answer && (confiding ? by_button : answer.has_value())) return touch;
   if (trial.spec.strokes) {
     const auto event = event_of(input);

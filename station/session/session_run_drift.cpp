@@ -14,8 +14,8 @@ namespace {
 
 constexpr double kFlag_K = 3;
 constexpr double kCorrect_m = 0.2e-3;
-// A drift of 1 % would need a temperature change of 40 K. More than that means damage, which must not be
-// corrected: the proof has to report it.
+// A drift of 1 % would need a temperature change of 40 K. A larger drift means damage, which must not be
+// corrected: the vibration proof has to report it.
 constexpr double kMostDrift = 0.01;
 
 }  // namespace
@@ -26,8 +26,8 @@ double boundary_shift_m(const physics::Surface& surface, double frequency_Hz, do
   return then && now ? *now - *then : 0;
 }
 
-/// Reads the thermometers at the beginning of the session. Later temperatures are compared with these
-/// readings.
+/// Reads the thermometers at the beginning of the session. Temperatures during the session are compared with
+/// these readings.
 void SessionRun::begin_drift() {
   auto capture = stage_->capture();
   if (!capture)
@@ -38,8 +38,8 @@ void SessionRun::begin_drift() {
                    system::find_thermometer(setup_.rig.thermometers->frame_uri, setup_.thermometers)};
 }
 
-/// Logs the temperatures before a trial. The first time that one differs by 3 K from its first reading, the
-/// change is flagged; later changes are not.
+/// Logs the temperatures before a trial. When a thermometer first differs by 3 K from its reading at the
+/// start, the change is flagged; its later changes are not.
 void SessionRun::log_temperature() {
   if (thermometers_.empty()) return;
   const auto plate = system::read_thermometer_C(thermometers_[0]);

@@ -13,8 +13,8 @@ constexpr std::int64_t kToSurface_ns = 800'000'000;
 
 }  // namespace
 
-/// Presents an example of an explanation, under the same limits and with the same guard as a trial. An
-/// example that is interrupted is not repeated: the participant can press its button again.
+/// Presents an example of an explanation, under the same limits and with the same amplifier guard as a trial.
+/// An example that is interrupted is not repeated: the participant can press its button again.
 Flow SessionRun::play_example(const protocol::Example& example, Page page) {
   trial::TrialSpec spec;
   spec.block_index = director_.block_index();

@@ -26,8 +26,8 @@ std::string in_words(const sensing::FrictionTable& table, bool used) {
 
 bool SessionRun::is_training() const { return director_.block()->kind == protocol::BlockKind::training; }
 
-/// Ends a trial in which nothing is asked, once its movement is known. The trial is void if the forces are
-/// unknown.
+/// Ends a trial in which nothing is asked, once it is known how the finger moved. The trial is void if the
+/// forces are unknown.
 void SessionRun::judge_strokes(const Input& input, Running& trial) {
   const bool known = input.forces->state == sensing::ForcesState::ok;
   const int movement = input.forces->movement == sensing::Movement::ok ? 0 : 1;
@@ -37,8 +37,8 @@ void SessionRun::judge_strokes(const Input& input, Running& trial) {
           trial);
 }
 
-/// Computes the friction table from the trials of a block. Throws terms::UsageError if too few trials of a
-/// level count.
+/// Computes the friction table from the trials of a block. Throws terms::UsageError if a level has too few
+/// valid trials.
 sensing::FrictionTable SessionRun::measured_friction(int block_index) const {
   std::vector<sensing::TableStroke> strokes;
   for (const auto& stroke : director_.strokes(block_index))
@@ -47,7 +47,7 @@ sensing::FrictionTable SessionRun::measured_friction(int block_index) const {
   return sensing::friction_table(strokes, summary_.seed);
 }
 
-/// Computes and stores the table of the block that has just ended.
+/// Computes and stores the friction table of the block that has just ended.
 Flow SessionRun::finish_friction_table() {
   const auto& block = *director_.block();
   sensing::FrictionTable table;
@@ -72,8 +72,8 @@ Flow SessionRun::finish_friction_table() {
   return Flow::go_on;
 }
 
-/// In a resumed session, plans trials with the newest table of an earlier block, as the session did before it
-/// was interrupted.
+/// In a resumed session, plans trials with the newest friction table of an earlier block, as the session did
+/// before it was interrupted.
 void SessionRun::use_measured_friction() {
   for (int i = director_.block_index() - 1; i >= 0; --i) {
     const auto& block = director_.all_blocks()[static_cast<std::size_t>(i)];

@@ -4,6 +4,7 @@
 
 #include "station/session/rows.hpp"
 #include "station/session/session_run.hpp"
+#include "station/terms/program_failed.hpp"
 #include "station/text/number.hpp"
 #include "station/trial/question.hpp"
 #include "station/trial/rows.hpp"
@@ -49,6 +50,7 @@ Flow SessionRun::run_trial(const trial::TrialSpec& spec) {
   drive_trial(trial, open_amplifier());
   stage_->close_amplifier();
   if (!trial.decided) decide(trial);
+  plan_ahead();
   leave_surface();
   log_triggers();
   finish_row(trial);
@@ -223,7 +225,7 @@ void SessionRun::perform(const std::vector<trial::Action>& actions, Running& tri
 void SessionRun::present(std::int64_t earliest_ns, Running& trial) {
   const auto& bursts = plans_.take(trial.spec).bursts;
   trial.onsets = stage_->present(bursts, earliest_ns);
-  if (trial.onsets.empty()) return;  // a fault among the inputs gives the reason
+  if (trial.onsets.empty()) return;  // the stage has added a fault with the reason to the inputs
   const auto times = trial::interval_times(setup_.protocol, trial.spec);
   for (std::size_t i = 0; i < bursts.size(); ++i) {
     const auto on_ns = trial.onsets[i].time_ns;
@@ -251,10 +253,18 @@ void SessionRun::ask_observer(const Running& trial, std::int64_t onset_ns) {
   if (setup_.protocol.timing.response_zero == terms::ResponseZero::interval_off) zero_ns += ns(last.length_s);
   if (setup_.protocol.timing.response_zero == terms::ResponseZero::change)
     zero_ns += ns(last.starts_s.front());
-  if (trial.slider)
-    stage_->adjustment(trial::adjustment_of(trial.spec, summary_.seed), zero_ns);
-  else
-    stage_->question(trial::question_of(trial.spec, setup_.protocol, summary_.seed), zero_ns);
+  try {
+    if (trial.slider)
+      stage_->adjustment(trial::adjustment_of(trial.spec, summary_.seed), zero_ns);
+    else
+      stage_->question(trial::question_of(trial.spec, setup_.protocol, summary_.seed), zero_ns);
+  } catch (const terms::ProgramFailed& failed) {
+    // The trial ends without a result, and the session is interrupted.
+    Input failure;
+    failure.kind = InputKind::failure;
+    failure.text = failed.what();
+    stage_->simulate(failure);
+  }
 }
 
 /// Called once the outcome is final. Records the result, and starts planning of the next trial, which
@@ -273,7 +283,7 @@ void SessionRun::decide(Running& trial) {
     row.threshold_est = threshold->first;
     row.threshold_sd = threshold->second;
   }
-  if (const auto next = director_.next()) plans_.begin(*next);
+  plan_ahead();
 }
 
 /// Records when the surface vibrated, in the exposure account and in the log.

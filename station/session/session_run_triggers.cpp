@@ -38,7 +38,8 @@ void SessionRun::trigger_intervals(const Running& trial) {
   }
 }
 
-/// Logs each code once its read-back and its lines are known.
+/// Logs each code once it is known whether it was found in the captured signal, and when it was set on the
+/// lines.
 void SessionRun::log_triggers() {
   if (!stage_->triggers().active()) return;
   const auto now = stage_->now_ns();

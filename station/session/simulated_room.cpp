@@ -11,13 +11,13 @@ namespace turnpoint::session {
 
 namespace {
 
-// Positions of the simulated pick-ups: the first patch is 3 mm from the drive edge, and each further one 6 mm
-// beyond.
+// Positions of the simulated pick-ups: the first is 3 mm from the drive edge, and the others follow at
+// intervals of 6 mm.
 constexpr double kFirst_m = 3e-3, kNext_m = 6e-3;
 // The simulated participant strokes the surface between these fractions of its length, at this mean speed,
 // with this pause between strokes.
 constexpr double kStrokeFrom = 0.25, kStrokeTo = 0.75, kStroke_m_s = 0.09, kPause_s = 0.05;
-constexpr double kStep_Hz = 20;  // between two points of a pick-up's response
+constexpr double kStep_Hz = 20;  // distance between two points of a pick-up's response
 
 plant::Setup room_of(const rig::Rig& rig) {
   if (!rig.capture) throw std::logic_error("simulated room: the rig captures nothing");

@@ -30,8 +30,8 @@ class SimulatedRoom {
 
   /// Sets the movement that the participant is asked to make.
   void ask_for(const sensing::MovementWindow& window) { window_ = window; }
-  /// Returns how the station should judge the captured samples: with the rig's calibration of pick-ups and
-  /// cells, or with an exact calibration if the rig has none.
+  /// Returns the settings and calibrations with which the station evaluates the captured samples: the rig's
+  /// calibrations of pick-ups and force cells or, if the rig has none, the exact values of the simulation.
   CaptureSetup capture() const;
   plant::Plant& plant() { return plant_; }
   /// While the wire from the marker's output is broken, its captured channel is silent.

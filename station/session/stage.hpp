@@ -27,7 +27,8 @@ struct Onset {
   std::int64_t time_ns = 0;
 };
 
-/// Slope and residual of the regression line of time over frames, with which the drive predicts onsets.
+/// The regression line of time over frames, from which the drive computes the times of onsets: its slope and
+/// its residual.
 struct ClockFit {
   double slope_ns_per_frame = 0;
   double residual_ns = 0;
@@ -36,9 +37,9 @@ struct ClockFit {
 /// A deadline that never comes, for waits without a limit.
 constexpr std::int64_t kForever = std::numeric_limits<std::int64_t>::max();
 
-/// Time, drive, amplifier and inputs of one run. There are two kinds: the real stage (CLOCK_MONOTONIC, a
-/// person) and the virtual stage (a simulated observer, as fast as possible). The rest of the session is the
-/// same code for both. Use a stage from one thread.
+/// What a session runs on: its clock, drive, amplifier and inputs. There are two kinds: the real stage
+/// (CLOCK_MONOTONIC, a person) and the virtual stage (a simulated observer, as fast as possible). The rest of
+/// the session is the same code for both. Use a stage from one thread.
 class Stage {
  public:
   virtual ~Stage() = default;
@@ -51,8 +52,8 @@ class Stage {
   /// Removes all waiting inputs before a new trial, and returns them for the log.
   virtual std::vector<Input> drain() = 0;
 
-  /// Waits until `ready` returns true, which another thread brings about. Reports to the amplifier guard
-  /// meanwhile. The virtual clock stands still during the wait.
+  /// Waits until `ready` returns true because another thread has finished its work. Reports to the amplifier
+  /// guard meanwhile. The virtual clock stands still during the wait.
   virtual void wait_for(const std::function<bool()>& ready) = 0;
 
   /// Schedules the intervals of a trial. The first interval begins at the earliest safe frame that is not
@@ -74,7 +75,7 @@ class Stage {
 
   /// Why the amplifier refused a command; empty if it did not.
   using Refusal = std::optional<Fault>;
-  /// Commands of the operator.
+  /// Commands of the operator to the amplifier.
   [[nodiscard]] virtual Refusal arm() = 0;
   virtual void disarm() = 0;
   [[nodiscard]] virtual Refusal clear() = 0;
@@ -84,7 +85,7 @@ class Stage {
   /// Switches the amplifier off after the stimuli, as soon as the surface is silent.
   virtual void close_amplifier() = 0;
 
-  /// The trigger codes of this run.
+  /// Sends and checks the trigger codes of this run of the program.
   virtual Triggers& triggers() = 0;
 
   /// Names of the rig's response buttons, in the order of their indices.
@@ -93,14 +94,14 @@ class Stage {
   virtual std::string missing() const = 0;
 
   /// Asks a simulated observer to answer this question. Times count from `zero_ns`. A real stage does
-  /// nothing.
+  /// nothing. Throws terms::ProgramFailed if the observer is a program that fails.
   virtual void question(const observer::Question& question, std::int64_t zero_ns) = 0;
 
   /// Asks a simulated observer to set this slider and press Done. Times count from `zero_ns`. A real stage
   /// does nothing.
   virtual void adjustment(const observer::Adjustment& adjustment, std::int64_t zero_ns) = 0;
 
-  /// Makes a simulated participant give this input at its time. A real stage does nothing.
+  /// Makes a simulated participant give this input at the time `input.time_ns`. A real stage does nothing.
   virtual void simulate(Input input) = 0;
 
   /// For the self-test. guarded_amplifier() is null in a simulated session; the capture is that of the
@@ -108,8 +109,8 @@ class Stage {
   virtual drive::Amplifier* guarded_amplifier() { return nullptr; }
   virtual std::optional<CaptureSetup> capture() const { return std::nullopt; }
 
-  /// Says by what fraction the resonance frequencies of the surface have risen since the calibration of the
-  /// pick-ups.
+  /// Tells the stage by what fraction the resonance frequencies of the surface have risen since the
+  /// calibration of the pick-ups.
   virtual void set_drift(double) {}
   /// Returns the force and movement of the finger at this moment; empty unless force cells measure them.
   virtual std::optional<sensing::FingerNow> finger_now() { return std::nullopt; }
@@ -124,7 +125,7 @@ class Stage {
 drive::StreamConfig stream_of(const rig::Rig& rig);
 /// Like stream_of(), with the carrier that excites the bridges of force cells.
 drive::StreamConfig session_stream(const rig::Rig& rig);
-/// True if the rig captures in a simulated room.
+/// True if the rig captures the signals of a simulated surface and finger instead of a sound card's.
 bool simulates_capture(const rig::Rig& rig);
 /// Returns the configuration of a simulated session's stream. It uses no hardware: if the rig's output is a
 /// converter, samples are discarded. Output to files and to plug-ins that the rig allows is kept.
@@ -132,7 +133,8 @@ drive::StreamConfig simulated_stream(const rig::Rig& rig);
 
 /// Makes a stage that runs in real time: CLOCK_MONOTONIC, the audio thread, the amplifier guard, and inputs
 /// from a display and the touch panel. `inputs` must outlive the stage. With a `capture`, the surface is
-/// measured: a pilot aligns playback and capture before the amplifier is enabled, unless they still are.
+/// measured: a pilot aligns playback and capture before the amplifier is enabled, unless they are aligned
+/// already.
 std::unique_ptr<Stage> real_stage(const drive::StreamConfig& stream, Devices devices, Inputs& inputs,
                                   const std::optional<CardCapture>& capture = std::nullopt,
                                   const TriggerSetup& triggers = {});
@@ -141,7 +143,7 @@ std::unique_ptr<Stage> real_stage(const drive::StreamConfig& stream, Devices dev
 /// arms a simulated amplifier, and presses Continue when nothing else is left to do. `inputs` must outlive
 /// the stage. Of `inputs`, only a stop has an effect, and only between trials. With a `room`, stimuli are
 /// computed sample by sample, and the surface is measured.
-std::unique_ptr<Stage> virtual_stage(const drive::StreamConfig& stream, observer::Observer observer,
+std::unique_ptr<Stage> virtual_stage(const drive::StreamConfig& stream, observer::Respondent observer,
                                      Inputs& inputs, std::unique_ptr<SimulatedRoom> room = nullptr,
                                      const TriggerSetup& triggers = {});
 

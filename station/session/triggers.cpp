@@ -16,7 +16,7 @@ namespace {
 
 // a captured pulse begins where the signal exceeds this fraction of full scale
 constexpr double kPulse = 0.25;
-// longest wait for reading back a code, or for the lines to be set
+// longest wait until a code is found in the captured signal, or set on the lines
 constexpr std::int64_t kWait_ns = 2'000'000'000;
 
 }  // namespace

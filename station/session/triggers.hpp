@@ -18,11 +18,12 @@ namespace turnpoint::session {
 
 /// How a rig sends trigger codes and receives the pulses of other devices.
 struct TriggerSetup {
-  std::optional<rig::Marker> marker;                ///< set if the marker carries codes
+  std::optional<rig::Marker> marker;                ///< the rig's marker, if it carries codes
   std::int64_t bit_frames = 0;                      ///< length of one bit on the marker channel
-  bool lines = false;                               ///< codes go to lines as well
-  std::optional<int> marker_channel, sync_channel;  ///< captured channels
-  bool simulated_sync = false;                      ///< a simulated session receives a pulse each second
+  bool lines = false;                               ///< true if codes are also set on GPIO lines
+  std::optional<int> marker_channel, sync_channel;  ///< captured channels of the marker and of the pulses
+  /// true if a simulated session receives a pulse each second
+  bool simulated_sync = false;
 
   bool active() const { return marker.has_value() || lines; }
 };
@@ -40,7 +41,7 @@ struct Trigger {
   std::optional<std::int64_t> lines_ns;  ///< time at which the code was set on the lines
   enum class ReadBack { none, pending, right, missed, lost };
   ReadBack read_back = ReadBack::none;  ///< `lost` means that the capture around the code is incomplete
-  double error_frames = 0;              ///< read-back minus sent frame
+  double error_frames = 0;              ///< captured frame of the code minus the frame at which it was sent
 };
 
 /// Finds codes and pulses in the captured marker and sync channels. One thread pushes blocks, another takes
@@ -53,8 +54,9 @@ class TriggerCapture {
 
   struct News {
     std::vector<sensing::DecodedTrigger> heard;  ///< codes that were found, with their playback frames
-    std::vector<std::int64_t> edges;             ///< playback frames of pulses
-    std::vector<std::pair<std::int64_t, std::int64_t>> captured;  ///< ranges of playback frames, in order
+    std::vector<std::int64_t> edges;             ///< playback frames at which pulses of other devices began
+    /// captured ranges of playback frames, in order
+    std::vector<std::pair<std::int64_t, std::int64_t>> captured;
   };
   News take();
 
@@ -66,7 +68,8 @@ class TriggerCapture {
   News news_;
 };
 
-/// Sends the codes of a run, and compares them with the captured codes. Belongs to the session thread.
+/// Sends the trigger codes of a session, and compares them with the codes found in the capture. Belongs to
+/// the session thread.
 class Triggers {
  public:
   /// `lines` may be null. Then, with `setup.lines`, each code counts as set on the lines exactly when it was
@@ -94,7 +97,7 @@ class Triggers {
   struct Done {
     std::vector<Trigger> triggers;
     std::vector<sensing::DecodedTrigger> extra;  ///< codes that were captured although they were not sent
-    std::string failure;                         ///< why the lines cannot be set; reported only once
+    std::string failure;                         ///< why codes cannot be set on the lines; reported only once
   };
   /// Removes and returns all codes about which everything is known by now.
   Done take(std::int64_t now_ns);

@@ -37,14 +37,20 @@ void use(const rig::ForceCells& cells, sensing::FingerSetup& finger) {
 
 std::optional<sensing::FingerSetup> calibrated_finger(const rig::Rig& rig) {
   const auto& capture = rig.capture.value();
-  if (capture.bridges.size() != sensing::bridge_count || !capture.forces) return std::nullopt;
+  if (!rig::has_force_cells(rig) || !capture.forces) return std::nullopt;
   sensing::FingerSetup finger;
   finger.bridges.rate_Hz = rig.output.rate_Hz;
+  finger.length_mm = 1e3 * rig.surface.length_m;
+  finger.own_clock = capture.converter.has_value();
+  if (finger.own_clock) {
+    finger.calibration = sensing::ForceCalibration(capture.forces->matrix, capture.forces->changes);
+    finger.bridges.full_scale = capture.forces->rated_ratio;
+    return finger;
+  }
   finger.bridges.channels = capture.channels;
   finger.bridges.reference = capture.reference;
   std::copy(capture.bridges.begin(), capture.bridges.end(), finger.bridges.bridges.begin());
   use(*capture.forces, finger);
-  finger.length_mm = 1e3 * rig.surface.length_m;
   return finger;
 }
 
@@ -99,7 +105,12 @@ void VibrationWatch::push(const sensing::CaptureBlock& block) {
   const std::lock_guard lock(mutex_);
   for (auto& proof : proofs_)
     if (proof) proof->push(block);
-  if (finger_) finger_->push(block);
+  if (finger_ && !setup_.finger->own_clock) finger_->push(block);
+}
+
+void VibrationWatch::push(const sensing::BridgePoint& point) {
+  const std::lock_guard lock(mutex_);
+  if (finger_) finger_->push(point);
 }
 
 std::int64_t VibrationWatch::known_at(std::size_t interval) const {

@@ -17,21 +17,21 @@ constexpr double kCarrier = 0.5;
 /// The load for which a force cell is rated.
 constexpr double kRated_N = 10;
 
-/// What a rig captures, and what is needed to judge it.
+/// What a rig captures, with the calibration and the limits by which the captured signals are judged.
 struct CaptureSetup {
   int rate_Hz = 192000;
-  int channels = 1;                       ///< captured channels
+  int channels = 1;                       ///< number of captured channels
   std::vector<sensing::PickUp> pick_ups;  ///< the pick-ups with their calibration; at least one
-  double delay_frames = 0;                ///< frames from playback to capture
+  double delay_frames = 0;                ///< delay from playback to capture
   std::optional<bool> in_contact;         ///< whether a finger was on the surface, if that is known
   sensing::ProofLimits limits;
   std::optional<sensing::FingerSetup> finger;  ///< the force cells, if there are any
 };
 
-/// The pick-ups of a rig, with the responses of its calibration.
+/// Returns the pick-ups of a rig, with their calibrated responses.
 std::vector<sensing::PickUp> calibrated_pick_ups(const rig::Capture& capture);
 
-/// Sets the rig's calibration of the force cells in `finger`.
+/// Copies the calibration of the force cells from the rig to `finger`.
 void use(const rig::ForceCells& cells, sensing::FingerSetup& finger);
 
 /// The force cells of a rig; empty if they are not calibrated.
@@ -50,17 +50,20 @@ class VibrationWatch {
   void set_drift(double share);
 
   /// Announces the intervals of a trial, with absolute start frames, in order. They replace those of the
-  /// previous trial. Until playback frame `quiet_until`, nobody has been asked to touch the surface.
+  /// previous trial. Nobody is asked to touch the surface before playback frame `quiet_until`.
   void expect(std::span<const drive::PreparedBurst> intervals, std::int64_t quiet_until);
-  /// Says that all bursts ramp down from this playback frame on. Intervals that have not begun by then are
-  /// dropped.
+  /// Tells the watch that all bursts ramp down from this playback frame on. Intervals that have not begun by
+  /// then are dropped.
   void cut(std::int64_t from_frame);
-  /// Says that this interval glides to other tones. A glide is not measured, so the interval stays unproven.
+  /// Tells the watch that this interval glides to other tones. A glide is not measured, so the interval stays
+  /// unproven.
   void changed(std::size_t interval);
 
   /// True if one of the expected intervals needs captured frames from this range.
   bool needs(std::int64_t first_frame, std::int64_t end_frame) const;
   void push(const sensing::CaptureBlock& block);
+  /// A point of force cells that have a clock of their own.
+  void push(const sensing::BridgePoint& point);
 
   /// Returns the captured frame after which the result of an interval is known.
   std::int64_t known_at(std::size_t interval) const;
@@ -70,15 +73,15 @@ class VibrationWatch {
   /// Returns force and movement of the finger at this moment. Empty if they are not known, and without force
   /// cells.
   std::optional<sensing::FingerNow> finger_now();
-  /// What the force cells say about the trial, once its last interval is known. Null for the other intervals,
-  /// and without force cells.
+  /// Returns what the force cells measured in the trial, if `interval` is its last interval. Null for other
+  /// intervals, and without force cells.
   std::shared_ptr<const sensing::TrialForces> forces(std::size_t interval);
 
  private:
   CaptureSetup setup_;
   const std::vector<sensing::PickUp> calibrated_;
   mutable std::mutex mutex_;
-  /// null for an interval that will not be proven
+  /// null for an interval whose vibration is not measured
   std::vector<std::unique_ptr<sensing::IntervalProof>> proofs_;
   std::optional<sensing::TrialFinger> finger_;
 };

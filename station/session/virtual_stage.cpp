@@ -13,7 +13,7 @@ namespace {
 
 class VirtualStage : public Stage {
  public:
-  VirtualStage(const drive::StreamConfig& config, observer::Observer observer, Inputs& inputs,
+  VirtualStage(const drive::StreamConfig& config, observer::Respondent observer, Inputs& inputs,
                std::unique_ptr<SimulatedRoom> room, const TriggerSetup& triggers)
       : stream_(drive::open_synchronous(config)),
         triggers_(triggers, *stream_, nullptr),
@@ -40,7 +40,7 @@ class VirtualStage : public Stage {
 
   std::optional<Input> wait_until(std::int64_t deadline_ns) override {
     if (!simulated_sync_) return wait_for_input(deadline_ns);
-    // A pulse may be late: it is reported with the next input.
+    // A pulse may have become due since the last call: report it first, with its own time stamp.
     if (sync_due_ns_ <= now_ns_) return pulse();
     return wait_for_input(deadline_ns);
   }
@@ -85,7 +85,8 @@ class VirtualStage : public Stage {
   }
 
   void wait_for(const std::function<bool()>&) override {
-    // Nothing to do: the caller's next call waits for the planner, and virtual time stands still meanwhile.
+    // Nothing to do: the next call of the session waits for the planner, and virtual time stands still
+    // meanwhile.
   }
 
   std::vector<Onset> present(std::span<const drive::PreparedBurst> intervals,
@@ -96,7 +97,7 @@ class VirtualStage : public Stage {
       earliest_ns = std::max(earliest_ns, stream_->time_of(triggers_.free_from()).value());
     const auto onsets = schedule(*stream_, intervals, earliest_ns, presented_);
     unheard_ = presented_;
-    measured_ = false;  // a fault may have ended the last trial between the two reports of an interval
+    measured_ = false;  // a fault may have ended the last trial after `measured` and before `heard`
     if (watch_) {
       const auto bursts = scheduled(intervals, presented_);
       room_->expect(intervals);
@@ -202,8 +203,8 @@ class VirtualStage : public Stage {
   }
 
  private:
-  /// Reports the next interval that has been played completely, if it ends no later than `until_ns`. What
-  /// was measured of the interval comes first.
+  /// Reports the next interval that has been played completely, if it ends no later than `until_ns`. The
+  /// input with the interval's measurement comes first.
   std::optional<Input> next_heard(std::int64_t until_ns) {
     if (unheard_.empty()) return std::nullopt;
     const auto interval = *interval_of(presented_, unheard_.front().burst);
@@ -253,8 +254,8 @@ class VirtualStage : public Stage {
     }
   }
 
-  /// Returns the rules of the amplifier guard, which work here without GPIO lines. All threads are reported
-  /// as alive, because on the virtual clock none of them can hang.
+  /// Returns the amplifier guard's state machine, which works here without GPIO lines. All threads are
+  /// reported as alive, because on the virtual clock none of them can hang.
   lines::Guard& alive() {
     guard_.audio_alive(now_ns_);
     guard_.session_alive(now_ns_);
@@ -271,7 +272,7 @@ class VirtualStage : public Stage {
   std::optional<TriggerCapture> capture_;
   const bool simulated_sync_;
   std::int64_t sync_due_ns_ = 0;
-  observer::Observer observer_;
+  observer::Respondent observer_;
   Inputs& inputs_;
   std::int64_t now_ns_ = 0;
   std::int64_t quiet_ns_ = 0;  ///< time at which the surface will be silent
@@ -280,17 +281,17 @@ class VirtualStage : public Stage {
   // The plate goes on moving for some time after the drive stops, so simulate it from this many frames before
   // the measurement.
   static constexpr std::int64_t kLead_frames = 9600;
-  std::unique_ptr<SimulatedRoom> room_;  ///< null: nothing is captured
+  std::unique_ptr<SimulatedRoom> room_;  ///< the simulated surface and finger; null if nothing is captured
   std::optional<VibrationWatch> watch_;
-  /// true while the simulated participant touches the surface or may soon touch it; no frame may be left out
-  /// then
+  /// true while the simulated participant touches the surface or may soon touch it; every frame must then be
+  /// simulated
   bool touchable_ = false;
-  bool measured_ = false;  ///< the first of unheard_ has been reported as measured
+  bool measured_ = false;  ///< the measurement of the first interval in unheard_ has been reported
 };
 
 }  // namespace
 
-std::unique_ptr<Stage> virtual_stage(const drive::StreamConfig& stream, observer::Observer observer,
+std::unique_ptr<Stage> virtual_stage(const drive::StreamConfig& stream, observer::Respondent observer,
                                      Inputs& inputs, std::unique_ptr<SimulatedRoom> room,
                                      const TriggerSetup& triggers) {
   return std::make_unique<VirtualStage>(stream, std::move(observer), inputs, std::move(room), triggers);

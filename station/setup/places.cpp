@@ -55,12 +55,12 @@ std::string rig_or_default(const std::string& named, std::ostream& messages) {
 }
 
 std::string screen_card(const std::string& drm) {
-  // Sorted in this order: cards with a screen first; then by the length of the name and by the name, so that
-  // the lower number comes first.
+  // Each card with its sort key: cards with a screen come first, then cards with a shorter name, then cards
+  // with the lower number.
   std::vector<std::tuple<bool, std::size_t, std::string>> cards;
   std::error_code ignored;
   for (const auto& entry : fs::directory_iterator(drm, ignored)) {
-    const auto connector = entry.path().filename().string();  // a name such as card1-HDMI-A-1
+    const auto connector = entry.path().filename().string();  // name of a connector, such as card1-HDMI-A-1
     const auto dash = connector.find('-');
     if (dash == std::string::npos || !connector.starts_with("card")) continue;
     std::string status;

@@ -10,8 +10,8 @@ namespace turnpoint::setup {
 std::string rig_or_default(const std::string& named, std::ostream& messages);
 
 /// Returns the path of a TOML file: `named` if it exists or contains a "/", otherwise the file of this name
-/// in the shipped `folder` ("protocols", "deploy/rigs"), with or without ".toml". Returns "" for "". Throws
-/// terms::UsageError if there is neither.
+/// in the shipped `folder` ("protocols", "deploy/rigs"), with or without ".toml". Returns "" if `named` is
+/// "". Throws terms::UsageError if there is neither.
 std::string file_or_shipped(const std::string& named, const std::string& folder);
 
 /// Returns the path of a folder that comes with the program ("protocols", "deploy/rigs"), installed or in the

@@ -8,6 +8,7 @@
 
 #include "station/calibration/apply.hpp"
 #include "station/limits/exposure.hpp"
+#include "station/programs/programs.hpp"
 #include "station/protocol/sources.hpp"
 #include "station/protocol/survey.hpp"
 #include "station/scene/sound.hpp"
@@ -177,7 +178,7 @@ session::Setup prepare(const RunRequest& request, const std::stop_token& stop) {
   if (request.observer.empty() && request.buttons_only) check_buttons_only(setup, problems);
   setup.participant = request.participant;
   setup.database = request.database;
-  setup.observer = request.observer;
+  setup.observer = programs::located(request.observer);
   setup.planned_session = request.planned_session;
   setup.early = request.early;
   setup.seed = request.seed;
@@ -189,9 +190,18 @@ session::Setup prepare(const RunRequest& request, const std::stop_token& stop) {
   setup.run_mode = !request.observer.empty() ? terms::RunMode::simulated
                    : request.mode == "live"  ? terms::RunMode::live
                                              : terms::RunMode::pilot;
-  if (request.participant != kCodeToCome)
-    if (const auto next = session::next_session(setup); !next.problem.empty())
-      problems.push_back({{}, next.problem, next.allowed});
+  const auto next =
+      request.participant != kCodeToCome ? session::next_session(setup) : session::NextSession{};
+  if (!next.problem.empty() && !next.too_early) problems.push_back({{}, next.problem, next.allowed});
+  try {
+    if (problems.empty()) session::earlier_trials(setup, next);
+  } catch (const terms::UsageError& refused) {
+    problems.push_back(
+        {{}, refused.what(), "use the file with that version for the participant's other sessions"});
+  }
+  if (problems.empty()) problems = programs::problems_of(setup.protocol);
+  if (problems.empty() && next.too_early) throw TooEarly({{}, next.problem, next.allowed});
+  if (next.too_early) problems.push_back({{}, next.problem, next.allowed});
   if (!problems.empty()) throw text::BadInput(problems);
   return setup;
 }

@@ -4,8 +4,10 @@
 #include <optional>
 #include <stop_token>
 #include <string>
+#include <utility>
 
 #include "station/session/session.hpp"
+#include "station/text/problem.hpp"
 
 namespace turnpoint::setup {
 
@@ -22,22 +24,30 @@ struct RunRequest {
   std::optional<std::uint64_t> seed;
   std::string consent_version;  ///< version of the consent form; "" if the study needs none
   bool headless = false, buttons_only = false;
-  bool fullscreen = false;  ///< fill the screen of a desktop, too
+  bool fullscreen = false;  ///< fill the whole screen, also on a desktop
   /// path of the calibration file; "" uses the newest one beside the rig file, if there is one
   std::string calibration;
   bool self_test = false;  ///< run the self-test before the first block
-  std::string despite;     ///< reason to continue although a check of the self-test failed; "" asks for it
+  /// reason to continue although a check of the self-test failed; if "", the operator is asked
+  std::string despite;
   std::optional<int> planned_session;  ///< which planned session; empty: the participant's next one
-  std::string early;  ///< reason to begin before the least number of days has passed; "" if there is none
+  std::string early;  ///< reason to begin before the protocol's minimum number of days has passed; or ""
   records::Conditions conditions;
   std::string cleaned;  ///< whether the surface was cleaned just before: yes or no; "" if not stated
 };
 
+/// Thrown by prepare() if a session is possible, except that too few days have passed since the participant's
+/// last one. RunRequest::early overrules that.
+class TooEarly : public text::BadInput {
+ public:
+  explicit TooEarly(text::Problem problem) : BadInput({std::move(problem)}) {}
+};
+
 /// Loads and checks everything that a session needs, and applies the calibration to the rig. Throws
-/// text::BadInput with all problems: of both files, of the protocol on this rig, and of participant code,
-/// language and mode. A calibration that has expired or belongs to another rig is an error if the request
-/// names it or if the session is live; otherwise it is ignored. Throws protocol::Abandoned soon after `stop`
-/// is requested.
+/// text::BadInput with all problems of the two files, of their combination, and of participant code, language
+/// and mode. A calibration that has expired or belongs to another rig is an error if the request names it or
+/// if the session is live; otherwise it is ignored. Throws protocol::Abandoned soon after `stop` is
+/// requested.
 session::Setup prepare(const RunRequest& request, const std::stop_token& stop = {});
 
 /// Returns the reasons why the live session of this request cannot run; empty if it can. The reasons name no

@@ -17,8 +17,9 @@ struct ResumeRequest {
   /// continue the session although it is older than its protocol allows, for example because the clock was
   /// wrong
   bool any_age = false;
-  bool self_test = false;    ///< run the self-test first, unless the session is simulated
-  std::string despite = {};  ///< reason to continue although a check of the self-test failed; "" asks for it
+  bool self_test = false;  ///< run the self-test first, unless the session is simulated
+  /// reason to continue although a check of the self-test failed; if "", the operator is asked
+  std::string despite = {};
 };
 
 /// Returns the setup for continuing an interrupted session. Rig, protocol text, observer and language are

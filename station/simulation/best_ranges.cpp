@@ -8,7 +8,8 @@ namespace turnpoint::simulation {
 
 namespace {
 
-// A group of neighbouring values that count as equal, with the weight for which each answer is right.
+// A group of neighbouring values that count as equal. `weights` holds, for each answer, the total weight of
+// the trials in which it is right.
 struct Group {
   double first = 0, last = 0;
   Shares weights{};

@@ -21,8 +21,9 @@ namespace {
 
 using protocol::Protocol;
 
-// A rehearsal leaves out the time in which people read an instruction, explore before a decision (a fraction
-// of the duration of the tones), and set a slider. These constants are estimates of those times.
+// A rehearsal (a simulated session) does not include the time in which people read an instruction, explore
+// before a decision (a fraction of the duration of the tones), and set a slider. These constants are
+// estimates of those times.
 constexpr double instruction_s = 12, explored_share = 0.5, setting_s = 15;
 
 /// The result of one simulated session: the time that a person would take, and the number of trials in each
@@ -88,7 +89,8 @@ Estimate simulate(const Protocol& protocol, const protocol::Visit& visit, std::u
   return estimate;
 }
 
-/// Adds the blocks of a visit, and takes its trials and duration if they are the longest so far.
+/// Adds the blocks of one visit (a place in the counterbalancing and a planned session). Keeps the visit's
+/// number of trials and its duration if this visit is the longest so far.
 void add_visit(const std::vector<Estimate>& estimates, Check& check) {
   if (estimates.empty()) return;
   std::vector<double> durations, trials;
@@ -110,7 +112,7 @@ void add_visit(const std::vector<Estimate>& estimates, Check& check) {
   check.trials = spread_of(trials);
 }
 
-/// Simulates this number of sessions, divided among the visits.
+/// Simulates this number of sessions, divided equally among the protocol's different visits.
 void estimate(const Protocol& protocol, int sessions, const std::stop_token& stop, const Steps& steps,
               Check& check) {
   const auto visits = protocol::different_visits(protocol);
@@ -206,7 +208,7 @@ int usual_sessions(const Protocol& protocol) {
       combinations *= static_cast<double>(std::max<std::size_t>(1, grid->values.size()));
     most = std::max(most, combinations);
   }
-  constexpr double quick = 4e4;  // about half a millisecond
+  constexpr double quick = 4e4;  // evaluating this many combinations takes about half a millisecond
   return most > quick ? 200 : 1000;
 }
 
@@ -228,6 +230,7 @@ Check check(const std::string& protocol_path, const std::string& rig_path, const
     const auto texts = protocol::undrawable(*protocol, options.drawable);
     check.problems.insert(check.problems.end(), texts.begin(), texts.end());
   }
+  if (check.problems.empty() && options.try_programs) check.problems = options.try_programs(*protocol);
   if (!check.problems.empty()) return check;
   check.id = protocol->id, check.title = protocol->title, check.rig_name = rig->name;
   check.protocol_defaults = protocol->defaults_used;
@@ -247,7 +250,7 @@ Check check(const std::string& protocol_path, const std::string& rig_path, const
     if (check.problems.empty()) {
       if (options.finger) check.finger = shares(check.survey, *rig);
       if (options.sound) check.sound = loudest(check.survey, *rig, stop, options.steps);
-      // the limit may not cover all scenes, because the work was stopped early
+      // if the work was stopped early, this upper limit may not cover all scenes
       if (finish.stop_requested()) check.sound.reset();
       check.cues = cue_guard(*protocol, *rig, check.survey, stop, options.steps);
     }

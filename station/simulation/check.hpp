@@ -21,13 +21,14 @@ struct Spread {
 };
 Spread spread_of(std::vector<double> values);  ///< all 0 if there are no values
 
-/// The length of one simulated session. The duration is that of a person, who reads, explores and sets.
+/// The length of one simulated session. The duration includes the time in which a person would read
+/// instructions, explore the surface and set sliders.
 struct SessionLength {
   double trials = 0, duration_s = 0;
 };
 SessionLength session_length(const protocol::Protocol& protocol, std::uint64_t seed);
 
-/// The number of sessions from which a Spread is taken: 1000, or 200 if a trial takes long to plan. Between
+/// The usual number of sessions to simulate for a Spread: 1000, or 200 if a trial takes long to plan. Between
 /// the quantiles of n sessions lie 90 % of all sessions, with a standard deviation of about 30 % / sqrt(n).
 int usual_sessions(const protocol::Protocol& protocol);
 
@@ -47,7 +48,7 @@ struct Check {
   std::vector<text::Problem> notes;  ///< remarks of little importance, which do not count as warnings
   std::string id, title, rig_name;
   std::vector<CheckedBlock> blocks;
-  /// of one session; if sessions or groups differ, of the longest
+  /// values of one session; if sessions or groups differ in length, values of the longest
   Spread trials, duration_s;
   int simulated_sessions = 0, wanted_sessions = 0;
   protocol::Survey survey;
@@ -58,9 +59,9 @@ struct Check {
   /// fraction of the displacement that remains under a finger, at the last maxima of the lowest and the
   /// highest tone; empty if CheckOptions::finger is false or there are no last maxima
   std::optional<scene::FingerShares> finger;
-  std::vector<protocol::TriggerCode> triggers;  ///< empty if the rig gives out no codes
+  std::vector<protocol::TriggerCode> triggers;  ///< empty if the rig sends no trigger codes
   std::vector<std::string> protocol_defaults, rig_defaults;
-  bool stopped = false;  ///< true if CheckOptions::steps.finish was requested
+  bool stopped = false;  ///< true if the check was ended early by CheckOptions::steps.finish
 };
 
 /// What `turnpoint check` computes besides planning every scene of the protocol.
@@ -73,18 +74,21 @@ struct CheckOptions {
   /// also compute the fraction of the displacement that remains under a finger, for the lowest and the
   /// highest tone
   bool finger = false;
-  /// reads the rig file; a caller that knows the rig's calibration applies it here
+  /// the function that reads the rig file; a caller that knows a calibration can replace it by one that
+  /// applies it
   std::function<rig::Rig(const std::string& path)> load_rig = rig::load;
   /// says whether a character can be drawn on this machine (see protocol::undrawable); empty: not checked
   std::function<bool(char32_t character)> drawable = {};
   Steps steps = {};
+  /// starts the separate programs of the protocol and returns their problems; empty: they are not started
+  std::function<std::vector<text::Problem>(const protocol::Protocol&)> try_programs = {};
   /// reads the protocol file; a caller that has its text applies it here
   std::function<protocol::Protocol(const std::string& path)> load_protocol = protocol::load;
 };
 
 /// Reads and checks both files as `run` would. Throws std::system_error if one cannot be read, and
 /// protocol::Abandoned soon after `stop` is requested, or if steps.finish is requested while the scenes are
-/// being planned. If it is requested later, the result has what was computed until then.
+/// being planned. If steps.finish is requested later, the result contains what was computed until then.
 Check check(const std::string& protocol_path, const std::string& rig_path, const CheckOptions& options = {},
             const std::stop_token& stop = {});
 

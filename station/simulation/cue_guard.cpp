@@ -49,8 +49,8 @@ constexpr CueKind cue_kinds[] = {
 
 constexpr double smallest_difference = 1e-3, smallest_difference_dB = 0.01;
 
-// Wanted precision (three standard errors) of an observer's accuracy in simulated sessions. From the first
-// sessions we estimate how many sessions this takes; there are at most `most_sessions`.
+// Required precision (three standard errors) of an observer's accuracy in simulated sessions. The first
+// sessions show how many sessions are needed for this precision; there are at most `most_sessions`.
 constexpr double precision = 0.01;
 constexpr int first_sessions = 30, most_sessions = 1000;
 
@@ -59,10 +59,11 @@ struct NotPlanned : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// Thrown if the work has to stop before all cues are compared.
+/// Thrown when the caller asks to end the comparison early and to report what has been compared so far.
 struct Finished {};
 
-/// The cues of one interval's first and last scene, for any strength that roving draws.
+/// The cues (pitch, loudness, ...) of one interval's first and last scene, for any strength that roving may
+/// draw.
 struct Interval {
   RovedCues first, last;
   double duration_s = 0;
@@ -71,7 +72,7 @@ struct Interval {
 struct Presentation {
   std::vector<Interval> intervals;
   int correct = 0;
-  /// probability that a trial of this cell has this order of intervals and this combination of factors
+  /// probability that a trial of this kind (cell) has this order of intervals and this combination of factors
   double share = 0;
   double turn = 0.5;  ///< offset into the sequence of quasi-random strengths (see looks())
 };
@@ -79,7 +80,8 @@ struct Presentation {
 /// All cells (kinds of trial) of the census, each with its possible presentations and its number of trials.
 using Cells = std::vector<std::pair<const std::vector<Presentation>*, double>>;
 
-/// Which value of the cue the observer uses in an interval that changes from one scene to another.
+/// Which value of a cue (pitch, loudness, ...) the observer uses in an interval that changes from one scene
+/// to another.
 enum class Feature { last, change, first };
 
 /// Strengths are drawn in two equally large sets for each trial. The first set chooses the rule and the
@@ -96,10 +98,10 @@ struct Strategy {
 /// first.
 struct OwnSessions {
   std::vector<Score> done;
-  /// expected score of one trial in each cell that occurred
+  /// for each kind of trial (cell) that occurred: the expected score of one trial
   std::map<const std::vector<Presentation>*, Score> scores;
   Cells visited;
-  std::vector<Shares> answers;  ///< the observer's answers in each cell of `visited`
+  std::vector<Shares> answers;  ///< the observer's answers in each kind of trial (cell) of `visited`
   Reached reached;
 };
 
@@ -207,8 +209,9 @@ Cells Guard::cells_of(const TrialCensus& census) {
   return cells;
 }
 
-// Roving draws strengths from a uniform distribution. Here a low-discrepancy sequence (Roberts 2018), with
-// one dimension per interval, replaces the random draws, because fewer points are then enough.
+// Roving varies the strength of stimuli at random, with a uniform distribution. Here a low-discrepancy
+// sequence (Roberts 2018), with one dimension per interval, replaces the random draws, because fewer points
+// are then enough.
 std::vector<Look> Guard::looks(const CueKind& kind, Feature feature, const Cells& cells, Draws draws) const {
   const double g = asked_.intervals > 3 ? 1.1673039782614187 : 1.2207440846057596;
   const double steps[] = {1 / g, 1 / (g * g), 1 / (g * g * g), 1 / (g * g * g * g)};

@@ -12,7 +12,7 @@ namespace turnpoint::simulation {
 
 /// How a long computation shows its progress, and how it is stopped early with a result.
 struct Steps {
-  /// called after each unit of the work with what is counted, from one thread at a time; may be empty
+  /// called after each unit of work, from one thread at a time; `what` names the units; may be empty
   std::function<void(const char* what, int done, int of)> progress;
   std::stop_token finish;  ///< once requested, the work ends at its next whole unit
 
@@ -23,7 +23,7 @@ struct Steps {
 };
 
 struct Reached {
-  double accuracy = 0;  ///< proportion correct of the observer
+  double accuracy = 0;  ///< proportion correct of the observer who uses the cue
   /// the proportion correct that an observer reaches in the same trials without the cue, by guessing or by
   /// always pressing the same key
   double chance = 0;
@@ -33,15 +33,16 @@ struct Reached {
 };
 
 /// The accuracy of an observer who uses only one cue. If a cue gives far more right answers than chance,
-/// either the task asks about this cue, or the cue is a leak.
+/// either the task asks about this cue, or the cue gives the answers away.
 struct CueReport {
   std::string cue;           ///< "pitch", "loudness", "amplitude at the wide end", ...
   double low = 0, high = 0;  ///< lowest and highest value of the cue in the main trials, in `unit`
   std::string unit;
-  double accuracy = 0, chance = 0.5, error = 0;  ///< defined as in Reached
+  double accuracy = 0, chance = 0.5, error = 0;  ///< see the members of Reached
   /// The result of simulated sessions in which this observer's answers set the levels; empty unless a
-  /// procedure follows right answers. `accuracy`, `chance` and `error` above are taken either from this
-  /// result or from presenting all levels equally often, whichever gives the larger gain over chance.
+  /// procedure chooses levels by whether answers are right. `accuracy`, `chance` and `error` above are taken
+  /// either from this result or from presenting all levels equally often, whichever gives the larger gain
+  /// over chance.
   std::optional<Reached> whole_sessions = {};
 
   /// True if the cue clearly helps. A gain of 0.1 over a chance of 0.5 is two standard errors in 100 trials.

@@ -17,8 +17,9 @@ struct RovedCues {
   std::optional<scene::Cues> low;
   double rove_dB = 0;
 
-  /// Returns the cues for one drawn strength. Roving scales the amplitude and shifts the loudness. It also
-  /// changes the frequency if the position of the edge depends on the strength.
+  /// Returns the cues of a trial whose displacement was roved by `drawn_dB`. Roving scales the amplitude and
+  /// shifts the loudness. If the edge's position depends on the amplitude, the frequency changes as well, to
+  /// keep the edge in place.
   scene::Cues at(double drawn_dB) const;
 };
 
@@ -41,7 +42,8 @@ class CueTable {
   };
   struct SceneEntries {
     std::vector<std::string> factors;
-    const protocol::Linear* only = nullptr;  ///< set if a single expression depends on factors
+    /// the scene's expression that depends on factors; null if several do
+    const protocol::Linear* only = nullptr;
     std::vector<Entry> entries;
   };
   static std::optional<RovedCues> between(const std::vector<const Entry*>& entries,

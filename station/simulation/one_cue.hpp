@@ -19,7 +19,7 @@ struct Look {
   double weight = 1;
 };
 
-/// What the observer is asked to decide.
+/// What the task asks the observer to decide.
 struct Asked {
   protocol::TaskKind kind = protocol::TaskKind::single_interval;
   std::size_t intervals = 1, answers = 2;
@@ -49,16 +49,16 @@ struct Grain {
 
 /// The answer that an observer gives if the cue is below `end` and not in an earlier range.
 struct CueRange {
-  double end = 0;  ///< infinity for the last range
+  double end = 0;  ///< upper end of the range; infinity for the last range
   int answer = 0;
 };
 
 struct Rule {
   Statistic statistic = Statistic::value;
-  /// for `value` and `change`, in ascending order: at most one range more than there are answers, so with two
-  /// answers a criterion or a band
+  /// for `value` and `change`, in ascending order: at most one range more than there are answers. With two
+  /// answers, two ranges are a criterion, and three are a band.
   std::vector<CueRange> ranges;
-  double usual = 0;  ///< mean cue of the intervals that are wrong answers
+  double usual = 0;  ///< mean value of the cue in the intervals that are wrong answers
   Grain grain = {};
 };
 
@@ -66,10 +66,10 @@ struct Rule {
 /// observer guesses.
 Shares shares(const Rule& rule, const Asked& asked, const CueValues& x);
 
-/// The proportion correct of an observer with this rule in these trials; 0 if there are none.
+/// Returns the proportion correct of an observer who uses `rule` in the trials `looks`; 0 if there are none.
 double accuracy(const Rule& rule, const Asked& asked, const std::vector<Look>& looks);
 
-/// The rule with the highest proportion correct in these trials.
+/// Returns the rule with the highest proportion correct in the trials `looks`.
 Rule best_rule(const Asked& asked, const std::vector<Look>& looks, const Grain& grain);
 
 }  // namespace turnpoint::simulation

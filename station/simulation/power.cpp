@@ -36,9 +36,9 @@ class Truths {
          const std::vector<SessionOutcome>& outcomes) {
     const observer::Observer observer(options.observer);
     for (const auto& spec : protocol.procedures)
-      if (const auto level = settled_level(protocol, spec, observer))
+      for (const auto& [parameter, value] : true_parameters(protocol, spec, observer))
         for (int number = 1; number <= protocol::session_count(protocol); ++number)
-          add("procedure " + spec.name + session_suffix(protocol, number), "threshold", *level);
+          add("procedure " + spec.name + session_suffix(protocol, number), parameter, value);
     for (const auto& spec : protocol.procedures)
       if (spec.kind == procedure::Kind::adjustment)
         for (const auto& condition : with_none(protocol::conditions(protocol)))
@@ -72,7 +72,8 @@ class Truths {
     return names;
   }
 
-  /// Adds the true d' of each model: the d' at which the model has the observer's own proportion correct.
+  /// Adds the true d' of each model: the value of d' at which the model gives the simulated observer's true
+  /// proportion correct.
   void add_d_primes(const protocol::Protocol& protocol, const GeneratingValues& generating,
                     const observer::Observer& observer) {
     std::set<double> levels;

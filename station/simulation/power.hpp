@@ -13,8 +13,8 @@
 namespace turnpoint::simulation {
 
 /// One of `of` parts of a study, so that several machines can simulate it. Part `number` (from 1) has every
-/// of-th session, beginning with session number - 1. So each part has its share of the sessions with
-/// intervals.
+/// of-th session, beginning with session number - 1. So the sessions with bootstrap intervals are spread
+/// evenly over the parts.
 struct Part {
   int number = 1, of = 1;
 };
@@ -23,15 +23,16 @@ int sessions_of(const Part& part, int observers);  ///< number of sessions in a 
 struct PowerOptions {
   int observers = 1000;
   observer::Parameters observer;
-  std::uint64_t seed = 1;  ///< session i runs with seed + i and sequence index i
-  /// Number of sessions with bootstrap intervals, which take most of the time. If the answers chose the
-  /// levels, intervals come from a posterior instead. That is fast, so every session gets them.
+  std::uint64_t seed = 1;  ///< session i runs with seed + i, at place i of the counterbalancing
+  /// Number of sessions with bootstrap intervals, which take most of the time. With a procedure
+  /// that chooses levels by the answers, intervals come from a posterior instead. That is fast, so every
+  /// session gets them.
   int interval_sessions = 200;
   int replicates = 200;  ///< number of resamples for each bootstrap interval, at least 40
   int threads = 2;
   std::function<void(int done, int of)> progress;  ///< called from any of the threads, one at a time
   Part part;
-  /// Once a stop is requested, no further session is begun. The result is then that of fewer observers.
+  /// Once a stop is requested, no further session is begun. The result then covers fewer observers.
   std::stop_token stop;
 };
 
@@ -48,7 +49,7 @@ struct PowerOptions {
 struct Recovery {
   std::string source;     ///< "procedure upper", "fit", "fit speed", "accuracy - speed"
   std::string parameter;  ///< "threshold", "PSE", "spread", "75 % point", "proportion correct", ...
-  std::string unit;       ///< "" if the protocol's level has no unit
+  std::string unit;       ///< unit of the estimates; "" if the protocol's level has no unit
   std::optional<double> truth;
   /// the estimates, in the order of the sessions; sessions without an estimate are left out
   std::vector<double> estimates;
@@ -65,8 +66,8 @@ struct Recovery {
 struct Power {
   int observers = 0, interval_sessions = 0;
   int asked = 0;                   ///< PowerOptions::observers; after a stop it is larger than `observers`
-  double trials = 0, minutes = 0;  ///< averages over the simulated sessions
-  std::optional<double> accuracy;  ///< proportion correct of scored experimental answers
+  double trials = 0, minutes = 0;  ///< number of trials and duration, averaged over the simulated sessions
+  std::optional<double> accuracy;  ///< proportion correct of all scored experimental answers
   std::vector<Recovery> recoveries;
 };
 

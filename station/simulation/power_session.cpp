@@ -5,13 +5,16 @@
 
 #include "station/analysis/trade.hpp"
 #include "station/protocol/answers.hpp"
+#include "station/protocol/sources.hpp"
 #include "station/protocol/visits.hpp"
+#include "station/report/stored_estimates.hpp"
 #include "station/report/stored_trials.hpp"
 #include "station/report/summary.hpp"
 #include "station/simulation/parallel.hpp"
 #include "station/simulation/rehearsal.hpp"
 #include "station/terms/usage_error.hpp"
 #include "station/text/number.hpp"
+#include "station/trial/earlier_trials.hpp"
 
 namespace turnpoint::simulation {
 
@@ -21,17 +24,23 @@ std::optional<analysis::Interval> interval_of(const std::optional<analysis::Para
   return found ? std::optional(found->interval) : std::nullopt;
 }
 
-/// Adds the procedures' own threshold estimates; of the method of limits also those of each direction. A
-/// report prints no intervals for them.
-void add_estimates(const Rehearsal& rehearsal, const std::string& session, const std::string& unit,
+/// Adds the procedures' own threshold estimates; of the method of limits also those of each direction. Of a
+/// procedure with a second dimension or a criterion, which no fit has, adds the estimates of all parameters.
+void add_estimates(const Rehearsal& rehearsal, const protocol::Protocol& protocol, const std::string& session,
                    std::vector<Finding>& findings) {
-  for (const auto& estimate : rehearsal.estimates)
-    if (estimate.parameter.starts_with("threshold"))
-      findings.push_back(
-          {"procedure " + estimate.procedure + session, estimate.parameter, unit, estimate.mean, {}});
+  for (const auto& estimate : rehearsal.estimates) {
+    const auto* spec = protocol::find_procedure(protocol, estimate.procedure);
+    if (!spec || (!estimate.parameter.starts_with("threshold") && !has_parameters_of_its_own(*spec)))
+      continue;
+    std::optional<analysis::Interval> interval;
+    if (estimate.interval) interval = {estimate.interval->first, estimate.interval->second, 0.95};
+    findings.push_back({"procedure " + estimate.procedure + session, estimate.parameter,
+                        report::unit_of(estimate.parameter, *spec), estimate.mean, interval});
+  }
 }
 
-/// Distance between the seeds of a participant's sessions: larger than any number of observers.
+/// The seeds of one participant's sessions differ by multiples of this number. It is larger than any number
+/// of observers, so sessions of different participants never have the same seed.
 constexpr std::uint64_t kSeedStep = std::uint64_t{1} << 40U;
 
 /// The blocks of all sessions of one participant, numbered as if they were one session.
@@ -105,7 +114,7 @@ void add_fits(const report::SessionData& data, const std::string& unit, SessionO
   }
 }
 
-/// Adds d' in each condition over all trials and, if the levels are fixed, at each level.
+/// Adds the estimates of d' for each condition: over all trials and, if the levels are fixed, at each level.
 void add_discriminations(const protocol::Protocol& protocol, const report::SessionData& data,
                          std::vector<Finding>& findings) {
   if (data.deciding.empty() || !report::shows(data, "dprime")) return;
@@ -140,6 +149,17 @@ void require_possible(const protocol::Protocol& protocol, const PowerOptions& op
     throw terms::UsageError(protocol.path +
                             ": ratings have no threshold, so there is nothing to estimate; simulate sessions "
                             "with `turnpoint run --observer sim` and analyse their export");
+  // A study simulates thousands of sessions at once, and would have to start a program for each of their
+  // blocks.
+  std::vector<text::Problem> problems;
+  for (const auto& spec : protocol.procedures)
+    if (spec.kind == procedure::Kind::program)
+      problems.push_back(
+          {spec.program.place,
+           "procedure \"" + spec.name + "\" is a separate program, which a power study does not run",
+           "use a procedure of another kind for the study, or simulate sessions with "
+           "`turnpoint run --observer sim` and analyse their export"});
+  if (!problems.empty()) throw text::BadInput(problems);
 }
 
 }  // namespace
@@ -175,14 +195,17 @@ SessionOutcome simulate_session(const protocol::Protocol& protocol, const PowerO
   report::SessionData data;
   data.seed = seed;
   std::vector<Rehearsal> sessions;
-  for (int number = 1; number <= protocol::session_count(protocol); ++number)
+  procedure::EarlierTrials earlier;
+  for (int number = 1; number <= protocol::session_count(protocol); ++number) {
     sessions.push_back(rehearse(protocol, {session, number},
-                                seed + static_cast<std::uint64_t>(number - 1) * kSeedStep, sits));
+                                seed + static_cast<std::uint64_t>(number - 1) * kSeedStep, sits, earlier));
+    trial::add_earlier_trials(protocol, sessions.back().blocks, earlier);
+  }
   report::add_trials(joined(sessions), protocol, data);
   data.replicates = session < options.interval_sessions ? options.replicates : 0;
   const auto& unit = data.level_unit;
   for (std::size_t i = 0; i < sessions.size(); ++i) {
-    add_estimates(sessions[i], session_suffix(protocol, static_cast<int>(i) + 1), unit, outcome.findings);
+    add_estimates(sessions[i], protocol, session_suffix(protocol, static_cast<int>(i) + 1), outcome.findings);
     outcome.presented += sessions[i].trials;
     outcome.duration_s += sessions[i].duration_s;
   }

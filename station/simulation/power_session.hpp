@@ -12,7 +12,8 @@
 
 namespace turnpoint::simulation {
 
-/// One number that the analysis of one session estimated. Source, parameter and unit are those of Recovery.
+/// One number that the analysis of one session estimated. Source, parameter and unit have the same meaning as
+/// in Recovery.
 struct Finding {
   std::string source, parameter, unit;
   double value = 0;
@@ -34,8 +35,8 @@ struct SessionOutcome {
 /// arguments.
 SessionOutcome simulate_session(const protocol::Protocol& protocol, const PowerOptions& options, int session);
 
-/// Simulates the sessions of options.part, in order: number - 1, number - 1 + of, number - 1 + 2 of, ...
-/// After a stop there are fewer. Throws like power().
+/// Simulates the sessions of options.part, in order: number - 1, number - 1 + of, number - 1 + 2 of, ... If a
+/// stop is requested, there are fewer sessions. Throws like power().
 std::vector<SessionOutcome> simulate_sessions(const protocol::Protocol& protocol,
                                               const PowerOptions& options);
 
@@ -43,17 +44,19 @@ std::vector<SessionOutcome> simulate_sessions(const protocol::Protocol& protocol
 Power power_of(const protocol::Protocol& protocol, const PowerOptions& options,
                const std::vector<SessionOutcome>& outcomes);
 
-/// Completes sessions 0, 1, 2, ... that were read from the files of parts. The files do not contain the
-/// questions of the first sessions and the options of their fits. So these sessions are simulated again,
-/// without intervals.
+/// Completes sessions 0, 1, 2, ... that were read from files of `turnpoint power --part`. The files do not
+/// contain the questions of each condition and the options of the fits. To get these, the first session with
+/// each condition is simulated again, without intervals.
 void complete(const protocol::Protocol& protocol, const PowerOptions& options,
               std::vector<SessionOutcome>& outcomes);
 
-/// The source of a finding: `what`, or `what` and the condition if there is one.
+/// Returns the text of Finding::source: `what`, followed by the condition if there is one.
 std::string source_of(const std::string& what, const std::string& condition);
-/// What is added to the source of a procedure's estimate: ", session 2" if the protocol plans several.
+/// Returns the text that follows the name of a procedure in Finding::source: ", session 2" for the second of
+/// several planned sessions, otherwise "".
 std::string session_suffix(const protocol::Protocol& protocol, int number);
-/// Returns the parameter name of a d': by this model, at this level (with its unit), or over all levels.
+/// Returns the name of the parameter d' that was estimated with this model, at this level (with its unit) or
+/// over all levels.
 std::string d_prime_name(analysis::Deciding model, const std::optional<double>& level,
                          const std::string& unit);
 /// "spread" or "slope", whichever the fitted function has.

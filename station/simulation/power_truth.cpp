@@ -53,7 +53,8 @@ std::optional<double> crossing(const std::function<double(double)>& share, doubl
   return physics::bisect({high, low}, [&](double level) { return !below(level); }).middle();
 }
 
-/// A range of levels that is wide enough, in any unit, to reach both asymptotes.
+/// A range of levels that is wide enough, in any unit, to reach both asymptotes of the observer's
+/// psychometric function.
 struct Reach {
   double low = 0, high = 0;
 };
@@ -89,6 +90,38 @@ std::optional<double> settled_level(const protocol::Protocol& protocol, const pr
                           ? std::optional(0.5)
                           : kind.settles_at(spec, share(low), share(high));
   return target ? crosses(*target) : std::nullopt;
+}
+
+bool has_parameters_of_its_own(const procedure::Spec& spec) { return spec.second || spec.signal_detection; }
+
+std::map<std::string, double> true_parameters(const protocol::Protocol& protocol, const procedure::Spec& spec,
+                                              const observer::Observer& observer) {
+  std::map<std::string, double> truth;
+  const auto& p = observer.parameters();
+  auto flat = p;
+  flat.gradient = 0, flat.floor.reset();
+  if (const auto level = settled_level(protocol, spec, observer::Observer(flat))) truth["threshold"] = *level;
+  if (!has_parameters_of_its_own(spec)) return truth;
+  if (spec.second) truth["gradient"] = p.gradient;
+  if (p.floor) {
+    flat.threshold = p.floor;
+    if (const auto level = settled_level(protocol, spec, observer::Observer(flat))) truth["floor"] = *level;
+  }
+  trial::TrialSpec trial;
+  trial.procedure = spec.name;
+  const auto question = trial::question_of(trial, protocol, 0);
+  const auto& deadline = protocol.timing.deadline_s;
+  const bool own_function = deadline && deadline->is_constant() &&
+                            observer.bound(deadline->constant) == p.bound && p.drift_sd == 0 &&
+                            p.start_range == 0;
+  if (!own_function) return truth;
+  const bool weibull = question.decides == observer::Decides::right_answer &&
+                       question.finding == observer::Finding::weibull &&
+                       spec.function == procedure::Function::weibull;
+  const bool presence = spec.signal_detection && question.decides == observer::Decides::presence;
+  if (weibull || presence) truth["slope"] = p.slope, truth["lapse"] = p.lapse * (1 - 1.0 / question.answers);
+  if (presence) truth["criterion"] = p.criterion;
+  return truth;
 }
 
 void GeneratingValues::add(const protocol::Protocol& protocol, const trial::TrialSpec& trial,

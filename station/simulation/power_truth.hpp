@@ -18,6 +18,15 @@ namespace turnpoint::simulation {
 std::optional<double> settled_level(const protocol::Protocol& protocol, const procedure::Spec& spec,
                                     const observer::Observer& observer);
 
+/// True if no fit of the report has the parameters that the procedure estimates: it has a second dimension or
+/// a criterion.
+bool has_parameters_of_its_own(const procedure::Spec& spec);
+
+/// The true values of the parameters of a procedure with a posterior, as far as the observer has them. The
+/// slope and the criterion are only included if the observer's function is of the procedure's family.
+std::map<std::string, double> true_parameters(const protocol::Protocol& protocol, const procedure::Spec& spec,
+                                              const observer::Observer& observer);
+
 /// The true values for a fit; empty if the observer has no such value.
 struct FitTruth {
   std::optional<double> threshold, slope, level_75;
@@ -31,10 +40,10 @@ class GeneratingValues {
            const observer::Question& question, const observer::Observer& observer);
   void add(const GeneratingValues& other);
 
-  /// Sums over the trials of one condition. Sums of several sessions can be added. The questions are not part
-  /// of them.
+  /// Sums over the trials of one condition. Sums of several sessions can be added. They do not contain the
+  /// questions that were asked.
   struct Sum {
-    double deadline_s = 0;  ///< deadline of the first trial
+    double deadline_s = 0;  ///< deadline of the condition's first trial
     bool one_deadline = true;
     int trials = 0;
     double correct = 0;
@@ -43,7 +52,8 @@ class GeneratingValues {
   static GeneratingValues of_sums(const std::map<std::string, Sum>& sums);
   /// Copies from `other` the observer's questions for the conditions that both objects have.
   void take_questions(const GeneratingValues& other);
-  bool has_all_of(const GeneratingValues& other) const;  ///< true if this has each of the other's conditions
+  /// true if all conditions of `other` are also in this object
+  bool has_all_of(const GeneratingValues& other) const;
 
   /// Returns the true values that a fit with these options should find in the answers of this condition (""
   /// means all trials). The slope is set only if the observer's function is of the same family as the fitted
@@ -55,7 +65,7 @@ class GeneratingValues {
   /// easy the right answer is to find.
   std::optional<double> share_correct_at(const std::string& condition, double level,
                                          const observer::Observer& observer) const;
-  /// EZ's boundary separation for s = 0.1.
+  /// The true boundary separation of the EZ diffusion model (with the scaling parameter s = 0.1).
   std::optional<double> boundary(const std::string& condition, const observer::Observer& observer) const;
 
  private:

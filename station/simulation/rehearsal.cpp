@@ -5,6 +5,7 @@
 #include <optional>
 #include <stdexcept>
 
+#include "station/procedure/program.hpp"
 #include "station/trial/machine.hpp"
 #include "station/trial/question.hpp"
 #include "station/trial/rows.hpp"
@@ -115,7 +116,7 @@ Doing done_by(const Rehearser& rehearser, const TrialSpec& spec, const protocol:
               std::uint64_t seed) {
   if (spec.strokes) {
     Doing doing;
-    doing.reply.choice = 0;  // the movement is the one that the protocol asks for
+    doing.reply.choice = 0;  // 0: the finger moves as the protocol asks
     return doing;
   }
   if (!spec.slider) return {rehearser.answer(spec, trial::question_of(spec, protocol, seed)), {}};
@@ -134,9 +135,10 @@ Doing done_by(const Rehearser& rehearser, const TrialSpec& spec, const protocol:
 }  // namespace
 
 Rehearsal rehearse(const protocol::Protocol& protocol, const protocol::Visit& visit, std::uint64_t seed,
-                   const Rehearser& rehearser) {
+                   const Rehearser& rehearser, const procedure::EarlierTrials& earlier) {
   Rehearsal rehearsal;
-  trial::Director director(protocol, visit, seed);
+  procedure::StandIns programs;
+  trial::Director director(protocol, visit, seed, &programs, earlier);
   std::int64_t now_ns = 0;
   while (const auto* block = director.block()) {
     auto& record = rehearsal.blocks.emplace_back();

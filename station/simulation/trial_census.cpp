@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "station/procedure/description.hpp"
+#include "station/procedure/program.hpp"
 #include "station/protocol/sources.hpp"
 #include "station/protocol/visits.hpp"
 
@@ -31,7 +32,7 @@ double trials_of(const Protocol& protocol, const Block& block) {
 }
 
 // True if the first trials of this block differ, on average, from the later ones. In a shuffled list they do
-// not, because every part of it has the same trials on average.
+// not differ, because every part of the list has the same trials on average.
 bool begins_unlike_it_goes_on(const Protocol& protocol, const Block& block) {
   if (block.practice || !block.trials || *block.trials >= trials_of(protocol, block)) return false;
   bool unlike = block.procedures.size() > 1;
@@ -47,7 +48,8 @@ bool begins_unlike_it_goes_on(const Protocol& protocol, const Block& block) {
 template <typename Count>
 void run_session(const Protocol& protocol, const protocol::Visit& visit, std::uint64_t seed,
                  const Answers& answers, Count&& count) {
-  trial::Director director(protocol, visit, seed);
+  procedure::StandIns programs;
+  trial::Director director(protocol, visit, seed, &programs);
   while (const auto* block = director.block()) {
     int trials = 0;
     while (const auto trial = director.next()) {
@@ -73,7 +75,7 @@ TrialCensus::TrialCensus(const Protocol& protocol) : protocol_(&protocol) {
 }
 
 void TrialCensus::add(const Block& block, const procedure::Spec* spec, const std::vector<double>& levels,
-                      double trials) {
+                      const std::vector<double>& seconds, double trials) {
   protocol::Factors fixed;
   for (const auto* factor : relevant_)
     if (const auto found = block.fixed.find(factor->name); found != block.fixed.end()) fixed.insert(*found);
@@ -81,25 +83,35 @@ void TrialCensus::add(const Block& block, const procedure::Spec* spec, const std
     if (spec)
       if (const auto found = spec->with.find(factor->name); found != spec->with.end())
         fixed[factor->name] = found->second;
-  const auto count = [&](const std::string& name, const std::vector<double>& values, double of_these) {
-    const bool matters =
-        std::any_of(relevant_.begin(), relevant_.end(), [&](const auto* f) { return f->name == name; });
-    auto cell = fixed;
+  const auto matters = [&](const std::string& name) {
+    return std::any_of(relevant_.begin(), relevant_.end(), [&](const auto* f) { return f->name == name; });
+  };
+  const auto count = [&](protocol::Factors cell, const std::string& name, const std::vector<double>& values,
+                         double of_these) {
     for (const double value : values) {
-      if (matters) cell[name] = value;
+      if (matters(name)) cell[name] = value;
       cells_[cell] += of_these / static_cast<double>(values.size());
     }
   };
-  count(spec ? spec->level : block.level, levels, trials);
+  const auto& level = spec ? spec->level : block.level;
+  if (seconds.empty()) count(fixed, level, levels, trials);
+  for (const double second : seconds) {
+    auto cell = fixed;
+    if (matters(spec->second->level)) cell[spec->second->level] = second;
+    count(cell, level, levels, trials / static_cast<double>(seconds.size()));
+  }
   // Catch trials are presented in addition to the procedure's trials. Before each of these, catch trials are
   // inserted as long as a random draw with probability `rate` succeeds.
   if (const auto& caught = block.catch_trials; caught && spec)
-    count(caught->factor, caught->levels, trials * caught->rate / (1 - caught->rate));
+    count(fixed, caught->factor, caught->levels, trials * caught->rate / (1 - caught->rate));
 }
 
 void TrialCensus::add(const Block& block, const TrialSpec& trial) {
   if (trial.type != terms::TrialType::experimental) return;
-  add(block, protocol::find_procedure(*protocol_, trial.procedure), {trial.level.value_or(0)}, 1);
+  const auto* spec = protocol::find_procedure(*protocol_, trial.procedure);
+  std::vector<double> second;
+  if (spec && spec->second) second.push_back(std::get<double>(trial.factors.at(spec->second->level)));
+  add(block, spec, {trial.level.value_or(0)}, second, 1);
 }
 
 void TrialCensus::add(const TrialCensus& other) {
@@ -167,10 +179,11 @@ TrialCensus census_of(const Protocol& protocol) {
     for (const auto& name : block.procedures)
       if (const auto* spec = protocol::find_procedure(protocol, name))
         census.add(block, spec, levels[spec],
+                   spec->second ? spec->second->stimuli.values : std::vector<double>{},
                    trials_of(*spec) * (block.trials ? std::min(1.0, *block.trials / all) : 1.0));
     const auto fixed = block.trials.value_or(static_cast<int>(block.levels.size()));
     for (int i = 0; i < fixed && !block.levels.empty(); ++i)
-      census.add(block, nullptr, {block.levels[static_cast<std::size_t>(i) % block.levels.size()]}, 1);
+      census.add(block, nullptr, {block.levels[static_cast<std::size_t>(i) % block.levels.size()]}, {}, 1);
   }
   return census;
 }

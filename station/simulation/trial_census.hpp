@@ -19,10 +19,11 @@ class TrialCensus {
   explicit TrialCensus(const protocol::Protocol& protocol);
 
   void add(const protocol::Block& block, const trial::TrialSpec& trial);
-  /// Adds `trials` trials of a procedure, with each of `levels` equally often. Without a procedure (`spec` is
-  /// null), the levels are the block's fixed levels.
+  /// Adds `trials` trials of a procedure, with each of `levels` equally often, combined with each of
+  /// `seconds` if the procedure has a second dimension. Without a procedure (`spec` is null), the levels are
+  /// the block's fixed levels.
   void add(const protocol::Block& block, const procedure::Spec* spec, const std::vector<double>& levels,
-           double trials);
+           const std::vector<double>& seconds, double trials);
   void add(const TrialCensus& other);
 
   /// The number of trials of each kind (cell). A cell is identified by the factors that the block, procedure
@@ -45,11 +46,11 @@ bool levels_follow_right_answers(const protocol::Protocol& protocol);
 /// Simulates one session in which the participant passes practice, and counts its trials.
 TrialCensus census_of_session(const protocol::Protocol& protocol, std::uint64_t seed, const Answers& answers);
 
-/// The average content of a session, computed exactly from the protocol. If a procedure chooses levels from
-/// the answers, each level that it can present counts equally often. One case is sampled instead of computed:
-/// a block that has fewer trials than its procedures provide, and whose first trials differ from the rest
-/// (several procedures, no shuffling, or `max_run`). For such a block, sessions with 40 000 trials in total
-/// are counted. The standard error of each proportion is then at most 0.25 %.
+/// Returns the average number of trials of each kind in a session, computed exactly from the protocol. If a
+/// procedure chooses levels from the answers, each level that it can present counts equally often. One case
+/// is sampled instead of computed: a block that has fewer trials than its procedures provide, and whose first
+/// trials differ from the rest (several procedures, no shuffling, or `max_run`). For such a block, sessions
+/// with 40 000 trials in total are counted. The standard error of each proportion is then at most 0.25 %.
 TrialCensus census_of(const protocol::Protocol& protocol);
 
 }  // namespace turnpoint::simulation

@@ -55,7 +55,7 @@ void record(BackupReport& report, const std::string& database, const std::string
   }
 }
 
-/// Counts the sessions and trials in the finished file. Throws if it contains fewer sessions than the
+/// Counts the sessions and trials in the finished backup. Throws if it contains fewer sessions than the
 /// database.
 void read_back(BackupReport& report, std::int64_t sessions) {
   Database copy(report.path, Database::Access::immutable);

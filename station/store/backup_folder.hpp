@@ -31,7 +31,8 @@ std::vector<StoredBackup> stored_backups(const std::string& folder);
 /// Returns a number greater than that of any backup in the folder, whichever database it belongs to.
 std::int64_t next_backup_number(const std::string& folder);
 
-/// Writes stem and number into a backup. clear_backup_note() removes them after the backup was restored.
+/// Writes the database's file name (stem) and the number of the backup into the backup. clear_backup_note()
+/// removes them after the backup was restored.
 void write_backup_note(Database& copy, const std::string& stem, std::int64_t number);
 void clear_backup_note(Database& copy);
 
@@ -53,8 +54,8 @@ class BackupFolderLock {
 /// on the system disk.)
 void require_disk(const std::string& folder, const std::string& database);
 
-/// Returns the name of the file into which a drill restores a backup. If the drill is killed, this file is
-/// removed together with the files of interrupted backups.
+/// Returns the name of the temporary file into which a drill (a trial restore) restores a backup. If the
+/// drill is killed, this file is removed together with the files of interrupted backups.
 std::string drill_file(const std::string& backup);
 
 /// Removes the unfinished files of interrupted backups from a folder, and returns their names. Holds the

@@ -58,7 +58,7 @@ class Encoder {
     while (row.step()) add_row(hash, row);
   }
 
-  /// Hashes the rows after `from`, up to and including `to`, table by table.
+  /// Hashes the session's rows after `from`, up to and including `to`, table by table.
   void add_rows(text::Sha256& hash, const Extent& from, const Extent& to) {
     add(hash, segment_, segment_table(), "segment_index", "segment_index", from.segment, to.segment);
     add(hash, block_, block_table(), "run_order", "run_order", from.block, to.block);
@@ -74,6 +74,11 @@ class Encoder {
       add(hash, answer_, answer_table(), "event_index", "event_index, answer_index", from.event, to.event);
     if (encoding_ >= 5)
       add(hash, friction_, friction_level_table(), "event_index", "event_index, level_index", from.event,
+          to.event);
+    if (encoding_ >= 5)
+      add(hash, program_, program_table(), "event_index", "event_index, program_index", from.event, to.event);
+    if (encoding_ >= 5)
+      add(hash, estimate_, estimate_table(), "event_index", "event_index, estimate_index", from.event,
           to.event);
   }
 
@@ -96,7 +101,8 @@ class Encoder {
     return last;
   }
 
-  /// True if the database has a tone or a signal of a trial that no link covers.
+  /// True if the database has a tone or a signal of a trial that is newer than the last link of the checksum
+  /// chain.
   bool row_beyond(std::int64_t last_trial) const {
     Statement row(database_,
                   fmt::format("SELECT 1 FROM {0}.tone WHERE session_id = ?1 AND trial_index > ?2 UNION ALL "
@@ -126,7 +132,7 @@ class Encoder {
   std::string schema_, id_;
   std::int64_t encoding_;
   std::optional<Statement> segment_, block_, trial_, tone_, signal_, event_, check_, answer_, friction_,
-      extent_;
+      program_, estimate_, extent_;
 };
 
 namespace {
@@ -208,9 +214,9 @@ Link check_links(Database& database, const std::string& schema, VerifiedSession&
 
 /// Returns the sessions (all, or only `session_id`) whose sequence index in the counterbalancing agrees with
 /// the participant's enrolment. The enrolment must come from a station at which the participant has a
-/// session. If the database has tombstones, it may come from any station, because the session at that station
-/// may have been withdrawn. A single query checks all sessions: a query per session would read all sessions
-/// each time.
+/// session. If the database has tombstones (records of withdrawn sessions), it may come from any station,
+/// because the session at that station may have been withdrawn. A single query checks all sessions: a query
+/// per session would read all sessions each time.
 std::set<std::string> enrolled(Database& database, const std::string& schema,
                                const std::string& session_id = "") {
   std::set<std::string> ids;
@@ -294,7 +300,7 @@ VerifiedSession verify_one(Database& database, const std::string& session_id, co
   if (!(encoder.extent() == last.last) || encoder.row_beyond(last.last.trial))
     verified.problems.push_back("rows were added or removed after the last checksum");
   if (!follows(last, row.text(2), row.text(3)))
-    verified.problems.push_back("the session's status differs from what was recorded");
+    verified.problems.push_back("the session's status was changed after the last checksum");
   return verified;
 }
 

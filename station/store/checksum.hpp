@@ -33,7 +33,7 @@ struct Link {
   std::int64_t index = -1;  ///< position in the chain, from 0; -1 if the chain is empty
   std::int64_t encoding = kEncoding;
   Extent last;
-  std::string status, status_reason;  ///< status of the session when the link was made
+  std::string status, status_reason;  ///< status of the session when this link was made
   std::string sha256;                 ///< checksum in hexadecimal; "" if the chain is empty
 };
 

@@ -37,7 +37,7 @@ StoredBackup newest_backup(const std::string& directory, const std::string& path
   return newest;
 }
 
-/// The temporary file into which a drill restores the backup. The destructor removes it.
+/// The temporary file into which a drill (a trial restore) writes the backup. The destructor removes it.
 class Restored {
  public:
   explicit Restored(const StoredBackup& backup) : path_(drill_file(backup.path)) {

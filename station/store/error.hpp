@@ -4,7 +4,7 @@
 
 namespace turnpoint::store {
 
-/// The kind of a database error. Each kind calls for another reaction by the caller.
+/// The kind of a database error. The caller should react differently to each kind.
 enum class ErrorKind {
   disk_full,       ///< earlier rows are intact; repeat the same call once there is space
   read_only,       ///< the file, folder or disk cannot be written
@@ -19,8 +19,8 @@ enum class ErrorKind {
   io,              ///< any other error of the disk
 };
 
-/// Every failure of the store. The message says what was tried, on which file, what SQLite or the system
-/// reported, and what to do.
+/// Thrown for every failure of the store. The message says what was tried, on which file, what SQLite or the
+/// system reported, and what to do.
 class StoreError : public std::runtime_error {
  public:
   StoreError(ErrorKind kind, const std::string& message) : std::runtime_error(message), kind_(kind) {}

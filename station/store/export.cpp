@@ -75,7 +75,9 @@ CsvColumns csv_columns(const ProtocolSelection& selection) {
           session_columns(),
           self_test_columns(),
           answer_columns(),
-          friction_columns()};
+          friction_columns(),
+          program_columns(),
+          estimate_columns()};
 }
 
 void for_each_row(Database& database, const ProtocolSelection& selection, const CsvColumns& columns,
@@ -108,6 +110,14 @@ void for_each_row(Database& database, const ProtocolSelection& selection, const 
         row.level = &level;
         rows.friction_tables(cells_of(columns.friction_tables, row));
       }
+      for (const auto& program : event.programs) {
+        row.program = &program;
+        rows.programs(cells_of(columns.programs, row));
+      }
+      for (const auto& estimate : event.estimates) {
+        row.estimate = &estimate;
+        rows.estimates(cells_of(columns.estimates, row));
+      }
     }
     for (const auto* event : records::standing_answers(stored.events)) {
       const auto& segment = stored.segments.at(static_cast<std::size_t>(event->segment_index) - 1);
@@ -129,19 +139,23 @@ void export_csv(Database& database, const ProtocolSelection& selection, const Ta
   auto trials = table("trials.csv", columns.trials), intervals = table("intervals.csv", columns.intervals),
        events = table("events.csv", columns.events), sessions = table("sessions.csv", columns.sessions),
        checks = table("self_tests.csv", columns.self_tests), answers = table("answers.csv", columns.answers),
-       friction = table("friction_tables.csv", columns.friction_tables);
+       friction = table("friction_tables.csv", columns.friction_tables),
+       programs = table("programs.csv", columns.programs),
+       estimates = table("estimates.csv", columns.estimates);
   const auto into = [](TableFile& file) {
     return [&file](const std::vector<Cell>& cells) { file.row(cells); };
   };
   for_each_row(database, selection, columns,
                {into(trials), into(intervals), into(events), into(sessions), into(checks), into(answers),
-                into(friction)});
+                into(friction), into(programs), into(estimates)});
   for (auto* file : {&trials, &intervals, &events, &sessions}) file->finish(files);
   write_file(selection.folder + "/codebook.json", codebook_json(selection.protocol_id, selection.factors));
   files.push_back({selection.folder + "/codebook.json", 0});
   checks.finish(files);
   answers.finish(files);
   friction.finish(files);
+  programs.finish(files);
+  estimates.finish(files);
 }
 
 SelectedSessions select_for_export(const std::string& path, const std::string& directory,

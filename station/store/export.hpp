@@ -9,7 +9,8 @@ namespace turnpoint::store {
 enum class ExportFormat { csv, bids, signals };
 
 struct ExportOptions {
-  std::string session_id, participant, protocol_id;  ///< which sessions to export; "" selects all
+  /// which sessions to export; "" does not restrict the choice
+  std::string session_id, participant, protocol_id;
   ExportFormat format = ExportFormat::csv;
   char separator = ',';
   char decimal = '.';

@@ -135,7 +135,7 @@ class BidsWriter {
     plain("participants.json", columns_json(bids_participant_columns()));
   }
 
-  /// Writes the runs of a session. `task` is a session with the texts of the protocol.
+  /// Writes the runs (segments) of a session. `task` is a session that contains the texts of the protocol.
   void runs(Database& database, const StoredSession& stored, const SessionStart& task) {
     const auto spans = stimulus_spans(stored);
     const auto all_events = in_order_of_time(stored.events);

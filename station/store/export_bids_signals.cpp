@@ -74,7 +74,7 @@ class Recording {
   double start_s_, rate_Hz_;
   std::vector<SignalChannel> channels_;
   TableFile table_;
-  std::int64_t next_ = 0;  ///< number of rows so far
+  std::int64_t next_ = 0;  ///< number of rows that have been written
 };
 
 }  // namespace

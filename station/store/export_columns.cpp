@@ -40,6 +40,12 @@ ExportColumn level(const std::string& csv) {
   return exported(friction_level_table(), csv, &ExportRow::level);
 }
 
+ExportColumn program(const std::string& csv) { return exported(program_table(), csv, &ExportRow::program); }
+
+ExportColumn estimate(const std::string& csv) {
+  return exported(estimate_table(), csv, &ExportRow::estimate);
+}
+
 template <class Make>
 void add(ExportColumns& columns, Make make, std::initializer_list<const char*> names) {
   for (const auto* name : names) columns.push_back(make(name));
@@ -78,7 +84,7 @@ ExportColumn stimulus_duration() {
 }
 
 ExportColumn last_model() {
-  return {{"model", "Physical model that planned the scene presented last in the trial", "", ""},
+  return {{"model", "Physical model with which the scene presented last in the trial was planned", "", ""},
           [](const ExportRow& row) {
             const auto& tones = row.trial->tones;
             return tones.empty() ? Cell{} : cell(tones.back().model);
@@ -302,6 +308,22 @@ ExportColumns friction_columns() {
   return columns;
 }
 
+ExportColumns program_columns() {
+  ExportColumns columns{participant_id(), session_id(), session("run_mode"), event("segment_id"),
+                        event_onset()};
+  add(columns, program, {"role", "procedure", "program", "version", "path", "sha256"});
+  columns.push_back(columns_version());
+  return columns;
+}
+
+ExportColumns estimate_columns() {
+  ExportColumns columns{participant_id(), session_id(), session("run_mode"), event("segment_id"),
+                        event_onset()};
+  add(columns, estimate, {"block_index", "attempt", "procedure", "parameter", "mean", "sd", "basis"});
+  columns.push_back(columns_version());
+  return columns;
+}
+
 const EventRow* newest_self_test(const StoredSession& stored) {
   const EventRow* newest = nullptr;
   for (const auto& event : stored.events)
@@ -320,6 +342,8 @@ std::string codebook_json(const std::string& protocol_id, const std::vector<std:
   json["self_tests.csv"] = explained(self_test_columns());
   json["answers.csv"] = explained(answer_columns());
   json["friction_tables.csv"] = explained(friction_columns());
+  json["programs.csv"] = explained(program_columns());
+  json["estimates.csv"] = explained(estimate_columns());
   return json.dump(2) + "\n";
 }
 

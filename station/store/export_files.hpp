@@ -33,16 +33,17 @@ struct SelectedSessions {
 SelectedSessions select_for_export(const std::string& database, const std::string& directory,
                                    const ExportOptions& options);
 
-/// The columns of the tables of a protocol.
+/// The columns of each exported table of a protocol.
 struct CsvColumns {
-  ExportColumns trials, intervals, events, sessions, self_tests, answers, friction_tables;
+  ExportColumns trials, intervals, events, sessions, self_tests, answers, friction_tables, programs,
+      estimates;
 };
 CsvColumns csv_columns(const ProtocolSelection& selection);
 
-/// Receives the rows of these tables one by one.
+/// For each table, a function that receives its rows one by one.
 struct CsvRows {
   std::function<void(const std::vector<Cell>&)> trials, intervals, events, sessions, self_tests, answers,
-      friction_tables;
+      friction_tables, programs, estimates;
 };
 void for_each_row(Database& database, const ProtocolSelection& selection, const CsvColumns& columns,
                   const CsvRows& rows);

@@ -38,7 +38,7 @@ std::vector<Column> list_columns() {
       {"columns_version", "Version of this set of columns", "", ""}};
 }
 
-/// The columns before those of the channels.
+/// The first columns of a table of points; the columns of the signal's channels follow them.
 std::vector<Column> point_columns() {
   return {
       {"trial_index", "Index of the trial among all trials presented in the session, from 0", "", ""},
@@ -106,7 +106,8 @@ std::optional<double> playback_rate_Hz(const SessionStart& start) {
     const auto* rate = output == nullptr ? nullptr : output->value.find("rate_Hz");
     if (rate != nullptr && rate->value.number > 0) return rate->value.number;
   } catch (const text::BadInput&) {
-    // Leave out the frames. The other columns are exported anyway.
+    // The stored rig file cannot be read, so the rate of frames is unknown. The export then leaves out frame
+    // numbers.
   }
   return std::nullopt;
 }

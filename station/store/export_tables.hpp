@@ -17,7 +17,7 @@ struct Column {
 
 /// The time from the start of a trial's first stimulus to the end of its last stimulus.
 struct StimulusSpan {
-  double onset_s = 0;  ///< start of the first stimulus, relative to the start of the segment
+  double onset_s = 0;  ///< start of the first stimulus, from the start of the program run (segment)
   double duration_s = 0;
 };
 
@@ -41,10 +41,12 @@ struct ExportRow {
   const TrialRow* trial = nullptr;
   const ToneRow* tone = nullptr;
   const EventRow* event = nullptr;
-  std::int64_t origin_ns = 0;               ///< CLOCK_MONOTONIC at the start of the event's segment
+  std::int64_t origin_ns = 0;               ///< start of the program run of `event` (CLOCK_MONOTONIC)
   std::optional<StimulusSpan> span = {};    ///< time span of the trial's stimuli
   const CheckRow* check = nullptr;          ///< a check of the self-test in `event`
   const FrictionLevelRow* level = nullptr;  ///< a level of the friction table in `event`
+  const ProgramRow* program = nullptr;      ///< a separate program in `event`
+  const EstimateRow* estimate = nullptr;    ///< an estimate in `event`
   const AnswerRow* answer = nullptr;        ///< the answer in `event`
   const EventRow* self_test = nullptr;      ///< the newest self-test of the session; null if there was none
 };
@@ -66,6 +68,8 @@ ExportColumns session_columns();
 ExportColumns self_test_columns();
 ExportColumns answer_columns();
 ExportColumns friction_columns();
+ExportColumns program_columns();
+ExportColumns estimate_columns();
 
 /// The newest self-test of a session; null if there was none.
 const EventRow* newest_self_test(const StoredSession& stored);

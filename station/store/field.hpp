@@ -140,7 +140,8 @@ Field<typename MemberOf<decltype(First)>::Record> field(const About& about) {
           [](const Record& r) { return cell_of(member<First, Rest...>(r)); }};
 }
 
-/// Marks a column that the checksum covers since this version of its rule (kEncoding in checksum.hpp).
+/// Marks a column as covered by checksums only since this version of the encoding (kEncoding in
+/// checksum.hpp).
 template <class Record>
 Field<Record> since(int encoding, Field<Record> field) {
   field.since = encoding;

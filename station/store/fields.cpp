@@ -12,7 +12,7 @@ Field<SessionRecord> start(const About& about) {
   return field<&SessionRecord::start, Member>(about);
 }
 
-/// Describes the database column that stores one of the conditions of a session.
+/// Describes the database column that stores one of a session's conditions, such as the humidity.
 template <auto Member>
 Field<SessionRecord> condition(const About& about) {
   return since(4, field<&SessionRecord::start, &SessionStart::conditions, Member>(about));
@@ -90,9 +90,10 @@ const Table<AnswerRow>& answer_table() {
        field<&A::occasion>({"occasion", "occasion",
                             "Number of blocks before the questionnaire; distinguishes repeated uses of the "
                             "same questionnaire"}),
-       field<&A::answer>({"answer", "answer", "Id of the choice, or the number"}),
-       field<&A::response_time_s>(
-           {"response_time_s", "response_time", "Time from the appearance of the question", "s"})}};
+       field<&A::answer>({"answer", "answer",
+                          "Id of the chosen answer or, if the question asks for a number, that number"}),
+       field<&A::response_time_s>({"response_time_s", "response_time",
+                                   "Time from the appearance of the question to the answer", "s"})}};
   return table;
 }
 
@@ -113,6 +114,35 @@ const Table<FrictionLevelRow>& friction_level_table() {
        field<&F::sd>({"sd", "sd", "Standard error of relative_friction"}),
        field<&F::low>({"low", "low", "Lower end of the 95 % interval of relative_friction"}),
        field<&F::high>({"high", "high", "Upper end of the 95 % interval of relative_friction"})}};
+  return table;
+}
+
+const Table<ProgramRow>& program_table() {
+  using P = ProgramRow;
+  static const Table<P> table{
+      "program",
+      {"session_id", "event_index", "program_index"},
+      {field<&P::role>({"role", "role", "What the program did in the session", "", "procedure | observer"}),
+       field<&P::procedure>({"procedure", "procedure", "Procedure whose levels the program chose"}),
+       field<&P::program>({"name", "program", "Name of the program, as it says itself"}),
+       field<&P::version>({"version", "version", "Version of the program, as it says itself"}),
+       field<&P::path>({"path", "path", "File that was started"}),
+       field<&P::sha256>({"sha256", "sha256", "Hash of the file"})}};
+  return table;
+}
+
+const Table<EstimateRow>& estimate_table() {
+  using E = EstimateRow;
+  static const Table<E> table{
+      "estimate",
+      {"session_id", "event_index", "estimate_index"},
+      {field<&E::block_index>({"block_index", "block_index", "Number of the block, from 0"}),
+       field<&E::attempt>({"attempt", "attempt", "Number of earlier attempts at this block"}),
+       field<&E::procedure>({"procedure", "procedure", "Procedure whose program gave the estimate"}),
+       field<&E::parameter>({"parameter", "parameter", "What was estimated: threshold, ..."}),
+       field<&E::mean>({"mean", "mean", "Estimate of the program at the end of the block"}),
+       field<&E::sd>({"sd", "sd", "Standard deviation of the estimate, as the program gave it"}),
+       field<&E::basis>({"basis", "basis", "Data from which the program computed it, in its own words"})}};
   return table;
 }
 
@@ -164,9 +194,10 @@ const Table<SessionRecord>& session_table() {
                                               "Moisture of the fingertip, as a moisture meter read it before "
                                               "the session, in the meter's unit"}),
        since(5, field<&R::leased_place>({"leased_place"})),
-       since(5, start<&S::planned_session>(
-                    {"planned_session", "planned_session",
-                     "Which of the sessions that the protocol plans it is, from 1; n/a if it plans none"})),
+       since(5,
+             start<&S::planned_session>(
+                 {"planned_session", "planned_session",
+                  "Number of this session in the protocol's plan of sessions, from 1; n/a without a plan"})),
        since(5, start<&S::group>(
                     {"participant_group", "participant_group",
                      "Group of the participant: a level of the factor that is drawn per participant"})),

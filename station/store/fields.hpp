@@ -51,6 +51,8 @@ const Table<EventRow>& event_table();
 const Table<CheckRow>& check_table();
 const Table<AnswerRow>& answer_table();
 const Table<FrictionLevelRow>& friction_level_table();
+const Table<ProgramRow>& program_table();
+const Table<EstimateRow>& estimate_table();
 
 /// The columns of a session. Its data are in four tables, because many sessions share a protocol, a rig and a
 /// calibration. Status and reason are the last columns, and the only ones that ever change.

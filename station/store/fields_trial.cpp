@@ -54,9 +54,10 @@ const Table<TrialRow>& trial_table() {
        field<&T::frequency_Hz>({"frequency_Hz", "frequency_hz",
                                 "Frequency of the first tone of the scene presented last in the trial",
                                 "Hz"}),
-       field<&T::amplitude>(
-           {"amplitude", "amplitude",
-            "Predicted displacement, at its last maximum, of the scene presented last in the trial", "um"}),
+       field<&T::amplitude>({"amplitude", "amplitude",
+                             "Predicted displacement of the surface at its last maximum, for the scene "
+                             "presented last in the trial",
+                             "um"}),
        field<&T::correct_response>(
            {"correct_response", "correct_response", "Correct choice; n/a if no choice is correct"}),
        field<&T::response>(
@@ -126,9 +127,9 @@ const Table<TrialRow>& trial_table() {
                      "Time from the answer to the participant's statement of confidence", "s"})),
        finger<&F::sensing>(
            {"sensing", "sensing",
-            "Whether the finger moved as [sensing] of the protocol asks for (ok, or too few "
-            "strokes, too light, too hard, too slow, too fast), or why that is not known; n/a "
-            "without force sensors",
+            "Whether the touch met the requirements of the protocol's [sensing]: ok, or too few "
+            "strokes, too light, too hard, too slow, too fast. If that is not known: lost (samples "
+            "were lost), wire (fault of a cell's wire), tare (no valid tare); n/a without force sensors",
             "", "ok | strokes | light | hard | slow | fast | lost | wire | tare | n/a"}),
        finger<&F::contact_s>(
            {"contact_s", "contact_s", "Time during which a finger touched the surface", "s"}),
@@ -156,10 +157,11 @@ const Table<TrialRow>& trial_table() {
                                      "mm"}),
        finger<&F::boundary_se_mm>(
            {"boundary_se_mm", "boundary_se_mm", "Standard error of boundary_felt_mm", "mm"}),
-       finger<&F::lag_mm>({"lag_mm", "lag_mm",
-                           "Distance by which the skin lags behind: half the difference between the felt "
-                           "steps of the two directions",
-                           "mm"}),
+       finger<&F::lag_mm>(
+           {"lag_mm", "lag_mm",
+            "Distance by which the skin lags behind the finger: half the difference between the "
+            "positions of the felt step in the two directions of stroking",
+            "mm"}),
        finger<&F::tare_mN>(
            {"tare_mN", "tare_mn", "Change of the force sensors' zero since the previous trial", "mN"}),
        since(5, field<&T::finger, &F::mu>(
@@ -192,7 +194,7 @@ const Table<ToneRow>& tone_table() {
            {"friction", "friction", "Predicted friction of the scene, relative to the still surface"}),
        field<&T::rove_dB>(
            {"rove_dB", "rove_db", "Random change of level (roving) added to this interval", "dB"}),
-       field<&T::model>({"model", "model", "Physical model that planned the tone"}),
+       field<&T::model>({"model", "model", "Physical model with which the tone was planned"}),
        field<&T::error_bound_mm>({"error_bound_mm", "error_bound_mm",
                                   "Bound of the model's error in the position of the boundary", "mm"}),
        field<&T::uncertainty_mm>({"uncertainty_mm", "uncertainty_mm",

@@ -20,7 +20,7 @@ ErrorKind kind_of_errno(int code);
 /// the database.
 inline constexpr const char* kLogSuffixes[] = {"-wal", "-shm", "-journal"};
 
-/// True if there is a file or folder with this name. Throws if the system does not let us find out.
+/// True if there is a file or folder with this name. Throws if the system does not say whether there is one.
 bool file_exists(const std::string& path);
 /// Size in bytes; 0 if there is no such file.
 std::uint64_t file_size(const std::string& path);

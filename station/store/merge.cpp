@@ -47,6 +47,8 @@ const std::vector<Part>& parts() {
       {"self_test", "session_id,event_index,check_index", "", kBySession},
       {"answer", "session_id,event_index,answer_index", "", kBySession},
       {"friction_level", "session_id,event_index,level_index", "", kBySession},
+      {"program", "session_id,event_index,program_index", "", kBySession},
+      {"estimate", "session_id,event_index,estimate_index", "", kBySession},
       {"link", "session_id,link_index", "", kBySession},
       {"unsealed", "session_id", "", kBySession},
       {"annotation", "annotation_id", "", kBySession},
@@ -172,7 +174,7 @@ void refuse_changed(Database& database, const std::string& source) {
                       source, session.session_id, session.participant, session.problems.front(), source));
 }
 
-/// Gives a session the status from `source`, whose rows of this session are newer.
+/// Copies a session's status from `source`. Call this if the rows of the session in `source` are newer.
 void take_status(Database& database, const std::string& id) {
   Statement(
       database,

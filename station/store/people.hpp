@@ -37,7 +37,7 @@ class People {
   /// join() gives the name.
   std::string label(const Bearer& bearer) const;
 
-  /// Returns all bearers of the same person, including the given one.
+  /// Returns all bearers (codes at stations) of the same person, including the given one.
   std::vector<Bearer> same_as(const Bearer& bearer) const;
 
   /// Returns the people whom `name` may mean, each as a list of bearers. `name` is a code, CODE@STATION or a
@@ -45,7 +45,7 @@ class People {
   std::vector<std::vector<Bearer>> named(const std::string& name) const;
 
  private:
-  /// the bearers of each person; the first one gives the person's name
+  /// the bearers (codes at stations) of each person; the first one gives the person's name
   std::vector<std::vector<Bearer>> persons_;
   std::map<Bearer, std::size_t> person_of_;
   std::map<std::string, int> persons_with_code_;  ///< number of people who have each code

@@ -17,18 +17,20 @@ class Database;
 /// none is left.
 std::int64_t next_place(Database& database, const std::string& protocol_id);
 
-/// True if a collector leased this place to the station, now or when the participant got it.
+/// True if a collector leased this place in the counterbalancing to the station, now or when the participant
+/// got it.
 bool is_leased(Database& database, const SessionStart& start, std::int64_t place);
 
-/// Replaces the places that are leased for a protocol.
+/// Replaces the list of the places in a protocol's counterbalancing that a collector has leased to this
+/// station.
 void set_leased_places(const std::string& database, const std::string& protocol_id,
                        const std::vector<std::int64_t>& places);
 
-/// Returns the places of a protocol that participants of this database have.
+/// Returns the places in a protocol's counterbalancing that participants of this database have.
 std::vector<std::int64_t> used_places(Database& database, const std::string& protocol_id);
 
-/// Removes the leased places that nobody has, and returns them, so that they can be given back to the
-/// collector.
+/// Removes the leased places in a protocol's counterbalancing that no participant has, and returns them, so
+/// that they can be given back to the collector.
 std::vector<std::int64_t> give_up_places(const std::string& database, const std::string& protocol_id);
 
 }  // namespace turnpoint::store

@@ -166,7 +166,8 @@ std::vector<std::string> participants(const std::string& path) {
 namespace {
 
 /// Reads the events of a session in the order in which they were logged. Events of self-tests get their
-/// checks, those of questionnaires their answer, and those of friction tables their levels.
+/// checks, those of questionnaires their answer, those of friction tables their levels, and those of separate
+/// programs what is stored about them.
 std::vector<EventRow> read_events(Database& database, const std::string& id) {
   Statement rows(database, "SELECT " + column_list(event_table()) +
                                " FROM event WHERE session_id = ? ORDER BY event_index");
@@ -181,8 +182,16 @@ std::vector<EventRow> read_events(Database& database, const std::string& id) {
                    "SELECT " + column_list(friction_level_table()) +
                        " FROM friction_level WHERE session_id = ? ORDER BY event_index, level_index");
   levels.bind(id);
+  Statement programs(database, "SELECT " + column_list(program_table()) +
+                                   " FROM program WHERE session_id = ? ORDER BY event_index, program_index");
+  programs.bind(id);
+  Statement estimates(database,
+                      "SELECT " + column_list(estimate_table()) +
+                          " FROM estimate WHERE session_id = ? ORDER BY event_index, estimate_index");
+  estimates.bind(id);
   std::vector<EventRow> events;
   bool check_waits = checks.step(), answer_waits = answers.step(), level_waits = levels.step();
+  bool program_waits = programs.step(), estimate_waits = estimates.step();
   while (rows.step()) {
     auto event = record_of(rows, event_table());
     for (; check_waits && checks.integer(1) == rows.integer(1); check_waits = checks.step())
@@ -191,6 +200,10 @@ std::vector<EventRow> read_events(Database& database, const std::string& id) {
       event.answers.push_back(record_of(answers, answer_table()));
     for (; level_waits && levels.integer(1) == rows.integer(1); level_waits = levels.step())
       event.friction_levels.push_back(record_of(levels, friction_level_table()));
+    for (; program_waits && programs.integer(1) == rows.integer(1); program_waits = programs.step())
+      event.programs.push_back(record_of(programs, program_table()));
+    for (; estimate_waits && estimates.integer(1) == rows.integer(1); estimate_waits = estimates.step())
+      event.estimates.push_back(record_of(estimates, estimate_table()));
     events.push_back(std::move(event));
   }
   return events;

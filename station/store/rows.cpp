@@ -11,7 +11,9 @@ RowWriter::RowWriter(Database& database)
       event_(database, insert_sql(event_table())),
       check_(database, insert_sql(check_table())),
       answer_(database, insert_sql(answer_table())),
-      friction_(database, insert_sql(friction_level_table())) {}
+      friction_(database, insert_sql(friction_level_table())),
+      program_(database, insert_sql(program_table())),
+      estimate_(database, insert_sql(estimate_table())) {}
 
 void RowWriter::trial(const TrialPlace& at, TrialRow row, std::int64_t recorded_realtime_ns) {
   row.segment_index = at.segment_index;
@@ -34,6 +36,12 @@ void RowWriter::event(const TrialPlace& at, std::int64_t event_index, EventRow r
   std::int64_t level_index = 0;
   for (const auto& level : row.friction_levels)
     bind_row(friction_, friction_level_table(), level, at.session_id, event_index, level_index++).run();
+  std::int64_t program_index = 0;
+  for (const auto& program : row.programs)
+    bind_row(program_, program_table(), program, at.session_id, event_index, program_index++).run();
+  std::int64_t estimate_index = 0;
+  for (const auto& estimate : row.estimates)
+    bind_row(estimate_, estimate_table(), estimate, at.session_id, event_index, estimate_index++).run();
 }
 
 std::map<std::pair<int, int>, std::vector<TrialRow>> read_trials(Database& database,

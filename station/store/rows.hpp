@@ -22,7 +22,7 @@ class RowWriter {
   void event(const TrialPlace& place, std::int64_t event_index, EventRow row);
 
  private:
-  Statement trial_, tone_, signal_, event_, check_, answer_, friction_;
+  Statement trial_, tone_, signal_, event_, check_, answer_, friction_, program_, estimate_;
 };
 
 /// Returns a session's trials with their tones, by (block_index, attempt). Each list is in the order in which

@@ -235,8 +235,8 @@ CREATE TRIGGER session_stays_gone BEFORE INSERT ON session
 )sql";
 
 // Version 3 adds a chain of checksums to each session (checksum.hpp). Sessions of earlier releases have no
-// chain until they are resumed. They are listed here, because otherwise they would look as if somebody had
-// removed their chain.
+// chain until they are resumed. They are listed in the table `unsealed`, because otherwise they would look as
+// if somebody had removed their chain.
 const char* const kStep3 = R"sql(
 CREATE TABLE link (
   session_id TEXT NOT NULL REFERENCES session (session_id),
@@ -262,9 +262,10 @@ CREATE TRIGGER link_is_never_deleted BEFORE DELETE ON link
   BEGIN SELECT RAISE(ABORT, 'link is append-only'); END;
 )sql";
 
-// Version 4. A code belongs to the station that assigned it. Two codes belong to one person only if a row
-// says so. A tombstone names the station of its code; '' in older tombstones means any station. A tombstone
-// without a hash withdraws a single session and leaves the code in use.
+// Version 4 lets several stations assign the same code. A code belongs to the station that assigned it, and
+// two codes belong to one person only if a row of `same_person` says so. A tombstone names the station of its
+// code; '' in older tombstones means any station. A tombstone without a hash withdraws a single session and
+// leaves the code in use.
 const char* const kStep4 = R"sql(
 CREATE TABLE same_person (
   station_a TEXT NOT NULL,
@@ -279,7 +280,8 @@ CREATE TABLE same_person (
 ALTER TABLE tombstone ADD COLUMN station_id TEXT NOT NULL DEFAULT '';
 )sql";
 
-// Version 5. What a pick-up on the surface measured during a trial. Earlier trials are unproven.
+// Version 5 stores what a pick-up on the surface measured during a trial. Trials stored by earlier versions
+// are unproven.
 const char* const kStep5 = R"sql(
 ALTER TABLE trial ADD COLUMN proof TEXT NOT NULL DEFAULT 'unproven'
   CHECK (proof IN ('unproven', 'ok', 'flagged', 'refused', 'stopped', 'lost'));
@@ -291,8 +293,8 @@ ALTER TABLE tone ADD COLUMN measured_dB REAL;
 ALTER TABLE tone ADD COLUMN measured_phase_deg REAL;
 )sql";
 
-// Version 6. How sure the participant was of an answer, if the task asks. What force sensors measured of the
-// finger: a summary in each trial, and the signals themselves.
+// Version 6 stores how sure the participant was of an answer, if the task asks, and what force sensors
+// measured: a summary in each trial, and the signals themselves.
 const char* const kStep6 = R"sql(
 ALTER TABLE trial ADD COLUMN confidence INTEGER
   CHECK (confidence IS NULL OR (confidence >= 1 AND outcome = 'answered'));
@@ -336,8 +338,8 @@ CREATE TRIGGER signal_is_never_deleted BEFORE DELETE ON signal
   BEGIN SELECT RAISE(ABORT, 'signal is append-only'); END;
 )sql";
 
-// Version 7. The self-test before a session: its checks belong to an event of the kind self_test. The
-// conditions of a session in the room.
+// Version 7 stores the checks of the self-test before a session (they belong to an event of the kind
+// self_test), and the conditions of a session, such as the temperature of the room.
 const char* const kStep7 = R"sql(
 ALTER TABLE session ADD COLUMN humidity_percent REAL CHECK (humidity_percent BETWEEN 0 AND 100);
 ALTER TABLE session ADD COLUMN room_temperature_C REAL CHECK (room_temperature_C BETWEEN -20 AND 60);
@@ -377,7 +379,8 @@ CREATE TRIGGER session_keeps_its_provenance BEFORE UPDATE OF session_id, partici
 // kind questionnaire. The places in the counterbalancing that a collector has leased to this station, and
 // whether the place of a session is one of them. The number of a planned session, and the group of its
 // participant. Friction over all strokes of a trial. Friction tables that were measured in a session: the
-// levels of a table belong to an event of the kind friction_table.
+// levels of a table belong to an event of the kind friction_table. Separate programs that took part in a
+// session, and the estimates that they gave: they belong to events of the kinds program and estimates.
 const char* const kStep8 = R"sql(
 CREATE TABLE answer (
   session_id TEXT NOT NULL,
@@ -434,6 +437,47 @@ CREATE TRIGGER friction_level_is_never_changed BEFORE UPDATE ON friction_level
 CREATE TRIGGER friction_level_is_never_deleted BEFORE DELETE ON friction_level
   WHEN NOT EXISTS (SELECT 1 FROM tombstone WHERE session_id = OLD.session_id)
   BEGIN SELECT RAISE(ABORT, 'friction_level is append-only'); END;
+
+CREATE TABLE program (
+  session_id TEXT NOT NULL,
+  event_index INTEGER NOT NULL,
+  program_index INTEGER NOT NULL,
+  role TEXT NOT NULL CHECK (role <> ''),
+  procedure TEXT NOT NULL,
+  name TEXT NOT NULL CHECK (name <> ''),
+  version TEXT NOT NULL CHECK (version <> ''),
+  path TEXT NOT NULL CHECK (path <> ''),
+  sha256 TEXT NOT NULL CHECK (length(sha256) = 64),
+  PRIMARY KEY (session_id, event_index, program_index),
+  FOREIGN KEY (session_id, event_index) REFERENCES event (session_id, event_index)
+) STRICT, WITHOUT ROWID;
+
+CREATE TRIGGER program_is_never_changed BEFORE UPDATE ON program
+  BEGIN SELECT RAISE(ABORT, 'program is append-only'); END;
+CREATE TRIGGER program_is_never_deleted BEFORE DELETE ON program
+  WHEN NOT EXISTS (SELECT 1 FROM tombstone WHERE session_id = OLD.session_id)
+  BEGIN SELECT RAISE(ABORT, 'program is append-only'); END;
+
+CREATE TABLE estimate (
+  session_id TEXT NOT NULL,
+  event_index INTEGER NOT NULL,
+  estimate_index INTEGER NOT NULL,
+  block_index INTEGER NOT NULL CHECK (block_index >= 0),
+  attempt INTEGER NOT NULL CHECK (attempt >= 0),
+  procedure TEXT NOT NULL CHECK (procedure <> ''),
+  parameter TEXT NOT NULL CHECK (parameter <> ''),
+  mean REAL NOT NULL,
+  sd REAL CHECK (sd >= 0),
+  basis TEXT NOT NULL,
+  PRIMARY KEY (session_id, event_index, estimate_index),
+  FOREIGN KEY (session_id, event_index) REFERENCES event (session_id, event_index)
+) STRICT, WITHOUT ROWID;
+
+CREATE TRIGGER estimate_is_never_changed BEFORE UPDATE ON estimate
+  BEGIN SELECT RAISE(ABORT, 'estimate is append-only'); END;
+CREATE TRIGGER estimate_is_never_deleted BEFORE DELETE ON estimate
+  WHEN NOT EXISTS (SELECT 1 FROM tombstone WHERE session_id = OLD.session_id)
+  BEGIN SELECT RAISE(ABORT, 'estimate is append-only'); END;
 )sql";
 
 }  // namespace

@@ -78,8 +78,8 @@ int enrol(Database& database, const SessionStart& start) {
   return static_cast<int>(place);
 }
 
-/// Stores a text under the hash of its fields, unless another session has stored it already. Returns the
-/// hash.
+/// Stores a text (protocol, rig or calibration) under the hash of its fields, unless another session has
+/// stored the same text already. Returns the hash.
 std::string keep(Database& database, const Table<SessionRecord>& table, const SessionRecord& session,
                  const std::string& key) {
   auto sql = insert_sql(table);
@@ -164,7 +164,7 @@ struct SessionLog::Impl {
 
   Writer writer;
   RowWriter rows;
-  std::optional<Chain> chain;  ///< set when the session's id is known
+  std::optional<Chain> chain;  ///< the session's chain of checksums; set when the session's id is known
   TrialPlace place;
   SessionRecord session;
   std::vector<BlockRecord> blocks;

@@ -13,16 +13,17 @@ struct SessionRecord {
   std::string session_id;     ///< UUID
   int session_index = 0;      ///< number of the session, from 1, for this participant and protocol
   int sequence_index = 0;     ///< the participant's number in the protocol's counterbalancing, from 0
-  bool leased_place = false;  ///< true if a collector leased that number, so that no other station gives it
+  bool leased_place = false;  ///< true if a collector leased that number, so that no other station assigns it
   SessionStatus status = SessionStatus::running;
   std::string status_reason;
   SessionStart start;
   std::string person;  ///< name of this participant in this database: a code, or CODE@STATION
   int segments = 0;
-  int trials = 0;  ///< committed trials of every type and outcome
+  int trials = 0;  ///< number of committed trials, of every type and outcome
   /// wall-clock time at which the last trial or segment was committed
   std::int64_t last_activity_realtime_ns = 0;
-  /// increases with every trial stored in this database, whatever the clock says
+  /// Highest id of the session's trials. Ids increase with every trial stored in this database, whatever the
+  /// clock says.
   std::int64_t last_trial_id = 0;
   bool merged = false;                   ///< true if the session came from another database
   std::vector<std::string> annotations;  ///< notes of researchers, oldest first
@@ -41,8 +42,8 @@ class SessionLog {
   static SessionLog begin(const std::string& database, const SessionStart& start,
                           const SegmentStart& segment);
 
-  /// Opens a new segment of an interrupted session. If a trial was presented but never ended, adds an event
-  /// `aborted`; the session then presents that trial again.
+  /// Continues an interrupted session in a new segment (a new run of the program). If a trial was presented
+  /// but never ended, adds an event `aborted`; the session then presents that trial again.
   static SessionLog resume(const std::string& database, const std::string& session_id,
                            const SegmentStart& segment);
 

@@ -8,9 +8,9 @@
 
 namespace turnpoint::store {
 
-/// The only encoding so far. Each value v becomes the whole number round(v / resolution) in 32 bits; a
-/// missing value (NaN) becomes -2^31. The numbers of a channel are replaced by their differences from the
-/// number before (modulo 2^32), channel after channel. Of all these numbers, the lowest bytes come first,
+/// The only encoding of signals so far. Each value v becomes the whole number round(v / resolution) in 32
+/// bits; a missing value (NaN) becomes -2^31. The numbers of a channel are replaced by their differences from
+/// the number before (modulo 2^32), channel after channel. Of all these numbers, the lowest bytes come first,
 /// then the second bytes, and so on. The result is compressed by zlib (RFC 1950). Slow signals then take
 /// about a third of the space.
 inline constexpr const char* kSignalEncoding = "int32 delta shuffle zlib";

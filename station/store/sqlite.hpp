@@ -112,7 +112,7 @@ class Database {
   std::unique_ptr<Statement> begin_, commit_;
 };
 
-/// BEGIN IMMEDIATE ... COMMIT. Its destructor rolls back unless commit() was called.
+/// An SQLite transaction (BEGIN IMMEDIATE ... COMMIT). Its destructor rolls back unless commit() was called.
 class Transaction {
  public:
   explicit Transaction(Database& database);

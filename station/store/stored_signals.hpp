@@ -9,14 +9,14 @@
 
 namespace turnpoint::store {
 
-/// Streams of a session that have signals, in alphabetical order.
+/// Returns the names of a session's streams (sources of signals), in alphabetical order.
 std::vector<std::string> signal_streams(Database& database, const std::string& session_id);
 
 /// All channels that signals of this stream have in the session, in the order in which they first occur.
 std::vector<SignalChannel> signal_channels(Database& database, const std::string& session_id,
                                            const std::string& stream);
 
-/// A signal with its place in the session.
+/// A stored signal, with the trial and the segment (run of the program) to which it belongs.
 struct StoredSignal {
   int trial_index = 0, segment_index = 0;
   SignalRow row;
@@ -25,7 +25,7 @@ struct StoredSignal {
 /// Reads the signals of one stream of a session one by one, in the order of their trials.
 class SignalReader {
  public:
-  /// Reads only the trials of `segment` if one is given.
+  /// Reads only the trials of `segment` (a run of the program) if one is given.
   SignalReader(Database& database, const std::string& session_id, const std::string& stream,
                std::optional<int> segment = {});
   std::optional<StoredSignal> next();

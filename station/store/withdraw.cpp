@@ -23,7 +23,8 @@ std::string digest(const std::string& salt, const std::string& code) {
   return text::sha256(salt + "/" + code);
 }
 
-/// True if this code has a tombstone: of this station, or of any station if `station` is "".
+/// True if this code has a tombstone (the mark of a withdrawal): of this station, or of any station if
+/// `station` is "".
 bool has_tombstone(Database& database, const std::string& station, const std::string& code) {
   Statement rows(
       database,
@@ -34,7 +35,7 @@ bool has_tombstone(Database& database, const std::string& station, const std::st
   return false;
 }
 
-/// For a name without sessions: throws unless this participant's sessions were withdrawn earlier.
+/// Call this for a name without sessions. Throws unless this participant's sessions were withdrawn earlier.
 void require_withdrawn_before(Database& database, const WithdrawOptions& options) {
   const auto at = options.participant.rfind('@');
   const auto code = options.participant.substr(0, at);
@@ -133,7 +134,7 @@ std::vector<Tombstone> new_tombstones(const Withdrawal& withdrawal) {
   return tombstones;
 }
 
-/// Writes the tombstones, and deletes the sessions and codes that they withdraw.
+/// Writes the tombstones (the marks of withdrawals), and deletes the sessions and codes that they withdraw.
 void remove_sessions(Database& database, const std::vector<Tombstone>& tombstones,
                      const std::vector<Bearer>& bearers) {
   Transaction transaction(database);
@@ -143,8 +144,8 @@ void remove_sessions(Database& database, const std::vector<Tombstone>& tombstone
               stone.station_id)
         .run();
     for (const auto* table :
-         {"annotation", "merged", "link", "unsealed", "self_test", "answer", "friction_level", "event",
-          "signal", "tone", "trial", "block", "segment", "session"})
+         {"annotation", "merged", "link", "unsealed", "self_test", "answer", "friction_level", "program",
+          "estimate", "event", "signal", "tone", "trial", "block", "segment", "session"})
       remove(database, table, stone.session_id);
   }
   for (const auto& bearer : bearers) remove_bearer(database, bearer);
@@ -186,7 +187,8 @@ Withdrawal plan_withdrawal(const std::string& name, const WithdrawOptions& optio
 
 namespace {
 
-/// Deletes what was chosen from the database, from its free pages and from its copies.
+/// Deletes the chosen sessions from the database and its free pages, and removes the backups that contain
+/// them.
 void carry_out(const std::string& path, Database& database, Withdrawal& withdrawal,
                const std::vector<Tombstone>& tombstones, const std::string& backup_directory) {
   count_rows(database, withdrawal);
@@ -215,7 +217,7 @@ std::vector<Tombstone> missing_in(Database& database, std::vector<Tombstone> tom
   return tombstones;
 }
 
-/// Returns the codes in this database that the tombstones withdraw.
+/// Returns the codes in this database that the tombstones (the marks of withdrawals) withdraw.
 std::vector<Bearer> bearers_of(Database& database, const std::vector<Tombstone>& tombstones) {
   std::vector<Bearer> bearers;
   Statement rows(

@@ -56,8 +56,9 @@ struct Tombstone {
 
 std::vector<Tombstone> list_tombstones(Database& database);
 
-/// Withdraws here what was withdrawn elsewhere: deletes the sessions and codes to which the tombstones
-/// belong, as withdraw() does, and keeps the tombstones. Changes nothing if the database has them all.
+/// Withdraws from this database what was withdrawn from another: deletes the sessions and codes to which the
+/// tombstones belong, as withdraw() does, and keeps the tombstones. Changes nothing if the database has them
+/// all.
 Withdrawal follow_tombstones(const std::string& database, const std::vector<Tombstone>& tombstones,
                              const std::string& backup_directory = "");
 

@@ -5,7 +5,8 @@
 
 namespace turnpoint::system {
 
-/// Detects that the machine was suspended, or that somebody set its clock. Pure: it compares clock readings.
+/// Detects that the machine was suspended, or that somebody set its clock. Reads no clock itself: it compares
+/// the readings that the caller passes.
 class ClockWatch {
  public:
   explicit ClockWatch(const Clocks& start) noexcept : last_(start) {}

@@ -22,7 +22,7 @@ struct WallClock {
 WallClock read_wall_clock();
 
 /// The highest temperature (degrees Celsius) of the machine's sensors; empty if it has none. `folder` is
-/// where the kernel lists them.
+/// where the kernel lists its sensors.
 std::optional<double> hottest_C(const std::string& folder = "/sys/class/hwmon");
 
 }  // namespace turnpoint::system

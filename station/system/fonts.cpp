@@ -20,7 +20,7 @@ using Owned = std::unique_ptr<T, Destroy>;
 
 bool has_font(FcPattern* pattern) {
   // Use a configuration of our own, which is freed at exit; nullptr would select the global one, which is
-  // not.
+  // never freed.
   static const Owned<FcConfig> config(FcInitLoadConfigAndFonts());
   const Owned<FcObjectSet> no_properties(FcObjectSetCreate());
   const Owned<FcFontSet> fonts(FcFontList(config.get(), pattern, no_properties.get()));

@@ -46,7 +46,8 @@ void Progress::show(const std::string& what, int done, int of) {
   if (begins) what_ = what, marks_.clear(), marks_.push_back({now, done});
   const auto pause = terminal_ ? milliseconds(200) : milliseconds(3000);
   if (!begins && now - last_ < pause) return;
-  // If the output is a file, even the first line waits for a pause, so that quick work prints nothing.
+  // If the output is a file, the first line is printed only after three seconds, so that quick work prints
+  // nothing.
   const bool silent = begins && !terminal_ && last_ == Clock::time_point();
   last_ = now;
   marks_.push_back({now, done});

@@ -38,12 +38,12 @@ class Progress {
   std::mutex mutex_;
   bool terminal_ = false, shown_ = false, line_ = false;
   std::string what_;
-  std::deque<Mark> marks_;  ///< marks of the last quarter of a minute, from which the speed is computed
+  std::deque<Mark> marks_;  ///< the counts in the last 15 s, from which the speed is computed
   Clock::time_point last_;
 };
 
-/// The text that Progress shows: "simulated sessions: 137 of 1000 (13 %), 4 min left". Negative seconds: not
-/// known.
+/// The text that Progress shows: "simulated sessions: 137 of 1000 (13 %), 4 min left". `left_s` is negative
+/// if the time left is not known.
 std::string progress_in_words(const std::string& what, int done, int of, double left_s);
 
 }  // namespace turnpoint::system

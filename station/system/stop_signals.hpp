@@ -38,8 +38,8 @@ class StopSignals {
 
   /// Returns the first signal's name; "" if there was none.
   static std::string told();
-  /// Returns the exit status of a program that this signal ended in the middle of its work, as a shell
-  /// reports it: 128 and the signal's number; 0 if there was no signal.
+  /// Returns the exit status of a program that the first signal has ended in the middle of its work, as a
+  /// shell reports it: 128 and the signal's number; 0 if there was no signal.
   static int exit_status();
 
  private:

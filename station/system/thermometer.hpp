@@ -10,8 +10,8 @@ namespace turnpoint::system {
 /// sensors. Throws std::runtime_error, with the devices to choose from, if not exactly one sensor fits.
 std::string find_thermometer(const std::string& uri, const std::string& root = "/sys/class/hwmon");
 
-/// Reads the temperature (degrees Celsius) from such a file; empty if the sensor does not answer, or reports
-/// a temperature outside of -50 to 150.
+/// Reads the temperature (degrees Celsius) from a file that find_thermometer() returned; empty if the sensor
+/// does not answer, or reports a temperature outside of -50 to 150.
 std::optional<double> read_thermometer_C(const std::string& file);
 
 }  // namespace turnpoint::system

@@ -32,6 +32,7 @@ constexpr Entry entries[] = {
     {FaultKind::vibration, "vibration", "the surface did not move as planned"},
     {FaultKind::capture, "capture", "the surface cannot be measured"},
     {FaultKind::self_test, "self_test", "the self-test failed"},
+    {FaultKind::program, "program", "the program of a procedure failed"},
 };
 static_assert(std::size(entries) == fault_kinds.size());
 

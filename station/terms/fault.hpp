@@ -4,12 +4,12 @@
 
 namespace turnpoint::terms {
 
-/// Everything that can go wrong in the room. The part of the station that finds a fault (amplifier guard,
-/// audio stream, panel, store) chooses its kind. The kind is passed on unchanged to the page that explains
-/// the fault. Each kind has its own page.
+/// The kinds of faults that can occur during a session. The part of the station that finds a fault (amplifier
+/// guard, audio stream, panel, store) chooses its kind. The kind is passed on unchanged to the page that
+/// explains the fault. Each kind has its own page.
 enum class FaultKind {
   other,                ///< a fault without a kind of its own; see the detail
-  converter_gone,       ///< the converter was unplugged, or its driver gave up
+  converter_gone,       ///< the converter (sound device) was unplugged, or its driver failed
   converter_rate,       ///< the converter does not run at the rate that it reports
   converter_saturated,  ///< samples beyond full scale were clipped, so the stimulus was wrong
   audio_silent,         ///< the audio thread no longer reports to the amplifier guard
@@ -30,6 +30,7 @@ enum class FaultKind {
   vibration,        ///< the pick-up says that the surface did not move as planned
   capture,          ///< what the surface does cannot be measured: no capture device, or no pilot heard
   self_test,        ///< a check of the self-test before the session failed
+  program,          ///< the program of a procedure died, was late, or wrote what it must not write
 };
 
 inline constexpr std::array fault_kinds{FaultKind::other,           FaultKind::converter_gone,
@@ -41,7 +42,8 @@ inline constexpr std::array fault_kinds{FaultKind::other,           FaultKind::c
                                         FaultKind::touch_gone,      FaultKind::disk_full,
                                         FaultKind::disarmed,        FaultKind::limits,
                                         FaultKind::stimulus_missed, FaultKind::vibration,
-                                        FaultKind::capture,         FaultKind::self_test};
+                                        FaultKind::capture,         FaultKind::self_test,
+                                        FaultKind::program};
 
 /// Returns the kind's name for the log: "converter_gone", ...
 const char* name(FaultKind kind);

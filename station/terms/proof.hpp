@@ -3,7 +3,8 @@
 
 namespace turnpoint::terms {
 
-/// The verdict on a stimulus, from the pick-up on the surface.
+/// The verdict on whether the surface moved as planned during a stimulus, from what the pick-up on the
+/// surface measured.
 enum class Proof {
   /// nothing was measured, because the rig has no pick-up, or because the pick-up cannot measure these
   /// frequencies

@@ -10,8 +10,8 @@ namespace turnpoint::text {
 
 struct Entry;
 
-/// One value of a TOML document and its place in the file. The keys of a table are in the order of the file
-/// (toml++ sorts them).
+/// One value of a TOML document and its place in the file. The keys of a table are in the order of the file,
+/// although toml++ sorts them by name.
 struct Value {
   enum class Kind { boolean, integer, number, string, date, array, table };
   Kind kind = Kind::table;

@@ -77,12 +77,23 @@ class Scanner {
     if (c == '#') comment_ = true;
     count_parts(c);
     if (c == '"' || c == '\'') {
+      check_before_quote(c);
       const bool three = source_.substr(at_, 3) == std::string_view(c == '"' ? "\"\"\"" : "'''");
       quote_ = source_.substr(at_, three ? 3 : 1);
       copy(quote_.size());
     } else {
       copy(1);
     }
+  }
+
+  // After a number or another bare word, the parser also reads the characters of a quoted text that follows
+  // directly. It is not made for those beyond ASCII. No valid file has such a quote.
+  void check_before_quote(char quote) const {
+    if (at_ == 0 || std::string_view(" \t\r\n=,.[{").find(source_[at_ - 1]) != std::string_view::npos) return;
+    if (at_ == 3 && source_.starts_with("\xEF\xBB\xBF")) return;
+    throw BadInput({{{path_, line_, column_},
+                     std::string("not valid TOML: the quote ") + quote + " follows a character directly",
+                     "put a quote at the start of a key or a value"}});
   }
 
   // Counts the dotted parts of a key. The parser recurses for each part, so a key with very many parts would

@@ -8,8 +8,8 @@ namespace turnpoint::touch {
 struct Contact {
   std::int64_t time_ns = 0;
   bool on = false;
-  /// position along the surface, from 0 at one end of the sensor to 1 at the other; empty if the sensor
-  /// cannot tell
+  /// position along the surface, from 0 at one end of the sensor to 1 at the other; empty if the sensor does
+  /// not report it
   std::optional<double> position;
 };
 

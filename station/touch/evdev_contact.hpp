@@ -8,7 +8,7 @@
 
 namespace turnpoint::touch {
 
-/// Converts a touch sensor's states to contacts. Pure.
+/// Converts a touch sensor's states to contacts. Uses no clock and no device.
 class ContactReader {
  public:
   /// Scales positions from `range` to [0, 1].

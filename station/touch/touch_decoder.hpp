@@ -20,7 +20,8 @@ struct Finger {
   int x = 0, y = 0;
 };
 
-/// Compares a panel's successive reports and returns the fingers that have come down. Pure.
+/// Compares a panel's successive reports and returns the fingers that have come down. Uses no clock and no
+/// device.
 class TouchDecoder {
  public:
   TouchDecoder(AxisRange x, AxisRange y) noexcept : x_(x), y_(y) {}

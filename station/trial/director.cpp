@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
+#include <utility>
 
 #include "station/procedure/description.hpp"
 #include "station/procedure/state_hash.hpp"
@@ -28,6 +29,8 @@ void Director::State::enter_block() {
     specs.push_back(find_spec(name));
     const auto key = procedure::key_of(seed, static_cast<int>(block), procedures.size(), attempt);
     procedures.push_back(procedure::make_procedure(*specs.back(), context_for(*specs.back()), key));
+    if (const auto before = earlier.find(name); specs.back()->continues && before != earlier.end())
+      procedure::continue_from(before->second, *specs.back(), *procedures.back());
   }
   strokes.erase(block);
   if (b->kind == protocol::BlockKind::friction_table)
@@ -62,6 +65,7 @@ procedure::Context Director::State::context_for(const procedure::Spec& spec) con
     return correct_choice(protocol.task, factors).value_or(-1);
   };
   context.unanswered_are_data = timeouts_are_data();
+  context.programs = programs;
   return context;
 }
 
@@ -97,8 +101,9 @@ int Director::State::block_expected(const Block& b) const {
   return static_cast<int>(std::lround(trials * (1 + (b.catch_trials ? b.catch_trials->rate : 0))));
 }
 
-Director::Director(const protocol::Protocol& protocol, const protocol::Visit& visit, std::uint64_t seed)
-    : state_(std::make_unique<State>(protocol, visit, seed)) {}
+Director::Director(const protocol::Protocol& protocol, const protocol::Visit& visit, std::uint64_t seed,
+                   procedure::Programs* programs, procedure::EarlierTrials earlier)
+    : state_(std::make_unique<State>(protocol, visit, seed, programs, std::move(earlier))) {}
 Director::~Director() = default;
 Director::Director(Director&&) noexcept = default;
 
@@ -106,6 +111,11 @@ const Block* Director::block() const { return state_->now(); }
 int Director::block_index() const { return static_cast<int>(state_->block); }
 int Director::attempt() const { return state_->attempt; }
 int Director::blocks() const { return static_cast<int>(state_->blocks.size()); }
+
+bool Director::ready() const {
+  const auto ready = [](const auto& procedure) { return procedure->ready(); };
+  return state_->current || std::ranges::all_of(state_->procedures, ready);
+}
 
 std::optional<TrialSpec> Director::next() {
   if (!state_->current) state_->current = state_->make();
@@ -189,7 +199,7 @@ std::vector<ProcedureEstimate> Director::estimates() const {
   std::vector<ProcedureEstimate> all;
   for (std::size_t i = 0; i < state_->procedures.size(); ++i)
     for (const auto& [parameter, e] : state_->procedures[i]->estimates())
-      all.push_back({state_->specs[i]->name, parameter, e.mean, e.sd, e.basis});
+      all.push_back({state_->specs[i]->name, parameter, e.mean, e.sd, e.basis, e.interval});
   return all;
 }
 

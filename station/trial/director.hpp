@@ -3,8 +3,11 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "station/procedure/continuation.hpp"
+#include "station/procedure/program.hpp"
 #include "station/protocol/protocol.hpp"
 #include "station/records/records.hpp"
 #include "station/trial/slider.hpp"
@@ -17,23 +20,23 @@ struct TrialSpec {
   /// part of the key of the trial's random draws; when a void trial is repeated, the key stays the same
   int trial_in_block = 0;
   terms::TrialType type = terms::TrialType::experimental;
-  std::string procedure;  ///< name of the procedure; "" if the trial belongs to none
+  std::string procedure;  ///< name of the procedure that chose the level; "" if no procedure did
   std::optional<double> level;
   protocol::Factors factors;
   std::vector<std::vector<std::string>> intervals;  ///< scene names in the order of presentation
-  std::vector<double> rove_dB;                      ///< random change of strength of each interval
+  std::vector<double> rove_dB;  ///< random change (roving) of the strength of each interval
   /// index of the right choice; empty if no choice is right
   std::optional<int> correct;
   std::optional<SliderSpan> slider;  ///< the slider; only for an adjustment
-  /// Set in a block of strokes, in which nothing is asked. The level of such a trial is then the displacement
-  /// in um; 0 means that the surface is at rest.
+  /// Set in a block of strokes, in which the finger strokes the surface and nothing is asked. The level of
+  /// such a trial is then the displacement in um; 0 means that the surface is at rest.
   std::optional<protocol::Strokes> strokes;
   double iti_s = 0, foreperiod_s = 0;
-  /// length of the interval of an example; empty: the length that the task gives
+  /// length (s) of the interval if the trial is an example; empty: the length that the task gives
   std::optional<double> length_s = {};
   double deadline_s = 0, anticipation_s = 0;
-  std::optional<double>
-      signal_s;  ///< when the response signal comes, after response_zero; empty if there is none
+  /// time from response_zero to the response signal; empty if there is no signal
+  std::optional<double> signal_s;
   /// true if the block's instruction sets the deadline; a timeout then counts as a result
   bool timeouts_are_data = false;
 };
@@ -51,7 +54,9 @@ struct ProcedureEstimate {
   std::string procedure, parameter;
   double mean = 0;
   std::optional<double> sd;  ///< empty if the estimate is a single number
-  std::string basis;
+  std::string basis = {};
+  /// central 95 % credible interval, if the estimate comes from a posterior
+  std::optional<std::pair<double, double>> interval = {};
 };
 /// Formats an estimate with its SD and basis, if known: `-12.3 (SD 1.25, reversals 5 to 12 of 12)`.
 std::string in_words(const ProcedureEstimate& estimate);
@@ -62,7 +67,11 @@ std::string in_words(const ProcedureEstimate& estimate);
 /// session is resumed by replaying its stored results through a director.
 class Director {
  public:
-  Director(const protocol::Protocol& protocol, const protocol::Visit& visit, std::uint64_t seed);
+  /// `programs` starts the programs of procedures that are programs; null if the protocol has none. It must
+  /// outlive the director. `earlier` are the trials of the participant's earlier sessions, for procedures
+  /// that continue.
+  Director(const protocol::Protocol& protocol, const protocol::Visit& visit, std::uint64_t seed,
+           procedure::Programs* programs = nullptr, procedure::EarlierTrials earlier = {});
   ~Director();
   Director(Director&&) noexcept;
 
@@ -72,8 +81,11 @@ class Director {
   int attempt() const;
   int blocks() const;
 
-  /// Returns the next trial of this block. After a void trial, returns the same trial again. Empty when the
-  /// block is done.
+  /// True if next() would not wait for the program of a procedure.
+  bool ready() const;
+  /// Returns the next trial of this block. Waits for procedures that are programs, and throws
+  /// terms::ProgramFailed if one has failed; it may then be called again. After a void trial, returns the
+  /// same trial again. Empty when the block is done.
   std::optional<TrialSpec> next();
   /// Records the result of the trial that next() returned last.
   void record(const TrialEnd& end);
@@ -92,13 +104,13 @@ class Director {
   /// stopping rules.
   int trials_done() const;
   int trials_expected() const;
-  /// Estimates of all procedures of the block that have one.
+  /// Returns the current estimates of the block's procedures. Procedures without an estimate are left out.
   std::vector<ProcedureEstimate> estimates() const;
   /// Threshold (or PSE) and its SD, as estimated by the procedure of the last trial; empty if that procedure
   /// has no estimate.
   std::optional<std::pair<double, std::optional<double>>> threshold() const;
   /// A trial of a friction table: its displacement and the measured coefficient of friction, which is empty
-  /// if the trial did not count.
+  /// if the trial was not valid.
   struct Stroke {
     double displacement_um = 0;
     std::optional<double> friction;

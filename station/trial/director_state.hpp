@@ -1,8 +1,9 @@
-// Shared by director.cpp and director_trials.cpp; not for other files.
+// The state of a Director, shared by director.cpp and director_trials.cpp. Other files must not include it.
 #pragma once
 #include <map>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "station/procedure/procedure.hpp"
@@ -15,12 +16,14 @@ struct Director::State {
 
   const protocol::Protocol& protocol;
   std::uint64_t seed;
+  procedure::Programs* programs;
+  procedure::EarlierTrials earlier;
   std::vector<protocol::Block> blocks;
   std::size_t block = 0;
   /// number of the current attempt at the block, and of the first attempt since the session was started or
   /// restarted
   int attempt = 0, first_attempt = 0;
-  /// number of trials of the block so far that count; part of the key of the next trial's draws
+  /// number of trials of the block so far that count; part of the key of the next trial's random draws
   int trial = 0;
   int shown = 0, right = 0;
   int warmups = 0, warmups_given = 0;
@@ -29,12 +32,18 @@ struct Director::State {
   std::vector<const procedure::Spec*> specs;
   std::vector<std::unique_ptr<procedure::Procedure>> procedures;
   std::vector<double> practice_levels;
-  std::map<std::size_t, std::vector<Stroke>> strokes;  ///< trials of friction tables, by block
+  /// trials of the blocks that measure a friction table, by block
+  std::map<std::size_t, std::vector<Stroke>> strokes;
   std::optional<TrialSpec> current;
   int current_procedure = no_procedure;
 
-  State(const protocol::Protocol& p, const protocol::Visit& visit, std::uint64_t s)
-      : protocol(p), seed(s), blocks(protocol::block_order(p, visit)) {
+  State(const protocol::Protocol& p, const protocol::Visit& visit, std::uint64_t s,
+        procedure::Programs* starts, procedure::EarlierTrials before)
+      : protocol(p),
+        seed(s),
+        programs(starts),
+        earlier(std::move(before)),
+        blocks(protocol::block_order(p, visit)) {
     enter_block();
   }
 

@@ -10,7 +10,8 @@ using random::Stream;
 
 namespace {
 
-/// Longest time from the end of a stimulus of strokes until its movement is known.
+/// In a block of strokes: longest time from the end of a stimulus until the measured movement of the finger
+/// is known.
 constexpr double kMeasured_s = 5;
 
 /// Returns the easiest levels, for warm-up: the highest level or, if there are levels on both sides of zero,
@@ -134,8 +135,8 @@ void Director::State::complete(TrialSpec& spec) const {
     spec.foreperiod_s = draws(Stream::foreperiod, key).uniform(foreperiod->low, foreperiod->high);
 }
 
-/// Returns the window that the slider shows. It is a fifth wider than the range. This surplus is divided
-/// between the two ends at random, in whole steps.
+/// Returns the window that the slider shows. It is a fifth wider than the factor's range. This surplus is
+/// divided between the two ends at random, in whole steps.
 std::optional<SliderSpan> Director::State::slider(int key) const {
   const auto& task = protocol.task;
   for (const auto& factor : protocol.factors) {
@@ -160,6 +161,8 @@ TrialSpec Director::State::warmup_trial() const {
   if (!specs.empty()) {
     factor = specs.front()->level;
     for (const auto& [name, value] : specs.front()->with) spec.factors[name] = value;
+    if (const auto& second = specs.front()->second)
+      spec.factors[second->level] = second->stimuli.values[second->stimuli.values.size() / 2];
     levels = specs.front()->values.empty() ? specs.front()->stimuli.values : specs.front()->values;
     if (levels.empty() && specs.front()->start) levels = {*specs.front()->start};
     if (levels.empty() && specs.front()->min && specs.front()->max)
@@ -195,8 +198,8 @@ std::optional<TrialSpec> Director::State::practice_trial() const {
   return spec;
 }
 
-/// Returns a trial of a block of strokes. In a training, the "right" answer is a movement within the limits
-/// of [sensing].
+/// Returns a trial of a block of strokes. In a training block, the "right" answer is a movement within the
+/// limits of [sensing].
 std::optional<TrialSpec> Director::State::strokes_trial() const {
   if (static_cast<std::size_t>(trial) >= practice_levels.size()) return std::nullopt;
   const bool training = now()->kind == protocol::BlockKind::training;
@@ -220,6 +223,7 @@ TrialSpec Director::State::procedure_trial(int index) const {
   spec.procedure = from.name;
   spec.level = proposal->level;
   spec.factors[from.level] = proposal->level;
+  if (proposal->second) spec.factors[from.second->level] = *proposal->second;
   for (const auto& [name, value] : from.with) spec.factors[name] = value;
   for (const auto& [name, level] : proposal->balanced)
     for (const auto& factor : protocol.factors)

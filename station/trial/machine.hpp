@@ -43,7 +43,8 @@ struct Timing {
   ResponseZero response_zero = ResponseZero::go_cue;
   std::int64_t deadline_ns = 0;      ///< longest response time, counted from response_zero
   std::int64_t anticipation_ns = 0;  ///< an answer sooner than this after response_zero is an anticipation
-  /// when the participant is asked to answer at once, counted from response_zero; empty if that never happens
+  /// time from response_zero to the signal that asks the participant to answer at once; empty without a
+  /// signal
   std::optional<std::int64_t> signal_ns;
   std::int64_t feedback_ns = 0;  ///< length of the feedback; 0 for none
   std::int64_t late_ns = 0;      ///< length of the message after a late answer; 0 for none
@@ -53,7 +54,8 @@ struct Timing {
   std::int64_t watermark_ns = 20'000'000;
   int answers = 2;             ///< number of possible answers
   std::optional<int> correct;  ///< index of the right answer; empty if no answer is right or wrong
-  /// number of degrees of confidence that are asked for after an answer, without a deadline; 0: none are
+  /// number of confidence levels that the participant chooses from after the answer, without a deadline; 0:
+  /// confidence is not asked for
   int confidence = 0;
 };
 
@@ -80,9 +82,9 @@ struct Event {
 
 enum class ActionKind {
   enter,  ///< value: the new phase; show its page
-  /// schedule all intervals with the gaps of the plan, the first no earlier than time_ns; the caller replies
-  /// with an `onset` event for each interval, and with a `heard` event when the interval has been played
-  /// completely
+  /// schedule all intervals, with the gap of Timing between them, the first no earlier than time_ns; the
+  /// caller replies with an `onset` event for each interval, and with a `heard` event when the interval has
+  /// been played completely
   present,
   silence,  ///< ramp down what is playing now, and cancel what has not begun
   signal,   ///< give the response signal; time_ns: when it was due
@@ -99,10 +101,10 @@ struct Result {
   Outcome outcome = Outcome::aborted;
   std::optional<int> response;
   std::optional<bool> correct;
-  std::optional<std::int64_t> zero_ns;  ///< the moment at which response_zero happened
+  std::optional<std::int64_t> zero_ns;  ///< time of the event that response_zero names
   std::optional<std::int64_t> response_time_ns, decision_time_ns, movement_time_ns;
-  std::optional<int> confidence;                   ///< from 1 for the least sure
-  std::optional<std::int64_t> confidence_time_ns;  ///< counted from the answer
+  std::optional<int> confidence;                   ///< degree of confidence; 1 is the least sure
+  std::optional<std::int64_t> confidence_time_ns;  ///< time of the confidence rating, counted from the answer
   std::vector<std::int64_t> onsets_ns;
   std::int64_t started_ns = 0, ended_ns = 0;
   int extra_touches = 0;  ///< late, early, repeated or outdated touches; they are logged but never scored

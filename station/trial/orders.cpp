@@ -63,8 +63,8 @@ std::vector<IntervalOrder> target_orders(const protocol::Task& task) {
   return orders;
 }
 
-// The orders in which the two scenes A and B and their match X can come: A and B in either order, and X,
-// which repeats one of them, last or first.
+// All orders of a trial with two scenes A and B and a third one, X, that repeats one of them: A and B in
+// either order, and X first or last.
 std::vector<IntervalOrder> matching_orders(const protocol::Task& task) {
   std::vector<IntervalOrder> orders;
   for (const bool swapped : {false, true})

@@ -10,7 +10,7 @@
 
 namespace turnpoint::trial {
 
-/// The intervals of one trial in the order of presentation, and the right choice.
+/// The intervals of one trial in the order of presentation, and the index of the right choice.
 struct IntervalOrder {
   std::vector<std::vector<std::string>> intervals;
   std::optional<int> correct;
@@ -22,8 +22,8 @@ struct IntervalOrder {
 std::vector<IntervalOrder> orders_of(const protocol::Task& task);
 
 /// Returns the order for a trial. Trials are divided into runs of equal length, and each run contains every
-/// order equally often. The run's number is part of the key of the draws that shuffle it, so the order of
-/// trial k can be computed without the other runs.
+/// order equally often. Each run is shuffled with random numbers whose key contains the run's number, so the
+/// order of trial k can be computed without computing the other runs.
 IntervalOrder order_for(const protocol::Task& task, std::uint64_t seed, int block, int attempt, int trial);
 
 /// The levels of a friction table in the order to present them: each level `repeats` times, in random order,

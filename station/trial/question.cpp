@@ -12,13 +12,29 @@ namespace turnpoint::trial {
 
 namespace {
 
-/// Returns the name of the factor that the trial's level sets: the factor of the trial's procedure or, if it
-/// has none, that of the first trials in the protocol that have a level.
+/// Returns the name of the factor that the trial's level sets: the factor of the trial's procedure or, if the
+/// trial has no procedure, the level factor of the first trials in the protocol that have one.
 std::string level_factor(const TrialSpec& spec, const protocol::Protocol& protocol) {
   if (const auto* procedure = protocol::find_procedure(protocol, spec.procedure)) return procedure->level;
   if (!protocol.procedures.empty()) return protocol.procedures.front().level;
   const auto sources = protocol::sources_of(protocol);
   return sources.empty() ? "" : sources.front().level;
+}
+
+/// Sets the trial's value of the second dimension of its procedure. Trials without a procedure (practice,
+/// catch trials) take it from the first procedure that has the same level.
+void set_second(const TrialSpec& spec, const protocol::Protocol& protocol, const std::string& level,
+                observer::Question& question) {
+  const auto* procedure = protocol::find_procedure(protocol, spec.procedure);
+  for (const auto& other : protocol.procedures)
+    if (!procedure && other.level == level && other.second) procedure = &other;
+  if (!procedure || !procedure->second) return;
+  const auto found = spec.factors.find(procedure->second->level);
+  const auto* value = found == spec.factors.end() ? nullptr : std::get_if<double>(&found->second);
+  if (value) question.second = *value - procedure->second->origin;
+  constexpr double ln10 = 2.302585092994046;
+  if (procedure->scale != procedure::Scale::linear)
+    question.log_step = procedure->scale == procedure::Scale::dB ? ln10 / 20 : ln10;
 }
 
 observer::Finding finding_of(protocol::TaskKind kind) {
@@ -56,6 +72,7 @@ observer::Question question_of(const TrialSpec& spec, const protocol::Protocol& 
   const auto level = level_factor(spec, protocol);
   question.decibel = level.ends_with("_dB");
   question.default_threshold = protocol::middle_level(protocol, level);
+  set_second(spec, protocol, level, question);
   const auto& task = protocol.task;
   if (task.confidence) question.confidence = static_cast<int>(task.confidence->labels.size());
   if (protocol::judges(task)) {

@@ -7,7 +7,7 @@
 
 namespace turnpoint::trial {
 
-/// Returns the question that the last interval of a trial asks a simulated observer.
+/// Returns the question that a simulated observer answers after the last interval of a trial.
 observer::Question question_of(const TrialSpec& spec, const protocol::Protocol& protocol, std::uint64_t seed);
 
 /// Returns the slider that a simulated observer has to set in a trial.

@@ -17,8 +17,8 @@ std::string choice_id(const protocol::Protocol& protocol, int index) {
                                                                 : "";
 }
 
-/// Returns what the row stores as "response" of a trial in which nothing is asked: a word for how the finger
-/// moved. Simulations without a surface know only whether the movement was right or wrong.
+/// Returns the "response" to store for a trial without a question: a word for how the finger moved.
+/// Simulations without a surface know only whether the movement was right or wrong.
 std::string movement_word(const records::TrialRow& row, int response) {
   if (!row.finger.sensing.empty()) return row.finger.sensing;
   return response == 0 ? "ok" : "strokes";

@@ -13,8 +13,9 @@ records::BlockStart block_start(const protocol::Block& block, int block_index, i
 /// Returns a trial's row with everything that is known before the trial runs.
 records::TrialRow row_of(const TrialSpec& spec, const protocol::Protocol& protocol, int trial_index);
 
-/// Fills in outcome, response and times. `origin_ns` is the start of the segment. If the answer is a number
-/// (the setting of a slider, a rating on a line, or a typed number), it is passed as `value`.
+/// Fills in outcome, response and times. `origin_ns` is the start of the running segment of the session, from
+/// which stored times are counted. If the answer is a number (the setting of a slider, a rating on a line, or
+/// a typed number), it is passed as `value`.
 void fill_result(records::TrialRow& row, const Result& result, const TrialSpec& spec,
                  const protocol::Protocol& protocol, std::int64_t origin_ns,
                  const std::optional<double>& value);

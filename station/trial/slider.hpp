@@ -17,8 +17,8 @@ struct SliderSpan {
 /// Glides never overlap. To the finger, successive glides are one continuous movement.
 inline constexpr double kGlide_s = 0.03, kGlideEvery_s = 0.05;
 
-/// The setting of an adjustment while the slider moves. Pure: takes the movements of the slider and decides
-/// when the surface glides to which setting.
+/// Decides, while a participant moves the slider, when the surface glides to which setting. It uses no clock
+/// and no device.
 class Slider {
  public:
   Slider(const SliderSpan& span, double start) : span_(span), setting_(start), asked_(start), felt_(start) {}

@@ -61,7 +61,7 @@ Timing timing_of(const protocol::Protocol& protocol, const protocol::Block& bloc
                      : static_cast<int>(protocol.task.choices.size());
   plan.correct = spec.correct;
   if (spec.strokes) {
-    plan.answers = 2;  // the movement was right or wrong
+    plan.answers = 2;  // the two possible "answers": the movement was right or wrong
     if (block.kind == protocol::BlockKind::training) plan.feedback_ns = ns(kLate_s);
     return plan;
   }

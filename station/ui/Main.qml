@@ -48,7 +48,7 @@ Window {
     /// Leaves the participant's pages, which needs the operator's code. If there is no operator's page, this
     /// closes the window.
     function leave() { ask("leave") }
-    /// Goes back to the previous question to the participant, or leaves the first one.
+    /// Goes back to the previous question to the participant. On the first question, leaves these pages.
     function back() { if (!start.back()) leave() }
 
     /// The session's pages are created only after the first page is on the screen, so that the first page

@@ -1,5 +1,5 @@
-// Written by make_forced_choice.py: d', then the proportion correct of 2, 3 and 4 intervals, and of ABX by
-// independent observations and by differencing.
+// Expected values for the tests, written by make_forced_choice.py. Columns: d', then the proportion correct
+// with 2, 3 and 4 intervals, and in ABX by independent observations and by differencing.
 #pragma once
 
 constexpr double kForcedChoice[][6] = {

@@ -1,6 +1,6 @@
 # Fits the data of mixed_data.csv with lme4 and writes mixed_lme4.csv. Run in this folder:
 #   Rscript make_mixed.R
-# The data are drawn here too (seed 23), so that this file alone makes both tables.
+# It also simulates the data (seed 23), so this script alone makes both tables.
 suppressMessages(library(lme4))
 
 draw <- function(name, people, levels, trials, guess, lapse, core, b0, b1, sd0, sd1, r) {
@@ -15,7 +15,7 @@ draw <- function(name, people, levels, trials, guess, lapse, core, b0, b1, sd0, 
   do.call(rbind, rows)
 }
 
-# lme4 takes any link: here the one of m-alternative forced choice, guess + (1 - guess) core(z).
+# A link function for lme4: that of m-alternative forced choice, guess + (1 - guess) core(z).
 forced <- function(guess, core, density, inverse, name) {
   structure(list(linkfun = function(mu) inverse(pmin(pmax((mu - guess) / (1 - guess), 1e-10), 1 - 1e-10)),
                  linkinv = function(eta) pmin(pmax(guess + (1 - guess) * core(eta), 1e-12), 1 - 1e-12),

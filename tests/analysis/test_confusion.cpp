@@ -31,7 +31,7 @@ TEST_CASE("a confusion matrix counts answers by the right answer, with Clopper-P
   REQUIRE(all[0].rows.size() == 2);
   CHECK(all[0].rows[0].answers == std::vector<int>{15, 3, 2});
   CHECK(all[0].rows[1].answers == std::vector<int>{0, 0, 4});
-  CHECK(all[0].rows[0].right->interval.low == Approx(0.508954).margin(1e-6));  // binom.test(15, 20) of R
+  CHECK(all[0].rows[0].right->interval.low == Approx(0.508954).margin(1e-6));  // from R: binom.test(15, 20)
   CHECK(all[0].rows[0].right->interval.high == Approx(0.913429).margin(1e-6));
   CHECK(all[0].rows[1].right->interval.high == 1);
   CHECK(all[0].right->right == 19);

@@ -43,10 +43,10 @@ TEST_CASE("force and speed are averaged over the trials of each condition, in th
   CHECK(speed.trials == 3);
   CHECK(speed.measured == 2);
   CHECK(speed.felt == 2);
-  CHECK_FALSE(speed.normal_N);  // two trials give no interval
+  CHECK_FALSE(speed.normal_N);  // two trials are too few for an interval
   REQUIRE(accuracy.normal_N);
   CHECK(accuracy.normal_N->value == Approx(0.515));
-  // the SD of 0, 1, 2, 3 is 1.290994, and t(3) = 3.182446
+  // the SD of 0, 1, 2, 3 is 1.290994, and the 97.5 % point of t(3) is 3.182446
   CHECK(accuracy.normal_N->interval.high == Approx(0.515 + 0.01 * 3.182446 * 1.290994 / 2).epsilon(1e-6));
   CHECK(accuracy.shift_mm->value == Approx(0.15));
   CHECK(accuracy.mu_high->value == Approx(0.8));
@@ -67,7 +67,7 @@ TEST_CASE("at a planned boundary, three trials give their mean, and fewer are sh
   CHECK(at.shift_mm[2].planned_mm == 160);
   CHECK(at.shift_mm[2].trials == 3);
   CHECK(at.shift_mm[2].value == Approx(1 / 3.0));
-  // the SD is 1.527525, and t(2) = 4.302653
+  // the three shifts have an SD of 1.527525, and the 97.5 % point of t(2) is 4.302653
   CHECK(at.shift_mm[2].interval->low == Approx(1 / 3.0 - 4.302653 * 1.527525 / std::sqrt(3.0)).epsilon(1e-6));
   REQUIRE(at.mu_low.size() == 3);
   CHECK_FALSE(at.mu_low[0].interval);

@@ -54,7 +54,7 @@ TEST_CASE("simulated observers with noisy observations reach the proportion corr
   for (int i = 0; i < trials; ++i) {
     const double signal = d + noise(random);
     largest += signal > std::max({noise(random), noise(random), noise(random)});
-    // A has the mean 0, B the mean d, and X is A.
+    // The noisy observations of an ABX trial: A has the mean 0, B the mean d, and X is the same as A.
     const double a = noise(random), b = d + noise(random), x = noise(random);
     independent += (a < b) == (x < d / 2);
     differencing += std::fabs(x - a) < std::fabs(x - b);
@@ -104,7 +104,8 @@ TEST_CASE("d' is given by level, and for all levels together", "[analysis]") {
   CHECK_FALSE(found[2].level);
   CHECK(found[2].right.trials == 20);
   REQUIRE(found[1].d_primes.size() == 2);
-  // The log-linear proportion is 9.5 / 11. For the same proportion, differencing needs a larger d'.
+  // The proportion correct with the log-linear correction is 9.5 / 11. For the same proportion, differencing
+  // needs a larger d'.
   CHECK(proportion_correct(Deciding::independent, found[1].d_primes[0].second.value, 2) == Approx(9.5 / 11));
   CHECK(found[1].d_primes[1].second.value > found[1].d_primes[0].second.value);
   CHECK(discriminate(trials, {}, {Deciding::largest}, 3, 1).size() == 1);

@@ -27,13 +27,15 @@ TEST_CASE("numbers of an exact power law give its exponent and geometric means",
   REQUIRE(all.size() == 1);
   REQUIRE(all[0].levels.size() == 3);
   CHECK(all[0].levels[1].mean->value == Approx(10 * std::pow(0.4, 0.6)));
-  // logarithms -0.30103, 0, 0.30103: SD 0.30103, t(2) = 4.302653
+  // The logarithms of the answers differ from their mean by -0.30103, 0 and 0.30103, so their SD is 0.30103.
+  // The 97.5 % point of t(2) is 4.302653.
   const double half = 4.302653 * 0.30103 / std::sqrt(3.0);
   CHECK(all[0].levels[1].mean->interval.high / all[0].levels[1].mean->value ==
         Approx(std::pow(10, half)).epsilon(1e-5));
   REQUIRE(all[0].exponent);
   CHECK(all[0].exponent->value == Approx(0.6));
-  // residual squares 6 * 0.30103^2 over 7 degrees, Sxx = 3 * 2 * log10(4)^2, t(7) = 2.364624
+  // Standard error of the slope: the squared residuals sum to 6 * 0.30103^2 with 7 degrees of freedom, and
+  // the squared log levels (about their mean) to 3 * 2 * log10(4)^2. The 97.5 % point of t(7) is 2.364624.
   const double error = std::sqrt(6 * 0.30103 * 0.30103 / 7 / (6 * std::pow(std::log10(4.0), 2)));
   CHECK(all[0].exponent->interval.high == Approx(0.6 + 2.364624 * error).epsilon(1e-5));
 }
@@ -71,6 +73,6 @@ TEST_CASE("ratings have means and medians by condition and level, practice left 
   CHECK(all[0].condition == "wet");
   CHECK(all[1].levels[0].mean->value == Approx(4));
   CHECK(all[1].levels[0].median == 3);
-  CHECK_FALSE(all[1].levels[1].mean);  // a single answer has no interval
+  CHECK_FALSE(all[1].levels[1].mean);  // no mean, because a single answer gives no interval
   CHECK_FALSE(all[1].exponent);
 }

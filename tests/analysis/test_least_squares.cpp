@@ -22,7 +22,7 @@ TEST_CASE("a line fitted to points far from the origin loses no digits", "[analy
     weights.push_back(1 + i % 3);
     w += weights.back(), wx += weights.back() * i, wy += weights.back() * scatter[i];
   }
-  // The expected fit, computed in whole numbers: with i in place of x, and with the scatter in place of y.
+  // Compute the expected fit exactly, in whole numbers, with i instead of x and the scatter instead of y.
   double square = 0, product = 0, rest = 0;
   for (int i = 0; i <= 10; ++i) {
     square += weights[i] * (i - wx / w) * (i - wx / w);

@@ -50,7 +50,7 @@ MixedFit fitted(const std::vector<PersonCounts>& people, Function function, doub
   return *result.fit;
 }
 
-/// Draws a group of participants whose thresholds and slopes differ, and one set of answers.
+/// A simulated group of participants whose thresholds and slopes differ. answers() draws one set of answers.
 struct Group {
   int people = 10, trials = 10;
   double threshold = 2, threshold_sd = 3, rate = 0.25, rate_sd = 0.04;
@@ -179,7 +179,7 @@ TEST_CASE("Partial pooling predicts participants better than their own fits, and
   const double person_share = static_cast<double>(person_holds) / people;
   INFO("group " << group_share << ", participants " << person_share << ", squared error "
                 << pooled_error / people << " against " << own_error / people);
-  // three standard errors of a binomial proportion of 0.95
+  // three standard errors of a proportion of 0.95 among n cases
   const auto reach = [](double n) { return 3 * std::sqrt(0.95 * 0.05 / n); };
   CHECK(std::fabs(group_share - 0.95) < reach(studies) + 0.01);
   CHECK(std::fabs(person_share - 0.95) < reach(people) + 0.02);

@@ -230,9 +230,9 @@ TEST_CASE("The fit agrees with psignifit 4.3 on the same data", "[analysis]") {
 
 TEST_CASE("Bootstrap intervals contain the true value about as often as they claim", "[analysis]") {
   // A longer run (400 sessions with 300 replicates) measured how often the intervals of threshold, slope and
-  // 75 % point contain the true value. Weibull, 6 levels x 40 trials: .95, .93, .94. Normal with tied lapse,
-  // 8 levels x 20: .95, .94, .94. Normal without lapse, 8 levels x 10: .97, .94, .94. With the fewer sessions
-  // of this test, two standard errors are .04.
+  // 75 % point contain the true value. Weibull, 6 levels x 40 trials: .95, .93, .94. Normal with the guess
+  // rate tied to the lapse rate, 8 levels x 20: .95, .94, .94. Normal without lapse, 8 levels x 10: .97, .94,
+  // .94. With the fewer sessions of this test, two standard errors are .04.
   struct Design {
     FitOptions options;
     Psychometric truth;

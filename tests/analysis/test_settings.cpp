@@ -19,8 +19,8 @@ analysis::TrialRecord set_to(double value, double start = 0) {
 }  // namespace
 
 TEST_CASE("Settings get their mean and scatter with intervals by Student's t and chi squared", "[analysis]") {
-  // The 97.5 % points for these eight values are t(7) = 2.364624 and chi2(7) = 16.012764 and 1.689869
-  // (tables).
+  // From tables: the 97.5 % point of t(7) is 2.364624; the 97.5 % and 2.5 % points of chi2(7) are 16.012764
+  // and 1.689869.
   const std::vector<double> values{2, 4, 4, 4, 5, 5, 7, 9};
   std::vector<analysis::TrialRecord> trials;
   for (const double v : values) trials.push_back(set_to(v));
@@ -72,14 +72,15 @@ TEST_CASE("Too few settings, equal settings and void trials give statements inst
 
 TEST_CASE("Settings by the side of the start: means, scatters, and the difference by Welch's t",
           "[analysis]") {
-  // Welch (1947) by hand: variances 2.5 / 5 and 10 / 5 of the means, error sqrt(2.5), degrees of freedom
-  // 2.5^2 / (0.5^2 / 4 + 2^2 / 4) = 5.882353, and t(.975) = 2.458824 (integrated by Simpson's rule).
+  // Expected values by hand after Welch (1947): the two means have the variances 2.5 / 5 and 10 / 5, so their
+  // difference has the standard error sqrt(2.5). The degrees of freedom are 2.5^2 / (0.5^2 / 4 + 2^2 / 4) =
+  // 5.882353, for which t(.975) = 2.458824 (integrated by Simpson's rule).
   std::vector<analysis::TrialRecord> trials;
   for (const double v : {1, 2, 3, 4, 5}) {
     trials.push_back(set_to(v, -20)), trials.back().start_side = analysis::StartSide::below;
     trials.push_back(set_to(2 * v, 20)), trials.back().start_side = analysis::StartSide::above;
   }
-  trials.push_back(set_to(100, 0));  // this start is on neither side
+  trials.push_back(set_to(100, 0));  // this start is neither below nor above
   const auto s = analysis::settings(trials).front();
   CHECK(s.values.size() == 11);
   CHECK(s.from_below.settings == 5);

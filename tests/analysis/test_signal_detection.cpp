@@ -173,7 +173,7 @@ TEST_CASE(
   const turnpoint::observer::Observer observer(turnpoint::observer::parse("sim:threshold=3,lapse=0"));
   int held = 0;
   const int sessions = 200;
-  // `expected` is the true area under the ROC if there are only six ratings
+  // `expected` is the area under the observer's true ROC with six ratings
   double expected = 0, below = 0;
   turnpoint::observer::Question question;
   question.decides = turnpoint::observer::Decides::presence, question.rating = true, question.answers = 6;

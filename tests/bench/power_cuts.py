@@ -30,8 +30,8 @@ class Cut:
     # folder with the disk's files after the cut and after repairing the file system; the next cut overwrites
     # it
     files: pathlib.Path
-    marked: int          # number of the last mark that the disk had accepted
-    position: int        # position of the cut in the record
+    marked: int          # number of the last mark (see programs/disk_marker.hpp) that the disk had accepted
+    position: int        # position of the cut in the record of disk operations
 
 
 def read_record(path):

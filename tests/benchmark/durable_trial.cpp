@@ -86,6 +86,8 @@ struct Bare {
     create_bare(check_table());
     create_bare(answer_table());
     create_bare(friction_level_table());
+    create_bare(program_table());
+    create_bare(estimate_table());
     rows = std::make_unique<RowWriter>(database);
     begin = std::make_unique<Statement>(database, "BEGIN IMMEDIATE");
     commit = std::make_unique<Statement>(database, "COMMIT");
@@ -122,7 +124,7 @@ double at_quantile(std::vector<double> values, double q) {
   return values[static_cast<std::size_t>(q * static_cast<double>(values.size() - 1))];
 }
 
-/// A folder that is always removed at the end.
+/// A folder that is removed when this object is destroyed.
 struct Folder {
   std::string path;
   ~Folder() {

@@ -8,9 +8,10 @@ namespace turnpoint::benchmark {
 struct DurableTrial {
   std::string what;
   int trials = 0;
-  /// time to make `presented` durable plus time to make the trial with its tones and events durable
+  /// time until the event `presented` is safe on the disk, plus time until the trial with its tones and
+  /// events is safe there
   double median_ms = 0, p99_ms = 0;
-  double ratio = 0;  ///< median divided by that of plain SQLite
+  double ratio = 0;  ///< median time divided by the median time of plain SQLite
 };
 
 /// Writes trials into databases below `directory`, whose disk is measured, alternately through a session log

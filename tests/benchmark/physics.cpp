@@ -31,7 +31,7 @@ struct Scene {
   physics::Surface surface;
   double frequency_Hz;
   bool plate = false;
-  bool from_python = false;  // the scene with which the Python module is timed
+  bool from_python = false;  // true for the scene that is also timed from Python
 };
 
 std::vector<Scene> scenes() {
@@ -46,7 +46,7 @@ std::vector<Scene> scenes() {
           {"aluminium plate 30 kHz, Q = 60", physics::aluminium_plate(), 30000, true}};
 }
 
-/// Returns |v| at the points, scaled so that the last maximum is one.
+/// Returns the wave's amplitude |v| at the points x, scaled so that its last maximum is one.
 std::vector<double> amplitudes(const CentreLine& line, const std::vector<double>& x) {
   const double unit = line.value(line.last_peak_m().value_or(0)).ln_magnitude();
   Solution v(x.size());
@@ -65,7 +65,7 @@ double largest_difference(const std::vector<double>& a, const std::vector<double
   return worst / most;
 }
 
-/// Resolutions of the model `modes` from coarse to fine; an empty setting means the default.
+/// A resolution of the model `modes`, and its name in the table.
 struct Resolution {
   const char* setting;
   physics::ModalResolution resolution;
@@ -144,7 +144,7 @@ OneModeProblem problem_of(const Scene& scene, const std::vector<double>& x) {
   return problem;
 }
 
-/// Returns |v|, scaled to one at the point where the reference has its largest value.
+/// Returns the amplitude |v|, scaled to one at point `top`, where the reference has its largest value.
 std::vector<double> scaled(const Solution& v, std::size_t top) {
   std::vector<double> a;
   for (const auto& one : v) a.push_back(std::abs(one) / std::abs(v[top]));
@@ -181,9 +181,9 @@ void bench_equation(const Scene& scene, double budget_s, std::vector<PhysicsRow>
   for (const ScipyRun& run : run_scipy(problem)) add(run.name, run.setting, run.seconds, run.v);
 }
 
-/// Measures the plate theories on the simulated rig's plate (3 mm thick). The references are extrapolated
-/// from the two meshes of elastic_taper.csv: the error of the finer mesh is about half of the change from the
-/// coarse one.
+/// Measures error and time of each plate theory on the simulated rig's plate (3 mm thick). The table below
+/// holds frequencies and the boundaries that are taken as true there: those of the finer mesh in
+/// elastic_taper.csv plus half of their change from the coarse mesh.
 void bench_theories(double budget_s, std::vector<PhysicsRow>& rows) {
   using physics::PlateTheory;
   constexpr double reference[][2] = {{22400, 0.076356}, {30000, 0.139949}, {45000, 0.215341}};
@@ -194,7 +194,8 @@ void bench_theories(double budget_s, std::vector<PhysicsRow>& rows) {
     for (const auto theory : {PlateTheory::kirchhoff, PlateTheory::mindlin, PlateTheory::elastic}) {
       plate.theory = theory;
       for (const Model model : {Model::mode, Model::modes}) {
-        if (theory == PlateTheory::elastic && model == Model::modes) continue;  // there is no such model
+        if (theory == PlateTheory::elastic && model == Model::modes)
+          continue;  // the theory `elastic` has no model `modes`
         const auto p50 = [&] { return make_centre_line(plate, frequency, model)->level_m(0.5).value(); };
         const double error = std::abs(p50() - boundary);
         rows.push_back({Task::theory, fmt::format("3 mm plate, {:g} kHz", frequency / 1000),
@@ -205,7 +206,8 @@ void bench_theories(double budget_s, std::vector<PhysicsRow>& rows) {
   }
 }
 
-/// Measures the closed Airy profile, and compares our Airy function with Boost.Math's at the same arguments.
+/// Measures the closed-form Airy profile, and compares our Airy function with Boost.Math's at the same
+/// arguments.
 void bench_airy(const Scene& scene, double budget_s, std::vector<PhysicsRow>& rows) {
   const auto scale = physics::airy_scale(scene.surface, scene.frequency_Hz);
   std::vector<double> arguments, ours(kPoints);
@@ -225,7 +227,8 @@ void bench_airy(const Scene& scene, double budget_s, std::vector<PhysicsRow>& ro
                     best_time(budget_s, [&] { boost_airy(arguments); }), error});
 }
 
-/// Times look-ups in a map in both directions, and measures the largest error of a round trip in metres.
+/// Times look-ups in a boundary map in both directions, and measures the largest error of a round trip in
+/// metres.
 void bench_map(const std::string& name, const physics::Surface& surface, double budget_s,
                std::vector<PhysicsRow>& rows) {
   const auto build = [&] { return physics::BoundaryMap(surface, {physics::Edge::percent(0.5), {}, {}, {}}); };

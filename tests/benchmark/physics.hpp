@@ -14,17 +14,16 @@ enum class Task {
   /// library.
   equation,
   /// Reference: three-dimensional finite elements of a whole plate (tests/physics/oracles/elastic_taper.csv).
-  /// The
-  /// error is that of the boundary p50 (m).
+  /// The error (m) is that of p50, the boundary at 50 % of the amplitude.
   theory,
-  /// Reference: the closed Airy profile of the 1998 paper.
+  /// Reference: the closed-form Airy profile of the 1998 paper.
   airy,
   /// Converts a boundary to a frequency and back with a BoundaryMap; the error is that of the result (m).
   look_up
 };
 
 /// One row of results. `error` is the largest difference of |v|, with the last maximum scaled to one. For the
-/// tasks theory and look_up it is in metres. A negative number means that it was not measured.
+/// tasks theory and look_up it is in metres. A negative error means that it was not measured.
 struct PhysicsRow {
   Task task = Task::field;
   std::string scene;    ///< such as "seed brass 19.6 kHz, lossless"

@@ -7,8 +7,8 @@ namespace turnpoint::benchmark {
 
 namespace {
 
-/// A series in the figure: all solvers whose names begin with one of these words. The legend has the same
-/// order.
+/// A series in the figure: all solvers whose names begin with one of these words. The legend lists the series
+/// in the order of the vectors below.
 struct Series {
   const char* label;
   std::vector<std::string> beginnings;

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
+#include <cmath>
 #include <sstream>
+#include <utility>
 
 #include "station/procedure/posterior.hpp"
 #include "tests/benchmark/scripts.hpp"
@@ -43,11 +45,46 @@ procedure::Spec spec_of(const Shape& shape) {
   return spec;
 }
 
-std::vector<Cell> own(const std::string& name, const procedure::Spec& spec, const Shape& shape) {
+/// QUEST+ over two dimensions: the grid of Watson's (2017) Example 4, and a finer one with a floor.
+struct Surface {
+  std::size_t stimuli, seconds, thresholds, gradients, floors;
+  int trials;
+};
+
+constexpr std::array<Surface, 2> kSurfaces{{{26, 21, 11, 5, 11, 200}, {41, 25, 31, 21, 9, 30}}};
+
+procedure::Spec spec_of(const Surface& surface) {
+  procedure::Spec spec = spec_of(Shape{surface.stimuli, surface.thresholds, 1, 1, surface.trials});
+  spec.stimuli.values = spaced(-50, 0, surface.stimuli);
+  spec.second.emplace();
+  spec.second->level = "frequency";
+  spec.second->stimuli.values = spaced(0, 40, surface.seconds);
+  spec.threshold.values = spaced(-60, -40, surface.thresholds);
+  spec.gradient.values = spaced(0.8, 1.6, surface.gradients);
+  spec.floor.values = spaced(-50, -30, surface.floors);
+  spec.slope.values = {3}, spec.lapse.values = {0.01};
+  return spec;
+}
+
+/// Signal detection with threshold, slope and criterion.
+procedure::Spec detection(int trials) {
+  auto spec = spec_of(Shape{2, 2, 1, 3, trials});
+  spec.scale = procedure::Scale::log10, spec.signal_detection = true, spec.tracks = "yes";
+  spec.guess = {};
+  spec.stimuli.values = {0}, spec.threshold.values.clear();
+  for (int i = 0; i < 41; ++i) spec.threshold.values.push_back(0.01 * std::pow(32.0, i / 40.0));
+  spec.stimuli.values.insert(spec.stimuli.values.end(), spec.threshold.values.begin(),
+                             spec.threshold.values.end());
+  spec.slope.values = spaced(0.5, 4, 15);
+  spec.criterion.values = spaced(-0.5, 2.5, 25);
+  return spec;
+}
+
+std::vector<Cell> own(const std::string& name, const procedure::Spec& spec, int trials) {
   using clock = std::chrono::steady_clock;
   procedure::Posterior posterior(spec);
   std::vector<double> times;
-  for (int trial = 0; trial < shape.trials; ++trial) {
+  for (int trial = 0; trial < trials; ++trial) {
     const auto start = clock::now();
     const auto stimulus = posterior.best_stimulus();
     posterior.update(stimulus, trial % 4 != 3);
@@ -55,7 +92,7 @@ std::vector<Cell> own(const std::string& name, const procedure::Spec& spec, cons
   }
   std::sort(times.begin(), times.end());
   return {name,
-          static_cast<double>(shape.stimuli),
+          static_cast<double>(posterior.stimuli().size()),
           static_cast<double>(posterior.size()),
           times[times.size() / 2],
           times[times.size() * 99 / 100],
@@ -69,17 +106,25 @@ std::vector<std::string> arguments_of(const Shape& shape) {
           std::to_string(shape.lapses)};
 }
 
+std::vector<std::string> arguments_of(const Surface& surface) {
+  std::vector<std::string> arguments;
+  for (const auto count :
+       {surface.stimuli, surface.seconds, surface.thresholds, surface.gradients, surface.floors})
+    arguments.push_back(std::to_string(count));
+  return arguments;
+}
+
 /// Makes a row of the table for another program from its output "version median p99". Returns no row if the
 /// program is missing.
-std::vector<std::vector<Cell>> peer(const std::string& name, const Shape& shape,
+std::vector<std::vector<Cell>> peer(const std::string& name, std::size_t stimuli, std::size_t parameters,
                                     const std::vector<std::string>& lines) {
   if (lines.empty()) return {};
   std::istringstream words(lines.back());  // use the last line, because a program may print a greeting first
   std::string version;
   double median_ms = 0, p99_ms = 0;
   if (!(words >> version >> median_ms >> p99_ms)) return {};
-  return {{name + " " + version, static_cast<double>(shape.stimuli),
-           static_cast<double>(shape.thresholds * shape.slopes * shape.lapses), median_ms, p99_ms, Cell{}}};
+  return {{name + " " + version, static_cast<double>(stimuli), static_cast<double>(parameters), median_ms,
+           p99_ms, Cell{}}};
 }
 
 /// Draws the time per trial against the size of the grid, with one series per program.
@@ -120,14 +165,23 @@ Report bench_procedures() {
                 {}};
   for (const auto& shape : kShapes) {
     auto spec = spec_of(shape);
-    report.table.rows.push_back(own("turnpoint", spec, shape));
+    report.table.rows.push_back(own("turnpoint", spec, shape.trials));
     spec.nuisance = {"lapse"};
-    report.table.rows.push_back(own("turnpoint, lapse as nuisance", spec, shape));
-    for (auto& row : peer("questplus", shape, run_peer("questplus_trial.py", arguments_of(shape))))
-      report.table.rows.push_back(std::move(row));
-    for (auto& row : peer("jsQuestPlus", shape, run_peer("jsquestplus_trial.js", arguments_of(shape))))
+    report.table.rows.push_back(own("turnpoint, lapse as nuisance", spec, shape.trials));
+    const auto parameters = shape.thresholds * shape.slopes * shape.lapses;
+    for (const auto& [name, script] :
+         {std::pair("questplus", "questplus_trial.py"), std::pair("jsQuestPlus", "jsquestplus_trial.js")})
+      for (auto& row : peer(name, shape.stimuli, parameters, run_peer(script, arguments_of(shape))))
+        report.table.rows.push_back(std::move(row));
+  }
+  for (const auto& surface : kSurfaces) {
+    report.table.rows.push_back(own("turnpoint, two dimensions", spec_of(surface), surface.trials));
+    for (auto& row : peer("questplus, two dimensions", surface.stimuli * surface.seconds,
+                          surface.thresholds * surface.gradients * surface.floors,
+                          run_peer("questplus_surface_trial.py", arguments_of(surface))))
       report.table.rows.push_back(std::move(row));
   }
+  report.table.rows.push_back(own("turnpoint, criterion", detection(200), 200));
   report.pictures.push_back(picture_of_procedures(report.table));
   return report;
 }

@@ -52,7 +52,8 @@ Start start_of(const OneModeProblem& p) {
 
 constexpr double small = 1e-16;
 
-/// Returns the value and slope of g at the start. The slope is taken in the direction of the drive edge.
+/// Returns the value and slope of g (see OneModeProblem) at the start. The slope is taken in the direction of
+/// the drive edge.
 std::array<Complex, 2> start_values(const OneModeProblem& p, const Start& start) {
   if (start.held) return {0.0, small / p.length_m};
   return {small, small * std::sqrt(-potential(p, start.x_m))};
@@ -91,8 +92,8 @@ Solution numerov(const OneModeProblem& p, int n) {
 #ifdef TURNPOINT_BOOST_PEERS
 namespace ode = boost::numeric::odeint;
 
-/// The equation as a real first-order system in the distance from the start: two unknowns without loss, four
-/// with loss.
+/// The one-mode equation as a real first-order system in the distance from the start: two unknowns without
+/// loss, four with loss.
 template <class Real, std::size_t size>
 struct System {
   using State = std::array<Real, size>;

@@ -6,13 +6,13 @@
 
 namespace turnpoint::benchmark {
 
-/// The one-mode equation g'' + [k^2 - (b + c W'^2)/W^2] g = 0, v = g / sqrt(W), g = 0 at x = length, on W =
-/// w0 - slope x or, with `decay_m` above 0, W = w0 exp(-x / decay_m).
+/// The one-mode equation g'' + [k^2 - (b + c W'^2)/W^2] g = 0, with v = g / sqrt(W) and g = 0 at x = length.
+/// v is the displacement. W is the half-width: w0 - slope x or, with `decay_m` above 0, w0 exp(-x / decay_m).
 struct OneModeProblem {
   std::complex<double> k_squared;
   double b = 0, c = 0;
   double w0 = 0, slope = 0, decay_m = 0, length_m = 0;
-  std::vector<double> x_m;  ///< points at which the solution is wanted, ascending
+  std::vector<double> x_m;  ///< ascending positions (m) at which the solution is wanted
 
   double half_width_m(double x) const;
   double width_slope(double x) const;

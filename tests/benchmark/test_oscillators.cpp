@@ -14,7 +14,7 @@ TEST_CASE("the error of the integer phase does not grow with time, that of other
   const auto& growing = table.methods[6].error_dB;
   CHECK(growing.back() > growing.front() + 60);
   CHECK(growing.back() > -200);
-  // By the last time, sin(2 pi f t) in float has lost its phase.
+  // By the last of the measured times, the method that computes sin(2 pi f t) in float has lost its phase.
   CHECK(table.methods[7].error_dB.back() > -20);
   CHECK(table.methods[2].error_dB[0] == Approx(-133).margin(8));
 }

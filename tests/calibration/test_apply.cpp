@@ -72,7 +72,7 @@ TEST_CASE("a calibration contains the response of each pick-up to each transduce
   CHECK(response.points[1].amplitude == 0.2);
   CHECK(response.points[1].phase_rad == Approx(-0.25));
   CHECK(rig::unproven_transducers(made).empty());
-  CHECK(rig::unproven_transducers(plate()).empty());  // this rig captures nothing
+  CHECK(rig::unproven_transducers(plate()).empty());  // this rig has no capture channels
 
   calibration.pick_ups.push_back(calibration.pick_ups[0]);
   CHECK_THROWS_WITH(applied(calibration, rig),

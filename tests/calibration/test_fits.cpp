@@ -10,7 +10,8 @@ using namespace turnpoint::calibration;
 
 namespace {
 
-// The amplitude |u| of a resonator, multiplied by a constant.
+// Returns the measured response of a resonator: its amplitude |u| at `count` frequencies, multiplied by a
+// constant.
 std::vector<ResponsePoint> resonator(double f0_Hz, double q, double from_Hz, double to_Hz, int count) {
   std::vector<ResponsePoint> sweep;
   for (int k = 0; k < count; ++k) {

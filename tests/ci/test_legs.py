@@ -21,7 +21,8 @@ class Legs(unittest.TestCase):
         self.root = Path(self.folder.name)
         (self.root / ".ci").mkdir()
         shutil.copy(CI / "legs", self.root / ".ci")
-        # The test runs the real script, except that each leg only writes its name.
+        # The test runs the real script, but each leg (one part of the checks) is replaced by one that only
+        # prints its name.
         text = (CI / "leg").read_text()
         text = re.sub(r"^(endurance|faults|kills)\(\) \{(?: .* \}|\n(?:  .*\n)*\})$",
                       r"\1() { echo ran \1; test ! -e fail-\1; }", text, flags=re.M)
@@ -74,7 +75,7 @@ class Legs(unittest.TestCase):
     def test_every_leg_of_the_ledger_exists(self):
         legs = re.findall(r"^(\w+)\(\) \{", (CI / "leg").read_text(), re.M)
         ledger = re.findall(r"^(\w+) \d+ ", (CI / "ledger").read_text(), re.M)
-        # these two are run by hand
+        # these two legs (parts of the checks) are run by hand
         self.assertEqual(set(legs) - set(ledger), {"arm64_boot", "newcomer_whole"})
         self.assertLessEqual(set(ledger), set(legs))
 

@@ -21,10 +21,10 @@ PROGRAM = os.path.realpath(sys.argv[1])
 with open(os.path.join(HERE, "json_shapes.json"), encoding="utf-8") as file:
     SHAPES = json.load(file)
 
-# Each command with what its example needs: "session" is a database with sessions of P01 and P02, "screen" is
-# the program with a screen, "code" is a code typed on standard input, "server" is a collector (tests/collector tests
-# that command). `status` lists the exit statuses that the
-# example may have: the doctor finds fault with most machines.
+# Each command with what its example needs: "session" is a database with sessions of P01 and P02, "screen" is the
+# program with a screen, "code" is a code typed on standard input, "server" is a collector (tests/collector tests
+# that command). `status` lists the exit statuses that the example may have; doctor may exit with 1, because it finds
+# a problem on most machines.
 COMMANDS = {
     "amplifier-off": {}, "annotate": {"needs": "session"}, "backup": {"needs": "session"},
     "calibrate": {}, "check": {}, "design": {"needs": "screen"}, "doctor": {"status": (0, 1)}, "export": {"needs": "session"}, "field": {},
@@ -35,7 +35,8 @@ COMMANDS = {
     "station": {"needs": "screen"}, "synth": {}, "trace": {}, "verify": {"needs": "session"},
     "withdraw": {"needs": "session"},
 }
-# These lines lead to fuller JSON documents than the examples in --help do.
+# Commands whose JSON documents are fuller than those of the examples in --help. They are used instead of the
+# examples.
 JSON_EXAMPLES = {"calibrate": "turnpoint calibrate --rig simulated --boundaries edges.csv --out made.toml",
                  "report": "turnpoint report --db lab.sqlite --participant P02",
                  "run": "turnpoint run friction-2ifc --participant P03 --db lab.sqlite --observer sim --seed 1"}
@@ -381,7 +382,7 @@ class Report(Folder):
             self.assertEqual(status, 0, err)
             self.assertTrue(out.startswith(f"page.html: session {sessions[person]} of {person}, "), out)
         _, out, _ = run(["report", "--db", "lab.sqlite"], self.folder)
-        self.assertRegex(out, r"\n  threshold: threshold -?[0-9.]+ \(SD [0-9.]+\)\n")
+        self.assertRegex(out, r"\n  threshold: threshold -?[0-9.]+ \(SD [0-9.]+\), 95 % -?[0-9.]+ to -?[0-9.]+\n")
 
 
 class Readme(Folder):
@@ -453,7 +454,8 @@ class Sensors(Folder):
         self.assertEqual(asked.count("Take everything off the surface."), 7)
         self.assertEqual(asked.count("hang 100 g on the string that pulls towards the wide edge."), 2)
         self.assertLess(max(abs(weight["residual_position_mm"]) for weight in document["weights"]), 0.2)
-        # a session takes the file, and so does the next calibration, which keeps the cells
+        # a session accepts this calibration file, and so does the next calibration, which keeps the values of
+        # the force cells
         status, _, err = run(["run", "demo", "--rig", "plate.toml", "--calibration", "made.toml", "--participant", "P01", "--db",
                               "lab.sqlite", "--observer", "sim", "--seed", "1"], self.folder)
         self.assertEqual(status, 0, err)
@@ -515,7 +517,8 @@ class Measured(Folder):
         with gzip.open(os.path.join(self.folder, "signals/friction-measured", signals[0]["file"]), "rt", encoding="utf-8") as file:
             points = list(csv.DictReader(file))
         self.assertEqual(len(points), sum(int(signal["points"]) for signal in signals))
-        # every second trial of the table is at rest, with the friction of the simulated finger
+        # in every second trial of the friction table the surface is at rest, so the friction is the simulated
+        # finger's own
         rest = [t for t in trials if t["block_name"] == "finger"][::2]
         self.assertAlmostEqual(sum(float(t["mu"]) for t in rest) / len(rest), 0.8, delta=0.05)
         folder = os.path.join(self.folder, "bids/friction-measured/sub-P01/ses-01/beh/sub-P01_ses-01_task-frictionmeasured_run-01_recording-force_physio.")

@@ -14,7 +14,8 @@ HERE = os.path.dirname(os.path.realpath(__file__))
 SOURCE = os.path.dirname(os.path.dirname(HERE))
 SCRIPTS = os.path.join(SOURCE, "station/report/scripts")
 PROGRAM = os.path.realpath(sys.argv.pop(1))
-# bias and threshold of each observer: the participants differ. The last one cannot tell the stimuli apart.
+# Bias and threshold of the observer that simulates each participant. The last one cannot tell the stimuli
+# apart.
 OBSERVERS = [(-0.12, 0.10), (0.05, 0.14), (0.12, 0.08), (-0.03, 0.18), (0.0, 0.12), (0.09, 0.22), (-0.08, 0.09), (0.0, 40)]
 
 
@@ -129,7 +130,7 @@ class Study(unittest.TestCase):
         compared = 0
         for what, condition, theirs, ours in found:
             if what == "log_likelihood":
-                # lme4 must not find a higher maximum than ours
+                # lme4 must not find a higher maximum of the likelihood than the report
                 self.assertGreater(float(ours), float(theirs) - 0.01)
                 self.assertLess(float(ours), float(theirs) + 0.3)
             elif what in ("rate", "threshold"):

@@ -47,8 +47,8 @@ TEST_CASE("check states the precision of accuracies that come from simulated ses
 }
 
 TEST_CASE("check compares each cue with its own chance", "[cli]") {
-  // In three of four trials "right" is correct, so always pressing that key reaches 75 % without any cue. The
-  // accuracy of the amplitude must be compared with 75 %.
+  // In three of four trials "right" is correct, so always pressing that key reaches 75 % without any cue. So
+  // the accuracy of an observer who uses the amplitude as a cue must be compared with 75 %.
   const auto text =
       with(turnpoint::system::read_file(source + "/protocols/boundary-constant.toml"),
            {{"values = [-28.0, -16.0, -8.0, -3.0, 3.0, 8.0, 16.0, 28.0]", "values = [-3.0, 3.0, 8.0, 16.0]"},

@@ -1,4 +1,4 @@
-// A live session whose airborne sound may be too loud needs measured levels.
+// Tests that a live session whose airborne sound may be too loud is refused without measured sound levels.
 #include <fstream>
 #include <sstream>
 

@@ -47,7 +47,7 @@ class Terminal {
   const std::string& seen() const { return seen_; }
 
  private:
-  /// Returns false if the program has closed the terminal, or has not printed anything for long.
+  /// Returns false if the program has closed the terminal, or has not printed anything for a long time.
   bool read() {
     pollfd wait{master_, POLLIN, 0};
     char bytes[512];

@@ -12,10 +12,11 @@ using namespace turnpoint;
 
 namespace {
 
-/// Waits for the process at most this long, which is enough on a busy machine. A test of an ignored request
-/// must still end.
+/// Longest time to wait for the process, even on a busy machine. It also ends a test in which the process
+/// ignores the request to stop.
 constexpr int kPatience_ms = 20000;
-/// Longest time allowed from the signal to the end of the process. A service manager kills after 5 s.
+/// Longest time allowed from the signal to the end of the process. A service manager kills the process after
+/// 5 s.
 constexpr int kPrompt_ms = 1000;
 /// Longest time allowed for a whole simulated session, even with a sanitizer.
 constexpr int kWhole_ms = 120000;
@@ -51,8 +52,8 @@ std::vector<std::string> resume(const std::string& database) {
   return {TURNPOINT, "resume", "--db", database, "--headless"};
 }
 
-/// Advances to the first stimulus of a session with a person at the buttons. Instructions are never
-/// confirmed.
+/// Waits for the first stimulus of a session in which a person, who uses the buttons, must confirm the
+/// instructions.
 void begin_first_stimulus(Child& child) {
   REQUIRE(child.says("instructions", kPatience_ms));
   child.type("next");
@@ -121,7 +122,7 @@ TEST_CASE("a stop signal during a stimulus ends a session with buttons as the op
   const auto trials = trials_of(database);
   REQUIRE(trials.size() == 1);
   CHECK(trials[0].outcome == terms::Outcome::aborted);
-  // The stimulus was ramped down, so its end is known.
+  // The stimulus was ramped down before the program ended, so its event is stored.
   const auto stored = store::read_session(database, only_session(database).session_id);
   int stimuli = 0;
   for (const auto& event : stored.events) stimuli += event.kind == "stimulus" ? 1 : 0;

@@ -63,7 +63,7 @@ TEST_CASE("map and plan use the boundaries that were measured on a rig", "[cli]"
   CHECK(contains(said, "clamp line: changed by"));
   CHECK_FALSE(contains(said, "OUTLIER"));
   const auto text = output_of(map);
-  CHECK(contains(text, "calibration "));  // standard error names the calibration that is used
+  CHECK(contains(text, "calibration "));  // a message on stderr names the calibration that is used
   const auto json = nlohmann::json::parse(text.substr(text.find('[')));
   CHECK(json[0]["boundary_mm"].get<double>() == Approx(160.3).margin(0.5));
   CHECK(json[0]["uncertainty_mm"].get<double>() < 0.5);
@@ -71,7 +71,7 @@ TEST_CASE("map and plan use the boundaries that were measured on a rig", "[cli]"
   CHECK(contains(output_of({"check", demo, "--sessions", "0", "--rig", copy}), "uncertain by 0."));
   const auto field = output_of({"field", "--tone", "30000", "--points", "2", "--rig", copy});
   CHECK(contains(field, "calibration "));
-  CHECK_FALSE(contains(field, "turning point 147.4 mm"));  // the value from the rig file
+  CHECK_FALSE(contains(field, "turning point 147.4 mm"));  // the value without the calibration
   CHECK(contains(output_of({"power", demo, "--observers", "1", "--intervals", "0", "--rig", copy}),
                  "calibration "));
 }

@@ -18,7 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The root folder of a Debian whose server is to be used, or "" for this machine's.
+/// Returns the root folder of the Debian system whose PostgreSQL is used; "" for this machine.
 std::string server_root() {
   const char* root = std::getenv("TURNPOINT_POSTGRES_ROOT");
   return root != nullptr ? root : "";
@@ -33,7 +33,7 @@ std::string programs() {
   return "/usr/lib/postgresql/" + *std::max_element(found.begin(), found.end()) + "/bin/";
 }
 
-/// Runs a command where the server is.
+/// Runs a command in the root folder of the server's system.
 int run_there(const std::string& command) {
   const auto root = server_root();
   return std::system(((root.empty() ? "" : "chroot " + root + " ") + "sh -c '" + command + "'").c_str());
@@ -44,7 +44,7 @@ std::string read_file(const std::string& path) {
   return {std::istreambuf_iterator<char>(file), {}};
 }
 
-/// A port of the loopback interface that nobody uses.
+/// Returns a port of the loopback interface that is not in use.
 int free_port() {
   sockaddr_in address{};
   address.sin_family = AF_INET;

@@ -15,7 +15,7 @@ class PostgresServer {
  public:
   struct Options {
     bool tls = false;
-    std::string initdb;  ///< more arguments of initdb
+    std::string initdb;  ///< more arguments for initdb
   };
   PostgresServer();
   explicit PostgresServer(const Options& options);
@@ -25,7 +25,7 @@ class PostgresServer {
 
   /// Connection string for a role.
   std::string as(const std::string& role) const;
-  /// The same as a URI, for what reads from a collector.
+  /// Connection string for a role as a URI, for commands that read from a collector.
   std::string address(const std::string& role) const;
   /// Connects as the superuser.
   turnpoint::collector::Connection admin() const;
@@ -39,7 +39,7 @@ class PostgresServer {
   const std::string& folder() const { return folder_.path; }
   /// Runs a program of PostgreSQL ("psql ...") as the server's user.
   void run(const std::string& program, const std::string& arguments) const;
-  /// Gives a folder to the server's user.
+  /// Makes the server's user the owner of a folder.
   static void own(const std::string& folder);
 
  private:

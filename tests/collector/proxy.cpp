@@ -56,8 +56,8 @@ int connect_to(const std::string& where) {
 /// could wait for each other for ever.
 class Corruption {
  public:
-  /// `before_tls` is how many bytes come before the records of TLS; -1 for the messages of PostgreSQL without
-  /// TLS, of which a client's first one has no type.
+  /// `before_tls` is the number of bytes before the first TLS record. -1 means no TLS: the stream then
+  /// consists of PostgreSQL's messages, and the client's first message has no type byte.
   Corruption(std::uint64_t at, int before_tls)
       : at_(at), before_tls_(before_tls), tls_(before_tls >= 0), head_(tls_ ? 0 : 1) {}
 
@@ -71,8 +71,8 @@ class Corruption {
   }
 
  private:
-  /// True if this byte, the next one of the stream, belongs to the content of a message, which under TLS is
-  /// encrypted.
+  /// Takes the next byte of the stream. Returns true if it belongs to the content of a message (with TLS: to
+  /// its encrypted content).
   bool is_content(unsigned char byte) {
     constexpr unsigned kEncrypted = 23, kHeadBytes = 5;
     if (before_tls_ > 0) return --before_tls_, false;
@@ -80,7 +80,7 @@ class Corruption {
     if (head_ == 0) type_ = byte;
     if (head_ >= (tls_ ? 3U : 1U)) length_ = (length_ << 8U) | byte;
     if (++head_ < kHeadBytes) return false;
-    content_ = tls_ ? length_ : length_ - 4;  // PostgreSQL counts the length itself
+    content_ = tls_ ? length_ : length_ - 4;  // PostgreSQL's length includes the length field
     head_ = length_ = 0;
     return false;
   }

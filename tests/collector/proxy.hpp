@@ -9,13 +9,14 @@
 /// How the proxy disturbs one connection. Bytes are counted from the beginning of the connection.
 struct Trouble {
   static constexpr std::uint64_t kNever = std::numeric_limits<std::uint64_t>::max();
-  std::uint64_t cut_sent = kNever;          ///< cut before this byte from the client reaches the server
-  std::uint64_t cut_received = kNever;      ///< cut before this byte from the server reaches the client
-  std::uint64_t corrupt_sent = kNever;      ///< flip a bit of the first content from this byte on
-  std::uint64_t corrupt_received = kNever;  ///< the same, from the server
-  /// The connection begins with a request for TLS.
+  std::uint64_t cut_sent = kNever;      ///< cut before this byte from the client reaches the server
+  std::uint64_t cut_received = kNever;  ///< cut before this byte from the server reaches the client
+  std::uint64_t corrupt_sent = kNever;  ///< flip a bit of the first byte of content from this byte on
+  /// flip a bit of the first byte of content from the server from this byte on
+  std::uint64_t corrupt_received = kNever;
+  /// true if the connection begins with a request for TLS
   bool tls = false;
-  std::uint64_t slow_sent = 0;  ///< how many of the first bytes from the client are passed on one by one
+  std::uint64_t slow_sent = 0;  ///< pass on this many first bytes from the client one at a time
 };
 
 /// Listens on a TCP port of the loopback interface, and passes bytes on to a server and back.

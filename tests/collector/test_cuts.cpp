@@ -156,12 +156,12 @@ TEST_CASE("a byte that changes under TLS breaks the connection, and no session i
     {
       Proxy proxy(std::to_string(postgres.port()), [&] { return trouble; });
       try {
-        // It goes through only if the changed byte belongs to the end of the connection.
+        // The push succeeds only if the changed byte comes after all data, at the end of the connection.
         const bool complete = push(proxy).complete();
         CHECK(complete);
       } catch (const collector::ServerError& error) {
         INFO(error.what());
-        CHECK(error.state().empty());  // the connection was lost: no changed byte was taken for data
+        CHECK(error.state().empty());  // the connection was lost, so no changed byte was taken for data
         ++broken;
       }
     }
@@ -200,7 +200,7 @@ TEST_CASE("many stations push at once through a network that cuts, and nothing i
     for (int k = 0; k < stations; ++k)
       pushing.emplace_back([&, k] {
         std::mt19937 random(static_cast<unsigned>(k));
-        // Let each push come further than the one before, so that the test ends.
+        // Cut each connection later than the one before, so that the push succeeds in the end.
         std::uint64_t sent = 8000, received = 800;
         Proxy proxy(postgres.socket(), [&] {
           Trouble trouble;

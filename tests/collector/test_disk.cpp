@@ -86,7 +86,7 @@ TEST_CASE("a full disk on the server stops a push with a clear message, and the 
 
   sample::session(db, 400, sample::start("P02"));
   sample::session(db, 2, sample::start("P03"));
-  // With less than that, a push cannot even begin; with more, the second session does not fit.
+  // Either size is enough for a push to begin, but too small for the session of 400 trials.
   for (const auto left_KiB : {256U, 2048U}) {
     INFO(left_KiB);
     disk.free();
@@ -95,7 +95,7 @@ TEST_CASE("a full disk on the server stops a push with a clear message, and the 
     CHECK(sample::contains(message, "No space left on device"));
     CHECK(sample::contains(message, "free some on the server, and push again"));
     CHECK(whole_sessions(postgres, db) == 1);
-    // Nothing of the session is left, not even what only this session needs.
+    // Nothing of the session that did not fit is left, not even the enrolment of its participant.
     CHECK(postgres.admin().query("SELECT count(*) FROM turnpoint.trial").integer(0, 0) == 2);
     CHECK(postgres.admin().query("SELECT count(*) FROM turnpoint.enrolment").integer(0, 0) == 1);
   }
@@ -122,7 +122,7 @@ TEST_CASE("a server that dies because the disk of its log is full has whole sess
   try {
     postgres.stop();
   } catch (const std::exception&) {
-    // It died, and could not recover while the disk was full.
+    // The server has crashed, and could not recover while the disk was full.
   }
   postgres.start();
   const auto whole = whole_sessions(postgres, db);

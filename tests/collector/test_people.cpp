@@ -54,9 +54,11 @@ TEST_CASE("codes that a station has joined are one person on the server, until i
     for (const auto& session : store::list_sessions(fetched.path())) names.insert(session.person);
     return names;
   };
-  CHECK(people() == std::set<std::string>{"P07", "P01"});  // P01 is now bench-b's alone
+  // the only remaining P01 is the participant of station bench-b
+  CHECK(people() == std::set<std::string>{"P07", "P01"});
 
-  // Two stations: what either says about the other's codes is not taken; an administrator may.
+  // A station may not join codes of another station, so the server ignores these rows. An administrator may
+  // join them.
   sample::raw(b).execute("INSERT INTO same_person VALUES ('bench-a', 'P07', 'bench-b', 'P01', 1)");
   sample::raw(b).execute("INSERT INTO same_person VALUES ('bench-a', 'P07', 'bench-a', 'P08', 1)");
   push(b, "station_b");
@@ -74,13 +76,14 @@ TEST_CASE("codes that a station has joined are one person on the server, until i
   CHECK(same_exports("both"));
   CHECK(people() == std::set<std::string>{"P07"});
 
-  // Undone at the station: the administrator's join stays.
+  // The station undoes its own join. The administrator's join stays.
   store::join(db, "P07", "P01", store::Relation::two_people);
   push(db, "station_a");
   CHECK(joins_on(postgres) == 1);
   CHECK(people() == std::set<std::string>{"P07", "P01"});
 
-  // A withdrawn code leaves no join, although the station has not yet carried the withdrawal out.
+  // A withdrawal on the server removes the code's join (the record that two codes are one person) at once,
+  // before the station has carried it out.
   store::join(db, "P07", "P01");
   push(db, "station_a");
   server.query("SELECT turnpoint.withdraw('bench-a', 'P01')");
@@ -121,7 +124,7 @@ TEST_CASE("what is chosen is read from the server, and nothing else", "[collecto
     CHECK(exported(fetched.path(), folder / (name + "-server"), filter) ==
           exported(merged, folder / (name + "-file"), filter));
   }
-  // Rows that were changed are refused if they are asked for.
+  // Rows that were changed on the server are refused when they are read.
   postgres.admin().query("UPDATE turnpoint.trial SET level = level + 1 WHERE session_id <> '" + one + "'");
   CHECK_NOTHROW(collector::ReadableDatabase(postgres.address("reader"), {one, "", ""}));
   CHECK_THROWS_AS(collector::ReadableDatabase(postgres.address("reader")), store::StoreError);

@@ -35,7 +35,7 @@ TEST_CASE("leased places make one design over two stations, also while the serve
   const auto a = folder / "a.sqlite", b = folder / "b.sqlite";
   sample::session(a, 1, at_station("bench-a", "A0"));
   sample::session(b, 1,
-                  // both stations gave this place before they shared the design
+                  // both stations assigned this place before they shared the design
                   at_station("bench-b", "B0"));
   CHECK(places_in(a) == places_in(b));
   const auto lease = [&](const std::string& db, const std::string& role, std::int64_t count) {
@@ -54,8 +54,8 @@ TEST_CASE("leased places make one design over two stations, also while the serve
   for (const auto* code : {"B1", "B2"}) sample::session(b, 1, at_station("bench-b", code));
   CHECK(places_in(a) == std::set<int>{0, 1, 2, 3});
   CHECK(places_in(b) == std::set<int>{0, 4, 5});
-  // A known participant keeps the place from before. A new participant must not get a place that may belong
-  // to another station.
+  // A known participant keeps the place in the counterbalancing. A new participant must not get a place that
+  // may belong to another station.
   sample::session(a, 1, at_station("bench-a", "A1"));
   const auto [kind, message] = sample::failure([&] { sample::session(a, 1, at_station("bench-a", "A4")); });
   CHECK(kind == store::ErrorKind::refused);

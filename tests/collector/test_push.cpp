@@ -72,7 +72,7 @@ TEST_CASE("a push sends each session once, and a continued session is extended",
     auto log = store::SessionLog::resume(db, second, sample::segment("resume"));
     log.begin_block(sample::block());
     log.append(sample::answered(7));
-    // A session that runs is not sent, and its earlier part stays on the server.
+    // A running session is not sent. What the server has of it from before the resume stays.
     const auto meanwhile = collector::push(options);
     CHECK(meanwhile.running == 1);
     CHECK(count("trial") == 19);
@@ -136,6 +136,12 @@ TEST_CASE("the server calculates each checksum from what it stored", "[collector
     table.friction_levels.push_back({0.5, 6, 0.71, 0.7, 0.03, 0.63, 0.78});
     log.event(question);
     log.event(table);
+    store::EventRow started{4, "program", "stairs", std::nullopt},
+        given{5, "estimates", "stairs", std::nullopt};
+    started.programs.push_back({"procedure", "stairs", "example", "1", "/stairs.py", std::string(64, 'c')});
+    given.estimates.push_back({0, 0, "stairs", "threshold", -6, 1.5, ""});
+    log.event(started);
+    log.event(given);
     log.begin_block(sample::block());
     for (int i = 0; i < 3; ++i) log.append(sample::answered(i));
     log.finish(store::SessionStatus::completed, "");
@@ -143,7 +149,7 @@ TEST_CASE("the server calculates each checksum from what it stored", "[collector
   store::annotate(db, id, "a note");
   auto server = postgres.admin();
   server.query("GRANT USAGE ON SCHEMA public TO turnpoint_owner");
-  // Makes a server that stores something other than what arrives.
+  // Each of these changes makes the server store something other than what arrives.
   const std::pair<std::string, std::string> changes[] = {{"trial", "NEW.\"threshold_sd\" := 1.25"},
                                                          {"tone", "NEW.\"friction\" := NULL"},
                                                          {"signal", "NEW.data := NEW.data || '\\x00'"},
@@ -151,6 +157,8 @@ TEST_CASE("the server calculates each checksum from what it stored", "[collector
                                                          {"self_test", "NEW.limit_value := 2"},
                                                          {"answer", "NEW.answer := '8'"},
                                                          {"friction_level", "NEW.sd := 0.04"},
+                                                         {"program", "NEW.version := '2'"},
+                                                         {"estimate", "NEW.mean := -5"},
                                                          {"segment", "NEW.boottime_ns := 0"},
                                                          {"block", "NEW.instruction := 'accuracy'"},
                                                          {"session", "NEW.kernel := 'other'"},

@@ -49,7 +49,7 @@ TEST_CASE("a station reads nothing, changes nothing and stores nothing that is a
     INFO(forbidden);
     CHECK(state_of(b, forbidden) == "42501");
   }
-  // A tombstone for the session of another station has no effect.
+  // A tombstone (the record of a withdrawal) for a session of another station has no effect.
   b.query("SELECT * FROM turnpoint.exchange_tombstones($1)",
           {fmt::format(R"([{{"session_id":"{}","salt":"s","participant_sha256":"","withdrawn_realtime_ns":1,)"
                        R"("station_id":"bench-b"}}])",

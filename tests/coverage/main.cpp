@@ -23,7 +23,7 @@ struct Request {
   bool table_only = false;
 };
 
-/// Sessions are saved in parts of this many.
+/// Sessions are saved each time this many are finished.
 constexpr std::size_t kPart = 20;
 
 std::string file_of(const Request& request, const std::string& procedure, std::size_t source) {

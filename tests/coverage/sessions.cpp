@@ -17,7 +17,8 @@ using namespace turnpoint;
 
 constexpr double kMostLapses = 0.06;
 constexpr int kReferenceSteps = 20'000;
-/// Random streams of this program: the observer's stream, with block numbers that no session uses.
+/// Block numbers for this program's own random numbers in the observer's stream. No session uses these
+/// blocks.
 constexpr int kTruthBlock = 1000, kAnswerBlock = 1001;
 
 double share_right(const Truth& truth, double level_dB) {
@@ -115,7 +116,7 @@ Session Design::run(const Source& source, std::uint64_t seed, bool with_referenc
   const auto rehearsal = simulation::rehearse(protocol, 0, seed, {answer, {}});
   report::SessionData data;
   report::add_trials(rehearsal.blocks, protocol_, data);
-  data.replicates = 0;  // no bootstrap: bands are not needed
+  data.replicates = 0;  // no bootstrap, because the bands of the fits are not needed
   const auto all = data.trials;
   for (std::size_t i = 0; i < kTrials.size(); ++i) {
     if (std::find(counts.begin(), counts.end(), kTrials[i]) == counts.end()) continue;

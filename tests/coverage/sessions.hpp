@@ -35,7 +35,7 @@ const std::vector<Source>& sources();
 
 using Ends = std::pair<double, double>;
 
-/// What a session's report prints after this many trials. An interval is empty if the report gives none.
+/// What a session's report prints after some number of trials. An interval is empty if the report gives none.
 /// `reference` is the central interval of an independent sampler, if one was requested.
 struct Printed {
   std::array<std::optional<Ends>, 3> interval, reference;
@@ -52,8 +52,8 @@ class Design {
  public:
   explicit Design(const std::string& procedure);
 
-  /// The session depends only on the seed. It is analysed after each number of trials in `counts` (which are
-  /// values of kTrials, ascending) and ends after the last; the other entries stay empty.
+  /// Simulates a session, which depends only on the seed. It is analysed after each number of trials in
+  /// `counts` (which are values of kTrials, ascending) and ends after the last; the other entries stay empty.
   Session run(const Source& source, std::uint64_t seed, bool with_reference,
               const std::vector<int>& counts = {kTrials.begin(), kTrials.end()}) const;
 

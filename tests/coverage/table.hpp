@@ -7,11 +7,12 @@
 
 namespace coverage {
 
-/// Summary of one quantity's intervals over many sessions.
+/// How well the intervals of one quantity (such as the threshold) did over many sessions.
 struct Tally {
   int sessions = 0, printed = 0, held = 0;
   double median_width = 0;
-  /// Median of the intervals' width divided by the reference interval's, over the sessions that have both.
+  /// Median, over the sessions that have both intervals, of the printed interval's width divided by the width
+  /// of the reference interval.
   std::optional<double> width_ratio;
 
   double coverage() const { return static_cast<double>(held) / printed; }
@@ -23,16 +24,16 @@ struct Tally {
 Tally tally(const std::vector<Session>& sessions, std::size_t trials_index, Quantity quantity,
             double stretch = 1);
 
-/// Returns the promise that this cell breaks; "" if it keeps all of them. Promised coverage: 93.5 to 96.5 %
-/// if the true values are drawn from the prior; at least 93 % with fixed true values, and for the slope at
-/// least 95 %. The observed proportion itself must reach these figures, without an allowance for chance.
-/// Promised width: at most 1.3 times that of the reference interval. Promised presence: from 96 trials on, at
-/// most 5 % of the threshold intervals may be missing.
+/// Returns the promise that this cell of the coverage table breaks; "" if it keeps all of them. Promised
+/// coverage: 93.5 to 96.5 % if the true values are drawn from the prior; at least 93 % with fixed true
+/// values, and for the slope at least 95 %. The observed proportion itself must reach these figures, without
+/// an allowance for chance. Promised width: at most 1.3 times that of the reference interval. Promised
+/// presence: from 96 trials on, at most 5 % of the threshold intervals may be missing.
 std::string broken_promise(const Tally& tally, const Source& source, Quantity quantity, int trials);
 
-/// Reads a cell's sessions from a file that has one session per line and every number with all its digits.
-/// Drops an incomplete last line. Throws std::runtime_error if a seed occurs twice, as after joining two
-/// runs.
+/// Reads the sessions for one cell of the table from a file that has one session per line and every number
+/// with all its digits. Drops an incomplete last line. Throws std::runtime_error if a seed occurs twice, as
+/// after joining two runs.
 std::vector<Session> read(const std::string& path);
 /// Returns the seeds from 1 to `sessions` that have no session yet, in ascending order.
 std::vector<std::uint64_t> missing_seeds(const std::vector<Session>& there, int sessions);

@@ -84,9 +84,9 @@ class Examples(Folder):
                              stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, check=False)
         self.assertEqual(ran.returncode, 0, ran.stdout)
         levels = [line.split()[1] for line in ran.stdout.splitlines() if line.startswith("   ")]
-        # Levels that PsychoPy's StairHandler gives with the page's arguments, according to its documentation.
-        # It goes down by 4 after each right answer until the first reversal, which is at the wrong answer.
-        # Then it goes up by 2 after a wrong answer, and down by 1 after three right answers.
+        # Levels that PsychoPy's StairHandler gives with the arguments on the page, according to its
+        # documentation. It goes down by 4 after each right answer until the first reversal, which is at the
+        # wrong answer. Then it goes up by 2 after a wrong answer, and down by 1 after three right answers.
         self.assertEqual(levels, ["-5", "-9", "-13", "-17", "-15", "-15", "-15"])
         self.assertIn("next -16", ran.stdout)
 

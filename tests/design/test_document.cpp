@@ -151,7 +151,8 @@ TEST_CASE("a changed value is the only change, and undo gives the bytes from bef
       CHECK(draft.text().substr(0, part.value.begin) == text.substr(0, part.value.begin));
       CHECK(draft.text().substr(part.value.begin, value.size()) == value);
       CHECK(draft.text().substr(part.value.begin + value.size()) == text.substr(part.value.end));
-      const auto* now = parsed(text::parse_toml(draft.text(), ""), at);
+      const auto read = text::parse_toml(draft.text(), "");
+      const auto* now = parsed(read, at);
       CHECK((now != nullptr && now->items.size() == 2));
       draft.undo();
       CHECK(draft.text() == text);
@@ -191,7 +192,8 @@ TEST_CASE("a key that is added can be read, and is gone without a trace when it 
         at.push_back("zz new");
         INFO(Catch::Detail::stringify(at));
         const auto added = all.with(at, "7");
-        const auto* value = parsed(text::parse_toml(added, ""), at);
+        const auto read = text::parse_toml(added, "");
+        const auto* value = parsed(read, at);
         REQUIRE(value != nullptr);
         CHECK(value->integer == 7);
         // Adding and removing a key does not restore the text in two cases: an empty inline table gets other

@@ -1,4 +1,5 @@
-// The form of a protocol has every key of the file, in the form in which a person writes it.
+// Tests that the form of a protocol has every key of the file, and shows each value as a person would write
+// it.
 #include <algorithm>
 #include <filesystem>
 #include <functional>
@@ -82,7 +83,7 @@ TEST_CASE("every value of every shipped protocol has exactly one field, which le
         for (const auto& field : group.fields) {
           INFO(Catch::Detail::stringify(field.path));
           CHECK(design::changed(document, field, field.value) == document.text());
-          // What the form writes means the same to the parser as what the file has.
+          // To the parser, the value that the form writes equals the value in the file.
           if (!field.present) continue;
           const auto written = design::encoded(field, field.value);
           const auto a = text::parse_toml(question(written), "").entries[0].value;
@@ -152,7 +153,7 @@ TEST_CASE("what is typed into a field is what the reader of protocols reads", "[
   CHECK_THROWS_AS(type(source, {"block", "0", "trials"}, "2.5"), text::BadInput);
   CHECK_THROWS_AS(type(source, {"block", "0", "levels"}, "1, two"), text::BadInput);
   CHECK_THROWS_AS(type(source, {"scene", "reference", "zone", "from_mm"}, "1\nx = 2"), text::BadInput);
-  // An empty text removes a key that need not be there, and only such a key.
+  // An empty text removes an optional key. A required key stays.
   CHECK(type(type(source, {"block", "0", "pass", "retries"}, ""), {"block", "0", "pass", "accuracy"}, "")
             .find("pass.") == std::string::npos);
   CHECK(type(source, {"task", "kind"}, "") == source);

@@ -113,7 +113,7 @@ TEST_CASE("the progress of a session shows each procedure's latest estimate with
   second.threshold_est = -1.5, second.threshold_sd = 0.5;
   other.procedure = "ramp", other.threshold_est = 2;
   const auto facts = desk::course_of({first, second, other, none});
-  CHECK(value_of(facts, "Estimate, levels") == "-1.5 (95 %: -2.48 to -0.52)");  // 1.96 * 0.5 = 0.98
+  CHECK(value_of(facts, "Estimate, levels") == "-1.5 (95 %: -2.48 to -0.52)");  // 1.96 SD = 0.98
   CHECK(value_of(facts, "Estimate, ramp") == "2");
   CHECK(value_of(desk::course_of({none}), "Estimate, levels").empty());
 }

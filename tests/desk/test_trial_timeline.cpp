@@ -23,7 +23,7 @@ void check(const std::string& file, const std::vector<desk::TrialPart>& wanted) 
 
 }  // namespace
 
-// The numbers are added up by hand from the times in the files.
+// The expected numbers are added up by hand from the times in the protocol files.
 TEST_CASE("a trial's timeline has its pause, its intervals with gaps, and the time for an answer", "[desk]") {
   check("friction-2ifc", {{Kind::pause, 0, 1},
                           {Kind::interval, 1, 2.5},

@@ -28,9 +28,9 @@ int failure(FakePcm::State state) {
 
 int failure() { return failure(card.state); }
 
-constexpr std::int64_t kHistory = 1 << 16;  // longest loop delay
+constexpr std::int64_t kHistory = 1 << 16;  // longest loop delay in frames
 
-/// The handle that stands for the capture, which differs from that of the playback.
+/// Returns the handle of the simulated capture device. It differs from the handle of the playback device.
 snd_pcm_t* capture() { return reinterpret_cast<snd_pcm_t*>(&card.captured); }
 
 /// Remembers what is played now, and captures what was played one loop delay ago.
@@ -74,7 +74,7 @@ AlsaDevice open_capture_device(const OutputConfig& config) {
 FakePcm& fake_pcm() { return card; }
 void reset_fake_pcm() { card = {}; }
 
-// Overwrites samples with silence once they are played. The station asks alsa-lib to do the same.
+// Lets time pass. Overwrites samples with silence once they are played, as the station asks alsa-lib to do.
 void FakePcm::pass(std::int64_t frames) {
   std::vector<std::int32_t> playing;
   for (std::int64_t n = 0; n < frames; ++n, ++now) {

@@ -19,7 +19,8 @@ struct FakePcm {
   State state = State::prepared;
   /// Time in frames since the beginning, including frames in which nothing played.
   std::int64_t now = 0;
-  std::int64_t written = 0, played = 0;  ///< number of frames since the last start
+  /// numbers of frames written to the card and played by it since its last start
+  std::int64_t written = 0, played = 0;
   int recorded_channel = 0;
   std::vector<std::int32_t> ring;
   std::vector<std::int32_t> heard;  ///< what channel 0 played, one sample per frame of time
@@ -37,7 +38,8 @@ struct FakePcm {
   int capture_channels = 1;
   std::int64_t loop_delay = 0;
   std::function<void(std::span<const std::int32_t> played, std::span<std::int32_t> captured)> wires;
-  std::int64_t captured = 0, taken = 0;  ///< numbers of frames since the last start
+  /// numbers of frames that the card has captured and the program has read since the last start
+  std::int64_t captured = 0, taken = 0;
   std::vector<std::int32_t> capture_ring, history;
   std::function<void()>
       before_read;  ///< called before each read, after the program has asked how many frames it can read

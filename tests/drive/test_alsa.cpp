@@ -48,8 +48,7 @@ std::string capture_refused(const OutputConfig& config) {
   }
 }
 
-// Opens the device as a program would that checks nothing but the rate. Returns true if alsa-lib accepts the
-// exact rate.
+// Opens the device like a program that checks only the rate. Returns true if alsa-lib accepts the exact rate.
 bool accepts_exact_rate(const char* name, unsigned rate) {
   snd_pcm_t* pcm = nullptr;
   if (snd_pcm_open(&pcm, name, SND_PCM_STREAM_PLAYBACK, SND_PCM_NONBLOCK) < 0) return false;

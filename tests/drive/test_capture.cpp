@@ -18,7 +18,7 @@ OutputConfig two_channels() {
   return config;
 }
 
-/// Captures the time on channel 0 and its negative on channel 1.
+/// A simulated card that captures the time on channel 0 and its negative on channel 1.
 struct Card {
   explicit Card(const OutputConfig& config = two_channels()) : channels(config.channels) {
     reset_fake_pcm();

@@ -1,5 +1,5 @@
 // The station may record "memory locked" only if that is true. These tests look up in /proc/self/smaps
-// whether the audio thread's stack is locked, and all memory that the stream and its output allocate. The
+// whether the audio thread's stack, and all memory that the stream and its output allocate, are locked. The
 // stream is opened on a thread of its own, so that its memory is separate from the program's heap.
 #include <algorithm>
 #include <atomic>

@@ -137,7 +137,8 @@ TEST_CASE(
   burst.tones.tones[0].amplitude = 0.01;
   stream->schedule(burst);
   stream->schedule(burst);
-  CHECK_THROWS_AS(stream->schedule(burst), BurstRefused);  // all voices are in use
+  // refused because all voices are in use (a voice plays one burst)
+  CHECK_THROWS_AS(stream->schedule(burst), BurstRefused);
   stream->advance(200000);
   burst.start_frame = stream->earliest_frame();
   CHECK_NOTHROW(stream->schedule(burst));
@@ -210,7 +211,7 @@ TEST_CASE("after a live change makes a burst louder, other bursts may be only th
   Burst second = one_tone(20500, 0.45);
   second.start_frame = 60'000;
   CHECK_THROWS_AS(stream->schedule(second),
-                  BurstRefused);  // 0.7 + 0.45 > 1; without the change, 0.2 + 0.45 fits
+                  BurstRefused);  // refused because 0.7 + 0.45 > 1; without the change, 0.2 + 0.45 would fit
   second.tones.tones[0].amplitude = 0.29;
   stream->schedule(second);
   stream->advance(400'000);

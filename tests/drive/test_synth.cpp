@@ -1,4 +1,5 @@
 #include <cmath>
+#include <numbers>
 #include <random>
 
 #include "station/drive/synth.hpp"
@@ -87,6 +88,20 @@ TEST_CASE("at 24 bits with dither no spurious product is above -140 dB", "[drive
   }
   CHECK(spurious_dB(left, burst) < -140);
   CHECK(synth.saturated() == 0);
+}
+
+TEST_CASE("a burst of the largest allowed peak never reaches full scale, whatever the converter's depth",
+          "[drive][synth]") {
+  const int bits = GENERATE(8, 16, 20, 24, 32);
+  const Format format{rate, 2, bits};
+  // a quarter of the sample rate, so that every other sample lies on a maximum
+  Burst burst = one_tone(rate / 4, largest_peak(format, {}), std::numbers::pi / 2);
+  Synth synth(format);
+  REQUIRE(synth.start(prepare(burst, format)));
+  quantised(synth, 0, 96000, 384);
+  CHECK(synth.saturated() == 0);
+  burst.tones.tones[0].amplitude = 1.0001 * largest_peak(format, {});
+  CHECK_THROWS_AS(prepare(burst, format), BurstRefused);
 }
 
 TEST_CASE("loops for special processors give the same bits as the generic loop", "[drive][synth]") {

@@ -17,7 +17,8 @@ namespace {
 constexpr std::int64_t kForever = std::numeric_limits<std::int64_t>::max();
 // time for which the virtual stage waits on a page before it continues
 constexpr std::int64_t kContinue_ns = 1'000'000'000;
-constexpr std::int64_t kSettle_ns = 50'000'000, kTail_ns = 20'000'000;  // same values as on the real stage
+// the same times as on the stage with real devices
+constexpr std::int64_t kSettle_ns = 50'000'000, kTail_ns = 20'000'000;
 constexpr std::int64_t kDay_ns = 86'400'000'000'000;
 
 }  // namespace
@@ -60,7 +61,8 @@ void Room::push(InputKind kind, FaultKind fault, const std::string& text) {
   inputs_.push_back(std::move(input));
 }
 
-/// Does what the guard's thread and the session do between two events on the real stage.
+/// With real devices, the thread of the amplifier's guard and the session do this
+/// between two events.
 void Room::attend() {
   if (disk_.dead()) throw Died("in a write");
   const auto now = now_ns();
@@ -128,8 +130,8 @@ std::int64_t Room::silence() {
   return quiet_ns_;
 }
 
-/// The stream reports lost frames once the gap is over. The loss affects the stimulus that is being
-/// presented.
+/// Simulates an underrun. The stream reports the lost frames once the gap is over. The loss affects the
+/// stimulus that is being presented.
 void Room::strike_underrun() {
   const auto now = now_ns();
   push(InputKind::xrun, {}, "960 frames lost");
@@ -174,8 +176,8 @@ void Room::finish() {
   world_.amplifier.cause(world_ns(), "the session's end");
 }
 
-/// Plays the operator: whenever a page requires arming, arms after some seconds, even if the cause is still
-/// present.
+/// Plays the operator: whenever a page requires arming, arms after some seconds, even if the cause of the
+/// fault is still present.
 void Room::show(const session::Page& page) {
   if (disk_.dead()) return;
   world_.amplifier.page(world_ns(), page.kind);
@@ -189,7 +191,7 @@ void Room::show(const session::Page& page) {
   });
 }
 
-// Reports a guard's fault to the session as the real stage does: once for each latched fault.
+// Reports a guard's fault to the session as the stage with real devices does: once for each latched fault.
 void Room::tell_guard_fault() {
   line();
   if (guard_.state() != AmplifierState::faulted || std::exchange(fault_told_, true)) return;
@@ -214,8 +216,8 @@ void Room::strike_device() {
   plan(world_.course.seconds(0.5, 10), [this] { push(InputKind::notice, {}, "the converter is back"); });
 }
 
-/// Buttons and amplifier are on the same GPIO chip, so its loss is reported twice. Arming is refused until
-/// the chip is back.
+/// Simulates the loss of the GPIO chip. Buttons and amplifier are both on it, so its loss is reported twice.
+/// Arming is refused until the chip is back.
 void Room::strike_chip() {
   world_.amplifier.cause(world_ns(), "lines gone");
   world_.amplifier.lasts("lines gone");

@@ -21,7 +21,7 @@ struct Died : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// Everything around a station that outlives its processes.
+/// The part of the simulated laboratory that remains when the station's process ends.
 struct World {
   explicit World(Course c, Plant p) : course(std::move(c)), plant(p) {}
 
@@ -50,9 +50,9 @@ struct Disk {
 };
 
 /// The room during the life of one process of the station. Time, drive and observer are those of the virtual
-/// stage. The amplifier is the station's own guard, on a line that the watch observes. Faults come as the
-/// course prescribes. The room also plays the operator, who repairs and arms (sometimes too early), and the
-/// participant, who sees the pages.
+/// stage. The amplifier is the station's own guard, on a line that AmplifierWatch observes. A Course (a
+/// random sequence of faults) decides when faults come. The room also plays the operator, who repairs and
+/// arms (sometimes too early), and the participant, who sees the pages.
 class Room : public turnpoint::session::Stage, public turnpoint::session::Display {
  public:
   using Input = turnpoint::session::Input;

@@ -4,6 +4,7 @@
 #include <optional>
 #include <utility>
 
+#include "station/programs/programs.hpp"
 #include "station/session/replay.hpp"
 #include "station/session/session_run.hpp"
 #include "station/setup/prepare.hpp"
@@ -106,7 +107,7 @@ Disk Station::disk() {
           [this] { return dead_; }};
 }
 
-/// Copies the files to a separate folder, unchanged or as a power cut leaves them.
+/// Copies the database's files to a separate folder, unchanged or as a power cut leaves them.
 void Station::take_files(Fault how) {
   if (std::exchange(dead_, true)) return;
   const auto into = folder_ / std::to_string(deaths_ + 1);
@@ -152,11 +153,12 @@ bool Station::live(session::Setup setup) {
   const auto segment =
       records::SegmentStart{std::to_string(lives), interrupted ? "resume" : "start", 0, 0, now_ns};
   if (interrupted) setup.resume_session = interrupted->session.session_id;
+  programs::Programs programs(setup.protocol.path);  // this protocol names none
   std::optional<trial::Director> director;
   session::Earlier earlier;
   if (interrupted) {
     auto stored = store::read_session(database_, setup.resume_session);
-    director.emplace(session::replayed(setup, stored));
+    director.emplace(session::replayed(setup, stored, programs));
     earlier = {std::move(stored.events), std::move(stored.blocks)};
   }
   auto log = interrupted ? store::SessionLog::resume(database_, setup.resume_session, segment)

@@ -17,7 +17,8 @@ using session::PageKind;
 
 namespace {
 
-constexpr std::int64_t kAtOnce_ns = 1'000'000;  // time within which the guard guarantees to switch off
+// time within which the guard guarantees to switch the amplifier off
+constexpr std::int64_t kAtOnce_ns = 1'000'000;
 // time allowed after the last stimulus for ramp, converter and amplifier
 constexpr std::int64_t kTail_ns = 250'000'000;
 constexpr std::size_t kEnough = 8;  // number of memory samples needed to judge growth

@@ -26,16 +26,17 @@ class AmplifierWatch {
   explicit AmplifierWatch(Violations& violations) : violations_(violations) {}
 
   void line(std::int64_t time_ns, bool high);
-  /// A process begins: no trial is in progress, and the line must be low until armed.
+  /// The station's process begins: no trial is in progress, and the enable line must be low until the
+  /// amplifier is armed.
   void begin(std::int64_t time_ns);
-  /// A fault begins: the line must be low until armed again.
+  /// A fault begins: the enable line must be low until the amplifier is armed again.
   void cause(std::int64_t time_ns, const std::string& what);
   void lasts(const std::string& what) { present_.insert(what); }
   void over(const std::string& what) { present_.erase(what); }
   void armed(std::int64_t time_ns);  ///< the station accepted the operator's command to arm
   void page(std::int64_t time_ns, turnpoint::session::PageKind kind);
   void stimulus(std::int64_t on_ns, std::int64_t off_ns) { stimuli_.emplace_back(on_ns, off_ns); }
-  /// A trial has ended. If it was answered, its stimuli must have been driven.
+  /// A trial has ended. If it was answered, the enable line must have been high during its stimuli.
   void trial_ended(std::int64_t time_ns, bool answered, std::int64_t answered_ns);
 
   int changes() const { return changes_; }
@@ -52,7 +53,7 @@ class AmplifierWatch {
   bool armed_ = false, high_ = false, told_ = false;
   bool trial_page_ = false;
   std::int64_t page_ns_ = 0, on_since_ns_ = 0, low_since_ns_ = 0, now_ns_ = 0, high_ns_ = 0;
-  /// start and end, in the current trial
+  /// start and end of each stimulus of the current trial, and of each time in it when the line was high
   std::vector<std::pair<std::int64_t, std::int64_t>> stimuli_, highs_;
   int changes_ = 0;
 };

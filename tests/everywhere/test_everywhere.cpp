@@ -105,7 +105,7 @@ std::string driven(const std::vector<records::TrialRow>& trials) {
 }
 
 /// Returns a hash of the mutual information of every stimulus over 20 answers, to the last bit. The
-/// parameters in `nuisance` are of no interest.
+/// parameters in `nuisance` count as nuisance parameters.
 std::string informed(const std::vector<std::string>& nuisance) {
   procedure::Spec spec;
   spec.kind = procedure::Kind::psi_marginal;

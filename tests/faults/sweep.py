@@ -302,12 +302,12 @@ class Export(Operation):
         return glob.glob(os.path.join(folder, "export", "*", "*.csv"))
 
     def done(self, folder):
-        if len(self.tables(folder)) != 7 or glob.glob(os.path.join(folder, "export", "*", "*INCOMPLETE*")):
+        if len(self.tables(folder)) != 9 or glob.glob(os.path.join(folder, "export", "*", "*INCOMPLETE*")):
             wrong("the export reported success, but is incomplete")
 
     def check(self, folder, before):
         Operation.check(self, folder, before)
-        if 0 < len(self.tables(folder)) < 7 and not glob.glob(os.path.join(folder, "export", "*", "*INCOMPLETE*")):
+        if 0 < len(self.tables(folder)) < 9 and not glob.glob(os.path.join(folder, "export", "*", "*INCOMPLETE*")):
             wrong("some tables of the export are missing, and no file is marked INCOMPLETE")
 
 

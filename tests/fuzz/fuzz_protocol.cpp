@@ -1,5 +1,6 @@
-// Whatever the bytes are, they must either be a protocol or be refused with at least one problem. If they are
-// accepted, this calls every function that needs no rig.
+// Fuzz test of the reader of protocol files. Any bytes must either be accepted as a protocol or be refused
+// with at least one problem. If they are accepted, the test calls every function that takes a protocol and
+// needs no rig.
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>

@@ -203,7 +203,7 @@ TEST_CASE(
     return false;
   };
   const std::int64_t now = system::monotonic_ns();
-  // The second and third edge come less than a second after the first and are only counted.
+  // The second and third pulse come less than a second after the first, so they are only counted.
   for (const std::int64_t ago : {2000, 1980, 1960, 10}) lines->pulse(0, now - ago * ms, 3 * us);
   REQUIRE(reached(glitches, 2));
   CHECK(glitches[0].line == "left");

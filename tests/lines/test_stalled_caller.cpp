@@ -66,7 +66,8 @@ class Caller {
   std::jthread thread_;
 };
 
-/// Lines that hold the caller, can lose edges, and count the edges that the guard has handled.
+/// GPIO lines that can hold up the calling thread and lose edges. They count the edges that the guard has
+/// handled.
 struct WatchedLines : SharedLines {
   WatchedLines(const std::shared_ptr<SimulatedLines>& shared, Caller& caller_, std::atomic<int>& edges_done_,
                std::atomic<int>& beats_, std::atomic<bool>& loses_edges_)

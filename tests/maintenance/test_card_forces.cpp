@@ -6,7 +6,8 @@
 #include "tests/session/card_session.hpp"
 #include "tests/support/catch.hpp"
 
-// Force cells on the simulated sound card: calibrated with dead weights, then used by a live session.
+// Tests force cells on the simulated sound card: they are calibrated with dead weights and then used in a
+// live session.
 
 using namespace turnpoint;
 using namespace turnpoint::card_session;
@@ -14,12 +15,12 @@ using maintenance::WeightStep;
 
 namespace {
 
-/// Three bridges between output channel 2 and the captured channels 2 to 4; channel 0 captures the
-/// excitation.
+/// Simulated force cells: output channel 2 excites three bridges, and the captured channels 2 to 4 read them.
+/// Channel 0 captures the excitation.
 struct Cells {
   double normal_N = 0, lateral_N = 0, position_mm = 0;
   double length_mm = 300;
-  bool wire_off = false;  ///< of cell b
+  bool wire_off = false;  ///< true if a wire of cell b is off
 
   void capture(std::int32_t excitation, std::span<std::int32_t> captured) const {
     constexpr double per_N = 0.05, zero = 0.01, height_mm = 8;
@@ -38,7 +39,8 @@ void add_cells(rig::Rig& rig) {
   rig.capture->bridges = {2, 3, 4};
 }
 
-/// Reads the bridges on the card, whose time passes as fast as it is computed.
+/// Reads the force cells' bridges on the simulated sound card, whose time passes as fast as the computer
+/// allows.
 struct CardRoom {
   const bool holding = false;
   bool captures = true;

@@ -1,5 +1,4 @@
-// Tests disks that can be taken out. Folders with the kernel's layout stand for the kernel, and a script for
-// udisksctl.
+// Tests removable disks. Folders of the test replace those of the kernel, and a script replaces udisksctl.
 #include <unistd.h>
 
 #include <filesystem>
@@ -106,7 +105,7 @@ TEST_CASE("ejecting unmounts and then switches off, and stops if the disk is in 
   const Machine machine;
   machine.mounts(kStick);
   const auto disk = maintenance::removable_disks(machine.sources).at(0);
-  // this disk cannot be switched off, like a memory card
+  // a disk that cannot be switched off, such as a memory card
   machine.udisks("case $1 in power-off) exit 1;; esac");
   maintenance::eject(disk, machine.sources);
   CHECK(machine.asked() ==

@@ -22,7 +22,7 @@ namespace {
 const auto kReady = [](const WeightStep&) { return true; };
 const auto kGiveUp = [](const std::string&) { return false; };
 
-/// The cells' ratio of bridge to reference under a load, from the formulas in plant/setup.hpp.
+/// Returns each cell's ratio of bridge to reference under a load, from the formulas in plant/setup.hpp.
 sensing::Readings readings(const plant::Setup& room, const plant::Load& load) {
   const auto& w = room.wires;
   const double per_N = room.cells.volt_per_volt_N * w.gain * w.reference_V_at_full_scale / w.full_scale_V;
@@ -42,11 +42,11 @@ std::string failure(const rig::Rig& rig, const std::function<void(plant::Setup&)
   return "";
 }
 
-/// Exact readings, and a wire that is off at one reading.
+/// A bridge reader with exact readings. At reading number `fails_at`, a wire is off.
 struct ExactBridges : maintenance::BridgeReader {
   plant::Setup room;
   int reads = 0, fails_at = -1;
-  std::function<void(WeightStep&, int)> mistake = [](auto&, int) {};  ///< of the operator
+  std::function<void(WeightStep&, int)> mistake = [](auto&, int) {};  ///< a mistake of the operator
   std::function<double(int read)> noise = [](int) { return 0.0; };
   double creep_N = 0;  ///< the zero of cell a moves by this much at each reading
   maintenance::BridgeReading read(const WeightStep& asked) override {
@@ -145,9 +145,12 @@ TEST_CASE("a weight that does not agree with the others is named and weighed aga
   bridges.room.cells.span_m = rig.surface.length_m;
   const bool always = GENERATE(false, true);
   const auto [change, said] = GENERATE(table<std::function<void(WeightStep&)>, std::string>(
-      {{[](WeightStep& step) { step.mass_g = 100; }, "they say 100 g at 90 mm with a pull of 0 g"},
-       {[](WeightStep& step) { step.position_mm = 100; }, "they say 50 g at 100 mm with a pull of 0 g"},
-       {[](WeightStep& step) { step.pull_g = 5; }, "they say 50 g at 90 mm with a pull of 5 g"}}));
+      {{[](WeightStep& step) { step.mass_g = 100; },
+        "according to them, it is 100 g at 90 mm with a pull of 0 g"},
+       {[](WeightStep& step) { step.position_mm = 100; },
+        "according to them, it is 50 g at 100 mm with a pull of 0 g"},
+       {[](WeightStep& step) { step.pull_g = 5; },
+        "according to them, it is 50 g at 90 mm with a pull of 5 g"}}));
   bridges.mistake = [&](WeightStep& step, int read) {
     if (step.mass_g == 50 && step.position_mm == Approx(90) && (always || read < 32)) change(step);
   };
@@ -184,7 +187,7 @@ TEST_CASE("a forgotten string, a swinging weight and a shaken table are refused"
                     Catch::Contains("cell a did not rest: it varied 12 times"));
   bridges.reads = 0;
   bridges.noise = [](int) { return 2.5e-3 * 0.057; };
-  CHECK_THROWS_WITH(weigh(rig, bridges, kReady, kGiveUp), Catch::Contains("do not rest without a weight"));
+  CHECK_THROWS_WITH(weigh(rig, bridges, kReady, kGiveUp), Catch::Contains("are not steady without a weight"));
 }
 
 TEST_CASE("the stated uncertainty is that of the places, the masses and the pulley",
@@ -194,8 +197,8 @@ TEST_CASE("the stated uncertainty is that of the places, the masses and the pull
   ExactBridges bridges;
   bridges.room.cells.span_m = rig.surface.length_m;
   const auto exact = weigh(rig, bridges, kReady, kGiveUp);
-  // Many calibrations, each with errors of the sizes in sensing::WeightErrors; what each one measures of 0.5
-  // N in the middle with 0.25 N along the surface.
+  // Makes many calibrations, each with errors of the sizes in sensing::WeightErrors, and lets each one
+  // measure a finger in the middle of the surface that presses with 0.5 N and pulls along it with 0.25 N.
   std::mt19937 random(1);
   std::normal_distribution<double> unit;
   double position2 = 0, friction2 = 0;
@@ -227,7 +230,7 @@ TEST_CASE("a session measures forces with the calibration that dead weights gave
   bridges.room.cells.span_m = rig.surface.length_m;
   auto made = maintenance::known_calibration(rig);
   made.forces = weigh(rig, bridges, kReady, kGiveUp).cells;
-  // what the simulated room plays, not what ExactBridges says
+  // the amplitude with which the simulated room plays the carrier; ExactBridges uses another one
   made.forces->reference_amplitude = session::kCarrier * 2.5 / 3;
   const auto mean_force = [&](double factor) {
     auto changed = made;

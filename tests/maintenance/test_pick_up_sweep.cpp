@@ -148,7 +148,7 @@ TEST_CASE("a table that contradicts the sweep, has another unit, or is too short
   const auto rig = rig::load(measured::with_capture(folder, measured::kPickUps));
   session::SimulatedRoom room(rig);
   PickUpOptions options;
-  // readings in nanometres instead of micrometres
+  // a table in nanometres instead of micrometres must be refused
   options.vibrometer = table(folder, room.plant(), 1000, kFrequencies);
   CHECK(refusal(rig, options).find("check the unit") != std::string::npos);
   options.vibrometer = table(folder, room.plant(), 1, {24e3, 28e3, 32e3, 36e3});

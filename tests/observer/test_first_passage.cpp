@@ -18,8 +18,8 @@ struct Row {
   double time, upper;
 };
 
-/// The table of make_first_passage.py: for each (drift, start), the probability of having left at the upper
-/// boundary by a given time, with bound 1.
+/// Returns the table of make_first_passage.py: for each drift and start, and with bound 1, the probability
+/// that the walk has reached the upper boundary by a given time.
 std::map<std::pair<double, double>, std::vector<Row>> oracle() {
   std::ifstream file(std::string(TURNPOINT_SOURCE_DIR) + "/tests/observer/first_passage.csv");
   std::map<std::pair<double, double>, std::vector<Row>> table;
@@ -35,7 +35,7 @@ std::map<std::pair<double, double>, std::vector<Row>> oracle() {
   return table;
 }
 
-/// The largest deviation of 200 000 draws from any row of the table, in standard errors.
+/// Returns the largest deviation of 200 000 draws from any row of the table, in standard errors.
 double distance(double drift, double start, const std::vector<Row>& rows) {
   random::Draws draws({17, random::Stream::observer, 0, 0, 0});
   const int n = 200'000;

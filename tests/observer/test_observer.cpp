@@ -140,7 +140,8 @@ TEST_CASE("yes and no are separated by the criterion", "[observer]") {
   question.decides = Decides::presence;
   for (const double criterion : {-0.5, 0.2, 1.5}) {
     const Observer observer(parse("sim:threshold=3,lapse=0,criterion=" + std::to_string(criterion)));
-    // The inverse of the normal distribution, by bisection on another implementation of it.
+    // The inverse of the normal distribution function, found by bisection. The distribution is computed here
+    // without the program's code.
     const auto z = [&](double p) {
       double low = -9, high = 9;
       for (int i = 0; i < 80; ++i) {
@@ -195,7 +196,7 @@ TEST_CASE("a deadline lowers the bound so that few decisions come too late", "[o
 }
 
 TEST_CASE("non-decision times vary within their range", "[observer]") {
-  // At 99 times the threshold, a decision takes a few hundredths of a second.
+  // At 100 times the threshold, a decision takes a few hundredths of a second.
   const Observer observer(parse("sim:threshold=1,slope=4,bound=0.01,residual=0.5,residual_range=0.4"));
   auto question = at_level(100);
   std::vector<double> times;
@@ -226,7 +227,8 @@ TEST_CASE(
   question.answers = 4;
   question.default_threshold = 10;
   const Observer observer(parse("sim:lapse=0"));
-  // Of two categories one threshold apart, 75 % are told apart: z(0.75) = 0.67449, so the SD is 7.41301.
+  // Two categories that differ by the threshold of 10 are told apart in 75 % of trials. The border is 5 from
+  // each, and z(0.75) = 0.67449, so the SD of the noise is 5 / 0.67449 = 7.41301.
   const auto below = [](double x, double level) {
     return 0.5 * std::erfc((level - x) / 7.41301 / std::sqrt(2.0));
   };
@@ -303,4 +305,28 @@ TEST_CASE("at a response signal the observer answers from what it has found out 
   }
   question.signal_s.reset();
   CHECK(last == Approx(observer.share(question, 0)).margin(0.01));
+}
+
+TEST_CASE("the threshold moves along the second dimension by the gradient, and not below the floor",
+          "[observer]") {
+  const Observer observer(parse("sim:threshold=-16,gradient=0.2,floor=-18,lapse=0"));
+  const auto right = [&](double level, double second) {
+    auto question = at_level(level);
+    question.decibel = true, question.second = second;
+    return observer.share(question, 0);
+  };
+  CHECK(right(-16, 0) == Approx(0.75));
+  CHECK(right(-12, 20) == Approx(0.75));
+  CHECK(right(-17, -5) == Approx(0.75));
+  CHECK(right(-18, -40) == Approx(0.75));  // without the floor, the threshold would be -24 dB
+  CHECK(right(-16, 20) < 0.7);
+  const Observer ratios(parse("sim:threshold=0.1,gradient=0.02,lapse=0,criterion=0"));
+  auto question = at_level(0.1 * std::pow(10, 0.4));
+  question.decides = Decides::presence, question.second = 20, question.log_step = std::log(10.0);
+  CHECK(ratios.share(question, 1) == Approx(random::normal_cdf(1.3489795)).epsilon(1e-6));
+  question.log_step = std::log(10.0) / 20, question.level = 0.1 * std::pow(10, 0.02);
+  CHECK(ratios.share(question, 1) == Approx(random::normal_cdf(1.3489795)).epsilon(1e-6));
+  question.decides = Decides::side, question.log_step = 0, question.level = 0.4;
+  const Observer sides(parse("sim:threshold=0.1,gradient=0.02,lapse=0"));
+  CHECK(sides.share(question, 1) == Approx(0.5));
 }

@@ -109,7 +109,7 @@ TEST_CASE(
       const double nearest = std::clamp(place.x_m, 0.0, plate.length_m);
       if (std::hypot(place.x_m - nearest, place.y_m, place.z_m) >= distance) places.push_back(place);
     }
-    // No place around the loudest one, along the strip, may be louder.
+    // Also compare places around the loudest one, along the strip. None may be louder.
     for (int i = -600; i <= 600; ++i)
       places.push_back({loudest.place.x_m + 1e-4 * i, 0, std::max(loudest.place.z_m, distance)});
     double most = 0;

@@ -67,7 +67,7 @@ TEST_CASE("the field of one tone solves its model only once", "[physics]") {
       describe(surface, {&tone, 1}, evaluate(surface, {&tone, 1}, {&x, 1}, model, Normalise::peak));
     });
     CAPTURE(name(model), solution, field, notes);
-    CHECK(field <= solution + 8);  // a field has 8 vectors of its own
+    CHECK(field <= solution + 8);  // a Field has 8 vectors besides the solution
     // negative control: describe() solves the surface several more times, which allocates more memory
     CHECK(notes > field + 3 * solution / (model == Model::mode ? 1 : 100));
   }

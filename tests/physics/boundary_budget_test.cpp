@@ -133,8 +133,8 @@ TEST_CASE("the first-order uncertainty agrees with the scatter of random surface
 
 TEST_CASE("the first-order uncertainty of thick plates agrees with the scatter of random surfaces",
           "[physics]") {
-  // This samples the turning point, whose position takes only microseconds to compute. The derivatives of the
-  // edge p50 are compared above.
+  // This samples the turning point, whose position takes only microseconds to compute. The tests above
+  // compare the derivatives of the edge p50 (the boundary at 50 % of the amplitude).
   std::mt19937_64 random(12);
   std::normal_distribution<double> normal;
   for (const PlateTheory theory : {PlateTheory::mindlin, PlateTheory::elastic}) {

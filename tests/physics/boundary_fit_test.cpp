@@ -117,8 +117,9 @@ TEST_CASE("measured boundaries make the map of an unknown plate precise", "[phys
 
 TEST_CASE("a fit of exact boundaries finds the surface that they came from, as far as they determine it",
           "[physics]") {
-  // The boundaries of a membrane determine its apex and one constant. If slope and density are known,
-  // half-width and tension follow.
+  // Measured boundaries of a membrane determine only two numbers: the position of the taper's apex, and the
+  // factor that relates frequency to width. With known slope and density, these two give half-width and
+  // tension.
   Surface nominal = seed_brass();
   nominal.quality_factor = 60;
   nominal.sd.tension_Pa = 0.05 * nominal.tension_Pa;
@@ -144,7 +145,8 @@ TEST_CASE("a fit of one linear parameter equals the closed form of its posterior
   const double x = solved_m(nominal, 30e3);
   const MeasuredBoundary point{30e3, x + 5e-3, 2e-3};
   const BoundaryFit fit = fit_boundaries(nominal, edge(), {&point, 1});
-  // standard deviations of the boundary: 10 mm from the clamp line (0.3 mm / 0.03), 2 mm from the measurement
+  // the boundary is uncertain by a standard deviation of 10 mm because of the clamp line (0.3 mm / 0.03), and
+  // of 2 mm because of the measurement
   const double weight = 100.0 / 104;
   CHECK(fit.parameters.at(0).change == Approx(weight * 5e-3 * 0.03).epsilon(1e-3));
   CHECK(fit.parameters[0].sd == Approx(0.3e-3 * std::sqrt(1 - weight)).epsilon(1e-3));
@@ -165,7 +167,7 @@ TEST_CASE("a boundary that was read wrongly is named as an outlier", "[physics]"
   points[3].boundary_m -= 3e-3;
   points[0].boundary_m -= 10e-3;
   CHECK(names()[0]);
-  // If two boundaries contradict each other, both must be named.
+  // If two boundaries contradict each other, both must be named as outliers.
   points.resize(2);
   points[1] = points[0];
   points[1].boundary_m += 10e-3;

@@ -118,7 +118,7 @@ TEST_CASE("a map follows the mode with loss, and states the model's error and th
   const MapAnswer answer = BoundaryMap(s, edge("p50")).at_frequency(20e3);
   const double lossy = make_centre_line(s, 20e3, Model::modes)->level_m(0.5).value();
   CHECK(std::abs(lossy - answer.boundary_m.value()) < answer.error_bound_m + 1e-8);
-  // Negative control: the edge of the same surface without loss lies far outside the stated bound.
+  // Negative control: the boundary of the same surface without loss lies far outside the stated bound.
   const double lossless = BoundaryMap(seed_brass(), edge("p50")).boundary_m(20e3).value();
   CHECK(std::abs(lossy - lossless) > 2 * answer.error_bound_m + 5e-5);
   // The distance from the apex is proportional to the wave speed: a change of 2 % in tension moves the
@@ -171,7 +171,7 @@ TEST_CASE("solving for a single frequency gives the same result as the map", "[p
         const auto f = solve_frequency_Hz(surface, options, x);
         CAPTURE(edge, x);
         REQUIRE(f);
-        // The table of a friction edge is accurate to 2 um, and the table of a plate to 0.3 um.
+        // The map's table is accurate to 2 um for an edge defined by friction, and to 0.3 um for a plate.
         CHECK(std::abs(map.boundary_m(*f).value() - x) < 3e-6);
       }
     }

@@ -19,13 +19,14 @@ using Index = Eigen::Index;
 // Matrices that differentiate functions of eta, given their values at the points between 0 and 1.
 struct Across {
   Eigen::VectorXd eta;
-  // first and second derivatives of even and of odd functions that vanish at 1
+  // give the first and second derivatives of even and of odd functions that vanish at eta = 1
   Real even1, even2, odd1, odd2;
-  // the contribution of the value at 1 to the derivatives of an even function
+  // give what the value at eta = 1 adds to the first and second derivatives of an even function
   Eigen::VectorXd side1, side2;
-  Real clamped1, clamped2;          // derivatives of an even function whose value and slope vanish at 1
-  Eigen::RowVectorXd clamped_side;  // the second derivative of such a function at 1
-  Eigen::RowVectorXd centre;        // value at 0 of an even function that vanishes at 1
+  // give the first and second derivative of an even function whose value and slope vanish at eta = 1
+  Real clamped1, clamped2;
+  Eigen::RowVectorXd clamped_side;  // gives the second derivative of such a function at eta = 1
+  Eigen::RowVectorXd centre;        // gives the value at eta = 0 of an even function that vanishes at eta = 1
 
   explicit Across(int points) {
     const int n = points, last = 2 * n + 1;  // `last` is an odd number, so that there is no point at 0
@@ -72,12 +73,12 @@ struct Strip {
         r(slope / w),
         curve(taper.second_derivative(x) / k / w) {}
 
-  // the first derivative is d/dx plus
-  Eigen::VectorXd along_once() const { return -r * eta; }  // this factor times d/deta
-  // the second derivative is d2/dx2 plus
-  Eigen::VectorXd mixed() const { return -2 * r * eta; }              // this factor times d2/(dx deta), plus
-  Eigen::VectorXd once() const { return (2 * r * r - curve) * eta; }  // this factor times d/deta, plus
-  Eigen::VectorXd along_twice() const { return r * r * eta.square(); }  // this factor times d2/deta2
+  // first derivative at constant y: d/dx + along_once() d/deta
+  Eigen::VectorXd along_once() const { return -r * eta; }
+  // second derivative at constant y: d2/dx2 + mixed() d2/(dx deta) + once() d/deta + along_twice() d2/deta2
+  Eigen::VectorXd mixed() const { return -2 * r * eta; }
+  Eigen::VectorXd once() const { return (2 * r * r - curve) * eta; }
+  Eigen::VectorXd along_twice() const { return r * r * eta.square(); }
   // factor of d2/deta2 in the whole Laplacian
   Eigen::VectorXd twice() const { return r * r * eta.square() + 1 / (w * w); }
 };
@@ -116,8 +117,8 @@ double shape_at(double eta, double a, double b) {
   return std::cos(a * eta) / std::cos(a) - cosh_ratio;
 }
 
-// The equations of a thin plate: u = lap v and lap u - tau u = mu v. On a clamped side lap v = (1 + W'^2)/W^2
-// d2v/deta2.
+// The equations of a thin plate: u = lap v and lap u - tau u = mu v (v: displacement, lap: Laplacian, tau:
+// tension, mu: inertia). On a clamped side lap v = (1 + W'^2)/W^2 d2v/deta2 (W: half-width, eta = y / W).
 CollocatedEquations thin_plate(const Surface& s, double k, int points) {
   const auto across = std::make_shared<Across>(points);
   const auto taper = std::make_shared<Taper>(s);
@@ -154,8 +155,8 @@ CollocatedEquations thin_plate(const Surface& s, double k, int points) {
                                       side * twice.cwiseProduct(across->side2);
     here.bottomLeftCorner(m, m) = from_side * across->clamped_side;
   };
-  // The drive edge has the shape of the cut-off of its own width: a tan a + b tanh b = 0 with b^2 = a^2 +
-  // tension.
+  // The drive edge moves in the shape of the lowest mode across a clamped strip of the same width at its
+  // cut-off. The shape follows from a tan a + b tanh b = 0 with b^2 = a^2 + tension.
   const double w0 = k * taper->half_width_m(0), tension = tau * w0 * w0;
   double low = pi / 2, high = pi;
   for (int i = 0; i < 100; ++i) {
@@ -170,8 +171,9 @@ CollocatedEquations thin_plate(const Surface& s, double k, int points) {
   return e;
 }
 
-// The equations of Mindlin's plate, with the unknowns w, beta_x / k and beta_y / k. At the drive edge, w and
-// beta_y have the shape of the first cut-off of the edge's own width, and beta_x is 0.
+// The equations of Mindlin's plate for the displacement w and the rotations beta_x / k and beta_y / k. At the
+// drive edge, w and beta_y have the shape of the lowest mode across a strip of the same width at its cut-off,
+// and beta_x is 0.
 CollocatedEquations mindlin_plate(const Surface& s, double f, double k, int points) {
   const auto across = std::make_shared<Across>(points);
   const auto taper = std::make_shared<Taper>(s);
@@ -213,10 +215,10 @@ CollocatedEquations mindlin_plate(const Surface& s, double f, double k, int poin
     };
     add_mixed(1, 2, odd1, across->odd2);
     add_mixed(2, 1, even1, across->even2);
-    block(first, 0, 1) += one;  // the divergence of beta
+    block(first, 0, 1) += one;  // the divergence of the rotation beta
     block(here, 0, 1) += along.asDiagonal() * even1;
     block(here, 0, 2) += by_y * odd1;
-    block(first, 1, 0) -= shear * one;  // beta plus the gradient of w
+    block(first, 1, 0) -= shear * one;  // the rotation beta plus the gradient of the displacement w
     block(here, 1, 0) -= shear * (along.asDiagonal() * even1);
     block(here, 2, 0) -= shear * by_y * even1;
     block(here, 1, 1) -= shear * one;

@@ -51,7 +51,8 @@ using Matrix = Eigen::Matrix<Scalar, Eigen::Dynamic, Eigen::Dynamic>;
 template <class Scalar>
 using Vector = Eigen::Matrix<Scalar, Eigen::Dynamic, 1>;
 
-// Gives the inner values of an element from those at its ends: inner = left u_l + right u_r + source.
+// The equations of one element of the strip, solved for the inner points. They give the inner values from
+// those at its two ends: inner = left u_l + right u_r + source.
 template <class Scalar>
 struct Slab {
   Matrix<Scalar> left, right;
@@ -61,8 +62,9 @@ struct Slab {
   Vector<Scalar> offset;
 };
 
-// Gives the unknowns at the right end of the last element from those at its left end. The far end is held. If
-// the derivatives of the held unknowns are given too, the other unknowns there follow from them.
+// Returns the matrix that gives the unknowns at the right end of the last element (the far end of the strip)
+// from those at its left end. The first unknowns are held at 0 there. Any others follow from the condition
+// that the derivatives of the held unknowns, by_left u_left + by_right u_right, are 0 too.
 template <class Scalar>
 Matrix<Scalar> at_far_end(const CollocatedEquations& e, const Matrix<Scalar>& by_left,
                           const Matrix<Scalar>& by_right) {
@@ -87,7 +89,8 @@ void CollocatedField::solve(const Surface& surface, const CollocatedEquations& e
   const Matrix<Scalar> one = Matrix<Scalar>::Identity(m, m);
 
   std::vector<Slab<Scalar>> slabs(strips.size());
-  // gives du/dx at the left end of everything farther out: du/dx = slope u + slope_source
+  // gives du/dx at the left end of the strip's part that was solved before (all elements to the right of the
+  // current one), from the field there: du/dx = slope u + slope_source
   Matrix<Scalar> slope;
   Vector<Scalar> slope_source;
   Real first, here;

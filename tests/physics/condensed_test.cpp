@@ -12,7 +12,8 @@ namespace {
 using Eigen::Index;
 using Eigen::MatrixXd;
 
-// A symmetric matrix with a dominant diagonal, and a smaller symmetric matrix.
+// Returns a symmetric matrix of numbers from -1 to 1 that depend on `phase`, with `diagonal` added on the
+// diagonal.
 MatrixXd symmetric(Index n, double diagonal, double phase) {
   MatrixXd a(n, n);
   for (Index i = 0; i < n; ++i) {

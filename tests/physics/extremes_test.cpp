@@ -1,5 +1,5 @@
-// The models at their extremes, against references that share no code with them. The table "What was tried at
-// the extremes" in physics/README.md lists the cases and the largest errors.
+// Tests the models at the extremes of their parameters, against references that share no code with them. The
+// table "What was tried at the extremes" in physics/README.md lists the cases and the largest errors.
 #include <algorithm>
 #include <cmath>
 #include <complex>
@@ -41,7 +41,7 @@ std::complex<double> complex_at(const std::vector<std::string>& row, std::size_t
   return {std::stod(row[i]), std::stod(row[i + 1])};
 }
 
-// The largest difference from the exact values, which start at column `first`, and the largest exact |v|.
+// The largest difference of v from the exact values, and the largest exact |v|.
 struct Miss {
   double worst = 0, most = 0;
   double relative() const { return worst / most; }

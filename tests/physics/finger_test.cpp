@@ -31,8 +31,8 @@ TEST_CASE("a finger without impedance changes nothing, and a heavy finger stops 
 
 TEST_CASE("the motion of surfaces under a finger agrees with independent finite elements", "[physics]") {
   // The rows of finger.csv are places from the middle of the smooth zone to beyond its edge, on the centre
-  // line and beside it. At each place, the fraction of the motion that remains is compared for real and
-  // complex impedances.
+  // line and beside it. At each place, the fraction of the motion that remains under a finger is compared,
+  // for fingers with real and with complex impedances.
   int compared = 0;
   double worst_share = 0, worst_unloaded = 0;
   for (const auto& row : oracle("finger.csv")) {

@@ -1,4 +1,5 @@
-// Compares the bounds of `modes` with errors against an independent solution by collocation.
+// Compares the error bounds of the model `modes` with its errors, which an independent solution by
+// collocation shows.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -35,8 +36,8 @@ struct Errors {
   double amplitude, boundary_m, level_dB;
 };
 
-// Returns the position beyond `peak` at which the field of the reference falls to half of its value at
-// `peak`. The search starts where `modes` has this position.
+// Returns the position near `from` at which the amplitude of the reference solution is `half`. Callers pass
+// half of the last maximum as `half`, and the boundary that `modes` finds as `from`.
 double edge_of(const CollocatedField& field, double from, double half, double step) {
   double x0 = from, x1 = from + step;
   double y0 = std::log(std::abs(field.value(x0)) / half), y1 = std::log(std::abs(field.value(x1)) / half);
@@ -61,7 +62,8 @@ double peak_of(const CollocatedField& field, double x, double step) {
   return std::max(start, std::abs(field.value(x)));
 }
 
-// `ln_drive` is the logarithm of the line's |v| at the drive edge.
+// Returns the errors of `line` against `truth`. `ln_drive` is the logarithm of the line's |v| at the drive
+// edge.
 Errors errors(const Surface& s, const CentreLine& line, double ln_drive, const CollocatedField& truth,
               Normalise normalise) {
   const double peak_m = line.last_peak_m().value(), k = wavenumber_per_m(s, frequency_Hz);
@@ -84,7 +86,7 @@ Errors errors(const Surface& s, const CentreLine& line, double ln_drive, const C
   return e;
 }
 
-// Returns how much two reference solutions differ, in the same quantities.
+// Returns how much two reference solutions differ, in the quantities of Errors.
 Errors difference(const CollocatedField& one, const CollocatedField& other, const Surface& s,
                   const CentreLine& line) {
   const double peak_m = line.last_peak_m().value(), k = wavenumber_per_m(s, frequency_Hz);
@@ -136,7 +138,7 @@ TEST_CASE("the jump of a piston's field is 1 on the drive edge, 0 on the sides, 
       CHECK(lift.value(x + 0.02, 0) == 0);
       for (const double eta : {0.0, 0.4, 0.9}) {
         const double y = eta * taper.half_width_m(x), h = 2e-5;
-        const double square = x * x + (0.03 - y) * (0.03 - y);  // of the distance from the corner
+        const double square = x * x + (0.03 - y) * (0.03 - y);  // squared distance from the corner
         const double sum = lift.value(x + h, y) + lift.value(x - h, y) + lift.value(x, y + h) +
                            lift.value(x, y - h) - 4 * lift.value(x, y);
         CHECK(sum / (h * h) ==
@@ -151,7 +153,8 @@ TEST_CASE("the jump of a piston's field is 1 on the drive edge, 0 on the sides, 
 
 namespace {
 
-// Counts the bounds and how often the true error was outside, and keeps the ratios bound / error.
+// Counts the bounds that were checked and those that the true error exceeded, and keeps the ratios bound /
+// error.
 struct Tally {
   std::vector<double> amplitude, level, boundary;
   int outside = 0;
@@ -186,13 +189,15 @@ RungEstimate coarse_estimate(const Surface& s, Normalise normalise) {
 
 namespace {
 
-// The results of comparing `modes`, `mode` and the map with the reference on random surfaces.
+// The results of comparing the models `modes` and `mode` and the boundary map with the reference on random
+// surfaces.
 struct Campaign {
-  std::vector<double> error;  // errors of `modes`
-  // bounds of `modes`: from a finer solution, from a coarser one, and without solving
+  std::vector<double> error;  // errors of the model `modes`
+  // error bounds that `modes` states: by comparing with a finer solution, with a coarser one, and before
+  // solving
   Tally finer, coarser, before;
   Tally mode;
-  std::vector<double> map;  // ratios of bound and error of the map
+  std::vector<double> map;  // error bounds of the boundary map, divided by its true errors
   int map_outside = 0;
 
   void add(int number, const Surface& s, Normalise normalise, const CollocationGrid& finest);
@@ -215,7 +220,7 @@ void Campaign::add_map(int number, const Surface& s, const CollocatedField& trut
   const double half = 0.5 * peak_of(truth, line.last_peak_m().value(), 0.02 / k);
   const double miss = std::abs(edge_of(truth, *edge, half, 1e-4 / k) - *answer.boundary_m);
   map.push_back(answer.error_bound_m / miss);
-  constexpr double reference_m = 5e-8;  // accuracy of the edge's position in the reference
+  constexpr double reference_m = 5e-8;  // accuracy of the boundary's position in the reference solution
   if (miss <= answer.error_bound_m + reference_m) return;
   ++map_outside;
   std::printf("scene %d: map %.2e of %.2e\n", number, miss, answer.error_bound_m);
@@ -273,7 +278,8 @@ void Campaign::add(int number, const Surface& s, Normalise normalise, const Coll
         of_mode.level_dB, stated.level_bound_dB);
 }
 
-// Compares scenes from `make` and checks the counts and medians. TURNPOINT_SCENES changes the number.
+// Compares random scenes from `make` with the reference. Checks how many error bounds are exceeded, and the
+// medians of bound / error. TURNPOINT_SCENES changes the number of scenes.
 template <class Make>
 void compare_scenes(int usual, std::uint64_t seed, const CollocationGrid& finest, Make make) {
   const int count = scenes(usual), first = first_scene();
@@ -306,8 +312,8 @@ TEST_CASE("the errors of models and map lie inside their bounds on random membra
   compare_scenes(40, 20260104, {14, 12, 9, 3, 0.75, 0.8, 30}, turnpoint::physics_test::random_membrane);
 }
 
-// The first mode reaches the clamped end only as a weak evanescent wave, half as wide as the cut-off or less;
-// its reflection moves the edges by about 0.1 um.
+// In these scenes, the clamped end is at most half as wide as the cut-off, so the first mode reaches it only
+// as a weak evanescent wave. The reflection of this wave moves the edges by about 0.1 um.
 TEST_CASE("the map's bound includes a reflection from a clamped end far beyond the turning point",
           "[physics]") {
   Campaign all;

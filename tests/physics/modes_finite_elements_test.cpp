@@ -1,4 +1,5 @@
-// Checks the bounds of `modes` on 200 random surfaces against finite elements (oracles/make_modes.py).
+// Checks the error bounds of the model `modes` on 200 random surfaces against finite elements
+// (oracles/make_modes.py).
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -16,7 +17,7 @@ using turnpoint::physics_test::oracle;
 namespace {
 
 constexpr int points = 20;
-// accuracy with which the position of an edge is read from the finite elements
+// accuracy (m) with which the position of the boundary is read from the finite elements
 constexpr double reading_m = 1e-8;
 
 struct Scene {
@@ -24,7 +25,8 @@ struct Scene {
   double frequency_Hz = 0;
   std::vector<double> v;  // |v| at x = 0.025 L, 0.075 L, ..., with |v| = 1 at the drive edge
   double most = 0, peak = 0, edge_m = 0;
-  // by how much a coarser mesh changes |v| (relative to `most`), the peak (relative to itself) and the edge
+  // by how much a coarser mesh changes |v| (relative to `most`), the peak (relative to itself) and the
+  // position of the boundary
   double v_off = 0, peak_off = 0, edge_off_m = 0;
 };
 
@@ -74,7 +76,8 @@ Scene scene_of(const std::vector<std::string>& row) {
 
 double ln_at(const CentreLine& line, double x) { return line.value(x).ln_magnitude(); }
 
-// Returns the largest difference of |v|, relative to the largest |v|.
+// Returns the largest difference between |v| of `line` and of the finite elements, relative to the largest
+// |v|.
 double amplitude_error(const Scene& scene, const CentreLine& line, Normalise normalise) {
   const bool drive = normalise == Normalise::drive;
   const double unit = ln_at(line, drive ? 0 : line.last_peak_m().value()), true_unit = drive ? 1 : scene.peak;

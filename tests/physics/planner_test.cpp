@@ -47,7 +47,7 @@ struct TrueError {
 };
 
 // The true error of a model against the two-dimensional field, in the quantities for which a RungEstimate
-// states bounds.
+// (the planner's estimate for one model) states bounds.
 std::optional<TrueError> true_error(const Surface& s, Model model, const CentreLine& truth,
                                     Normalise normalise) {
   const auto line = make_centre_line(s, frequency_Hz, model);
@@ -109,8 +109,8 @@ TEST_CASE("the true error of every model lies inside its bound on a thousand ran
                           error->boundary_m <= bound.boundary_bound_m &&
                           error->level_dB <= bound.level_bound_dB;
       violated += inside ? 0 : 1;
-      // The bounds of the 1998 models come from samples, which can miss a narrow feature. So only `mode` must
-      // keep its bound in every scene.
+      // The bounds of the models from the 1998 paper come from samples, which can miss a narrow feature. So
+      // only the bound of `mode` must hold in every scene.
       if (model == Model::mode) CHECK(inside);
     }
   }

@@ -1,5 +1,5 @@
 #pragma once
-// Random numbers, the number of random scenes, and a median, for the tests of bounds.
+// Helpers for the tests of error bounds: random numbers, the number of random scenes, and a median.
 #include <algorithm>
 #include <cmath>
 #include <cstdint>

@@ -59,7 +59,7 @@ inline double random_quality_factor(Draw& draw) {
   return draw.next() % 3 == 0 ? std::numeric_limits<double>::infinity() : draw.spread(5, 2000);
 }
 
-// Returns a membrane with any taper and either drive.
+// Returns a membrane with a random taper of any kind and one of the two drive shapes.
 inline physics::Surface random_membrane(Draw& draw) {
   physics::Surface s = physics::seed_brass();
   const double cut = physics::cut_off_half_width_m(s, frequency_Hz);
@@ -91,7 +91,8 @@ inline physics::Surface random_thin_plate(Draw& draw) {
   return s;
 }
 
-// Returns a clamped plate with Mindlin's theory, whose h/W at the cut-off is from 0.05 to 0.5.
+// Returns a clamped plate with Mindlin's theory, whose thickness is 0.05 to 0.5 of its half-width at the
+// cut-off.
 inline physics::Surface random_thick_plate(Draw& draw) {
   physics::Surface s = physics::aluminium_plate();
   s.theory = physics::PlateTheory::mindlin;

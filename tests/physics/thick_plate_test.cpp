@@ -199,7 +199,8 @@ TEST_CASE(
     "shear_shift_m gives the distances between the boundaries of the plate theories, and the tolerance "
     "decides the theory",
     "[physics]") {
-  // Plane-strain finite elements of this plate gave 10.3 and 14.7 mm.
+  // Expected distances between the boundaries by Kirchhoff's theory and by plane-strain finite elements: 10.3
+  // mm at 22.4 kHz, 14.7 mm at 45 kHz.
   Surface s = aluminium_plate();
   const auto to_elastic = [&](double f) {
     s.theory = PlateTheory::mindlin;

@@ -33,7 +33,7 @@ TEST_CASE("the solution of non-negative least squares meets the optimality condi
     active += fit.x[j] == 0 ? 1 : 0;
   }
   CHECK(active > 0);                          // the constraint holds some values at 0
-  CHECK(active < static_cast<int>(columns));  // but not all values
+  CHECK(active < static_cast<int>(columns));  // the constraint does not hold all values at 0
 }
 
 TEST_CASE("profiles that fall with x can be designed, and others are reported as not reachable",

@@ -79,7 +79,7 @@ TEST_CASE("the bridges carry the readings that the truth states", "[plant]") {
   setup.cells.height_m = 0.008;
   setup.loop_delay_frames = 0;
   Plant plant(setup);
-  // with a constant excitation, each sample shows the reading directly
+  // with a constant excitation, each captured sample is the reading of a bridge
   const auto direct = [](std::int64_t, int channel) { return channel == 3 ? 1.0 : 0.0; };
   for (int k = 0; k < 200; ++k) {
     const auto recording = run(plant, 961, direct);

@@ -75,7 +75,7 @@ TEST_CASE("while the skin slides, lateral force is friction times normal force",
     } else {
       continue;
     }
-    // the skin stays behind the finger by T / k (lateral force, contact stiffness)
+    // the skin stays behind the finger by T / k (T: lateral force, k: contact stiffness)
     REQUIRE(state.contact_m == Approx(state.finger_m - state.lateral_N / 1000).epsilon(1e-12));
   }
   CHECK(forward > 8000);
@@ -172,7 +172,7 @@ TEST_CASE("the finger touches when it is scheduled, and its force builds up smoo
   std::vector<FingerState> states;
   for (int k = 0; k < 12000; ++k) states.push_back(stroker.step());
   CHECK(states[799].normal_N == 0);
-  // at half of the 50 ms in which the force rises
+  // half-way through the 50 ms in which the force rises
   CHECK(states[800 + 199].normal_N == Approx(0.25).epsilon(1e-9));
   CHECK(states[800 + 399].normal_N == Approx(0.5).epsilon(1e-9));
   CHECK(states[3999].normal_N == Approx(0.5).epsilon(1e-9));

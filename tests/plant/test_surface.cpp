@@ -169,8 +169,8 @@ TEST_CASE("warmth moves the boundary outward by the closed form", "[plant]") {
     setup.temperature_C = 23;
     cold.set_tones({f});
     warm.set_tones({f});
-    // expected shift: half-width of the strip at the edge, over the slope, times a quarter of both
-    // coefficients
+    // Expected shift of the boundary: (half-width of the strip at the boundary / slope of the taper) times
+    // (relative change of Young's modulus plus that of lengths, per kelvin) / 4 times 10 K.
     const double x = half_gain_m(cold);
     const double width_m = 0.014 - 0.03 * x;
     const double shift_m = width_m / 0.03 * (4.8e-4 - 2.3e-5) / 4 * 10;

@@ -113,8 +113,9 @@ TEST_CASE("distortion lets crosstalk change the carrier's amplitude", "[plant]")
   };
   run(plant, kSettled, play);
   const auto recording = run(plant, kTenth, play);
-  // y = S cos + A cos: the carrier's amplitude becomes S + a3 (3/4 S^3 + 3/2 S A^2), and a2 S A is at the sum
-  // and the difference of both frequencies.
+  // The sum y of two cosines with amplitudes S (the carrier) and A is distorted to y + a2 y^2 + a3 y^3. The
+  // carrier's amplitude becomes S + a3 (3/4 S^3 + 3/2 S A^2), and a2 S A is at the sum and the difference of
+  // both frequencies.
   const double s = 0.5e-3 * 200, a = 0.8 * 4e-3 * 200;
   const auto at = [&](double f) {
     return std::abs(amplitude(recording, kBridgeA, f, recording.first, recording.end())) * 2.1;

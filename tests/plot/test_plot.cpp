@@ -52,7 +52,8 @@ TEST_CASE("An axis of counts has ticks at whole numbers only", "[plot]") {
   for (const double high : {1.1, 1.9, 4.5, 12.0})
     for (const auto& tick : ticks({"", 0, high, AxisScale::linear, true}, 8))
       CHECK(tick.value == std::round(tick.value));
-  CHECK(ticks({"", 0, 1.1, AxisScale::linear}, 8)[1].value < 1);  // other axes have finer ticks
+  // axes that are not for whole numbers have finer ticks
+  CHECK(ticks({"", 0, 1.1, AxisScale::linear}, 8)[1].value < 1);
 }
 
 TEST_CASE("A chart's title stays within the chart, whatever its length", "[plot]") {
@@ -98,7 +99,7 @@ TEST_CASE("Axes without a range, or a log axis from 0, are refused", "[plot]") {
   CHECK_THROWS_AS(ticks({"", 0, 1, AxisScale::log10}), std::invalid_argument);
   CHECK_THROWS_AS(ticks({"", 0, NAN, AxisScale::linear}), std::invalid_argument);
   CHECK_THROWS_AS(ticks({"", 0.5, 0.5 + 1e-15, AxisScale::linear}), std::invalid_argument);
-  // means of equal response times differ only by rounding
+  // two values that differ only by rounding, such as means of equal response times
   CHECK(ticks(fitted("", {0.54, 0.54 + 2e-16})).size() < 12);
   const auto lonely = fitted("", {3}), empty = fitted("", {}), wide = fitted("", {0, NAN, 10}, 0.1);
   CHECK(lonely.low < 3);

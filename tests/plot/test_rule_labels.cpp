@@ -156,7 +156,8 @@ TEST_CASE("Panels of a figure keep equal heights even if only one of them has no
   REQUIRE(together.size() == 2);
   CHECK(together[0] == together[1]);
   CHECK(crossed(render(figure), 860, 200).empty());
-  // Negative control: alone, the second chart has its label among the data and is higher.
+  // Negative control: if the second chart is drawn alone, its label is among the data, and the chart is
+  // higher.
   CHECK(heights(render(with(flat, 430, 200)))[0] > together[1]);
 }
 

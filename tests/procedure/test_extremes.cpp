@@ -17,8 +17,8 @@ Answer answer(Pattern pattern, int trial) {
   return pattern == Pattern::all_right ? Answer::one : Answer::zero;
 }
 
-/// Runs a procedure for this many trials. Each level must be finite and inside [low, high], and the estimates
-/// at the end must be finite.
+/// Runs a procedure for kTrials trials with answers in this pattern. Each level must be finite and inside
+/// [low, high], and the estimates at the end must be finite.
 void run(const Spec& spec, Pattern pattern, double low, double high) {
   INFO(spec.name << ", pattern " << static_cast<int>(pattern));
   const auto procedure = make_procedure(spec, {}, {});

@@ -179,7 +179,7 @@ TEST_CASE("limits: both directions and all starts come equally often, and depend
     std::vector<double> starts;
     while (const auto proposal = procedure->next()) {
       starts.push_back(proposal->level);
-      // the first answer of each series is already the new one, so each series ends at once
+      // the first answer of each series already is the one that ends the series
       procedure->record(proposal->level < 0 ? Answer::one : Answer::zero);
     }
     REQUIRE(starts.size() == 12);
@@ -237,7 +237,7 @@ TEST_CASE("limits: mean, variance and number of trials are those of the enumerat
   // if every series has a midpoint, the number of midpoints is fixed
   if (up.used > 0.999 && down.used > 0.999)
     CHECK(thresholds.variance() == Approx(0.25 * (up.variance + down.variance) / 3).epsilon(0.1));
-  // A shallow function changes the answer too early in both directions, in spite of a symmetric mean.
+  // With a shallow psychometric function, the answers change too early in both directions.
   if (n_change == 1) CHECK(up.mean < down.mean);
 }
 
@@ -269,7 +269,7 @@ TEST_CASE("limits: on a scale of ratios, steps and midpoints are geometric", "[p
   CHECK(result.estimates.at("threshold").mean == Approx(1));
   // The midpoints are +-10 dB: the standard error is 10 dB, or ln(10) / 2 in natural logarithms.
   CHECK(*result.estimates.at("threshold").sd == Approx(std::log(10.0) / 2));
-  spec.step = {1e6};  // even such a step makes the level neither overflow nor become 0
+  spec.step = {1e6};  // such a step is refused, but makes no level overflow or become 0
   CHECK(validate(spec).size() == 1);
 }
 

@@ -116,7 +116,7 @@ TEST_CASE("psi-marginal learns about the kept parameters and sums over the nuisa
   with.nuisance = {"lapse"};
   Posterior all(spec), kept(with);
   const auto a = all.information(), b = kept.information();
-  // With the lapse rate as a nuisance parameter, no answer can be more informative.
+  // With the lapse rate as a nuisance parameter, no stimulus can be expected to give more information.
   for (std::size_t i = 0; i < a.size(); ++i) CHECK(b[i] <= a[i] + 1e-12);
   // The estimate must find the threshold of 10 mm and the slope of 2 of the simulated observer.
   const auto procedure = make_procedure(with, {}, {});

@@ -21,7 +21,7 @@ Spec approximation(double start, double step, double target) {
   return spec;
 }
 
-/// The recursion as the paper defines it, computed from the whole list of answers.
+/// The levels by the recursion of Kesten (1958), computed from the whole list of answers.
 std::vector<double> reference(const std::vector<int>& answers, double start, double c, double phi,
                               double low = -1e9, double high = 1e9) {
   std::vector<double> x{start};
@@ -127,7 +127,8 @@ TEST_CASE("an unanswered trial of an accelerated stochastic approximation is rep
   procedure->record(Answer::none);
   CHECK(procedure->next()->level == 8);
   procedure->record(Answer::one);
-  CHECK(procedure->next()->level == 7);  // this is the second answer, so its step is c / 2
+  // this is the second answer, so its step is c / 2 (c: the step constant)
+  CHECK(procedure->next()->level == 7);
 }
 
 TEST_CASE("an accelerated stochastic approximation that cannot run is refused with its key", "[procedure]") {

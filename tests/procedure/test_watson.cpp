@@ -4,7 +4,7 @@
 
 using namespace turnpoint::procedure;
 
-// The levels and answers of the example runs published with Watson (2017).
+// Tests QUEST+ with the levels and answers of the example runs published with Watson (2017).
 
 TEST_CASE("Watson's run over threshold and slope is reproduced trial by trial", "[procedure]") {
   auto spec = watson_1();

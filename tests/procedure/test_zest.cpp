@@ -22,7 +22,8 @@ Spec at_threshold(Kind kind) {
   return spec;
 }
 
-/// Compares with zest.csv (make_zest.py). Returns the number of rows that agree in level and estimate.
+/// Gives the procedure the answers of each row of zest.csv, which make_zest.py wrote. Returns the number of
+/// rows whose next level and estimate the procedure reproduces.
 int agreeing(Kind kind, const Spec& spec, int& rows) {
   std::ifstream table(std::string(ZEST_TABLES) + "/zest.csv");
   REQUIRE(table);

@@ -10,8 +10,8 @@ inline std::vector<double> range(double from, double to, double step) {
   return values;
 }
 
-/// Watson (2017), "QUEST+: a general multidimensional Bayesian adaptive psychometric method", Journal of
-/// Vision 17(3):10, Example 1: the threshold of a Weibull in dB.
+/// Returns Example 1 of Watson (2017), "QUEST+: a general multidimensional Bayesian adaptive psychometric
+/// method", Journal of Vision 17(3):10: the threshold of a Weibull function in dB.
 inline turnpoint::procedure::Spec watson_1() {
   turnpoint::procedure::Spec spec;
   spec.name = "watson";

@@ -20,7 +20,7 @@ std::string replaced(std::string text, const std::string& from, const std::strin
   return text.replace(text.find(from), from.size(), to);
 }
 
-/// The shipped speed-accuracy protocol, changed to a yes/no task with changes of one sign.
+/// The shipped speed-accuracy protocol, changed to a yes/no task in which `change` is never negative.
 protocol::Protocol yes_no() {
   auto text = replaced(source_of("speed-accuracy"), "range = [-0.4, 0.4]", "range = [0.0, 0.4]");
   text = replaced(text, "correct = { smoother = \"change < 0\", rougher = \"change > 0\" }",
@@ -54,7 +54,8 @@ TEST_CASE("the relation of the answers to the level is derived from their compar
   const auto five = rule(shipped("friction-identification"));
   CHECK(five.kind == AnswerKind::category);
   CHECK(five.categories == std::vector<double>{-24, -19, -14, -9, -4});
-  // If another factor decides which answer is right, the level may decide how easy the trial is.
+  // If another factor decides which answer is right, the level determines how easy the right answer is to
+  // find.
   const auto marks = replaced(source_of("boundary-constant"),
                               "correct = { left = \"offset_mm < 0\", right = \"offset_mm > 0\" }",
                               "correct = { left = \"mark_mm < 155\", right = \"mark_mm > 155\" }");
@@ -69,7 +70,7 @@ TEST_CASE("the middle of a protocol's levels is known for every procedure", "[pr
   CHECK(middle(shipped("friction-2ifc")) == Approx(-16.5));
   CHECK(middle(shipped("boundary-adaptive")) == Approx(12).margin(0.5));
   CHECK(middle(shipped("boundary-constant")) == Approx(12));
-  CHECK(middle(shipped("demo")) == Approx(18));  // the level 0 is left out
+  CHECK(middle(shipped("demo")) == Approx(18));  // the level 0 does not count for the middle
   CHECK(middle(shipped("two-spots-oddity")) == Approx(std::sqrt(80.0)));
   CHECK(middle(yes_no()) == Approx(0.1));
 }

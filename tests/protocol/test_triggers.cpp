@@ -13,7 +13,7 @@ using protocol::TriggerEvent;
 
 namespace {
 
-/// Returns the protocol speed-accuracy with these triggers. It has two conditions, its two instructions.
+/// Returns the protocol speed-accuracy with these triggers. Its two conditions are its two instructions.
 protocol::Protocol with(const std::string& triggers) {
   const auto source =
       system::read_file(std::string(TURNPOINT_SOURCE_DIR) + "/protocols/speed-accuracy.toml") + "\n" +
@@ -55,7 +55,7 @@ std::string survey_problems(const protocol::Protocol& protocol, const rig::Rig& 
 TEST_CASE("by default each event of each condition has a code of its own", "[protocol][trigger]") {
   const auto protocol = with("");
   const auto codes = protocol::trigger_codes(protocol);
-  // four events in each of two instructions, and in trials without an instruction
+  // four events, each with the two instructions and without an instruction
   REQUIRE(codes.size() == 12);
   std::set<int> different;
   for (std::size_t k = 0; k < codes.size(); ++k) {

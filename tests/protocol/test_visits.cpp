@@ -1,4 +1,5 @@
-// Tests which blocks a session has, and in which order: groups, planned sessions, squares over both.
+// Tests which blocks a session has, and in which order, with groups of participants, planned sessions, and
+// Latin squares over both.
 #include <map>
 #include <set>
 #include <string>
@@ -31,7 +32,7 @@ std::vector<std::string> names(const protocol::Protocol& protocol, const Visit& 
   return all;
 }
 
-/// The demo with a sequence over this number of levels (a, b, c, ...), sessions and groups.
+/// The demo protocol with a sequence over this number of levels (a, b, c, ...), sessions and groups.
 protocol::Protocol square(int levels, int sessions, const std::string& each_session, int groups = 1) {
   auto text = shipped("demo");
   std::string list, group_list;
@@ -57,7 +58,7 @@ std::string order(const protocol::Protocol& protocol, const Visit& visit) {
   return letters;
 }
 
-/// How often each letter follows each other one.
+/// Counts how often each letter follows each other letter.
 void count_pairs(const std::string& letters, std::map<std::string, int>& pairs) {
   for (std::size_t i = 1; i < letters.size(); ++i) ++pairs[letters.substr(i - 1, 2)];
 }
@@ -107,7 +108,7 @@ TEST_CASE("with each session the participant goes to the next row of the square"
     rows.insert(order(protocol, {2, session}));
     count_pairs(order(protocol, {2, session}), over_sessions);
   }
-  CHECK(rows.size() == 4);  // one participant has all rows
+  CHECK(rows.size() == 4);  // one participant gets all rows of the balanced Latin square
   for (int place = 0; place < 4; ++place) count_pairs(order(protocol, {place, 3}), over_participants);
   for (const auto& pairs : {over_sessions, over_participants}) {
     CHECK(pairs.size() == 12);

@@ -49,7 +49,7 @@ std::vector<Case> cases_in(const fs::path& path) {
 
 struct Edited {
   std::string source;
-  std::set<int> must, may, note;  ///< lines that must, may or should be reported
+  std::set<int> must, may, note;  ///< lines that must be reported, may be reported, or must get a note
 };
 
 Edited edited(const Case& wanted) {

@@ -47,6 +47,12 @@ for name in ["key-unknown", "id-number", "seed-negative", "task-kind", "task-dev
         faults.append(f"the protocol schema accepts tests/protocol/bad/{name}.toml, which has a mistake")
 if not errors(rig_schema, rigs[0].read_text().replace("thickness_mm", "thicknes_mm")):
     faults.append("the rig schema accepts a misspelt key")
+manual = (root / "deploy/rigs/README.md").read_text()
+cells = rigs[0].read_text() + "\n" + manual[manual.index("[force_cells]\n"):].split("```")[0]
+for error in errors(rig_schema, cells):
+    faults.append(f"[force_cells] of deploy/rigs/README.md: {error.json_path}: {error.message}")
+if not errors(rig_schema, cells.replace("delay_ms", "delay_s")) or not errors(rig_schema, cells.replace("480", "4800")):
+    faults.append("the rig schema accepts a mistake in [force_cells]")
 
 print("\n".join(faults) or f"{len(protocols)} protocols and {len(rigs)} rigs fit their schemas")
 sys.exit(1 if faults else 0)

@@ -12,7 +12,8 @@ import pandas as pd
 import turnpoint
 
 MAKE_SAMPLE, TURNPOINT, README = (sys.argv.pop(1) for _ in range(3))
-TABLES = ("trials", "intervals", "events", "sessions", "self_tests", "answers", "friction_tables")
+TABLES = ("trials", "intervals", "events", "sessions", "self_tests", "answers", "friction_tables",
+          "programs", "estimates")
 
 
 class Reading(unittest.TestCase):

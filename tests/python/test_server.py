@@ -13,7 +13,8 @@ sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "collector"))
 from server import BIN, Server  # noqa: E402
 
 MAKE_SAMPLE, TURNPOINT = (os.path.realpath(sys.argv.pop(1)) for _ in range(2))
-TABLES = ("trials", "intervals", "events", "sessions", "self_tests", "answers", "friction_tables")
+TABLES = ("trials", "intervals", "events", "sessions", "self_tests", "answers", "friction_tables",
+          "programs", "estimates")
 
 
 @unittest.skipUnless(BIN, "the package postgresql is not installed")

@@ -74,7 +74,7 @@ TEST_CASE("log and exp agree with libm to the last bits and refuse arguments wit
 
 namespace {
 
-/// The same series as log(), with the exponent from libm.
+/// Computes the logarithm by the same series as the program's log(), but takes the exponent from libm.
 double log_by_frexp(double x) {
   int exponent = 0;
   double m = std::frexp(x, &exponent);

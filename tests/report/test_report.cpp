@@ -178,7 +178,7 @@ TEST_CASE("If the answers determined the levels, the report states the posterior
   const auto& found = summary.fits[0].intervals;
   REQUIRE((found.threshold && found.slope && found.interval_75));
   const auto html = to_html(summary);
-  CHECK(html.find("95 % credible intervals: central, posterior on a grid") != std::string::npos);
+  CHECK(html.find("central 95 % credible intervals of a posterior on a grid") != std::string::npos);
   CHECK(
       html.find(
           "threshold uniform from -29.2 to -7.75 dB, falling to 0 at -40 and 3; slope uniform in its "
@@ -259,7 +259,7 @@ TEST_CASE("The report has the finger's force, speed and friction only if force c
   REQUIRE(forces->charts.size() == 2);
   const auto& accuracy = std::get<plot::Points>(forces->charts[0].layers[1]);
   CHECK(accuracy.name == "accuracy");
-  // 72 trials are more than 40, so a marker is the mean of two
+  // the figure has at most 40 markers, so with 72 trials each marker is the mean of two
   const double one = *summary.data.finger[36].normal_N, two = *summary.data.finger[37].normal_N;
   CHECK(accuracy.y.front() == Approx((one + two) / 2));
   CHECK(accuracy.high.front() == std::max(one, two));

@@ -221,7 +221,7 @@ TEST_CASE("ratings and numbers are reported by level, and right and wrong are le
   const auto line = report_of(data_of(shipped("smoothness-line")));
   REQUIRE(line["judgements"].size() == 1);
   REQUIRE(line["judgements"][0]["levels"].size() == 5);
-  CHECK(line["judgements"][0]["levels"][0]["answers"] == 8);  // trials of practice are not counted
+  CHECK(line["judgements"][0]["levels"][0]["answers"] == 8);  // practice trials are not counted
   CHECK(line["judgements"][0]["levels"][4]["mean"]["value"] >
         line["judgements"][0]["levels"][0]["mean"]["value"]);
   CHECK(line["judgements"][0]["exponent"].is_null());
@@ -243,7 +243,7 @@ TEST_CASE("identification is reported as a confusion matrix, without a curve and
   REQUIRE(rows.size() == 5);
   for (std::size_t i = 0; i < 5; ++i) {
     CHECK(rows[i]["stimulus"] == std::to_string(i + 1));
-    CHECK(rows[i]["trials"] == 15);  // trials of practice are not counted
+    CHECK(rows[i]["trials"] == 15);  // practice trials are not counted
     CHECK(rows[i]["answers"][i] == rows[i]["correct"]["right"]);
   }
   CHECK(report["confusion"][0]["correct"]["trials"] == 75);
@@ -260,7 +260,7 @@ TEST_CASE("identification is reported as a confusion matrix, without a curve and
 TEST_CASE("d' of three intervals and of ABX is reported by model, and the guess rate is known", "[report]") {
   const auto three = report_of(data_of(shipped("friction-3ifc"), "sim:lapse=0"));
   CHECK(three["fits"][0]["guess"].get<double>() == Approx(1.0 / 3));
-  REQUIRE(three["discrimination"].size() == 1);  // an adaptive procedure presents too many levels
+  REQUIRE(three["discrimination"].size() == 1);  // one row for all adaptive levels together
   CHECK(three["discrimination"][0]["d_prime"][0]["model"] == "largest of m");
   CHECK(three["confusion"][0]["rows"].size() == 3);
   CHECK(three["detection"].empty());
@@ -362,11 +362,61 @@ TEST_CASE("settings are reported by the side from which the slider started", "[r
                above = settings["from_above"]["mean"]["value"];
   CHECK(settings["mean"]["value"].get<double>() == Approx(0.5 * (below + above)));
   CHECK(settings["side_difference"]["value"].get<double>() == Approx(below - above));
-  // one list of starts has the same sides
+  // a single list of starting values is divided in the same way into starts below and above
   const auto list = replaced(shipped_file, "start_below = [-20.0]", "start = [-20.0, 20.0]");
   CHECK(sides(replaced(list, "start_above", "# start_above")) == settings);
   const auto one = replaced(shipped_file, "start_below = [-20.0]", "start = [-20.0]");
   CHECK(sides(replaced(one, "start_above", "# start_above"))["from_below"]["settings"] == 0);
   const auto html = report::to_html(report::summarise(data_of(shipped_file)));
   CHECK(html.find("from below (9 settings)") != std::string::npos);
+}
+
+TEST_CASE("the threshold along the second dimension is reported, and no curve over all trials", "[report]") {
+  const auto source = shipped("friction-boundary-2d");
+  const auto data = data_of(source, "sim:threshold=-16,gradient=0.1,lapse=0");
+  CHECK(data.thresholds_differ);
+  REQUIRE(data.threshold_curves.size() == 1);
+  const auto& curve = data.threshold_curves[0];
+  CHECK(curve.label == "End (mm)");
+  CHECK(curve.trials.size() == 96);
+  REQUIRE(curve.points.size() == 7);
+  CHECK(curve.points.front().second == 120);
+  const double rise = curve.points.back().threshold - curve.points.front().threshold;
+  for (const auto& point : curve.points)
+    CHECK((point.interval.low < point.threshold && point.threshold < point.interval.high));
+  const auto json = report_of(data);
+  CHECK(json["fits"].empty());
+  CHECK(json["threshold_curves"][0]["points"].size() == 7);
+  bool gradient = false;
+  for (const auto& estimate : json["estimates"])
+    if (estimate["parameter"] == "gradient") {
+      gradient = true;
+      CHECK(estimate["unit"] == "dB/mm");
+      CHECK(estimate["interval"]["low"] < estimate["mean"]);
+      CHECK(estimate["interval"]["high"] > estimate["mean"]);
+      // without a floor, the mean threshold rises by the mean gradient, over 60 mm
+      CHECK(rise == Approx(60 * estimate["mean"].get<double>()).margin(1e-9));
+    }
+  CHECK(gradient);
+  const auto html = report::to_html(report::summarise(data));
+  CHECK(html.find("Threshold along the second dimension") != std::string::npos);
+  CHECK(html.find("gradient (dB/mm)") != std::string::npos);
+  CHECK(html.find("<h2>Psychometric function</h2>") == std::string::npos);
+  // by the levels of the second factor there is one curve for each of them
+  const auto by = data_of(source + "\n[analysis]\nby = \"end_mm\"\n");
+  CHECK_FALSE(by.thresholds_differ);
+  CHECK(report_of(by)["fits"].size() > 1);
+}
+
+TEST_CASE("a procedure with a criterion is reported with it, beside the analysis of yes and no", "[report]") {
+  const auto data = data_of(shipped("friction-yes-no"), "sim:threshold=0.1,criterion=1,lapse=0");
+  CHECK(data.design == report::Design::yes_no);
+  CHECK(data.function == terms::Function::weibull);
+  const auto json = report_of(data);
+  REQUIRE(json["fits"].size() == 1);
+  double criterion = -10;
+  for (const auto& estimate : json["estimates"])
+    if (estimate["parameter"] == "criterion") criterion = estimate["mean"];
+  CHECK(criterion == Approx(1).margin(0.6));
+  CHECK_FALSE(json["detection"].empty());
 }

@@ -26,7 +26,7 @@ struct Case {
   std::string file;
   std::vector<std::pair<std::string, std::string>> edits = {};
   int kills = 2;
-  std::optional<int> planned_session = {};  ///< of a protocol that plans several
+  std::optional<int> planned_session = {};  ///< number of the session, if the protocol plans several
 };
 
 int kills_wanted(const Case& wanted) { return kLong != nullptr ? std::atoi(kLong) : wanted.kills; }
@@ -72,6 +72,8 @@ std::vector<Case> other_tasks() {
            {{"stop = { trials = 40 }", "stop = { trials = 6 }"},
             {"range = [180.0, 190.0]\ndraw = \"uniform\"",
              "levels = [180.0, 183.0, 185.0, 188.0, 190.0]\ndraw = \"without-repetition\""}}},
+          {"friction-boundary-2d.toml", {{"stop = { trials = 96 }", "stop = { trials = 12 }"}}},
+          {"friction-yes-no.toml", {{"stop = { trials = 100 }", "stop = { trials = 12 }"}}},
           {"friction-training.toml", {{"stop = { trials = 60 }", "stop = { trials = 8 }"}}, 2, 3},
           {"speed-accuracy.toml",
            {{"[protocol]", "[sessions]\ncount = 2\n\n[protocol]"}, {"repeats = 14", "repeats = 2"}},

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -195,8 +196,9 @@ TEST_CASE("a rig names the captured channels of its pick-ups", "[rig]") {
   CHECK(rig.capture->channels == 4);
   CHECK(rig.capture->pick_ups == std::vector<int>{3, 1});
   CHECK_FALSE(rig::load(simulated).capture);
-  CHECK(contains(with("uri = \"sim:\"\nchannels = 2\npickups = [2]"),
-                 "channel 2 is not a captured channel of its own; different whole numbers from 0 to 1"));
+  CHECK(
+      contains(with("uri = \"sim:\"\nchannels = 2\npickups = [2]"),
+               "channel 2 is not a captured channel of its own; write different whole numbers from 0 to 1"));
   CHECK(contains(with("uri = \"sim:\"\nchannels = 2\npickups = [1, 1]"), "channel 1"));
   CHECK(contains(with("uri = \"sim:\"\nchannels = 2\npickups = [0.5]"), "channel 0.5"));
   CHECK(contains(with("uri = \"usb:\"\nchannels = 2\npickups = [0]"), "allowed: \"sim:\" or \"alsa:NAME\""));
@@ -234,6 +236,47 @@ TEST_CASE("a capture on a card needs a loop: an output channel of its own, wired
                           "[capture]\nuri = \"sim:\"\nchannels = 2\npickups = [0]\n"
                           "reference = 1\n[limits]"),
                  "\"reference\""));
+}
+
+TEST_CASE("force cells may be on a converter with a clock of its own, beside a capture on the card",
+          "[rig]") {
+  const std::string card =
+      "[capture]\nuri = \"alsa:hw:1\"\nchannels = 4\npickups = [1, 2]\nreference = 0\nexcitation_channel = "
+      "4\n";
+  const std::string
+      head = "[force_cells]\nuri = \"iio:ad7124-4\"\n",
+      cells = "a = \"voltage0-voltage1\"\nb = \"voltage2-voltage3\"\nlateral = \"voltage4-voltage5\"\n";
+  const auto rig = rig::parse(
+      replaced(source(), "[limits]",
+               card + head + cells + "rate_Hz = 500\nsampling_frequency = 9600\ndelay_ms = 3\n[limits]"),
+      "r.toml");
+  REQUIRE(rig.capture.value().converter);
+  const auto& converter = *rig.capture->converter;
+  CHECK(converter.uri == "iio:ad7124-4");
+  CHECK(converter.channels ==
+        std::array<std::string, 3>{"voltage0-voltage1", "voltage2-voltage3", "voltage4-voltage5"});
+  CHECK(converter.rate_Hz == 500);
+  CHECK(converter.sampling_frequency.value() == 9600);
+  CHECK(converter.trigger.empty());
+  CHECK(converter.delay_s == Approx(0.003));
+  CHECK(rig::has_force_cells(rig));
+  const auto with = [&](const std::string& text) { return problems("[limits]", text + "\n[limits]"); };
+  const auto rate = std::string("rate_Hz = 500\n");
+  CHECK(with(card + head + cells + rate).empty());
+  CHECK(contains(with(head + cells + rate), "add [capture] with uri = \"alsa:NAME\""));
+  CHECK(contains(with("[capture]\nuri = \"sim:\"\nchannels = 2\npickups = [0]\n" + head + cells + rate),
+                 "add [capture] with uri = \"alsa:NAME\""));
+  CHECK(contains(with("[capture]\nuri = \"alsa:hw:1\"\nchannels = 6\npickups = [1, 2]\nreference = 0\n"
+                      "excitation_channel = 4\nbridges = [3, 4, 5]\n" +
+                      head + cells + rate),
+                 "leave out \"bridges\" or [force_cells]"));
+  CHECK(contains(with(card + "[force_cells]\nuri = \"gpio:line=X\"\n" + cells + rate), "\"iio:DEVICE\""));
+  CHECK(contains(with(card + head + rate), "\"lateral\""));
+  CHECK(contains(with(card + head + cells), "\"rate_Hz\""));
+  CHECK(contains(with(card + head + cells + "rate_Hz = 4800\n"), "80"));
+  CHECK(contains(with(card + head + cells + rate + "trigger = \"a b\"\n"), "\"a b\" is not the name"));
+  CHECK(contains(with(card + head + "a = \"x\"\nb = \"x\"\nlateral = \"z\"\n" + rate),
+                 "channel \"x\" is also that of \"a\""));
 }
 
 TEST_CASE("a rig gives out trigger codes on the marker channel and on lines, and takes pulses", "[rig]") {

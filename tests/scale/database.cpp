@@ -18,7 +18,7 @@ using namespace turnpoint::store;
 namespace {
 
 constexpr std::int64_t kSecond_ns = 1'000'000'000;
-constexpr std::int64_t kMidday_ns = 1'709'204'400 * kSecond_ns;  // noon on 29 February 2024
+constexpr std::int64_t kMidday_ns = 1'709'204'400 * kSecond_ns;  // 11:00 UTC on 29 February 2024
 
 std::string content(const std::string& path) {
   std::ifstream file(std::string(TURNPOINT_SOURCE_DIR) + "/" + path, std::ios::binary);

@@ -21,8 +21,8 @@ rig::Rig shipped(const std::string& name) {
 
 constexpr double kLowest_m = 0.100, kHighest_m = 0.205, kLowest_Hz = 22.4e3, kHighest_Hz = 48e3;
 
-/// Position of the p50 edge according to three-dimensional elasticity of the cross-section, and its standard
-/// deviation.
+/// Position of the boundary p50 (at 50 % of the amplitude) according to three-dimensional elasticity of the
+/// cross-section, and its standard deviation.
 struct Edge {
   double at_m, sd_m;
 };
@@ -71,16 +71,16 @@ TEST_CASE("boundaries from 100 to 205 mm are inside the band, whatever the plate
     CHECK(reachable(rig));
     CHECK(rig.transducers[0].low_Hz <= kLowest_Hz);
     CHECK(rig.transducers[0].high_Hz >= kHighest_Hz);
-    // Plans use a theory that is within 0.5 mm of the elastic cross-section.
+    // Plans use a theory whose boundary is within 0.5 mm of that of the elastic cross-section.
     const auto surface = surface_of(rig);
     for (const double f : {kLowest_Hz, 30e3, kHighest_Hz}) {
       const double at_m = physics::make_centre_line(surface, f, physics::Model::mode)->level_m(0.5).value();
       CHECK(std::abs(at_m - edge_at(rig, f).at_m) < 0.5e-3);
     }
-    // The strip is wider than a finger, 14 mm, wherever it ends.
+    // Where the motion ends, the strip is always wider than a finger (14 mm).
     CHECK(2 * physics::cut_off_half_width_m(surface, kHighest_Hz) > 14e-3);
   }
-  // Negative control: the dimensions that the theory of thin plates had led to.
+  // Negative control: the plate's earlier dimensions, which came from the theory of thin plates.
   auto thin = shipped("simulated");
   thin.surface.thickness_m = 2e-3, thin.surface.thickness_sd_m = 0.045e-3;
   thin.surface.taper.half_width_m = 14e-3;
@@ -98,10 +98,10 @@ TEST_CASE("a finger leaves a quarter of the displacement or more, and 2 um are p
     scene.displacement_m.reset();
     scene.under_finger = FingerTarget{2e-6, peak_m};
     CAPTURE(boundary_m);
-    const auto plan = planner.plan(scene);  // would throw beyond the rig's displacement or full scale
+    const auto plan = planner.plan(scene);  // throws beyond the rig's displacement or full scale
     CHECK(plan.peak_full_scale < 1);
   }
-  auto thin = rig;  // negative control, as above
+  auto thin = rig;  // negative control: the earlier, thinner plate
   thin.surface.thickness_m = 2e-3;
   thin.surface.taper.half_width_m = 14e-3;
   CHECK(least_share(thin) < 0.2);

@@ -35,7 +35,7 @@ physics::MapOptions options_of(const Scene& scene, const rig::Rig& rig) {
   return options;
 }
 
-/// Returns the position of the edge in the two-dimensional field at this frequency.
+/// Returns the position of the boundary in the two-dimensional field at this frequency.
 double edge_of_field_m(const physics::Surface& surface, const physics::MapOptions& options, double f) {
   const auto line = physics::make_centre_line(surface, f, physics::Model::modes);
   return physics::edge_position_m(surface, f, *line, options).value();

@@ -16,19 +16,20 @@ namespace turnpoint::sensing {
 /// of 10 N and 2 mV/V, amplifiers with gain 200, converter full scale 3 V.
 struct BridgeSignal {
   double rate_Hz = 192000, carrier_Hz = 10525;
-  /// Force on all cells, as a function of time (s).
+  /// Force (N) on every cell, as a function of time (s).
   std::function<double(double)> force_N = [](double) { return 0.0; };
-  /// Force on each cell, as a function of time (s). If set, it replaces force_N.
+  /// Force (N) on each cell, as a function of time (s). If set, it replaces force_N.
   std::function<std::array<double, bridge_count>(double)> forces_N;
-  /// Factor on the excitation, as a function of time (s).
+  /// Factor by which the excitation is multiplied, as a function of time (s).
   std::function<double(double)> gain = [](double) { return 1.0; };
-  double phase_rad = 0.4;        ///< phase of the carrier, the same on all channels
-  double bridge_phase_rad = 0;   ///< phase of the resistive part against the reference
-  double quadrature_V_V = 0;     ///< from unbalanced capacitance
+  double phase_rad = 0.4;       ///< phase of the carrier, the same on all channels
+  double bridge_phase_rad = 0;  ///< phase of the bridge's resistive signal relative to the reference
+  /// quadrature part of the ratio of bridge to reference, from unbalanced capacitance
+  double quadrature_V_V = 0;
   std::vector<double> tones_Hz;  ///< drive tones that reach the bridges
-  /// amplitude of each tone at the bridge; cubic distortion of the output
+  /// amplitude (V) of each tone at the bridge; coefficient of the cubic distortion of the amplifier's output
   double tone_V = 1e-3, cubic_per_V2 = 0;
-  double noise_V_rtHz = 0;  ///< density of the noise at the bridge
+  double noise_V_rtHz = 0;  ///< density of the noise at the bridge (V per square root of Hz)
   unsigned seed = 1;
 
   static constexpr double excitation_V = 2.5, volt_per_volt_N = 2e-4, amplifier = 200, full_scale_V = 3;
@@ -63,7 +64,7 @@ struct BridgeSignal {
     return all;
   }
 
-  /// Force (N) for a ratio of bridge to reference of 1.
+  /// Force (N) at which the output of a bridge equals the reference (ratio 1).
   static constexpr double N_per_ratio =
       full_scale_V * reference_share / (amplifier * excitation_V * volt_per_volt_N);
 
@@ -88,7 +89,7 @@ inline std::vector<BridgePoint> demodulated(const BridgeOptions& options, std::i
   return points;
 }
 
-/// The points without missing frames.
+/// Returns only the points that have no missing frames.
 inline std::vector<BridgePoint> complete(std::vector<BridgePoint> points) {
   std::erase_if(points, [](const BridgePoint& point) { return std::isnan(point.ratio[0]); });
   return points;

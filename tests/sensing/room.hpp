@@ -48,10 +48,10 @@ struct Room {
   std::uint64_t seed = 1;
   std::vector<SimplePickUp> pick_ups{SimplePickUp{}};
   // the members from here on are faults
-  double drive_gain = 1;  ///< factor on the vibration
+  double drive_gain = 1;  ///< factor by which the vibration is multiplied
   double frequency_factor = 1;
   double late_s = 0;
-  double limiter = 1e9;  ///< largest absolute value of the vibration's samples
+  double limiter = 1e9;  ///< the samples of the vibration are clipped at this absolute value
   double hum = 0;        ///< amplitude of 50 Hz hum
   /// Added to the captured signal of each pick-up, as a function of the time since the onset (s).
   std::function<double(double)> extra;

@@ -226,13 +226,14 @@ TEST_CASE("the carrier keeps away from mains and from products of the drive tone
   const auto choose = [](std::vector<std::vector<double>> plans) { return choose_carrier(plans, 192000); };
   CHECK(choose({}).carrier_Hz == 10525);
   CHECK(choose({{30e3}}).carrier_Hz == 10525);
-  CHECK(choose({{30e3, 32e3}}).carrier_Hz == 10525);  // products: 2, 4, 6, 8 kHz; 28 and 34 kHz
-  // For the two tones of 30 and 33.4 kHz, three times their difference is only 325 Hz below the default
-  // carrier.
+  // the tones' intermodulation products are at 2, 4, 6, 8, 28, 34 kHz
+  CHECK(choose({{30e3, 32e3}}).carrier_Hz == 10525);
+  // For the two tones of 30 and 33.4 kHz, an intermodulation product at three times their difference is only
+  // 325 Hz below the default carrier.
   const auto moved = choose({{30e3, 33.4e3}});
   CHECK(moved.carrier_Hz != 10525);
   CHECK(moved.clearance_Hz >= enough_clearance_Hz);
-  // the same tones in two different stimuli cause no products
+  // the same tones in two different stimuli never sound together, so they have no intermodulation products
   CHECK(choose({{30e3}, {33.4e3}}).carrier_Hz == 10525);
   const auto crowded = choose({{22.4e3, 23.5e3, 25e3, 27e3}});
   CHECK(crowded.clearance_Hz < enough_clearance_Hz);
@@ -244,7 +245,8 @@ TEST_CASE("the carrier keeps away from mains and from products of the drive tone
       nearest = std::min(nearest, std::abs(carrier - product));
     CHECK(crowded.clearance_Hz >= nearest);
   }
-  CHECK(choose({{20e3, 65.4e3}}).carrier_Hz != 10525);  // the product 4 x 45.4 = 181.6 kHz folds to 10.4 kHz
+  // The intermodulation product 4 x (65.4 - 20) kHz aliases at 192 kHz to 10.4 kHz, too close to 10525 Hz.
+  CHECK(choose({{20e3, 65.4e3}}).carrier_Hz != 10525);
 }
 
 TEST_CASE("impossible wiring of the bridges is refused", "[sensing]") {

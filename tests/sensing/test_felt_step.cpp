@@ -39,7 +39,7 @@ Study study(const Finger& finger, int trials, unsigned seed) {
   double sum = 0, square = 0, count = 0;
   for (int i = 0; i < trials; ++i) {
     Finger moved = finger;
-    // The edge may be anywhere within a bin.
+    // The step of friction may lie anywhere within a bin of the measured profile.
     moved.edge_mm += std::uniform_real_distribution(-1.0, 1.0)(random);
     const auto step = felt_step(trial(moved, random).profile);
     if (!step) {
@@ -74,11 +74,11 @@ TEST_CASE("friction is the quotient of sums, per stroke and bin", "[sensing]") {
   const auto add = [&](double normal, double lateral, double position, bool contact = true) {
     track.push_back({static_cast<std::int64_t>(track.size()), normal, lateral, position, 50, contact});
   };
-  // bin 0: 0.7 / 1.2, because sums are divided; the mean of the quotients would be another number
+  // bin 0: the friction is the quotient of the sums, 0.7 / 1.2, and not the mean of the quotients
   add(1, -0.5, 10.5), add(0.2, -0.2, 11.5);
   // bin 1 stays empty: one point has too little force, the other no contact
   add(0.09, -0.09, 12.5), add(0.5, 0.1, 13, false);
-  add(0.5, 0.1, 14.2), add(0.5, 0.15, 15.9);  // bin 2
+  add(0.5, 0.1, 14.2), add(0.5, 0.15, 15.9);  // both points are in bin 2
   const std::vector<Stroke> strokes{{0, 6, 1}, {4, 6, 1}, {4, 5, -1}};
   const auto profile = friction_profile(track, strokes, {10, 2, 4});
   REQUIRE(profile.strokes.size() == 3);
@@ -167,7 +167,7 @@ TEST_CASE("a boundary at a level of friction is where a plate's friction crosses
       const auto felt = felt_step(profile, level);
       REQUIRE(felt);
       CHECK(felt->boundary_mm == Approx(crossing_mm).margin(level < 0.7 ? 0.15 : 0.3));
-      // negative control: half-way up the step is a different place
+      // negative control: the boundary half-way up the step is at a different place
       if (level == 0.8) CHECK(std::abs(felt_step(profile)->boundary_mm - crossing_mm) > 2);
     }
     CHECK_FALSE(felt_step(profile, 0.05));  // friction never falls so low

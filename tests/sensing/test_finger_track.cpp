@@ -15,7 +15,8 @@ namespace {
 
 constexpr double nan_value = std::numeric_limits<double>::quiet_NaN();
 
-/// Root mean square errors of position and speed within strokes, for a finger that presses with `normal_N`.
+/// Root mean square errors of position and speed within the strokes of a simulated finger, and its mean
+/// speed.
 struct Errors {
   double position_mm = 0, speed_mm_s = 0, mean_speed_mm_s = 0;
 };
@@ -122,7 +123,8 @@ TEST_CASE("there is no position if the force is small or points are missing", "[
 }
 
 TEST_CASE("strokes are long, fast and in one direction", "[sensing]") {
-  // 60 mm up, a rest, 60 mm down with a slow moment after 40 mm, 25 mm up, and 40 mm up too slowly
+  // The finger moves 60 mm up, rests, moves 60 mm down with a slow moment after 40 mm, 25 mm up, and 40 mm up
+  // too slowly.
   std::vector<FingerPoint> track;
   double x = 20;
   const auto move = [&](double speed_mm_s, int milliseconds) {

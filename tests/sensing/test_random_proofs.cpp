@@ -1,4 +1,5 @@
-// IntervalProof on random bursts in random rooms: without a fault all are proven, and each fault is named.
+// Tests IntervalProof with random bursts and random simulated rooms. Without a fault, each burst must be
+// proven; with a fault, the verdict must name it.
 #include <cmath>
 #include <random>
 

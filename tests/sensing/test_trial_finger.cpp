@@ -126,7 +126,8 @@ TEST_CASE("without a tare at the first trial the forces are not known", "[sensin
   Bench bench;
   TrialFinger finger(bench.setup);
   const auto samples = bench.samples({}, 0, 2 * second);
-  // only 156 ms of silence before the trial are captured
+  // only 156 ms of silence before the trial are captured, which is too little to measure the tare (the
+  // readings without a finger)
   trial(finger, samples, 30000, {{second + 9600, second + 96000}});
   const auto forces = finger.result();
   CHECK(std::string(name(forces.state)) == "tare");

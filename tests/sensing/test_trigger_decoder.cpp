@@ -15,7 +15,7 @@ using namespace turnpoint::sensing;
 namespace {
 
 constexpr int rate = 192000;
-constexpr std::int64_t bit = 192;  // frames of a bit of 1 ms
+constexpr std::int64_t bit = 192;  // number of frames in a bit of 1 ms
 constexpr double pi = 3.14159265358979323846;
 
 /// The distortions of a line through which a code passes before it is captured.
@@ -23,8 +23,8 @@ struct Line {
   double gain = 1;
   double high_pass_Hz = 0;  // cut-off of a first-order high-pass filter; 0: no filter
   double low_pass_Hz = 0;   // cut-off of a first-order low-pass filter; 0: no filter
-  double ripple_dB = 0;     // gain above 2 kHz relative to that below
-  double noise = 0;         // rms
+  double ripple_dB = 0;     // gain above 2 kHz relative to the gain below 2 kHz
+  double noise = 0;         // rms of the added noise
   double offset = 0;        // fraction of a frame (0 to 1) by which sampling is late
   std::uint64_t seed = 1;
 };
@@ -55,8 +55,8 @@ void through(std::vector<double>& wave, const Line& line) {
   }
 }
 
-/// Returns the wave of a code, sampled `late` frames late. It is computed from the documentation and not from
-/// the program's pattern.
+/// Returns the wave of a code at a time in frames since its start, which need not be a whole number. It is
+/// computed from the documentation and not from the program's pattern.
 double ideal(std::uint8_t code, double frame) {
   if (frame < 0 || frame >= 14.0 * bit) return 0;
   const int check = [&] {
@@ -203,10 +203,10 @@ TEST_CASE("a code with a wrong bit is not found", "[sensing][trigger]") {
   CHECK(wrong == 0);
 }
 
-// White noise; noise that is low-passed at the rate of the half bits; and random telegraph waves on the grid
-// of the half bits. Bits of 8 frames make 50 s equivalent to 20 minutes with bits of 1 ms. The form of a code
-// alone would find 44 codes in these waves. Because a code must also stand between two silent bits, none is
-// found.
+// The waves are white noise, noise that is low-passed at the rate of the half bits, and random telegraph
+// waves on the grid of the half bits. Bits of 8 frames make 50 s equivalent to 20 minutes with bits of 1 ms.
+// The form of a code alone would find 44 codes in these waves. Because a code must also stand between two
+// silent bits, none is found.
 TEST_CASE("random waves give no code in an hour", "[sensing][trigger]") {
   std::mt19937_64 random(5);
   std::normal_distribution<double> normal(0, 0.3);

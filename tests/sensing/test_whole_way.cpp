@@ -1,4 +1,5 @@
-// Tests the whole chain of this layer, from captured samples to the felt step.
+// Tests the whole chain of this layer, from captured samples to the felt step (the place where the finger
+// meets the change of friction).
 #include <algorithm>
 #include <cmath>
 
@@ -14,7 +15,8 @@ namespace {
 
 constexpr double newton = BridgeSignal::N_per_ratio;
 
-/// The captured samples of a recorded finger. `cells` give the ratios of bridge to reference.
+/// Returns the samples that the sound card would capture while a finger exerts the forces of `recording`.
+/// `cells` turns each force into a ratio of bridge signal to reference signal.
 std::vector<std::int32_t> captured(const Cells& cells, const Finger::Recording& recording) {
   std::vector<Readings> readings;
   for (const auto& point : recording.forces)

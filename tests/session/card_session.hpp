@@ -122,6 +122,9 @@ struct CardSession {
   double repair_s = 0;         ///< time that the operator takes before clearing a fault
   std::vector<std::pair<std::int64_t, std::function<void()>>> agenda;
   std::function<void(const session::Page&)> reacts = [](const auto&) {};
+  std::function<void()> stepped = [] {};  ///< called whenever the card's time has advanced
+  /// opens the converter of force cells that the card does not capture
+  std::function<std::unique_ptr<iio::Converter>(const iio::Config&)> open_cells = iio::open;
   std::vector<FaultKind> faults;
   std::vector<std::string> details;
   session::Summary summary;
@@ -163,9 +166,11 @@ struct CardSession {
       capture = opened.get();
       return opened;
     };
+    devices.open_cells = open_cells;
     devices.open_stream = [this](const drive::StreamConfig& config) {
       return std::make_unique<SteppedStream>(config, holding, [this] {
         if (capture != nullptr) capture->follow();
+        stepped();
         const auto due = std::find_if(agenda.begin(), agenda.end(), [](const auto& entry) {
           return entry.first <= system::monotonic_ns();
         });

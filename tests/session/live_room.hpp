@@ -61,8 +61,8 @@ procedures = ["levels"]
 )";
 }
 
-/// The people in the room. The session's thread calls show() with each page; `reacts` may then push inputs
-/// and change lines.
+/// Simulates the participant and the operator. The session's thread calls show() with each page; `reacts` may
+/// then push inputs and change lines.
 struct Room : session::Display {
   session::Inputs inputs;
   std::shared_ptr<lines::SimulatedLines> lines = std::make_shared<lines::SimulatedLines>(SharedLines::count);

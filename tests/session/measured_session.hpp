@@ -24,7 +24,7 @@ inline const char* const kCells =
     "uri = \"sim:\"\nchannels = 8\npickups = [5, 6]\nreference = 0\nexcitation_channel = 3\nbridges = [1, 2, "
     "3]\n";
 
-/// Writes the simulated rig to a file, with this [capture] table instead of its own.
+/// Writes the rig with the thin plate to a file, with this [capture] table added.
 inline std::string with_capture(const TemporaryFolder& folder, const std::string& capture) {
   std::ostringstream rig;
   rig << std::ifstream(kSource + "/tests/support/thin_plate.toml").rdbuf() << "\n[capture]\n" << capture;
@@ -58,7 +58,7 @@ struct Ran {
   session::Summary summary;
   std::vector<records::TrialRow> trials;
   std::vector<std::string> faults;
-  /// texts of the pages after a trial, but not whether an answer was right
+  /// texts of the pages after a trial, except for those that say whether an answer was right
   std::vector<std::string> messages;
   std::vector<records::EventRow> events;
 };
@@ -73,7 +73,7 @@ struct How {
   std::function<void(plant::Setup&)> room = {};  ///< changes the simulated laboratory before the session
 };
 
-/// Runs a protocol file in a room with faults.
+/// Runs a session of a protocol file in a simulated room, in which `sabotage` causes faults.
 inline Ran run(const std::string& protocol, const Sabotage& sabotage, const How& how = {}) {
   TemporaryFolder folder;
   setup::RunRequest request;

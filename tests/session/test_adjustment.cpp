@@ -114,7 +114,7 @@ TEST_CASE("a protocol file with a slider gives rows with each setting and the mo
     CHECK(trial.tones[1].onset_frame >= trial.tones[0].onset_frame + trial.tones[0].length_frames);
   }
   // The SD of a setting is 2 / 0.6745, so the mean of 18 settings lies within four standard errors of the
-  // bias.
+  // simulated observer's bias.
   CHECK(sum / 18 == Approx(4).margin(4 * 2 / 0.6745 / std::sqrt(18.0)));
   REQUIRE(summary.estimates.size() == 1);
   CHECK(summary.estimates[0].parameter == "pse");

@@ -1,4 +1,5 @@
-// Answers that are numbers, and confidence: a person on the screen gives them, and rows store them.
+// Tests answers that are numbers, and ratings of confidence: a person gives them on the screen, and the
+// trial's row stores them.
 #include "tests/session/live_room.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/temporary_folder.hpp"

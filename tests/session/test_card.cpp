@@ -246,8 +246,8 @@ TEST_CASE("late reports about a repeated trial do not count for the next one", "
       card.room.push(InputKind::repeat);
     }
     if (page.kind == PageKind::cue && card.room.stimuli == 1) card.holding = false;
-    // From the second stimulus on, the card no longer reports its position, so the station cannot know what
-    // was played.
+    // From the second stimulus on, the card no longer reports its playback position, so the station cannot
+    // know what was played.
     if (page.kind == PageKind::stimulus && card.room.stimuli == 2) fake_pcm().stamps = false;
     if (page.kind == PageKind::fault) fake_pcm().stamps = true;
   };

@@ -1,7 +1,8 @@
 #include "station/drive/trigger_code.hpp"
 #include "tests/session/card_session.hpp"
 
-// Live sessions on the simulated sound card, whose capture returns what was played, delayed and attenuated.
+// Tests live sessions on the simulated sound card, whose capture returns what was played, delayed and
+// attenuated.
 
 using namespace turnpoint;
 using namespace turnpoint::card_session;

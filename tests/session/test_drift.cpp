@@ -43,10 +43,11 @@ struct DriftRun {
   std::vector<records::TrialRow> trials;
   std::vector<records::EventRow> events;
   rig::Rig rig;
-  double resonance = 1;  ///< factor by which the room's resonances have really moved at the end
+  /// factor by which the resonances of the simulated surface have really changed at the end
+  double resonance = 1;
 };
 
-/// Runs the demo in a room that is warmer by `warmth_K` from the third trial on.
+/// Runs the demo protocol in a simulated room that is warmer by `warmth_K` from the third trial on.
 DriftRun run_warm(double warmth_K, Sensors& sensors, const std::string& extra = "") {
   TemporaryFolder folder;
   setup::RunRequest request;
@@ -132,8 +133,8 @@ TEST_CASE("after 10 K, corrected frequencies put each boundary where it was plan
     const auto& trial = warm.trials[k];
     CHECK(trial.outcome == terms::Outcome::answered);
     for (std::size_t t = 0; t < trial.tones.size(); ++t) {
-      // On the warm plate, the boundary of a tone is where a cold plate has it at a frequency that is higher
-      // by the same factor.
+      // The warm plate has the boundary of a tone where a cold plate has that of the tone's frequency divided
+      // by `resonance`, the factor by which warming changes the resonances.
       const auto planned = physics::turning_point_m(surface, cold.trials[k].tones[t].frequency_Hz);
       const auto now = physics::turning_point_m(
           surface, trial.tones[t].frequency_Hz / (trial.trial_index < 2 ? 1 : warm.resonance));

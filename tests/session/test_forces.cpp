@@ -54,7 +54,8 @@ TEST_CASE("the step of friction is felt where the plan puts it, on average to 0.
                                            {"deadline_s = 6.0", "deadline_s = 25.0"},
                                            {"repeats = 2", "repeats = 4"}});
   How how{kCells};
-  how.observer = "sim:residual=18";  // an answer ends the stimulus
+  // the simulated participant answers late, because an answer ends the stimulus
+  how.observer = "sim:residual=18";
   const auto ran = run(
       protocol, [](int, plant::Plant&) {}, how);
   REQUIRE(ran.trials.size() == 20);

@@ -8,7 +8,7 @@
 #include "tests/session/measured_session.hpp"
 #include "tests/support/catch.hpp"
 
-// The bars that guide the finger must not show anything that answers the question.
+// Tests that the bars that guide the finger show nothing that gives the answer away.
 
 using namespace turnpoint;
 using namespace measured;
@@ -195,7 +195,7 @@ TEST_CASE(
   sensing.guidance = true;
   session::Guide guide(sensing);
   REQUIRE(guide.bars());
-  CHECK_FALSE(guide.bars()->speed);  // any speed is accepted
+  CHECK_FALSE(guide.bars()->speed);  // there is no bar for the speed, because the protocol accepts any speed
   CHECK(guide.bars()->force->low == Approx(1.0 / 3));
   CHECK(guide.bars()->force->high == Approx(2.0 / 3));
   CHECK_FALSE(guide.bars()->force->value);

@@ -7,8 +7,8 @@
 #include "tests/support/catch.hpp"
 #include "tests/support/temporary_folder.hpp"
 
-// Somebody who has asked for a pause must not be stimulated until somebody has pressed Continue, whatever the
-// session was doing at that moment.
+// Tests that after somebody has asked for a pause, no stimulus is presented until somebody has pressed
+// Continue, whatever the session was doing at that moment.
 
 using namespace turnpoint;
 using namespace turnpoint::live_room;

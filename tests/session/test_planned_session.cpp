@@ -1,17 +1,26 @@
-// Sessions on several days: which one comes next, when it is refused, and what is stored.
+// Tests studies with sessions on several days: which session comes next, when it is refused, and what is
+// stored.
 #include <time.h>
 
+#include <fstream>
 #include <optional>
+#include <sstream>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
+#include "station/desk/report_data.hpp"
+#include "station/procedure/procedure.hpp"
 #include "station/session/planned_session.hpp"
 #include "station/setup/prepare.hpp"
+#include "station/setup/resume.hpp"
 #include "station/store/read.hpp"
+#include "station/system/read_file.hpp"
 #include "station/terms/usage_error.hpp"
 #include "station/text/problem.hpp"
 #include "tests/session/live_room.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/support/quick_rig.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 using namespace turnpoint;
@@ -76,7 +85,7 @@ TEST_CASE("the next session is the first one that was not completed", "[session]
   CHECK(next({on_day("2026-11-01", 1)}) == 2);
   CHECK(next({on_day("2026-11-01", 1, SessionStatus::interrupted)}) == 1);
   CHECK(next({on_day("2026-11-01", 1), on_day("2026-11-02", 2, SessionStatus::stopped)}) == 2);
-  CHECK(next({on_day("2026-11-01", 2)}) == 1);  // the first one was left out
+  CHECK(next({on_day("2026-11-01", 2)}) == 1);  // the first session was left out, so it comes next
   CHECK(next({on_day("2026-11-01", 1, SessionStatus::completed, terms::RunMode::simulated)}) == 1);
   const auto over = next_session(
       setup, {on_day("2026-11-01", 1), on_day("2026-11-02", 2), on_day("2026-11-03", 3)}, "2026-11-24");
@@ -92,7 +101,7 @@ TEST_CASE("the next session is the first one that was not completed", "[session]
 
 TEST_CASE("a session that comes too early is refused with the date from which it is allowed", "[session]") {
   auto setup = training(2);
-  const std::vector<store::SessionRecord> earlier{on_day("2024-02-27", 1)};  // a leap year
+  const std::vector<store::SessionRecord> earlier{on_day("2024-02-27", 1)};  // 2024 is a leap year
   for (const auto* day : {"2024-02-27", "2024-02-28"}) {
     const auto refused = next_session(setup, earlier, day);
     CHECK(refused.number == 2);
@@ -157,7 +166,7 @@ TEST_CASE("two participants of two groups go through their sessions, and group a
             if (name == "training") CHECK(std::get<std::string>(value) == group);
     }
   CHECK_THROWS_AS(run(training_for("A", db)), text::BadInput);
-  // whose code is typed later is refused when the session begins, before anything is stored
+  // A participant whose code is typed later is refused when the session begins, before anything is stored.
   auto setup = setup::prepare([&] {
     auto request = training_for(setup::kCodeToCome, db);
     return request;
@@ -195,4 +204,115 @@ TEST_CASE("a live session on the same day is refused, unless the operator gives 
   REQUIRE(second.annotations.size() == 1);
   CHECK(second.annotations.front().starts_with(
       "begun early (only in town today): participant P01 had session 1"));
+}
+
+namespace {
+
+/// Writes a study of two sessions with 14 trials of one staircase, which continues, and returns its path.
+std::string continuing_study(const TemporaryFolder& folder, const std::string& version = "1.0.0",
+                             const std::string& more = "continues = true") {
+  auto source = system::read_file(kRoot + "/protocols/friction-training.toml");
+  source.resize(source.find("[[procedure]]"));
+  source = replaced(source, "version = \"1.0.0\"", "version = \"" + version + "\"");
+  source = replaced(source, "count = 3", "count = 2");
+  source += R"(
+[[procedure]]
+name = "stairs"
+kind = "up-down"
+with = { phase = "before" }
+level = "contrast_dB"
+start = -6.0
+min = -30.0
+max = -3.0
+step = [3.0, 1.5]
+n_down = 2
+stop = { trials = 1000 }
+)" + more + R"(
+
+[[block]]
+name = "main"
+procedures = ["stairs"]
+trials = 14
+)";
+  std::ofstream(folder / "study.toml") << source;
+  return folder / "study.toml";
+}
+
+/// Adds the trials of a session to those before, and checks that one staircase presents them all.
+void add_and_compare(const std::string& database, const session::Summary& summary, const std::string& path,
+                     std::vector<records::TrialRow>& rows) {
+  for (const auto& block : store::read_session(database, summary.session_id).blocks)
+    rows.insert(rows.end(), block.trials.begin(), block.trials.end());
+  const auto protocol = protocol::load(path);
+  const auto stairs = procedure::make_procedure(protocol.procedures.front(), {}, {});
+  for (const auto& row : rows) {
+    if (row.type != terms::TrialType::experimental || row.outcome == terms::Outcome::aborted) continue;
+    REQUIRE(stairs->next()->level == row.level.value());
+    stairs->record(row.outcome != terms::Outcome::answered ? procedure::Answer::none
+                   : row.correct.value_or(false)           ? procedure::Answer::one
+                                                           : procedure::Answer::zero);
+  }
+}
+
+}  // namespace
+
+TEST_CASE("a procedure that continues goes on where the participant's last session ended",
+          "[session][continuation]") {
+  const TemporaryFolder folder;
+  auto request = training_for("P01", folder / "a.sqlite");
+  request.protocol = continuing_study(folder);
+  std::vector<records::TrialRow> rows;
+  const auto first = run(request);
+  add_and_compare(request.database, first, request.protocol, rows);
+  const auto end_of_first = rows.size();
+
+  SECTION("the second session continues, also after an interruption; another person begins anew") {
+    struct Cut : session::Monitor {
+      int left = 5;
+      void trial_begins(const trial::TrialSpec&, const protocol::Block&,
+                        const session::PlanAhead::Plans&) override {}
+      void trial_ended(const trial::TrialSpec&, const records::TrialRow&) override {
+        if (--left == 0) throw std::runtime_error("cut");
+      }
+    } cut;
+    session::Inputs inputs;
+    CHECK_THROWS(session::run(setup::prepare(request), nullptr, inputs, &cut));
+    std::ostringstream messages;
+    setup::ResumeRequest again;
+    again.database = request.database;
+    const auto resumed = setup::prepare_resume(again, messages);
+    REQUIRE(resumed);
+    const auto second = session::run(*resumed, nullptr, inputs);
+    CHECK(second.status == SessionStatus::completed);
+    add_and_compare(request.database, second, request.protocol, rows);
+    CHECK(rows.size() == 2 * end_of_first);
+    CHECK(rows[end_of_first].level != rows.front().level);
+    const auto report = desk::report_data(request.database, second.session_id);
+    REQUIRE(report.estimates.size() == 1);
+    REQUIRE(second.estimates.size() == 1);
+    CHECK(report.estimates[0].mean == second.estimates[0].mean);
+    CHECK(report.estimates[0].basis == second.estimates[0].basis);
+
+    request.participant = "P02";
+    CHECK(store::read_session(request.database, run(request).session_id).blocks.at(0).trials.at(0).level ==
+          -6);
+  }
+  SECTION("the same study without the key begins anew") {
+    request.protocol = continuing_study(folder, "1.0.0", "");
+    CHECK(store::read_session(request.database, run(request).session_id).blocks.at(0).trials.at(0).level ==
+          -6);
+  }
+  SECTION("another version of the protocol is refused, and nothing is stored") {
+    request.protocol = continuing_study(folder, "1.1.0");
+    CHECK_THROWS_WITH(setup::prepare(request),
+                      Catch::Contains("participant P01 had session 1 with version 1.0.0") &&
+                          Catch::Contains("this file is version 1.1.0"));
+    CHECK(store::list_sessions(request.database).size() == 1);
+  }
+  SECTION("a changed procedure of the same version is refused, and nothing is stored") {
+    auto source = system::read_file(request.protocol);
+    std::ofstream(request.protocol) << replaced(source, "start = -6.0", "start = -7.0");
+    CHECK_THROWS_WITH(run(request), Catch::Contains("would present level -7, but level -6 is stored"));
+    CHECK(store::list_sessions(request.database).size() == 1);
+  }
 }

@@ -225,8 +225,8 @@ TEST_CASE("a session log is not continued with a different protocol text", "[ses
 }
 
 TEST_CASE("a session log is not continued if factors would be combined in another way", "[session]") {
-  // If the levels of a balanced factor are in another order, the staircase stays the same but the marks
-  // change.
+  // If the levels of a balanced factor are in another order, the staircase presents the same levels, but the
+  // positions of the marks change.
   const Folder folder;
   Cut cut(60);
   session::Inputs inputs;

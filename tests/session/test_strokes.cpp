@@ -148,7 +148,7 @@ TEST_CASE("trials are planned with the measured table where the protocol asks fo
     return ran.trials.back().amplitude.value();
   };
   const double by_rig = strength_um("false\n"), by_table = strength_um("true\n");
-  // this finger needs twice the vibration, and the table has measured that
+  // this finger needs twice the vibration, as the measured table must show
   CHECK(by_table / by_rig == Approx(2).epsilon(0.1));
 }
 

@@ -26,11 +26,11 @@ struct Ran {
   session::Summary summary;
   std::vector<records::TrialRow> trials;
   std::map<std::string, std::vector<records::EventRow>> events;
-  std::string report;  ///< what the report says about the codes
+  std::string report;  ///< what the report says about the trigger codes
 };
 
-/// Runs a protocol of the project. These tables are added to the simulated rig, and the wire of the marker
-/// may be broken during some trials.
+/// Runs a shipped protocol. `rig_tables` are added to the file of the simulated rig, and the wire of the
+/// marker may be broken during some trials.
 Ran run(const std::string& protocol, const std::string& rig_tables,
         const std::function<bool(int trial)>& wire_broken = {}) {
   TemporaryFolder folder;
@@ -177,8 +177,8 @@ struct Bench {
     trigger.code = code, trigger.frame = frame, trigger.time_ns = stream->time_of(frame).value();
     triggers->scheduled(trigger);
   }
-  /// Returns the state of all codes after these ranges of frames have been captured, in which these codes
-  /// were found.
+  /// Returns the state of all trigger codes after these ranges of frames have been captured, in which these
+  /// codes were found.
   std::vector<session::Trigger> after(const std::vector<std::pair<std::int64_t, std::int64_t>>& captured,
                                       const std::vector<sensing::DecodedTrigger>& heard = {}) {
     triggers->captured({heard, {}, captured});

@@ -73,7 +73,8 @@ std::vector<Strategy> choices(const Shown& shown, std::size_t cue) {
   return strategies;
 }
 
-/// Chooses by likeness to X, which is interval `x_at`; the other two intervals are the answers.
+/// Returns the strategies that choose the interval that is more, or less, like X. X is interval `x_at`; the
+/// other two intervals are the answers.
 std::vector<Strategy> likenesses(std::size_t cue, std::size_t x_at) {
   std::vector<Strategy> strategies;
   for (const bool alike : {true, false})

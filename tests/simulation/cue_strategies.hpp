@@ -30,7 +30,7 @@ Strategy best_cuts(const Shown& shown, double grain, bool distance);
 /// Finds the best ranges of a cue for more than two answers. Tries all places for the end of each further
 /// range, and all answers in it.
 Strategy best_parts(const Shown& shown, double grain, int answers);
-/// Finds the best way to choose one of several intervals.
+/// Finds the best rule by which an observer can choose one of several intervals from the values of this cue.
 Strategy best_choice(const Shown& shown, std::size_t cue, protocol::TaskKind kind);
 
 }  // namespace turnpoint::tests

@@ -92,7 +92,8 @@ class Maker {
     for (const auto& id : ids) text += "{ id = " + quoted(id) + ", label = { en = " + quoted(id) + " } },";
     text += "]\n";
     if (single_) text += correct();
-    // Decided by the seed, so that the rest of the file stays as it was before this feature was added.
+    // Whether there is a confidence question depends on the seed alone and uses no random number, so that the
+    // rest of the file stays as it was before this feature was added.
     if (seed_ % 4 == 0) {
       use("confidence");
       text +=
@@ -104,7 +105,8 @@ class Maker {
 
   std::string correct() {
     const auto rule = pick({"side", "side", "distance", "criterion"});
-    // Decided by the seed, so that the rest of the file stays as it was before this feature was added.
+    // Whether there are three answers depends on the seed alone and uses no random number, so that the rest
+    // of the file stays as it was before this feature was added.
     if (three_answers()) {
       use("three answers about one interval");
       return "correct = { a = \"level_mm < -7\", b = \"abs(level_mm) < 7\", c = \"level_mm > 7\" }\n";

@@ -127,7 +127,7 @@ TEST_CASE("the ranges of check hold nine of ten sessions of each shipped protoco
     INFO(entry.path().stem().string());
     const auto protocol = protocol::load(entry.path().string());
     const auto stated = lengths(protocol, 0, simulation::usual_sessions(protocol)),
-               // of this many sessions, chance alone keeps the share within the limits
+               // with so many sessions, chance hardly ever makes the check below fail
         others = lengths(protocol, 2000, 600);
     for (const auto what : {&simulation::SessionLength::trials, &simulation::SessionLength::duration_s}) {
       const auto spread = simulation::spread_of(values_of(stated, what));

@@ -233,7 +233,7 @@ TEST_CASE("the levels of practice do not count, and they do not remove levels fr
     INFO(one.cue);
     CHECK(report(other, one.cue).accuracy == Approx(one.accuracy).epsilon(0).margin(1e-12));
   }
-  // Practice blocks are left out, but not the main block that runs the same procedure as the practice.
+  // Practice blocks are left out, but the main block is not, although it runs the same procedure.
   CHECK(accuracy(source("speed-accuracy.toml"), "amplitude at the wide end") > 0.9);
 }
 
@@ -248,7 +248,8 @@ TEST_CASE("all trials, including catch trials, are weighted by how often they oc
   // Half of all trials are catch trials, so "right" is correct in 0.5 x 0.75 = 37.5 % of all trials, and
   // "left" in 62.5 %.
   CHECK(accuracy(caught, "always the same key") == Approx(0.625));
-  // The session ends after 12 trials, which are drawn at random from the 40 planned ones.
+  // Without catch trials, "right" is correct in 75 % of the trials. This stays so if the block ends after 12
+  // trials, because these are a random choice from the 40 planned ones.
   const auto cut = replaced(text, block, block + "\ntrials = 12");
   CHECK(accuracy(cut, "always the same key") == Approx(0.75));
 }
@@ -263,7 +264,8 @@ TEST_CASE("if a list of levels is cut short and not shuffled, only its first lev
 
 namespace {
 
-/// A staircase with roving. The roving changes the amplitude more than most levels do.
+/// A staircase with roving (random changes of the amplitude), which changes the amplitude more than most
+/// levels do.
 std::string roved_staircase(int trials) {
   auto text = replaced(pair_text, "kind = \"constant-stimuli\"", "kind = \"up-down\"");
   text = replaced(text, "values = [4.0, 8.0, 16.0]\nrepeats = 8",
@@ -314,8 +316,8 @@ TEST_CASE(
 
 TEST_CASE("the accuracy of a rule is measured on other random draws than those that chose the rule",
           "[cues]") {
-  // Roving hides the amplitude, which does not depend on the level. The best of many rules fits only the
-  // random draws from which it was chosen.
+  // With roving, the amplitude says nothing about the right answer. The best of many rules only fits the
+  // random draws from which it was chosen, so it must be no better than chance for other draws.
   std::map<std::string, int> features;
   const auto guard = guard_of(tests::random_protocol(20076, features));
   const auto& amplitude = report(guard, "amplitude at the wide end");

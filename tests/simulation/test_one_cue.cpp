@@ -62,7 +62,8 @@ TEST_CASE("with more answers, neighbouring ranges of the cue are found, in any o
           "[cues]") {
   const Asked three{TaskKind::single_interval, 1, 3};
   CHECK(best(three, {single(1, 2), single(2, 0), single(3, 1), single(4, 1)}) == 1);
-  CHECK(best(three, {single(1, 0), single(2, 1), single(3, 2), single(4, 0)}) == 1);  // four ranges
+  // with four ranges of the cue's value
+  CHECK(best(three, {single(1, 0), single(2, 1), single(3, 2), single(4, 0)}) == 1);
   CHECK(best(three, {single(1, 0), single(2, 1), single(3, 2), single(4, 0), single(5, 1), single(6, 2)}) ==
         Approx(4.0 / 6));
   CHECK(best(three, {single(5, 0), single(5, 1), single(5, 2), single(5, 2)}) == Approx(0.5));

@@ -73,8 +73,9 @@ TEST_CASE("the true values are the observer's own parameters, never estimates", 
   REQUIRE((right.truth && right.coverage && right.interval_width));
   CHECK(right.coverage->trials == static_cast<int>(right.estimates.size()));
   CHECK(std::fabs(*right.bias) < 2 * *right.interval_width);
-  // With a deadline of 0.8 s, residual and travel time leave 0.3 s for the decision, so the bound is
-  // sqrt(0.35 x 0.3). The boundary a of EZ-diffusion is 0.2 times the bound.
+  // With a deadline of 0.8 s, residual and travel time leave 0.3 s for the decision, and the observer lowers
+  // its bound to sqrt(0.35 x 0.3), so that it decides in time. The boundary a of EZ-diffusion is 0.2 times
+  // the bound.
   const double hurried = std::sqrt(0.35 * 0.3), careful = std::sqrt(0.35 * 1.5);
   CHECK(*find(power, "accuracy - speed", "boundary").truth == Approx(0.2 * (careful - hurried)));
   CHECK(*find(power, "accuracy - speed", "time outside the decision").truth == 0);
@@ -189,8 +190,8 @@ TEST_CASE("the method of limits finds the middle between its symmetric series", 
 
 TEST_CASE("a study of several days analyses all sessions of a participant together", "[power]") {
   const auto power = simulation::power(shipped("friction-training"), options("sim:threshold=-15,lapse=0", 4));
-  // 6 practice trials, 60 to measure the threshold on two days, 60 of training on each of three days, and
-  // some that were not answered in time
+  // Expected number of trials: 6 practice trials, 60 to measure the threshold on two days, 60 of training on
+  // each of three days, and some that were not answered in time
   CHECK(power.trials >= 306);
   CHECK(power.trials < 325);
   for (const auto* source : {"procedure before, session 1", "procedure after, session 3"}) {
@@ -200,7 +201,7 @@ TEST_CASE("a study of several days analyses all sessions of a participant togeth
     CHECK(threshold.mean == Approx(*threshold.truth).margin(4));
   }
   CHECK_THROWS(find(power, "procedure before, session 3", "threshold"));
-  // Two of the four participants belong to each group. Each session has draws of its own.
+  // Two of the four participants belong to each group. Each session has random draws of its own.
   for (const auto* source : {"fit feedback, before", "fit none, before", "fit none, after"})
     CHECK(find(power, source, "threshold").estimates.size() == 2);
   CHECK(find(power, "procedure training, session 1", "threshold").estimates !=
@@ -240,7 +241,8 @@ TEST_CASE("the proportion correct of an identification is the observer's own, an
           "[power]") {
   const auto power = simulation::power(shipped("friction-identification"), options("sim:lapse=0", 200, 200));
   const auto& right = find(power, "answers", "proportion correct");
-  // Neighbours are told apart in 75 %: the three inner strips are right in 50 %, the two outer ones in 75 %.
+  // Neighbours are told apart in 75 % of trials, so answers are right in 50 % for the three inner stimuli and
+  // in 75 % for the two outer ones.
   REQUIRE(right.truth.has_value());
   CHECK(*right.truth == Approx(0.6).margin(1e-9));
   CHECK(std::fabs(*right.bias) < 4 * right.sd / std::sqrt(200.0));
@@ -260,7 +262,8 @@ TEST_CASE(
     CHECK(std::abs(*all.bias) < 0.03);
     CHECK(all.estimates.size() == 100);
   }
-  // The observer decides by differencing; its probability at one level has no spread over levels.
+  // The observer decides by differencing. At a single level its true d' is known, because no levels are
+  // mixed.
   double last = 0;
   for (const auto* level : {"-20", "-15", "-10", "-5"}) {
     const auto& at = find(abx, "answers", std::string("d', differencing, at ") + level + " dB");
@@ -278,4 +281,48 @@ TEST_CASE(
   int rows = 0;
   for (const auto& entry : three.recoveries) rows += entry.source == "answers";
   CHECK(rows == 1);
+}
+
+TEST_CASE("a procedure over two dimensions recovers the observer's threshold and gradient", "[power]") {
+  const auto power = simulation::power(shipped("friction-boundary-2d"),
+                                       options("sim:threshold=-16,gradient=0.08,slope=1.3,lapse=0.02", 30));
+  const std::string source = "procedure surface";
+  const auto& threshold = find(power, source, "threshold");
+  // where the observer's Weibull function has the value 1 - 1/e of the way between its asymptotes
+  CHECK(*threshold.truth == Approx(-16 + 20 / 1.3 * std::log10(1 / std::log(2.0))).margin(1e-6));
+  CHECK(*find(power, source, "gradient").truth == 0.08);
+  CHECK(find(power, source, "gradient").unit == "dB/mm");
+  CHECK(*find(power, source, "slope").truth == 1.3);
+  CHECK(*find(power, source, "lapse").truth == Approx(0.01));
+  for (const auto* parameter : {"threshold", "gradient"}) {
+    const auto& found = find(power, source, parameter);
+    INFO(parameter << ": " << found.mean << ", truth " << *found.truth);
+    CHECK(std::fabs(*found.bias) < 4 * found.sd / std::sqrt(30.0) + 0.1 * std::fabs(*found.truth));
+    REQUIRE(found.coverage);
+    CHECK(found.coverage->trials == 30);
+    CHECK(found.coverage->right >= 25);
+  }
+  // one psychometric function cannot describe trials whose threshold differs
+  for (const auto& recovery : power.recoveries) CHECK_FALSE(recovery.source.starts_with("fit"));
+}
+
+TEST_CASE("a procedure with a criterion recovers the observer's criterion, wherever it lies", "[power]") {
+  for (const double criterion : {0.3, 1.5}) {
+    const auto power = simulation::power(
+        shipped("friction-yes-no"),
+        options("sim:threshold=0.1,slope=1.4,lapse=0.02,criterion=" + std::to_string(criterion), 30));
+    const std::string source = "procedure detection";
+    CHECK(*find(power, source, "criterion").truth == Approx(criterion));
+    // d' is 1.349 at the observer's threshold
+    CHECK(*find(power, source, "threshold").truth ==
+          Approx(0.1 * std::pow(1.3489795, -1 / 1.4)).epsilon(1e-5));
+    CHECK(*find(power, source, "lapse").truth == Approx(0.01));
+    for (const auto* parameter : {"threshold", "criterion"}) {
+      const auto& found = find(power, source, parameter);
+      INFO(parameter << ": " << found.mean << ", truth " << *found.truth);
+      CHECK(std::fabs(*found.bias) < 4 * found.sd / std::sqrt(30.0) + 0.1 * std::fabs(*found.truth));
+      CHECK(found.coverage->right >= 25);
+    }
+    CHECK(find(power, "fit", "threshold").estimates.size() > 20);
+  }
 }

@@ -88,7 +88,8 @@ def check_signals(folder, readme):
         times = [signal["start_s"] + k / signal["rate_hz"] for k in range(signal["points"])]
         assert all(abs(a - b) < 1e-6 for a, b in zip(read.time_s, times))
         assert set(read.segment_id) == {signal["segment"]}
-        # the friction of the example: mean lateral force / mean normal force of the points where the finger slides
+        # the friction that the README's example computes: mean lateral force / mean normal force of the points
+        # where the finger slides
         normal, lateral, speed = (signal["values"][name] for name in ("normal", "lateral", "speed"))
         sliding = [k for k in range(signal["points"]) if speed[k] is not None and abs(speed[k]) > 10]
         friction = sum(abs(lateral[k]) for k in sliding) / sum(normal[k] for k in sliding)

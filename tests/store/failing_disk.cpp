@@ -13,8 +13,8 @@ std::atomic<std::int64_t> left = std::numeric_limits<std::int64_t>::max();
 sqlite3_vfs* real = nullptr;
 sqlite3_vfs shim;
 int (*real_write)(sqlite3_file*, const void*, int, sqlite3_int64) = nullptr;
-/// SQLite has different method tables for databases and journals. The same write function replaces the one in
-/// both.
+/// Copies of SQLite's method tables, in which write() replaces SQLite's own function. SQLite has different
+/// tables for databases and journals.
 std::map<const sqlite3_io_methods*, sqlite3_io_methods> methods;
 
 int write(sqlite3_file* file, const void* data, int size, sqlite3_int64 offset) {

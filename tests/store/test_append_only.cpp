@@ -94,7 +94,7 @@ TEST_CASE("tables are STRICT: a word is refused in a column of numbers", "[store
   CHECK(raw.integer(
             "SELECT count(*) FROM pragma_table_list WHERE schema = 'main' AND type = 'table' AND strict = 0"
             " AND name NOT LIKE 'sqlite_%'") == 0);
-  // an ordinary table with row ids
+  // `trial` is an ordinary table with row ids
   CHECK(raw.integer("SELECT wr FROM pragma_table_list WHERE name = 'trial'") == 0);
   CHECK(sample::failure([&] {
           raw.execute("INSERT INTO event SELECT session_id, 99, 1, 'soon', 'touch', '', NULL FROM session");

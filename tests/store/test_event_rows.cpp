@@ -1,5 +1,5 @@
-// Rows that belong to an event (answers, checks of a self-test, levels of a friction table) are stored with
-// the event, survive a merge, and are covered by the checksum.
+// Tests that rows that belong to an event (answers, checks of a self-test, levels of a friction table) are
+// stored with the event, survive a merge, and are covered by the checksum.
 #include "station/store/merge.hpp"
 #include "station/store/read.hpp"
 #include "station/store/verify.hpp"
@@ -47,9 +47,13 @@ TEST_CASE("the answers to a questionnaire are read back, merged, and covered by 
   CHECK_FALSE(verify(db).good());
 }
 
-TEST_CASE("self-tests and friction tables are read back, merged, and covered by the checksum", "[store]") {
+TEST_CASE(
+    "self-tests, friction tables and separate programs are read back, merged, and covered by the checksum",
+    "[store]") {
   TemporaryFolder folder;
   const auto db = folder / "a.sqlite", other = folder / "b.sqlite";
+  const ProgramRow program{"procedure", "stairs",       "one-up-two-down",
+                           "1.2",       "/p/stairs.py", std::string(64, 'c')};
   std::string id;
   {
     auto log = SessionLog::begin(db, sample::start(), sample::segment());
@@ -61,14 +65,30 @@ TEST_CASE("self-tests and friction tables are read back, merged, and covered by 
     EventRow measured{1'600'000'000, "friction_table", "used", std::nullopt};
     measured.friction_levels = {{0.5, 6, 0.71, 0.7, 0.03, 0.63, 0.78}, {1.5, 5, 0.2, 0.21, 0.01, 0.18, 0.24}};
     log.event(measured);
+    EventRow started{1'700'000'000, kProgramEvent, "stairs", std::nullopt};
+    started.programs = {program};
+    log.event(started);
     log.begin_block(sample::block());
     log.append(sample::answered(0));
+    EventRow estimated{1'800'000'000, kEstimatesEvent, "stairs", std::nullopt};
+    estimated.estimates = {{0, 1, "stairs", "threshold", -7.25, 1.5, "8 reversals"},
+                           {0, 1, "stairs", "width", 0.5, {}, ""}};
+    log.event(estimated);
     log.finish(SessionStatus::completed, "");
     id = log.session().session_id;
   }
   const auto check = [&](const std::string& path) {
     const auto events = read_session(path, id).events;
-    REQUIRE(events.size() == 3);
+    REQUIRE(events.size() == 5);
+    CHECK(events[3].programs == std::vector{program});
+    CHECK(events[3].estimates.empty());
+    REQUIRE(events[4].estimates.size() == 2);
+    CHECK(events[4].estimates[0].attempt == 1);
+    CHECK(events[4].estimates[0].mean == -7.25);
+    CHECK(events[4].estimates[0].sd == 1.5);
+    CHECK(events[4].estimates[0].basis == "8 reversals");
+    CHECK(events[4].estimates[1].parameter == "width");
+    CHECK_FALSE(events[4].estimates[1].sd);
     CHECK(events[0].checks.empty());
     CHECK(events[1].friction_levels.empty());
     REQUIRE(events[2].friction_levels.size() == 2);
@@ -90,9 +110,21 @@ TEST_CASE("self-tests and friction tables are read back, merged, and covered by 
   auto database = sample::raw(db);
   CHECK_THROWS(database.execute("DELETE FROM self_test"));
   CHECK_THROWS(database.execute("DELETE FROM friction_level"));
+  CHECK_THROWS(database.execute("DELETE FROM program"));
+  CHECK_THROWS(database.execute("UPDATE estimate SET mean = 1"));
   SECTION("an edited check") {
     database.execute("DROP TRIGGER self_test_is_never_changed");
     database.execute("UPDATE self_test SET verdict = 'failed' WHERE name = 'gate'");
+    CHECK_FALSE(verify(db).good());
+  }
+  SECTION("an edited program") {
+    database.execute("DROP TRIGGER program_is_never_changed");
+    database.execute("UPDATE program SET version = '1.3'");
+    CHECK_FALSE(verify(db).good());
+  }
+  SECTION("an edited estimate") {
+    database.execute("DROP TRIGGER estimate_is_never_changed");
+    database.execute("UPDATE estimate SET mean = -7 WHERE estimate_index = 0");
     CHECK_FALSE(verify(db).good());
   }
   SECTION("an edited friction table") {

@@ -45,7 +45,7 @@ TEST_CASE("trials.csv has all fixed columns in order, and the factors at their p
   const auto db = folder / "a.sqlite";
   const auto id = sample::session(db, 5);
   const auto files = export_data(db, folder / "out", {});
-  REQUIRE(files.size() == 8);
+  REQUIRE(files.size() == 10);
   CHECK(files[0].path == folder / "out/two-boundaries/trials.csv");
   CHECK(files[0].rows == 5);
   CHECK(files[1].rows == 20);
@@ -137,7 +137,7 @@ std::string session_of_unlike_values(const std::string& db) {
 
 }  // namespace
 
-TEST_CASE("each value in the seven tables is in its own column", "[store]") {
+TEST_CASE("each value of each table is in its own column", "[store]") {
   TemporaryFolder folder;
   const auto db = folder / "a.sqlite";
   const auto id = session_of_unlike_values(db);
@@ -214,9 +214,9 @@ TEST_CASE("an export can select sessions, participants and protocols, and each p
   other.factor_columns = {"mask"};
   sample::session(db, 4, other);
   const auto all = export_data(db, folder / "all", {});
-  REQUIRE(all.size() == 16);
+  REQUIRE(all.size() == 20);
   CHECK(all[0].path == folder / "all/_.._other_design/trials.csv");
-  CHECK(all[8].rows == 5);
+  CHECK(all[10].rows == 5);
   ExportOptions options;
   options.session_id = id;
   CHECK(export_data(db, folder / "one", options)[0].rows == 3);

@@ -15,7 +15,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// The content of a gzip file.
+/// Returns the content of a gzip file.
 std::string unpacked(const std::string& path) {
   std::string text, piece(1 << 16, '\0');
   const auto file = gzopen(path.c_str(), "rb");
@@ -36,7 +36,7 @@ std::string table_of(const std::string& session_id) {
   return "/two-boundaries/signals/" + session_id + "_finger.csv.gz";
 }
 
-/// Trials without signals are as common as trials with signals: not every rig has force cells.
+/// Makes a session without signals, as on a rig without force cells.
 std::string session_without_signals(const std::string& db, const std::string& participant) {
   auto log = SessionLog::begin(db, sample::start(participant), sample::segment());
   log.begin_block(sample::block());

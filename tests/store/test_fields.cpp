@@ -60,6 +60,8 @@ TEST_CASE("the records' tables of fields contain each column of the schema with 
   CHECK(differences(database, check_table()).empty());
   CHECK(differences(database, answer_table()).empty());
   CHECK(differences(database, friction_level_table()).empty());
+  CHECK(differences(database, program_table()).empty());
+  CHECK(differences(database, estimate_table()).empty());
   CHECK(differences(database, session_table()).empty());
   CHECK(differences(database, protocol_table()).empty());
   CHECK(differences(database, rig_table()).empty());

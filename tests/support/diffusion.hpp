@@ -9,7 +9,7 @@ struct Decision {
   double time_s = 0;  ///< response time, including the non-decision time
 };
 
-/// Simulates one decision of a diffusion with these parameters and s = 0.1.
+/// Simulates one decision of a diffusion with these parameters and noise of s = 0.1 (SD after 1 s).
 inline Decision sample_decision(const analysis::EzDiffusion& parameters, random::Draws& draws) {
   const double s = analysis::kDiffusionScale;
   const auto passage = observer::first_passage(parameters.drift / s, parameters.boundary / (2 * s), 0, draws);

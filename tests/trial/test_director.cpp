@@ -248,5 +248,51 @@ TEST_CASE("without repetition, each level comes once before any comes again", "[
     director.record(answered(*spec, true));
   }
   CHECK(order.empty());
-  CHECK(orders.size() > 10);  // the block has 24 rounds
+  CHECK(orders.size() > 10);  // the 24 rounds of the block must have more than 10 different orders
+}
+
+TEST_CASE("a procedure over two dimensions sets both factors of a trial, and the observer feels both",
+          "[session]") {
+  const auto protocol = shipped("friction-boundary-2d");
+  Director director(protocol, 0, 8);
+  const auto practice = director.next();  // the second factor has levels, from which practice draws
+  CHECK(std::get<double>(practice->factors.at("end_mm")) >= 120);
+  director.finish_block();
+  const auto& spec = protocol.procedures.front();
+  std::map<double, int> ends;
+  int trials = 0;
+  while (const auto trial = director.next()) {
+    const double end_mm = std::get<double>(trial->factors.at("end_mm"));
+    const double contrast_dB = std::get<double>(trial->factors.at("contrast_dB"));
+    CHECK(contrast_dB == trial->level);
+    CHECK(std::find(spec.second->stimuli.values.begin(), spec.second->stimuli.values.end(), end_mm) !=
+          spec.second->stimuli.values.end());
+    const auto question = question_of(*trial, protocol, 8);
+    CHECK(question.second == end_mm - 150);
+    CHECK(question.log_step == 0);
+    ++ends[end_mm], ++trials;
+    director.record(answered(*trial, contrast_dB > -15));
+  }
+  CHECK(trials == 96);
+  CHECK(ends.size() > 1);
+  std::set<std::string> parameters;
+  for (const auto& estimate : director.estimates()) {
+    parameters.insert(estimate.parameter);
+    REQUIRE(estimate.interval);
+    CHECK((estimate.interval->first <= estimate.mean && estimate.mean <= estimate.interval->second));
+  }
+  CHECK(parameters == std::set<std::string>{"gradient", "lapse", "slope", "threshold"});
+}
+
+TEST_CASE("a warm-up trial of a procedure over two dimensions has a value of both", "[session]") {
+  auto protocol = shipped("friction-boundary-2d");
+  auto& factor = protocol.factors.at(1);
+  REQUIRE(factor.name == "end_mm");
+  factor.levels.clear(), factor.range = {120.0, 180.0};
+  Director director(protocol, 0, 8);
+  director.finish_block();
+  director.warm_up(1);
+  const auto trial = director.next();
+  CHECK(trial->type == terms::TrialType::warmup);
+  CHECK(std::get<double>(trial->factors.at("end_mm")) == 150);
 }

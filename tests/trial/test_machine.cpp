@@ -209,7 +209,9 @@ TEST_CASE("a trial does not end before its last frame has been played", "[trial]
   auto machine = answered_after_two();
   machine.handle({9000 * ms, EventKind::tick, 0});
   CHECK_FALSE(machine.done());
-  CHECK_FALSE(machine.wake_ns());  // the machine waits for `heard`, not for a time
+  CHECK_FALSE(
+      machine
+          .wake_ns());  // the machine waits for `heard` (all of the stimulus has been played), not for a time
   machine.handle({9010 * ms, EventKind::heard, 1});
   CHECK(machine.done());
   CHECK(machine.result().outcome == Outcome::answered);
@@ -238,7 +240,7 @@ TEST_CASE("stopping after the answer keeps the answer", "[trial]") {
   auto machine = exploring();
   machine.handle({1500 * ms, EventKind::answer, 1});
   machine.handle({1600 * ms, EventKind::abort, 0});
-  CHECK_FALSE(machine.done());  // the machine waits for the `heard` event
+  CHECK_FALSE(machine.done());  // the machine waits for `heard`: all of the stimulus has been played
   machine.handle({1610 * ms, EventKind::heard, 0});
   CHECK(machine.done());
   CHECK(machine.result().outcome == Outcome::answered);
@@ -261,12 +263,12 @@ TEST_CASE("confidence is asked for after an answer, and completes the trial", "[
   const auto answered = machine.handle({1500 * ms, EventKind::answer, 1});
   CHECK(enters(answered, Phase::confidence));
   CHECK(has(answered, ActionKind::silence, 0));
-  CHECK_FALSE(machine.wake_ns());  // no deadline
+  CHECK_FALSE(machine.wake_ns());  // the confidence rating has no deadline
   machine.handle({1500 * ms, EventKind::heard, 0});
   CHECK_FALSE(machine.decided());
-  // this touch began before the answer, so it is no confidence
+  // this touch began before the answer, so it does not count as a confidence rating
   machine.handle({1400 * ms, EventKind::answer, 2});
-  // index 4 does not exist, because there are only four degrees
+  // index 4 does not exist, because there are only four degrees of confidence
   machine.handle({1600 * ms, EventKind::answer, 4});
   CHECK_FALSE(machine.result().confidence);
   CHECK(machine.result().extra_touches == 2);

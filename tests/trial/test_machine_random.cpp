@@ -1,4 +1,4 @@
-// Random events must not break the rules that hold for every trial.
+// Tests that random events never break the rules that hold for every trial.
 #include <random>
 
 #include "tests/support/catch.hpp"

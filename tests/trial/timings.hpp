@@ -1,6 +1,6 @@
 #pragma once
-// Timings of trials, and machines that have reached a certain phase of them. The tests of the trial machine
-// share them.
+// Trial timings, and trial machines that were run up to a certain phase. The tests of the trial machine share
+// them.
 #include "station/trial/machine.hpp"
 
 namespace trial_test {

@@ -294,6 +294,8 @@ void add_faults(std::vector<Exhibit>& all, const Words& words) {
       {FaultKind::capture, "the pilot on output channel 2 is not heard on captured channel 0"},
       {FaultKind::vibration, "the surface does not move; level -62.1 dB; residual -21 dB"},
       {FaultKind::self_test, "gate: the gate stays open although the heartbeat has stopped"},
+      {FaultKind::program,
+       "program /home/lab/one_up_two_down.py: ended with status 1: \"KeyError: 'start'\""},
       {FaultKind::other, "panel: 3 edges of line 0 were lost"},
   };
   for (const auto& [kind, detail] : faults) {
@@ -306,10 +308,11 @@ void add_faults(std::vector<Exhibit>& all, const Words& words) {
     page.to_do = text.to_do;
     page.detail = detail;
     if (kind == FaultKind::disarmed) page.amplifier = "disarmed";
-    // With these faults, the amplifier stays armed.
+    // These faults do not put the amplifier into the state "faulted".
     const auto armed = {FaultKind::disarmed,  FaultKind::limits,          FaultKind::touch_gone,
                         FaultKind::disk_full, FaultKind::stimulus_missed, FaultKind::vibration,
-                        FaultKind::capture,   FaultKind::self_test,       FaultKind::other};
+                        FaultKind::capture,   FaultKind::self_test,       FaultKind::program,
+                        FaultKind::other};
     if (std::find(armed.begin(), armed.end(), kind) == armed.end()) page.amplifier = "faulted";
     all.push_back({std::string("fault-") + terms::name(kind), page});
   }

@@ -12,7 +12,7 @@ struct Exhibit {
   session::Page page;
 };
 
-/// One page of every kind, with texts as long as in real protocols. Languages: en, de, ja.
+/// One page of every kind, with texts as long as in real protocols. Languages: en, de, ja, ar, zh.
 std::vector<Exhibit> gallery(const std::string& language);
 
 }  // namespace turnpoint::ui

@@ -6,7 +6,9 @@
 #include <mutex>
 
 #include "station/desk/report_data.hpp"
+#include "station/session/planned_session.hpp"
 #include "station/setup/prepare.hpp"
+#include "station/store/session_log.hpp"
 
 namespace turnpoint::ui {
 
@@ -106,6 +108,16 @@ std::string interrupted_exhibit(const std::string& folder) {
   Nobody nobody;
   run_first(request, nobody, 7);
   return request.database;
+}
+
+std::string today_exhibit(const std::string& folder) {
+  const auto path = folder + "/today.sqlite";
+  records::SessionStart today;
+  today.participant = "P01", today.protocol_id = "friction-training", today.planned_session = 1;
+  today.run_mode = terms::RunMode::pilot;
+  today.station_id = session::station_id(), today.started_local = session::local_time();
+  store::SessionLog::begin(path, today, {}).finish(records::SessionStatus::completed, "");
+  return path;
 }
 
 }  // namespace turnpoint::ui

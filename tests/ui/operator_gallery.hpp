@@ -17,4 +17,8 @@ desk::ReportPages forces_exhibit(const std::string& protocol);
 /// Creates a database in `folder` with an interrupted session of participant P03. Returns its path.
 std::string interrupted_exhibit(const std::string& folder);
 
+/// Creates a database in `folder` in which participant P01 had the first session of friction-training today.
+/// Returns its path.
+std::string today_exhibit(const std::string& folder);
+
 }  // namespace turnpoint::ui

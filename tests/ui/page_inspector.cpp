@@ -125,7 +125,7 @@ QStringList PageInspector::overlaps(QQuickItem* page) const {
     QRectF area;
     QString name;
   };
-  page->window()->grabWindow();  // this moves everything to its place
+  page->window()->grabWindow();  // this lays out the page, so that every item is at its place
   std::vector<Thing> things;
   each_text(*page, [&](const QQuickItem& text) {
     things.push_back({&text, seen(text, letters(text)), text.property("text").toString()});

@@ -237,7 +237,8 @@ int shoot_places(const QString& out, const QStringList& sizes, const QStringList
       {studies_folder.path().toStdString(), request.rig, TURNPOINT_SOURCE_DIR "/protocols"});
   const auto design_ready = [&] {
     return design.verdict() != "checking" &&
-           (design.stage() != "form" || design.verdict() == "bad" || !design.profiles().isEmpty());
+           (design.stage() != "form" || design.verdict() == "bad" || !design.profiles().isEmpty()) &&
+           !design.precision()->busy();
   };
   auto with_cells = request;
   with_cells.rig = "plate-with-cells.toml";
@@ -267,10 +268,17 @@ int shoot_places(const QString& out, const QStringList& sizes, const QStringList
                       {"shown", place}},
                      [&] { return !studies.checking() && !operating.checking(); });
       camera.shoot("RigPage.qml", "weights", {{"rig", QVariant::fromValue(&weighing)}, {"tab", "weights"}});
+      for (const char* series : {"", "boundaries", "response", "friction", "sound"}) {
+        weighed.guide()->begin(series);
+        camera.shoot("RigPage.qml", QString("guide-") + series,
+                     {{"rig", QVariant::fromValue(&weighed)}, {"tab", "guide"}});
+        weighed.guide()->leave();
+      }
       camera.shoot("RigPage.qml", "residuals", {{"rig", QVariant::fromValue(&weighed)}, {"tab", "weights"}});
       const auto shoot_design = [&](const QString& picture, const QString& beside = "") {
         camera.shoot("DesignPage.qml", picture,
                      {{"design", QVariant::fromValue(&design)}, {"beside", beside}}, design_ready);
+        design.precision()->set_watched(false);
       };
       design.startNew();
       shoot_design("design-goals");
@@ -279,7 +287,11 @@ int shoot_places(const QString& out, const QStringList& sizes, const QStringList
         design.show(section);
         shoot_design("design-" + QString::number(section));
       }
-      shoot_design("design-text", "text");
+      for (const char* beside : {"text", "pages", "precision"})
+        shoot_design(QString("design-") + beside, beside);
+      design.pages()->show(2);
+      design.pages()->choose("de");
+      shoot_design("design-pages-trial", "pages");
       shoot_design("design-check", "check");
       begin_study(design);
       design.show(5);
@@ -300,6 +312,13 @@ int shoot_operator(const QString& out, const QStringList& sizes, const QStringLi
   ui::OperatorController operating({source + "/protocols", "plate.toml", "lab.sqlite"});
   operating.select(9);
   wait_for([&] { return !operating.checking(); });
+  ui::OperatorController early({source + "/protocols", "plate.toml", ui::today_exhibit(".")});
+  for (int i = 0; i < early.protocols().size(); ++i)
+    if (early.protocols()[i].toMap()["id"] == "friction-training") early.select(i);
+  wait_for([&] { return !early.checking(); });
+  early.enterParticipant("P01");
+  early.begin();
+  wait_for([&] { return !early.preparing(); });
   const int places = shoot_places(out, sizes, languages, operating);
   ui::PreviewController preview(
       {source + "/protocols/demo.toml", source + "/tests/support/thin_plate.toml", "", {}});
@@ -315,6 +334,7 @@ int shoot_operator(const QString& out, const QStringList& sizes, const QStringLi
   for (const auto& size : sizes) {
     OperatorCamera camera(out, panel_of(size), size + "-operator-");
     camera.shoot("OperatorPage.qml", "start", {{"operating", QVariant::fromValue(&operating)}});
+    camera.shoot("OperatorPage.qml", "early", {{"operating", QVariant::fromValue(&early)}});
     camera.shoot("OperatorPage.qml", "participant",
                  {{"operating", QVariant::fromValue(&operating)}, {"typing", true}});
     camera.shoot_live(live, "live");

@@ -6,6 +6,7 @@
 #include <fstream>
 #include <mutex>
 
+#include "station/session/planned_session.hpp"
 #include "station/setup/prepare.hpp"
 #include "station/store/backup.hpp"
 #include "station/store/session_log.hpp"
@@ -204,4 +205,49 @@ TEST_CASE("the start page says how old the last good backup is", "[start]") {
   CHECK(aged(6.9)["hours"] == 165);
   CHECK(aged(7.1)["state"] == "old");
   CHECK(aged(-1)["state"] == "ahead");
+}
+
+TEST_CASE("the operator begins a session that comes too early only with a reason, which the session gets",
+          "[start]") {
+  StartPage start;
+  std::filesystem::copy_file(kSource + "/protocols/friction-training.toml", start.folder / "0.toml");
+  records::SessionStart today;
+  today.participant = "P01", today.protocol_id = "friction-training", today.planned_session = 1;
+  today.run_mode = terms::RunMode::pilot;
+  today.station_id = session::station_id(), today.started_local = session::local_time();
+  store::SessionLog::begin(start.folder / "lab.sqlite", today, {})
+      .finish(records::SessionStatus::completed, "");
+  start.open();
+  start.checks.let_go();
+  REQUIRE(start.comes([&] { return !start.page->checking(); }));
+  std::vector<ui::ChosenSession> chosen;
+  QObject::connect(start.page.get(), &OperatorController::chosen,
+                   [&](const auto& session) { chosen.push_back(session); });
+  const auto settled = [&] { return !start.page->preparing(); };
+  CHECK(start.page->too_early().isEmpty());
+  start.page->beginEarly("not asked for");  // nothing was refused yet
+  CHECK(settled());
+
+  start.page->enterParticipant("P01");
+  start.page->begin();
+  REQUIRE(start.comes(settled));
+  CHECK(start.page->too_early().contains("session 2 is allowed from"));
+  CHECK_FALSE(start.page->too_early().contains("--early"));
+  CHECK(start.page->problems().isEmpty());
+  CHECK(chosen.empty());
+  start.page->beginEarly("  ");  // no reason
+  CHECK(settled());
+  CHECK_FALSE(start.page->too_early().isEmpty());
+
+  start.page->enterParticipant("P02");  // somebody else, to whom the refusal does not apply
+  CHECK(start.page->too_early().isEmpty());
+  start.page->beginEarly("leaves the country");
+  CHECK(settled());
+  start.page->enterParticipant("P01");
+  start.page->begin();
+  REQUIRE(start.comes(settled));
+  start.page->beginEarly(" leaves the country ");
+  REQUIRE(start.comes([&] { return !chosen.empty(); }));
+  CHECK(chosen[0].setup.early == "leaves the country");
+  CHECK(start.page->too_early().isEmpty());
 }

@@ -27,7 +27,8 @@ std::vector<std::string> without_screen(const TemporaryFolder& folder) {
 }
 
 std::vector<std::string> station(const TemporaryFolder& folder) {
-  return {TURNPOINT_UI, "station", "--rig", kSource + "/tests/support/thin_plate.toml", "--db", folder / "db"};
+  return {TURNPOINT_UI, "station",    "--rig", kSource + "/tests/support/thin_plate.toml",
+          "--db",       folder / "db"};
 }
 
 struct Loop {
@@ -37,8 +38,7 @@ struct Loop {
   QCoreApplication application{argc, argv};
 };
 
-/// While it exists, signals have their default action, because the test framework has installed its own
-/// handlers.
+/// While this object exists, signals have their default action instead of the test framework's own handlers.
 struct KernelsWay {
   KernelsWay() { set(SIG_DFL, SIG_DFL); }
   ~KernelsWay() { set(terminate, interrupt); }

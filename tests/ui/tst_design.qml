@@ -2,7 +2,7 @@ import QtQuick
 import QtTest
 import Turnpoint
 
-// The designer of studies in the whole program, operated by taps. `taps` counts them.
+// Tests the designer of studies in the whole program, operated by taps. `taps` counts the taps.
 Item {
     id: stage
     width: 1280
@@ -59,7 +59,8 @@ Item {
             mouseClick(item, item.width / 2, Math.min(item.height / 2, 20))
             ++taps
         }
-        /// The field of the shown page with this key: its name within its table, such as "stop.trials".
+        /// Returns the name of the item that shows a key, such as "stop.trials", of a table on the shown
+        /// page.
         function field(key, table = 0) {
             const groups = designPage().design.groups
             const found = groups[table].fields.find(one => one.path.join(".") === key)
@@ -69,7 +70,10 @@ Item {
             return designPage().design.groups[table].fields.find(one => one.path.join(".") === key).value
         }
         function designPage() { return appears("designPage") }
+        /// Waits for the check, whose remarks rebuild the form. A press during that moment would be lost.
+        function checked() { tryVerify(() => designPage().design.verdict !== "checking", 60000) }
         function tapField(key, table = 0) {
+            checked()
             wait(40)
             reveal(appears(field(key, table)))
             wait(20)
@@ -100,10 +104,13 @@ Item {
             keys(" today?")
             tap("keepEntry")
             tap("section-scenes")
+            tryVerify(() => Object.keys(designPage().design.profiles).length > 0, 20000)
+            checked()
             const area = appears("strip0")
-            wait(50)
             const strip = find(area, "dragArea")
             const mark = find(area, "zoneMark")
+            tryVerify(() => mark.x > 0)                // the strip has its width
+            wait(50)
             const from = mark.x + mark.width / 2
             mousePress(strip, from, strip.height / 2)
             mouseMove(strip, from + 20, strip.height / 2)
@@ -238,9 +245,149 @@ Item {
             verify(designPage().design.unsaved)
             tap("save")
             verify(saved("short") !== before)
-            compare(saved("short").split("\n").filter((line, i) => line !== before.split("\n")[i]).length, 1)
+            const changed = saved("short").split("\n").filter((line, i) => line !== before.split("\n")[i])
+            compare(changed.length, 2)
+            verify(changed[0].startsWith("version = \"1.0.1\"") && changed[1].startsWith("deadline_s"), changed.join("\n"))
+            // the version is raised once, not by every save
+            tapField("deadline_s")
+            type("2")
+            tap("save")
+            verify(saved("short").includes("version = \"1.0.1\""))
             tap("closeDesign")
             appears("studiesPage")
+        }
+
+        function openShort() {
+            tap("bar-studies")
+            tap("changeStudy")
+            appears("section-timing")
+            tap("section-timing")
+            tapField("deadline_s")
+            type("1")
+        }
+        function test_a_file_that_somebody_else_changed_is_not_overwritten_without_asking() {
+            openShort()
+            const mine = designPage().design.text
+            room.entitle("Theirs")
+            tap("save")
+            appears("onDisk")
+            verify(saved("short").includes("Theirs"))
+            tap("keep")                                // loads the file, the safe choice
+            verify(designPage().design.text.includes("Theirs"))
+            verify(!designPage().design.unsaved)
+            tap("undo")
+            compare(designPage().design.text, mine)
+            room.entitle("Theirs again")
+            tap("save")
+            appears("onDisk")
+            tap("confirm")
+            tryVerify(() => !shown("onDisk"))
+            verify(!saved("short").includes("Theirs"))
+            verify(saved("short").includes(mine.split("\n").find(line => line.startsWith("deadline_s"))))
+        }
+
+        function test_the_participants_pages_follow_the_draft_in_each_language_and_size() {
+            begin("contrast", "v")
+            tap("side-pages")
+            const view = appears("previewView")
+            const pages = designPage().design.pages
+            compare(pages.languages, ["en", "de"])
+            tryVerify(() => says("In which interval was it more slippery?", view))
+            tap("pageLanguage-de")
+            tryVerify(() => says("In welchem Durchgang war es glatter?", view))
+            verify(!says("In which interval", view))
+            tap("section-question")
+            tapField("question.de")
+            erase(1)
+            type(" jetzt?")
+            tryVerify(() => says("In welchem Durchgang war es glatter jetzt?", view))
+            tap("page-next")
+            tryVerify(() => view.page.kind === PageModel.Cue)
+            compare([view.width, view.height], [1280, 800])
+            tap("pageSize-previous")
+            compare([view.width, view.height], [800, 480])
+            const rect = view.mapToItem(null, 0, 0, view.width, view.height)
+            verify(rect.width < 600 && Math.abs(rect.width / rect.height - 800 / 480) < 0.01, rect)
+            // the buttons of the picture do nothing; a tap on it leads to the next page
+            tap("previewShield")
+            tryVerify(() => view.page.kind === PageModel.Stimulus)
+            // while the text cannot be read, the pages of before stay
+            tap("section-timing")
+            tapField("deadline_s")
+            erase(3)
+            tap("keepEntry")
+            tryVerify(() => says("These pages are from before."))
+            verify(view.visible)
+        }
+
+        function expected() {
+            const precision = designPage().design.precision
+            tryVerify(() => !precision.busy && precision.sessions === 200, 120000)
+            return precision.numbers
+        }
+        function test_the_expected_precision_follows_the_draft() {
+            begin("boundary", "e")
+            tap("side-precision")
+            const first = JSON.stringify(expected())
+            verify(expected().length > 1)
+            verify(shown("precisionFigure"))
+            const design = designPage().design
+            const text = design.text
+            // Four times the trials halve the spread between sessions.
+            const more = text.replace(/repeats = (\d+)/g, (all, count) => "repeats = " + 4 * Number(count))
+            verify(more !== text)
+            design.setText(more)
+            verify(design.precision.busy)
+            const fit = expected().find(number => number.name.startsWith("fit") && number.name.includes("PSE"))
+            const before = JSON.parse(first).find(number => number.name === fit.name)
+            const ratio = Number(before.spread) / Number(fit.spread)
+            verify(ratio > 1.5 && ratio < 2.8, ratio)
+            // A simulation that was under way is given up, and what it found is not shown.
+            design.setText(more.replace("deadline_s", "# a comment\ndeadline_s"))
+            design.setText(text)
+            compare(JSON.stringify(expected()), first)
+            tap("side-check")
+            verify(!design.precision.watched)
+            design.setText(more)
+            verify(!design.precision.busy)
+        }
+
+        function test_a_scene_is_tried_out_on_a_simulated_rig() {
+            begin("contrast", "f")
+            tap("section-scenes")
+            const scene = designPage().design.groups[0].name
+            tap("feel-" + scene)
+            tryVerify(() => says("there is nothing to feel: 1.5 s, "), 20000)
+            compare(designPage().design.feeling.playing, "")
+            verify(designPage().design.feeling.tones > 0 && designPage().design.feeling.peakPercent > 0)
+        }
+
+        function test_the_text_is_completed_at_the_cursor() {
+            begin("contrast", "c")
+            tap("side-text")
+            const edit = appears("designText")
+            edit.forceActiveFocus()
+            const line = edit.text.indexOf("deadline_s = 3.0")
+            edit.cursorPosition = line
+            for (const key of [Qt.Key_E, Qt.Key_X]) {
+                room.pressKey(key)
+                room.releaseKey(key)
+            }
+            tap("completion-explore_s")
+            verify(edit.text.includes("explore_s = deadline_s"))
+            edit.insert(edit.cursorPosition, "9.5\n")
+            tryVerify(() => designPage().design.text.includes("explore_s = 9.5\ndeadline_s = 3.0"), 5000)
+            edit.cursorPosition = edit.text.indexOf("\n", edit.text.indexOf("response_zero"))
+            edit.remove(edit.text.indexOf("response_zero"), edit.cursorPosition)
+            for (const key of [Qt.Key_R, Qt.Key_E]) {
+                room.pressKey(key)
+                room.releaseKey(key)
+            }
+            tryVerify(() => shown("completion-response_zero"))
+            room.pressKey(Qt.Key_Tab)
+            room.releaseKey(Qt.Key_Tab)
+            tap("completion-go_cue")
+            tryVerify(() => designPage().design.text.includes("response_zero = \"go_cue\""), 5000)
         }
 
         function test_a_screen_reader_finds_every_control_with_a_name() {
@@ -249,6 +396,11 @@ Item {
                 tap("section-" + section)
                 wait(50)
                 compare(inspector.unnamedControls(room.screen), [], section)
+            }
+            for (const side of ["pages", "precision", "text"]) {
+                tap("side-" + side)
+                wait(50)
+                compare(inspector.unnamedControls(room.screen), [], side)
             }
         }
     }

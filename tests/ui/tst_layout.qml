@@ -70,7 +70,7 @@ Item {
         // On a panel of 5 inches, these pages have no room for answers of 20 mm beside everything else.
         readonly property var needSevenInches: ["rating-9", "line-labels", "number", "number-standard", "choices-9",
                                                     "question-number"]
-        // On these pages the text scrolls, and a cue shows that.
+        // On these pages the text scrolls, and a symbol shows that.
         readonly property var scrolling: ["consent-form-long"]
 
         SignalSpy { id: shown; target: script.bridge; signalName: "shown" }

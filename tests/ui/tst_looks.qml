@@ -118,7 +118,7 @@ Item {
         function test_every_text_has_a_contrast_of_seven_to_one_and_is_complete(row) {
             place(row)
             compare(inspector.faintTexts(view, 7), [])
-            // The text of a long consent form is cut off on purpose: it scrolls, and a cue shows that.
+            // The text of a long consent form is cut off on purpose: it scrolls, and a symbol shows that.
             if (row.page !== "consent-form-long") compare(inspector.cutTexts(view), [])
             compare(inspector.brokenWords(view), [])
             for (const drawing of all(view, item => item.lengthMm !== undefined))

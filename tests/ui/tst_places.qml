@@ -221,6 +221,82 @@ Item {
             verify(says("force cells"))
         }
 
+        function test_the_steps_of_the_weights_and_the_calibration_are_in_the_operators_language() {
+            room.addCells()
+            room.calibrate()
+            goTo("rig")
+            tap("screen-de")
+            tryVerify(() => says("noch 30 Tage") && says("Übertragung, Reibung, Schallpegel"))
+            tap("weightsTab")
+            tap("weigh")
+            tryVerify(() => says("Nehmen Sie alles von der Oberfläche."), 20000)
+            tryVerify(() => says("Tausendstel der Speisung"))
+            tap("weightsRead")
+            tryVerify(() => says("Stellen Sie 20 g auf 30 mm vom breiten Rand."), 20000)
+        }
+
+        function enterReading(text) {
+            tap("guideReading")
+            for (const letter of text) tap("letter" + letter)
+            tap("keepEntry")
+        }
+        function test_a_guided_calibration_measures_friction_point_by_point() {
+            room.calibrate()
+            goTo("rig")
+            const guide = find(room.screen, "rigPage").rig.guide
+            tap("guideTab")
+            tap("guide-friction")
+            verify(says("Friction · point 1 of 5"))
+            verify(!find(room.screen, "guideFinish").enabled)
+            tap("guidePlay")
+            tryVerify(() => !guide.playing, 20000)
+            compare(guide.problem, "")
+            enterReading("1.7")                        // relative friction is at most 1.5
+            verify(says("0 … 1.5"))
+            tap("cancelEntry")
+            compare(guide.entered, 0)
+            for (const value of ["0.8", "0,7", "0.5", "0.3"]) {
+                enterReading(value)
+                tap("guideNext")
+            }
+            compare(guide.entered, 4)
+            tap("guideFinish")
+            tryVerify(() => says("Written to rig.calibration-"))
+            verify(shown("guideFigure"))
+            const csv = room.filesIn(".").find(name => name.includes("friction-"))
+            verify(csv, room.filesIn("."))
+            // the readings as they were entered, at the displacements of the tones, and the surface at rest
+            compare(room.startOf(".", csv, 1000).trim().split("\n"), ["displacement_um,relative_friction", "0,1", "0.25,0.8", "0.5,0.7", "1,0.5", "2,0.3"])
+            const made = room.filesIn(".").filter(name => name.includes("calibration-")).pop()
+            const text = room.startOf(".", made, 100000)
+            verify(text.includes("[[transducer]]") && text.includes("sound"), text)  // what was measured before is kept
+            verify(says("response, friction, sound level"))
+        }
+        function test_a_guided_calibration_reads_boundaries_from_the_strip_and_forgets_them_if_left() {
+            goTo("rig")
+            const guide = find(room.screen, "rigPage").rig.guide
+            tap("guideTab")
+            tap("guide-boundaries")
+            const strip = find(appears("sandStrip"), "dragArea")
+            const mark = find(find(room.screen, "sandStrip"), "boundaryMark")
+            const x = mark.x + mark.width / 2
+            mousePress(strip, x, strip.height / 2)
+            mouseMove(strip, x + 40, strip.height / 2)
+            mouseRelease(strip, x + 40, strip.height / 2)
+            const mm = Number(guide.point.value)
+            verify(mm > 150 && mm < 300, mm)
+            verify(says("Reading: " + mm + " mm"))
+            const leave = appears("guideLeave")
+            mouseClick(leave)
+            compare(guide.entered, 1)                  // a tap is not enough
+            mousePress(leave)
+            tryCompare(guide, "chosen", "", 3000)
+            mouseRelease(leave)
+            tap("guide-boundaries")
+            compare(guide.entered, 0)
+            compare(room.filesIn(".").filter(name => name.includes("boundaries-")), [])
+        }
+
         function test_weighing_can_be_stopped_and_writes_nothing_then() {
             room.addCells()
             goTo("rig")

@@ -312,7 +312,7 @@ Item {
             ends()
             verify(says(room.screen, "call the experimenter"))
 
-            // The pages after the last page of the session are also for the operator only.
+            // The pages that can be opened from the end page are also for the operator only.
             for (const way of ["results", "close"]) {
                 tap(way)
                 type("1234")
@@ -406,7 +406,7 @@ Item {
             tryVerify(() => operating.mayBegin, 20000)
             tap("begin")
             appears("codePage")
-            // The keypad must be empty again, and the layout that for right-handers.
+            // The keypad must be empty again, and the layout must be the one for right-handed people.
             compare(find(room.screen, "accept").enabled, false)
             verify(says(room.screen, "right hand"))
             for (const key of "T2") tap("key" + key)

@@ -7,7 +7,8 @@ import pandas as pd
 
 from . import _store
 
-TABLES = ("trials", "intervals", "events", "sessions", "self_tests", "answers", "friction_tables")
+TABLES = ("trials", "intervals", "events", "sessions", "self_tests", "answers", "friction_tables",
+          "programs", "estimates")
 PREFIXED = ("=", "+", "-", "@")  # exports put an apostrophe in front of texts that begin with one of these
 # Columns that are texts even if they look like numbers: a participant's code may be 007.
 TEXTS = ("participant_id participant_code session_id run_mode protocol_id protocol_version protocol_sha256 block_name "
@@ -30,6 +31,8 @@ class Study:
     self_tests: pd.DataFrame  #: one row per check of a self-test before a session
     answers: pd.DataFrame  #: one row per answer to a questionnaire, consent or screening
     friction_tables: pd.DataFrame  #: one row per displacement of a friction table measured in a session
+    programs: pd.DataFrame  #: one row per start of a separate program that chose levels or answered
+    estimates: pd.DataFrame  #: one row per estimate that such a program gave at the end of a block
 
 
 def read(source, *, session="", participant="", protocol="") -> Study:

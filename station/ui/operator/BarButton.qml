@@ -1,7 +1,7 @@
 import QtQuick
 import Turnpoint
 
-// A button of the bar: a symbol above a word.
+// A button of the operator's navigation bar: a symbol above a word.
 Rectangle {
     id: root
     required property Theme theme

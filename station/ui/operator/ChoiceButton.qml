@@ -1,7 +1,7 @@
 import QtQuick
 import Turnpoint
 
-// One of several choices. The chosen one has a tick, because colour alone must not tell which one it is. A
+// A button for one of several choices. A tick marks the chosen one, because colour alone is not enough. A
 // button keeps its width when it is chosen, so that the others do not move under the finger.
 ActionButton {
     id: root

@@ -1,8 +1,8 @@
 import QtQuick
 import Turnpoint
 
-// One value of the form: its name, its value, and what the check says about it. Few words are buttons; everything else
-// opens a dialog.
+// One value in the form of a study: its name, its value, and what the check says about it. If the value is one of at
+// most four words, each word is a button; any other value is entered in a dialog.
 Item {
     id: root
     required property Theme theme
@@ -11,7 +11,7 @@ Item {
     required property var field
     readonly property bool words: field.kind === "boolean" || (field.kind === "word" && field.allowed.length <= 4)
     readonly property bool wrong: field.remarks.some(remark => remark.kind === "problem")
-    /// True for a moment after somebody asked where a problem is.
+    /// True for a moment after the user has tapped a problem, to point out the field that it is about.
     property bool pointedAt: false
     signal editWanted()
     signal picked(word: string)

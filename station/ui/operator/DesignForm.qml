@@ -1,13 +1,13 @@
 import QtQuick
 import Turnpoint
 
-// The tables of one page of the form, with their fields.
+// One page of the form of a study: tables of the protocol file, with their fields.
 Rectangle {
     id: root
     required property Theme theme
     required property Texts texts
     required property DesignController design
-    /// Tables of which all settings are shown, also those that the file does not have.
+    /// The tables that show all possible settings, including those that are not in the file.
     property var opened: ({})
     property var pointed: null
     signal editWanted(group: int, field: var)
@@ -37,10 +37,12 @@ Rectangle {
         const item = find(sheet, field < 0 ? "group" + group : "field" + group + "-" + field)
         if (item) scrollTo(item.mapToItem(sheet, 0, 0).y - theme.controlHeight)
     }
-    /// Shows the tables again if they have changed. The page stays where it was, unless another page was chosen.
+    /// follow() rebuilds the tables if they have changed. It keeps the scroll position, unless another page was
+    /// chosen.
     property string last
     property int section: -1
-    /// True while a mark is dragged. New fields would take it from under the finger.
+    /// True while the finger drags a mark on the drawn surface. The tables are not rebuilt until it ends,
+    /// because that would remove the mark.
     property bool dragging: false
     onDraggingChanged: follow()
     function follow() {
@@ -54,11 +56,11 @@ Rectangle {
         settling.place = null
         settling.restart()
     }
-    /// New fields have their places a moment later. The last wish counts.
+    /// Scrolls a moment later, when new fields have their positions. Only the last request counts.
     Timer {
         id: settling
         property real y
-        /// {group, field} to point at, instead of going to y
+        /// {group, field} to scroll to instead of y
         property var place: null
         interval: 1
         onTriggered: {
@@ -167,6 +169,17 @@ Rectangle {
                             onDraggedChanged: root.dragging = dragged
                             profile: root.design.profiles[table.modelData.name]
                             onMoved: (which, mm) => root.design.change(table.index, which === "zone" ? table.modelData.zone : table.modelData.boundary, mm.toFixed(1))
+                        }
+                    }
+                    Loader {
+                        width: parent.width
+                        active: table.modelData.kind === "scene" && table.modelData.present
+                        visible: active
+                        sourceComponent: DesignFeel {
+                            theme: root.theme
+                            texts: root.texts
+                            feeling: root.design.feeling
+                            scene: table.modelData.name
                         }
                     }
                     Repeater {

@@ -1,7 +1,7 @@
 import QtQuick
 import Turnpoint
 
-// What can be measured, as a list to choose from.
+// Asks what a new study is to measure, with a list of goals.
 Item {
     id: root
     required property Theme theme

@@ -1,16 +1,20 @@
 import QtQuick
+import QtQuick.Window
 import Turnpoint
 
-// The designer of studies: first what to measure, then a form with several pages. Beside the form stand what the check
-// says and the text of the file; on a small screen they are two more pages.
+// The designer of studies. It asks what to measure, and then shows a form with several pages. Beside the form it shows
+// the result of the check or the text of the protocol file; on a small screen these are two more pages.
 Rectangle {
     id: root
     required property DesignController design
     required property real pixelsPerMm
     readonly property bool wide: width > 150 * pixelsPerMm && width > 55 * look.textBody && width > height
-    /// What stands beside the form: check or text. On a small screen, "" if the form is shown.
+    /// What stands beside the form: check, pages, precision or text. On a small screen, "" if the form is shown.
     property string beside: ""
+    readonly property var besides: ["check", "pages", "precision", "text"]
     readonly property string other: beside === "" && wide ? "check" : beside
+    /// For components, in which the name of the id would mean their own property.
+    readonly property Texts phrases: texts
     property string goal
     property var edited: null
     signal closed()
@@ -29,7 +33,8 @@ Rectangle {
     Texts { id: texts; language: OperatorScreen.language }
 
     function trouble() : string {
-        return design.trouble === "taken" ? texts.text("design.taken").arg(naming.typed) : design.trouble === "name" ? texts.text("design.name_of_study") : design.trouble
+        return design.trouble === "taken" ? texts.text("design.taken").arg(naming.typed) : design.trouble === "name" ? texts.text("design.name_of_study")
+            : design.trouble === "on_disk" ? texts.text("design.on_disk_title") : design.trouble
     }
     function nameIt(wish: string, title: string, text: string) {
         naming.wish = wish
@@ -86,7 +91,7 @@ Rectangle {
             ActionButton { objectName: "undo"; theme: look; primary: false; quiet: true; enabled: root.design.canUndo; text: texts.text("design.undo"); onActivated: root.design.undo() }
             ActionButton { objectName: "redo"; theme: look; primary: false; quiet: true; enabled: root.design.canRedo; text: texts.text("design.redo"); onActivated: root.design.redo() }
             ActionButton { objectName: "saveAs"; theme: look; primary: false; text: texts.text("design.save_as"); onActivated: root.nameIt("save", "design.name_of_study", root.design.name) }
-            ActionButton { objectName: "save"; theme: look; enabled: root.design.unsaved; text: texts.text("design.save"); onActivated: root.design.save("") }
+            ActionButton { objectName: "save"; theme: look; enabled: root.design.unsaved; text: texts.text("design.save"); onActivated: root.save() }
             ActionButton { objectName: "closeDesign"; theme: look; primary: false; text: texts.close; onActivated: root.leave() }
         }
         Flickable {
@@ -120,7 +125,7 @@ Rectangle {
                     }
                 }
                 Repeater {
-                    model: root.wide ? [] : ["check", "text"]
+                    model: root.wide ? [] : root.besides
                     ActionButton {
                         required property string modelData
                         objectName: "side-" + modelData
@@ -128,7 +133,7 @@ Rectangle {
                         theme: look
                         primary: root.other === modelData
                         quiet: root.other !== modelData
-                        text: texts.text(modelData === "check" ? "design.check" : "design.text")
+                        text: root.besideName(modelData)
                         onActivated: root.beside = modelData
                     }
                 }
@@ -156,19 +161,19 @@ Rectangle {
             id: side
             anchors { left: root.wide ? form.right : tabs.right; right: parent.right; top: tabs.top; bottom: parent.bottom; leftMargin: look.unit }
             visible: root.other !== ""
-            Row {
+            Flow {
                 id: sides
+                anchors { left: parent.left; right: parent.right }
                 visible: root.wide
-                height: visible ? look.controlHeight : 0
                 spacing: 0.5 * look.unit
                 Repeater {
-                    model: root.wide ? ["check", "text"] : []
+                    model: root.wide ? root.besides : []
                     ChoiceButton {
                         required property string modelData
                         objectName: "side-" + modelData
                         theme: look
                         chosen: root.other === modelData
-                        text: texts.text(modelData === "check" ? "design.check" : "design.text")
+                        text: root.besideName(modelData)
                         onActivated: root.beside = modelData
                     }
                 }
@@ -187,7 +192,30 @@ Rectangle {
             Loader {
                 anchors { fill: parent; topMargin: sides.visible ? sides.height + 0.5 * look.unit : 0 }
                 active: root.other === "text"
-                sourceComponent: DesignText { theme: look; design: root.design }
+                sourceComponent: DesignText { theme: look; texts: root.phrases; design: root.design }
+            }
+            Loader {
+                anchors { fill: parent; topMargin: sides.visible ? sides.height + 0.5 * look.unit : 0 }
+                active: root.other === "pages"
+                sourceComponent: DesignPreview {
+                    theme: look
+                    texts: root.phrases
+                    pages: root.design.pages
+                    here: Qt.size(Screen.width, Screen.height)
+                    stale: root.design.timeline.length === 0
+                }
+            }
+            DesignPrecision {
+                anchors { fill: parent; topMargin: sides.visible ? sides.height + 0.5 * look.unit : 0 }
+                visible: root.other === "precision"
+                theme: look
+                texts: texts
+                precision: root.design.precision
+                Binding {
+                    target: root.design.precision
+                    property: "watched"
+                    value: root.visible && root.other === "precision"
+                }
             }
         }
     }
@@ -239,6 +267,28 @@ Rectangle {
         onConfirmed: root.closed()
     }
 
+    ConfirmDialog {
+        id: onDisk
+        objectName: "onDisk"
+        anchors.fill: parent
+        theme: look
+        title: texts.text("design.on_disk_title")
+        text: texts.text("design.on_disk_text").arg(root.design.name)
+        keepText: texts.text("design.on_disk_load")
+        confirmText: texts.text("design.on_disk_overwrite")
+        onKept: root.design.reload()
+        onConfirmed: root.design.overwrite()
+    }
+
+    Component.onDestruction: design.precision.watched = false
+
+    function save() {
+        if (!design.save("") && design.trouble === "on_disk") onDisk.open()
+    }
+    function besideName(name: string) : string {
+        return name === "check" ? texts.text("design.check") : name === "pages" ? texts.text("design.pages")
+            : name === "precision" ? texts.text("design.precision") : texts.text("design.text")
+    }
     function sectionName(name: string) : string {
         return name === "study" ? texts.text("design.study") : name === "question" ? texts.text("design.question") : name === "scenes" ? texts.text("design.scenes")
             : name === "levels" ? texts.text("design.levels") : name === "blocks" ? texts.text("design.blocks") : name === "timing" ? texts.text("design.timing") : texts.text("design.other")

@@ -1,14 +1,15 @@
 import QtQuick
 import Turnpoint
 
-// The surface with marks that can be dragged: where the boundary is, and where the zone begins. Below it, the profile
-// that the scene has on this rig.
+// A drawing of the surface with two marks that can be dragged: the boundary, and the start of the smooth zone. Below
+// the drawing is the scene's profile on this rig.
 Item {
     id: root
     required property Theme theme
     required property Texts texts
     required property var surface
-    /// Values in mm; negative if the scene does not have one that can be dragged.
+    /// Positions (mm) of the marks for the boundary and for the start of the smooth zone; negative if the scene has no
+    /// such mark.
     property real boundaryMm: -1
     property real zoneMm: -1
     property var profile
@@ -65,7 +66,7 @@ Item {
             }
         }
         Rectangle {
-            // where it is smooth
+            // the smooth part of the surface
             visible: boundary.visible
             readonly property real from: zone.visible ? zone.at : strip.width > 0 ? strip.xOf(0) : 0
             x: Math.min(from, boundary.at)
@@ -102,8 +103,10 @@ Item {
         id: picture
         visible: root.profile !== undefined
         anchors { left: parent.left; right: parent.right; top: strip.bottom; topMargin: 0.5 * root.theme.unit }
-        height: Math.max(18 * root.theme.unit, 9 * root.theme.textSmall)
+        height: Math.max(18 * root.theme.unit, 13 * root.theme.textSmall)
         textPixels: 0.8 * root.theme.textSmall
+        dark: root.theme.dark
+        paper: root.theme.raised
         picture: root.profile
     }
 }

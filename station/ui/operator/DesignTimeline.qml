@@ -1,8 +1,8 @@
 import QtQuick
 import Turnpoint
 
-// A typical trial from left to right: the pause before it, its intervals, and below them the time in which an answer
-// counts.
+// Draws a typical trial as a timeline: the pause before it, its intervals, and below them the time in which an
+// answer counts.
 Item {
     id: root
     required property Theme theme

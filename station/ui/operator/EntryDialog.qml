@@ -1,8 +1,8 @@
 import QtQuick
 import Turnpoint
 
-// Asks for a line of text, with a keyboard on the screen and with suggestions. It covers the page. With `pick`, one
-// of the suggestions is the answer; with `list`, several of them are, and the keyboard is not needed.
+// Asks for a line of text, with a keyboard on the screen and with suggestions. It covers the page. With `pick`, the
+// user taps one of the suggestions instead of typing; with `list`, several of them.
 Rectangle {
     id: root
     required property Theme theme
@@ -13,9 +13,9 @@ Rectangle {
     property bool emptyAllowed: false
     property bool pick: false
     property bool list: false
-    /// True for sentences, which need capitals and more signs.
+    /// True if sentences are typed. The keyboard then has capitals and more signs.
     property bool sentences: false
-    /// What the line means, and why the last one was refused.
+    /// An explanation of what to type, and the reason why the last text was refused.
     property string help
     property string refused
     signal accepted(text: string)

@@ -1,7 +1,7 @@
 import QtQuick
 import Turnpoint
 
-// Labels and values under a heading, for the operator.
+// A table of labels and values under a heading, for the operator's pages.
 Column {
     id: root
     required property Theme theme

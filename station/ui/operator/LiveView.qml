@@ -2,7 +2,7 @@ import QtQuick
 import Turnpoint
 
 // Shows a running session to the operator: the current scenes, the progress of the procedure, how much of
-// each limit is used up, and the available actions. The texts are in English, like those of the command line.
+// each limit is used up, and the available actions.
 // The model delays updates while a stimulus runs; during an adjustment it updates only the texts.
 Rectangle {
     id: root
@@ -18,10 +18,12 @@ Rectangle {
     readonly property bool waiting: bridge.page.kind === PageModel.Paused || bridge.page.kind === PageModel.Fault
     onOverChanged: stopping.visible = false
     readonly property bool over: bridge.page.kind === PageModel.End || bridge.page.kind === PageModel.Failed
-    readonly property var notes: ["participant asked", "noise in the room", "hand moved away", "surface wiped"]
+    readonly property var notes: [texts.text("live.note_one"), texts.text("live.note_two"), texts.text("live.note_three"), texts.text("live.note_four")]
     signal closed()
 
     color: look.paper
+    LayoutMirroring.enabled: texts.mirrored
+    LayoutMirroring.childrenInherit: true
 
     function keep(text: string) {
         root.live.annotate(text)
@@ -36,7 +38,7 @@ Rectangle {
         pixelsPerMm: root.pixelsPerMm
         dense: true
     }
-    Texts { id: texts; language: "en" }
+    Texts { id: texts; language: OperatorScreen.language }
     RunModeFrame {
         id: frame
         anchors.fill: parent
@@ -54,7 +56,7 @@ Rectangle {
             anchors { left: parent.left; top: parent.top; topMargin: root.tall ? 0 : (parent.height - height) / 2 }
             width: root.tall ? parent.width : parent.width - buttons.width - look.unit
             // Only this page shows the word "LIVE"; the participant's pages of a live session leave it out.
-            text: (root.bridge.page.runMode === "live" ? "LIVE   " : "") + (root.live.heading !== "" ? root.live.heading : "No trial yet")
+            text: (root.bridge.page.runMode === "live" ? "LIVE   " : "") + (root.live.heading !== "" ? root.live.heading : texts.text("live.none"))
             color: look.ink
             font { pixelSize: look.textBody; weight: Font.Bold }
             maximumLineCount: 2
@@ -78,7 +80,7 @@ Rectangle {
                 theme: look
                 primary: root.waiting
                 glyph: root.waiting ? "" : "bars"
-                text: root.waiting ? "Go on" : "Pause"
+                text: root.waiting ? texts.text("live.go_on") : texts.pause
                 onActivated: root.waiting ? root.live.proceed() : root.live.pause()
             }
             ActionButton {
@@ -88,7 +90,7 @@ Rectangle {
                 primary: false
                 enabled: root.live.held
                 holdMs: 600
-                text: "Hold to repeat"
+                text: texts.text("live.repeat")
                 onActivated: root.live.repeat()
             }
             ActionButton {
@@ -96,7 +98,7 @@ Rectangle {
                 theme: look
                 primary: false
                 visible: !root.over
-                text: "Note"
+                text: texts.text("operator.note")
                 onActivated: root.noting = true
             }
             ActionButton {
@@ -105,7 +107,7 @@ Rectangle {
                 theme: look
                 primary: false
                 holdMs: 900
-                text: "Hold to arm"
+                text: texts.text("live.arm")
                 onActivated: root.live.arm()
             }
             ActionButton {
@@ -114,7 +116,7 @@ Rectangle {
                 theme: look
                 primary: false
                 danger: true
-                text: "Stop …"
+                text: texts.text("live.stop")
                 onActivated: stopping.open()
             }
             ActionButton {
@@ -142,6 +144,8 @@ Rectangle {
                 width: surfaces.width
                 height: (surfaces.height - (root.live.surfaces.length - 1) * surfaces.spacing) / Math.max(1, root.live.surfaces.length)
                 textPixels: root.small
+                dark: look.dark
+                paper: look.raised
                 picture: modelData
             }
         }
@@ -160,7 +164,8 @@ Rectangle {
             height: visible ? look.controlHeight : 0
             spacing: 0.6 * look.unit
             Repeater {
-                model: root.live.hasStrip ? ["Profile", "Levels", "Response times", "Friction"] : ["Profile", "Levels", "Response times"]
+                model: root.live.hasStrip ? [texts.text("live.profile"), texts.text("live.levels"), texts.text("live.times"), texts.text("live.friction")]
+                    : [texts.text("live.profile"), texts.text("live.levels"), texts.text("live.times")]
                 ActionButton {
                     required property int index
                     required property string modelData
@@ -184,6 +189,8 @@ Rectangle {
             width: pictures.single || !root.live.hasStrip ? place.width : pictures.half
             height: pictures.single ? place.height : pictures.cell
             textPixels: root.small
+            dark: look.dark
+            paper: look.raised
             picture: root.live.profile
         }
         FigureView {
@@ -193,6 +200,8 @@ Rectangle {
             width: pictures.single ? place.width : pictures.half
             height: pictures.single ? place.height : pictures.cell
             textPixels: root.small
+            dark: look.dark
+            paper: look.raised
             picture: root.live.strip
         }
         FigureView {
@@ -201,6 +210,8 @@ Rectangle {
             width: pictures.single ? place.width : pictures.half
             height: pictures.single ? place.height : place.height - pictures.cell - 0.6 * look.unit
             textPixels: root.small
+            dark: look.dark
+            paper: look.raised
             picture: root.live.trace
         }
         FigureView {
@@ -209,6 +220,8 @@ Rectangle {
             width: pictures.single ? place.width : pictures.half
             height: pictures.single ? place.height : place.height - pictures.cell - 0.6 * look.unit
             textPixels: root.small
+            dark: look.dark
+            paper: look.raised
             picture: root.live.times
         }
     }
@@ -234,7 +247,7 @@ Rectangle {
                     objectName: "picturesLater"
                     visible: root.bridge.page.kind === PageModel.Adjust
                     width: parent.width
-                    text: "During the trial only the texts are updated; the figures follow afterwards."
+                    text: texts.text("live.texts_only")
                     color: look.ink
                     font.pixelSize: look.textSmall
                     wrapMode: Text.Wrap
@@ -244,15 +257,15 @@ Rectangle {
                     visible: root.over
                     width: parent.width
                     text: root.bridge.page.kind === PageModel.Failed
-                        ? "The session had to stop: " + root.bridge.page.text + " What has been stored is safe."
+                        ? texts.text("live.had_to_stop").arg(root.bridge.page.text)
                         : root.bridge.page.resumable
-                        ? "The session was stopped. All answers are saved. It can be continued: press Resume on the start page, or run turnpoint resume."
-                        : "The session has ended. All answers are saved."
+                        ? texts.text("live.stopped")
+                        : texts.text("live.ended")
                     color: look.ink
                     font { pixelSize: look.textBody; weight: Font.DemiBold }
                     wrapMode: Text.Wrap
                 }
-                FactTable { width: parent.width; theme: look; heading: "Course"; facts: root.live.course }
+                FactTable { width: parent.width; theme: look; heading: texts.text("live.course"); facts: root.live.course }
                 Row {
                     objectName: "gauges"
                     visible: root.bridge.page.guided && !root.over
@@ -261,21 +274,21 @@ Rectangle {
                     GuidanceBar {
                         width: (parent.width - look.unit) / 2
                         theme: look
-                        label: "Force now"
+                        label: texts.text("live.force")
                         bar: root.bridge.page.forceBar
                         frozen: root.bridge.page.barsFrozen
                     }
                     GuidanceBar {
                         width: (parent.width - look.unit) / 2
                         theme: look
-                        label: "Speed now"
+                        label: texts.text("live.speed")
                         bar: root.bridge.page.speedBar
                         frozen: root.bridge.page.barsFrozen
                     }
                 }
-                FactTable { visible: root.live.sensors.length > 0; width: parent.width; theme: look; heading: "Sensors, last trial"; facts: root.live.sensors }
-                FactTable { width: parent.width; theme: look; heading: "Limits used"; facts: root.live.limits }
-                FactTable { width: parent.width; theme: look; heading: "On the surface"; facts: root.live.scene; labelWidth: 0.3 * width }
+                FactTable { visible: root.live.sensors.length > 0; width: parent.width; theme: look; heading: texts.text("live.sensors"); facts: root.live.sensors }
+                FactTable { width: parent.width; theme: look; heading: texts.text("live.limits"); facts: root.live.limits }
+                FactTable { width: parent.width; theme: look; heading: texts.text("live.surface"); facts: root.live.scene; labelWidth: 0.3 * width }
             }
         }
         ScrollCue { theme: look; place: scroll }
@@ -341,13 +354,13 @@ Rectangle {
                     objectName: "keepNote"
                     theme: look
                     enabled: note.text !== ""
-                    text: "Save the note"
+                    text: texts.text("live.save_note")
                     onActivated: root.keep(note.text)
                 }
                 ActionButton {
                     theme: look
                     primary: false
-                    text: "Cancel"
+                    text: texts.text("operator.cancel")
                     onActivated: root.noting = false
                 }
             }
@@ -358,10 +371,10 @@ Rectangle {
         objectName: "stopping"
         anchors.fill: parent
         theme: look
-        title: "Stop the session?"
-        text: "No more trials run. All answers so far are saved, and the session can be continued later."
-        keepText: "Do not stop"
-        confirmText: "Stop the session"
+        title: texts.text("live.stop_title")
+        text: texts.text("live.stop_text")
+        keepText: texts.text("live.stop_keep")
+        confirmText: texts.text("live.stop_do")
         onConfirmed: root.live.stop()
     }
 }

@@ -2,7 +2,7 @@ import QtQuick
 import QtQuick.Window
 import Turnpoint
 
-// The operator's own screen beside the participant's.
+// The window with the operator's live view, on a second screen.
 Window {
     id: root
     required property LiveModel live

@@ -32,13 +32,14 @@ Rectangle {
         function onRefused() { root.wrong = true }
     }
 
+    Texts { id: texts; language: OperatorScreen.language }
     MouseArea { anchors.fill: parent }
     Column {
         anchors.centerIn: parent
         spacing: 0.9 * root.theme.unit
         PlainText {
             anchors.horizontalCenter: parent.horizontalCenter
-            text: "Operator's code"
+            text: texts.text("operator.gate_title")
             color: root.theme.ink
             font { pixelSize: 0.8 * root.theme.textTitle; weight: Font.Bold }
         }
@@ -47,9 +48,9 @@ Rectangle {
             anchors.horizontalCenter: parent.horizontalCenter
             // One dot for each typed digit. There are no empty places, so nobody learns the length of the
             // right code.
-            text: root.lock.waitS > 0 ? "Wrong code. Wait " + root.lock.waitS + " s."
-                : root.lock.checking ? "Checking …" : root.wrong ? "Wrong code. Try again."
-                : root.typed === "" ? "Type the digits, then OK." : "•".repeat(root.typed.length)
+            text: root.lock.waitS > 0 ? texts.text("operator.gate_wait").arg(root.lock.waitS)
+                : root.lock.checking ? texts.text("operator.checking") : root.wrong ? texts.text("operator.gate_wrong")
+                : root.typed === "" ? texts.text("operator.gate_type") : "•".repeat(root.typed.length)
             color: root.wrong || root.lock.waitS > 0 ? root.theme.wrong : root.theme.ink
             font { pixelSize: root.theme.textBody; weight: Font.DemiBold }
         }
@@ -64,7 +65,7 @@ Rectangle {
                     objectName: "digit" + modelData
                     enabled: root.lock.waitS === 0 && !root.lock.checking
                     width: 11 * root.theme.unit
-                    height: Math.min(root.theme.controlHeight, 7 * root.theme.unit)
+                    height: Math.min(root.theme.controlHeight, 5.8 * root.theme.unit)
                     theme: root.theme
                     primary: false
                     text: modelData === "⌫" ? "" : modelData
@@ -81,8 +82,8 @@ Rectangle {
             theme: root.theme
             primary: false
             quiet: true
-            height: Math.min(root.theme.controlHeight, 7 * root.theme.unit)
-            text: "Back"
+            height: Math.min(root.theme.controlHeight, 5.8 * root.theme.unit)
+            text: texts.back
             onActivated: root.abandoned()
         }
     }

@@ -38,7 +38,7 @@ Rectangle {
         font.pixelSize: look.textBody
         verticalAlignment: Text.AlignVCenter
     }
-    // Large text on a small screen needs more height than there is; the page then scrolls.
+    // Large text on a small screen may not fit into the height of the page; the page then scrolls.
     Flickable {
         id: wholePage
         anchors.fill: parent
@@ -47,7 +47,8 @@ Rectangle {
         boundsBehavior: Flickable.StopAtBounds
         Item {
             id: page
-            /// Height of everything but the list and the summary, which need about five lines each.
+            /// Height of everything except the list of protocols and the summary, which need about five lines
+            /// each.
             readonly property real fixed: header.height + interrupted.height + footer.height + 2 * look.margin + 4 * root.gap
             width: wholePage.width
             height: Math.max(root.height, fixed + (root.tall ? 16 : 8) * look.textBody)
@@ -172,6 +173,36 @@ Rectangle {
                                 }
                             }
                         }
+                        // The session is refused, but the operator may overrule that with a reason.
+                        Row {
+                            visible: root.operating.tooEarly !== ""
+                            width: sheet.width
+                            spacing: 0.8 * look.unit
+                            Glyph {
+                                id: earlySign
+                                height: 1.4 * look.textBody
+                                name: "alert"
+                                color: look.wrong
+                            }
+                            PlainText {
+                                width: parent.width - earlySign.width - parent.spacing
+                                text: root.operating.tooEarly
+                                color: look.wrong
+                                font { pixelSize: look.textSmall; weight: Font.DemiBold }
+                                wrapMode: Text.Wrap
+                            }
+                        }
+                        ActionButton {
+                            objectName: "beginEarly"
+                            visible: root.operating.tooEarly !== ""
+                            theme: look
+                            enabled: root.operating.mayBegin
+                            primary: false
+                            danger: true
+                            holdMs: 900
+                            text: texts.text("operator.hold_early")
+                            onActivated: early.open("")
+                        }
                         FactTable {
                             width: parent.width
                             theme: look
@@ -289,7 +320,8 @@ Rectangle {
                     }
                     Item {
                         id: last
-                        /// True if everything of the last row fits beside the button that begins.
+                        /// True if the last row has room for all its items beside the button that begins the
+                        /// session.
                         readonly property bool wide: mode.implicitWidth + arm.implicitWidth + begin.width + 4 * root.gap <= width
                         width: parent.width
                         height: wide ? look.controlHeight : ready.height + root.gap + begin.height
@@ -342,6 +374,18 @@ Rectangle {
         }
     }
     ScrollCue { theme: look; place: wholePage }
+    EntryDialog {
+        id: early
+        objectName: "early"
+        anchors.fill: parent
+        theme: look
+        sentences: true
+        title: texts.text("operator.early_title")
+        help: root.operating.tooEarly
+        keepText: texts.text("operator.begin_early")
+        cancelText: texts.text("operator.cancel")
+        onAccepted: text => root.operating.beginEarly(text)
+    }
 
     Rectangle {
         visible: root.typing

@@ -140,6 +140,8 @@ Rectangle {
             anchors { left: parent.left; right: parent.right; top: parent.top }
             height: 0.27 * parent.height
             textPixels: Math.max(0.8 * look.textSmall, 2 * root.pixelsPerMm)
+            dark: look.dark
+            paper: look.raised
             picture: root.controller.surface
         }
         FigureView {
@@ -147,11 +149,15 @@ Rectangle {
             anchors { left: parent.left; right: parent.right; top: surface.bottom; topMargin: 0.6 * look.unit }
             height: 0.36 * parent.height
             textPixels: Math.max(0.8 * look.textSmall, 2 * root.pixelsPerMm)
+            dark: look.dark
+            paper: look.raised
             picture: root.controller.profile
         }
         FigureView {
             anchors { left: parent.left; right: parent.right; top: profile.bottom; bottom: parent.bottom; topMargin: 0.6 * look.unit }
             textPixels: Math.max(0.8 * look.textSmall, 2 * root.pixelsPerMm)
+            dark: look.dark
+            paper: look.raised
             picture: root.controller.spectrum
         }
         Row {

@@ -91,6 +91,8 @@ Rectangle {
         width: root.tall ? body.width : 0.6 * body.width - look.unit
         height: (root.tall ? 0.55 : 1) * body.height - tabs.height - look.unit
         textPixels: Math.max(0.85 * look.textSmall, 2 * root.pixelsPerMm)
+        dark: look.dark
+        paper: look.raised
         picture: root.report.pictures[Math.min(root.shown, root.report.pictures.length - 1)] ?? ""
     }
     Rectangle {

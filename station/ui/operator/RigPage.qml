@@ -1,8 +1,8 @@
 import QtQuick
 import Turnpoint
 
-// The operator's page about the rig: its calibration, the findings of the doctor and the self-test, and
-// settings for how the operator's pages look.
+// The operator's page about the rig: its calibration, the findings of `turnpoint doctor` and of the
+// self-test, and settings for how the operator's pages look.
 Rectangle {
     id: root
     required property RigController rig
@@ -11,11 +11,25 @@ Rectangle {
     property string tab: "doctor"
     readonly property bool testing: tab === "selfTest"
     readonly property bool weighing: tab === "weights"
+    readonly property bool guiding: tab === "guide"
     readonly property var languages: [{ code: "en", name: "English" }, { code: "de", name: "Deutsch" }, { code: "es", name: "Español" },
                                       { code: "ja", name: "日本語" }, { code: "zh", name: "中文" }, { code: "ar", name: "العربية" }]
 
     color: look.paper
+    LayoutMirroring.enabled: texts.mirrored
+    LayoutMirroring.childrenInherit: true
     Component.onCompleted: rig.open()
+
+    /// What the operator is asked to do with the weights.
+    readonly property var weightStep: rig.step
+    readonly property var calibrationFacts: rig.calibration
+    function step() : string {
+        const step = weightStep
+        const asked = step.tare ? texts.text("operator.weights_clear")
+            : step.pull === 0 ? texts.text("operator.weights_put").arg(step.grams).arg(step.mm)
+            : texts.text(step.pull > 0 ? "operator.weights_pull_narrow" : "operator.weights_pull_wide").arg(step.grams).arg(step.mm).arg(Math.abs(step.pull))
+        return (step.trouble !== "" ? texts.text("operator.weights_repair").arg(step.trouble) + "\n" : step.remark !== "" ? step.remark + "\n" : "") + asked
+    }
 
     Theme {
         id: look
@@ -43,7 +57,15 @@ Rectangle {
             font { pixelSize: look.textBody; weight: Font.DemiBold }
             wrapMode: Text.Wrap
         }
-        FactTable { width: state.inner; theme: look; facts: root.rig.calibration; labelWidth: 0.3 * width }
+        FactTable {
+            width: state.inner
+            theme: look
+            labelWidth: 0.3 * width
+            facts: root.calibrationFacts.map(fact => ({
+                label: texts.text(fact.label),
+                value: fact.parts.length > 0 ? fact.parts.map(part => texts.text(part)).join(", ") : fact.text === "" ? fact.value : texts.text(fact.text).arg(fact.value)
+            }))
+        }
         PlainText {
             width: state.inner
             text: root.rig.path
@@ -116,10 +138,20 @@ Rectangle {
         spacing: look.unit
         ChoiceButton { objectName: "doctorTab"; theme: look; chosen: root.tab === "doctor"; text: texts.text("operator.doctor"); onActivated: root.tab = "doctor" }
         ChoiceButton { objectName: "selfTestTab"; theme: look; chosen: root.testing; text: texts.text("operator.self_test"); onActivated: root.tab = "selfTest" }
+        ChoiceButton { objectName: "guideTab"; theme: look; enabled: root.rig.busy === ""; chosen: root.guiding; text: texts.text("operator.guide"); onActivated: root.tab = "guide" }
         ChoiceButton { objectName: "weightsTab"; visible: root.rig.hasCells; theme: look; chosen: root.weighing; text: texts.text("operator.weights"); onActivated: root.tab = "weights" }
+    }
+    CalibrationSteps {
+        objectName: "calibrationSteps"
+        visible: root.guiding
+        anchors { left: results.left; right: results.right; top: results.top; bottom: parent.bottom; bottomMargin: look.margin }
+        theme: look
+        texts: texts
+        guide: root.rig.guide
     }
     OperatorCard {
         id: results
+        visible: !root.guiding
         anchors { left: root.tall ? parent.left : state.right; right: parent.right; top: tabs.bottom; bottom: begin.top; margins: look.margin; topMargin: look.unit; bottomMargin: look.unit; leftMargin: root.tall ? look.margin : look.unit }
         theme: look
         PlainText {
@@ -128,7 +160,7 @@ Rectangle {
             text: root.rig.asked === "press_stop" ? texts.text("operator.press_stop")
                 : root.rig.asked === "release_stop" ? texts.text("operator.release_stop")
                 : root.rig.asked === "press_button" ? texts.text("operator.press_button").arg(root.rig.askedButton)
-                : root.rig.asked !== "" ? root.rig.instruction
+                : root.rig.asked !== "" ? root.step()
                 : root.rig.busy !== "" ? texts.text("operator.working")
                 : root.weighing ? texts.text("operator.weights_text")
                 : root.testing ? texts.text("operator.self_test_text") : texts.text("operator.doctor_text")
@@ -138,9 +170,9 @@ Rectangle {
         }
         PlainText {
             objectName: "weightsReading"
-            visible: root.rig.busy === "weights" && root.rig.reading !== ""
+            visible: root.rig.busy === "weights" && root.rig.reading.length > 0
             width: results.inner
-            text: texts.text("operator.weights_now").arg(root.rig.reading)
+            text: root.rig.reading.length === 3 ? texts.text(root.weightStep.converter ? "operator.weights_converter" : "operator.weights_cells").arg(root.rig.reading[0]).arg(root.rig.reading[1]).arg(root.rig.reading[2]) : root.rig.reading.join("")
             color: look.ink
             font.pixelSize: look.textBody
             wrapMode: Text.Wrap
@@ -164,7 +196,8 @@ Rectangle {
                 required property int index
                 readonly property string state: modelData.status ?? modelData.verdict
                 objectName: "finding" + index
-                // The findings are in English, so they are not mirrored.
+                // The findings are in English, so they are not mirrored on a page that is read from right to
+                // left.
                 LayoutMirroring.enabled: false
                 LayoutMirroring.childrenInherit: true
                 width: results.inner
@@ -189,7 +222,7 @@ Rectangle {
                         font { pixelSize: look.textBody; weight: Font.Bold }
                     }
                 }
-                // A bar for the reading, from 0 to its limit.
+                // A bar that shows the check's reading on a scale from 0 to its limit.
                 Rectangle {
                     objectName: visible ? "gauge" + finding.index : ""
                     visible: (finding.modelData.share ?? -1) >= 0
@@ -225,6 +258,7 @@ Rectangle {
     }
     Flow {
         id: begin
+        visible: !root.guiding
         anchors { left: results.left; right: parent.right; bottom: parent.bottom; margins: look.margin; leftMargin: 0 }
         layoutDirection: Qt.RightToLeft
         spacing: look.unit

@@ -14,7 +14,7 @@ Rectangle {
     /// name of the page that is shown: run, studies, sessions or rig
     property string shown: "run"
     readonly property bool tall: height > width
-    readonly property bool busy: rig.busy !== "" || sessions.busy || operating.preparing
+    readonly property bool busy: rig.busy !== "" || rig.guide.playing || design.feeling.playing !== "" || sessions.busy || operating.preparing
     readonly property var places: [{ name: "run", glyph: "run" }, { name: "studies", glyph: "sheet" }, { name: "sessions", glyph: "list" }, { name: "rig", glyph: "gauge" }]
 
     color: look.paper

@@ -2,6 +2,7 @@
 
 #include <sstream>
 
+#include "station/programs/programs.hpp"
 #include "station/setup/prepare.hpp"
 #include "station/system/fonts.hpp"
 
@@ -9,17 +10,18 @@ namespace turnpoint::ui {
 
 namespace {
 
-/// Number of sessions to simulate for the number of trials and the duration on the start page. Five are
-/// simulated quickly, and give the duration to within some minutes.
+/// The number of trials and the duration that the start page shows come from this number of simulated
+/// sessions. Five take little time and give the duration to within some minutes.
 constexpr int kSessions = 5;
 
 simulation::CheckOptions options() {
   simulation::CheckOptions options{kSessions};
   options.load_rig = [](const std::string& path) {
-    std::ostringstream messages;  // the page says elsewhere which calibration is used
+    std::ostringstream messages;  // not shown, because the page says elsewhere which calibration is used
     return setup::calibrated_rig(path, "", messages);
   };
   options.drawable = system::drawable;
+  options.try_programs = programs::problems_of;
   return options;
 }
 

@@ -7,7 +7,7 @@
 
 namespace turnpoint::ui {
 
-/// Checks a protocol file on a rig file; like simulation::check().
+/// A function that checks a protocol file with a rig file, like simulation::check().
 using Checker = std::function<simulation::Check(const std::string& protocol, const std::string& rig,
                                                 const std::stop_token& stop)>;
 
@@ -16,7 +16,7 @@ using Checker = std::function<simulation::Check(const std::string& protocol, con
 simulation::Check check_protocol(const std::string& protocol, const std::string& rig,
                                  const std::stop_token& stop);
 
-/// Checks the text of a protocol that need not be saved. `path` is the file name in messages.
+/// A function that checks the text of a protocol, which need not be saved. Messages name `path` as the file.
 using SourceChecker = std::function<simulation::Check(const std::string& source, const std::string& path,
                                                       const std::string& rig, const std::stop_token& stop)>;
 simulation::Check check_source(const std::string& source, const std::string& path, const std::string& rig,

@@ -1,7 +1,6 @@
 #include "station/ui/operator/design_controller.hpp"
 
 #include <QFileInfo>
-#include <QRegularExpression>
 #include <algorithm>
 #include <exception>
 #include <sstream>
@@ -10,9 +9,9 @@
 #include "station/design/goals.hpp"
 #include "station/desk/scene_figures.hpp"
 #include "station/desk/trial_timeline.hpp"
+#include "station/maintenance/play_armed.hpp"
 #include "station/setup/prepare.hpp"
 #include "station/system/read_file.hpp"
-#include "station/system/write_file.hpp"
 #include "station/text/toml.hpp"
 #include "station/ui/operator/design_lists.hpp"
 #include "station/ui/operator/figure_view.hpp"
@@ -24,11 +23,6 @@ namespace {
 rig::Rig rig_without_messages(const std::string& path) {
   std::ostringstream messages;
   return setup::calibrated_rig(path, "", messages);
-}
-
-bool is_name(const QString& name) {
-  static const QRegularExpression allowed("^[A-Za-z0-9_-]{1,64}$");
-  return allowed.match(name).hasMatch();
 }
 
 /// The first problem of a value that was refused, without the name of a file.
@@ -67,6 +61,9 @@ void DesignController::close() {
   draft_.reset();
   check_job_.abandon();
   profile_job_.abandon();
+  pages_.forget();
+  precision_.forget();
+  feeling_.forget();
   stage_.clear();
   trouble_.clear();
   Q_EMIT changed();
@@ -79,7 +76,7 @@ bool DesignController::make(const QString& goal, const QString& name) try {
   const auto path = path_for(name.toStdString());
   if (QFileInfo::exists(QString::fromStdString(path))) return refuse("taken");
   const auto source = system::read_file(place_.templates + "/" + chosen->file + ".toml");
-  saved_.clear();
+  saved_.clear(), old_version_.clear();
   begin(design::study_from(*chosen, source, name.toStdString()), path);
   return true;
 } catch (const std::exception& error) {
@@ -90,6 +87,10 @@ bool DesignController::open(const QString& path) try {
   const auto text = text::read_text_file(path.toStdString());
   saved_ = text;
   begin(text, path.toStdString());
+  old_version_.clear();
+  if (draft_->document() != nullptr)
+    if (const auto* version = draft_->document()->find({"protocol", "version"}); version != nullptr)
+      old_version_ = draft_->document()->value(*version).string;
   return true;
 } catch (const std::exception& error) {
   return refuse(error.what());
@@ -98,7 +99,8 @@ bool DesignController::open(const QString& path) try {
 void DesignController::begin(std::string text, const std::string& path) {
   if (!schema_) schema_.emplace(system::read_file(place_.templates + "/protocol.schema.json"));
   if (surface_.isEmpty()) {
-    const auto outline = desk::outline_of(rig_without_messages(place_.rig));
+    rig_ = rig_without_messages(place_.rig);
+    const auto outline = desk::outline_of(*rig_);
     surface_ = {{"lengthMm", outline.length_mm},
                 {"wideHalfWidthMm", outline.wide_half_width_mm},
                 {"narrowHalfWidthMm", outline.narrow_half_width_mm},
@@ -120,14 +122,18 @@ void DesignController::take_change(std::string text) {
   read_again();
 }
 
-/// Shows at once what the reader says about the text, and starts the check, which takes longer.
+/// Reads the text, shows the reader's remarks at once, and starts the check, which takes longer.
 void DesignController::read_again() {
   remarks_.clear();
   words_ = {};
   checking_ = false;
   timeline_.clear();
   try {
-    timeline_ = to_list(desk::trial_timeline(protocol::parse(draft_->text(), path_)));
+    const auto protocol = protocol::parse(draft_->text(), path_);
+    timeline_ = to_list(desk::trial_timeline(protocol));
+    pages_.follow(protocol, *rig_);
+    precision_.follow(protocol);
+    feeling_.follow(protocol, place_.rig, maintenance::can_be_felt(*rig_));
     checking_ = true;
   } catch (const text::BadInput& bad) {
     for (const auto& problem : bad.problems()) remarks_.push_back({Kind::problem, problem});
@@ -185,7 +191,7 @@ void DesignController::start_profiles() {
               to_variant(desk::drawing_of(desk::profile_figure({look})));
       }
     } catch (const std::exception&) {
-      // The check says what is wrong; without a plan there is no profile to show.
+      // A scene that cannot be planned has no profile. The check reports what is wrong.
     }
     return [this, profiles] {
       profiles_ = profiles;
@@ -274,30 +280,6 @@ void DesignController::redo() {
 
 void DesignController::setText(const QString& text) {
   if (draft_) take_change(text.toStdString());
-}
-
-bool DesignController::save(const QString& name) try {
-  if (!draft_) return false;
-  auto path = path_;
-  if (!name.isEmpty() && name.toStdString() != name_) {
-    if (!is_name(name)) return refuse("name");
-    path = path_for(name.toStdString());
-    if (QFileInfo::exists(QString::fromStdString(path))) return refuse("taken");
-    if (draft_->document() == nullptr) return refuse(QString::fromStdString(draft_->problems().front().what));
-    take_change(draft_->document()->with({"protocol", "id"}, design::toml_string(name.toStdString())));
-  }
-  if (!place_.folder.empty()) system::make_folder(place_.folder);
-  system::write_file(path, draft_->text());
-  path_ = path;
-  name_ = QFileInfo(QString::fromStdString(path)).completeBaseName().toStdString();
-  saved_ = draft_->text();
-  saved_as_ = QString::fromStdString(path);
-  trouble_.clear();
-  Q_EMIT changed();
-  Q_EMIT saved();
-  return true;
-} catch (const std::exception& error) {
-  return refuse(error.what());
 }
 
 }  // namespace turnpoint::ui

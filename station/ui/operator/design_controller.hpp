@@ -12,12 +12,16 @@
 #include "station/design/form.hpp"
 #include "station/desk/choices.hpp"
 #include "station/desk/preview.hpp"
+#include "station/rig/rig.hpp"
 #include "station/ui/operator/check_protocol.hpp"
+#include "station/ui/operator/feeling.hpp"
+#include "station/ui/operator/pages_preview.hpp"
+#include "station/ui/operator/precision.hpp"
 #include "station/ui/platform/newest_job.hpp"
 
 namespace turnpoint::ui {
 
-/// What the designer of studies needs to know of the station.
+/// The files and folders that the designer of studies uses.
 struct DesignPlace {
   std::string folder;     ///< where new studies are saved
   std::string rig;        ///< the rig on which a study is checked
@@ -31,7 +35,7 @@ class DesignController : public QObject {
   Q_OBJECT
   QML_ELEMENT
   QML_UNCREATABLE("made by the program")
-  /// goals (what to measure?), form, or "" if there is nothing to do
+  /// what the page shows: goals (the choice of what to measure), form, or "" if no study is open
   Q_PROPERTY(QString stage READ stage NOTIFY changed)
   Q_PROPERTY(QString name READ name NOTIFY changed)
   /// a name for a new study, from the command line
@@ -41,18 +45,18 @@ class DesignController : public QObject {
   Q_PROPERTY(int section READ section NOTIFY changed)
   /// tables of the chosen page, with their fields; see group_of() in design_lists.cpp
   Q_PROPERTY(QVariantList groups READ groups NOTIFY changed)
-  /// what the check says as {kind: problem | warning | note, line, what, hint}
+  /// remarks of the check as {kind: problem | warning | note, line, what, hint}
   Q_PROPERTY(QVariantList remarks READ remarks NOTIFY changed)
   Q_PROPERTY(QVariantList facts READ facts NOTIFY changed)
   Q_PROPERTY(QVariantList cues READ cues NOTIFY changed)
-  /// checking, good, warned or bad
+  /// state of the check: checking, good, warned or bad
   Q_PROPERTY(QString verdict READ verdict NOTIFY changed)
   Q_PROPERTY(QString text READ text NOTIFY changed)
   Q_PROPERTY(bool canUndo READ can_undo NOTIFY changed)
   Q_PROPERTY(bool canRedo READ can_redo NOTIFY changed)
   Q_PROPERTY(bool unsaved READ unsaved NOTIFY changed)
-  /// why the last request was not carried out: taken, name, or what a file or a value did not allow; "" if it
-  /// was
+  /// why the last request was not carried out: taken, name, on_disk (the file was changed by somebody else
+  /// meanwhile), or what a file or a value did not allow; "" if it was
   Q_PROPERTY(QString trouble READ trouble NOTIFY changed)
   Q_PROPERTY(QString savedAs READ saved_as NOTIFY changed)
   /// outline of the rig's surface: {lengthMm, wideHalfWidthMm, narrowHalfWidthMm, wideEndLeft}
@@ -62,6 +66,10 @@ class DesignController : public QObject {
   Q_PROPERTY(QVariantList timeline READ timeline NOTIFY changed)
   /// profile of displacement and friction of each scene, by name
   Q_PROPERTY(QVariantMap profiles READ profiles NOTIFY profilesChanged)
+  /// What follows the draft beside the forms.
+  Q_PROPERTY(turnpoint::ui::PagesPreview* pages READ pages CONSTANT)
+  Q_PROPERTY(turnpoint::ui::Precision* precision READ precision CONSTANT)
+  Q_PROPERTY(turnpoint::ui::Feeling* feeling READ feeling CONSTANT)
 
  public:
   explicit DesignController(DesignPlace place, SourceChecker checker = check_source,
@@ -87,31 +95,42 @@ class DesignController : public QObject {
   QVariantMap surface() const { return surface_; }
   QVariantList timeline() const { return timeline_; }
   QVariantMap profiles() const { return profiles_; }
+  PagesPreview* pages() { return &pages_; }
+  Precision* precision() { return &precision_; }
+  Feeling* feeling() { return &feeling_; }
 
   /// Asks what the new study is to measure.
   Q_INVOKABLE void startNew();
-  /// Goals in a language of the station, as {word, says}.
+  /// Returns the goals that a new study can have, as {word (for make()), says (the text to show)}, in one of
+  /// the station's languages.
   Q_INVOKABLE static QVariantList goals(const QString& language);
-  /// Makes a study for a goal. Returns false, with `trouble`, if it cannot have this name.
+  /// Makes a study for a goal. Returns false and sets `trouble` if the study cannot have this name.
   Q_INVOKABLE bool make(const QString& goal, const QString& name);
   Q_INVOKABLE bool open(const QString& path);
-  /// Forgets the study.
+  /// Closes the study without saving it.
   Q_INVOKABLE void close();
 
   Q_INVOKABLE void show(int section);
   /// Shows the page with the field that a remark is about, and then emits reached().
   Q_INVOKABLE void goTo(int remark);
-  /// Gives a field of the chosen page a value, as a person types it. An empty text removes the key.
+  /// Sets a field of the chosen page to what a person typed. An empty text removes the key from the file.
   Q_INVOKABLE bool change(int group, int field, const QString& typed);
   Q_INVOKABLE bool copy(int group, const QString& name);
   Q_INVOKABLE void remove(int group);
   Q_INVOKABLE void undo();
   Q_INVOKABLE void redo();
   Q_INVOKABLE void setText(const QString& text);
-  /// Saves the study under its name, or under another name as a study of its own.
+  /// Saves the study under its name, or under another name as a study of its own. The first save of a study
+  /// that existed before raises its version. Returns false, with `trouble`, if the file was changed by
+  /// somebody else since it was read; overwrite() and reload() decide then.
   Q_INVOKABLE bool save(const QString& name);
+  Q_INVOKABLE bool overwrite();
+  Q_INVOKABLE bool reload();
+  /// What can be written at a place of the text, as {from, words: [{word, insert, help}]}. Places count in
+  /// characters as QML does.
+  Q_INVOKABLE QVariantMap complete(const QString& text, int at) const;
 
-  /// The text for a key of the file, such as "Zone · from (mm)".
+  /// Returns the label for a key of the file, such as "Zone · from (mm)".
   Q_INVOKABLE static QString label(const QStringList& path, const QString& language);
 
  Q_SIGNALS:
@@ -134,6 +153,9 @@ class DesignController : public QObject {
   void take(const simulation::Check& check);
   void make_form();
   bool refuse(const QString& trouble);
+  bool write_to(const std::string& path);
+  bool changed_on_disk() const;
+  void raise_version();
   std::string path_for(const std::string& name) const;
   const design::Group* group(int index) const;
 
@@ -142,6 +164,8 @@ class DesignController : public QObject {
   std::optional<design::Schema> schema_;
   std::optional<design::Draft> draft_;
   std::string name_, path_, saved_;
+  std::optional<rig::Rig> rig_;
+  std::string old_version_;  ///< of a study that existed before, until a save has raised it
   std::vector<design::Section> form_;
   std::vector<Remark> remarks_;
   desk::CheckWords words_;
@@ -150,6 +174,9 @@ class DesignController : public QObject {
   QVariantList timeline_;
   int section_ = 0;
   bool checking_ = false;
+  PagesPreview pages_{this};
+  Precision precision_{this};
+  Feeling feeling_{this};
   // The last members, so that their threads end before the objects that they use are destroyed.
   NewestJob check_job_, profile_job_;
 };

@@ -1,5 +1,6 @@
 #include "station/ui/operator/design_lists.hpp"
 
+#include <QRegularExpression>
 #include <cstddef>
 #include <string>
 
@@ -36,7 +37,7 @@ QVariantList chosen(const std::vector<std::size_t>& indices, const QVariantList&
   return list;
 }
 
-/// The limits in words, after the help of the schema.
+/// Returns the help text that the schema has for a field, followed by the field's limits in words.
 QString help_of(const design::Field& field) {
   auto help = QString::fromStdString(field.help);
   const auto add = [&help](const QString& more) { help += (help.isEmpty() ? "" : "   ·   ") + more; };
@@ -67,6 +68,11 @@ QVariantMap field_of(const design::Group& group, int index, const QVariantList& 
 }
 
 }  // namespace
+
+bool is_name(const QString& name) {
+  static const QRegularExpression allowed("^[A-Za-z0-9_-]{1,64}$");
+  return allowed.match(name).hasMatch();
+}
 
 QVariantMap to_map(desk::CheckWords::Remark::Kind kind, const text::Problem& problem) {
   using Kind = desk::CheckWords::Remark::Kind;

@@ -10,16 +10,19 @@
 
 namespace turnpoint::ui {
 
+/// True if a study or a table can have this name.
+bool is_name(const QString& name);
+
 /// One remark for QML, as {kind: problem | warning | note, line, what, hint}.
 QVariantMap to_map(desk::CheckWords::Remark::Kind kind, const text::Problem& problem);
 
-/// Parts of a trial as {kind, from, to}.
+/// Converts the parts of a trial for QML, to a list of {kind, from, to}.
 QVariantList to_list(const std::vector<desk::TrialPart>& parts);
 
-/// One table of a form for QML, as {kind, name, present, copied, removable, remarks, fields, boundary, zone}.
-/// A field is {index, path (within its table), kind, value, allowed, list, present, required, help, remarks}.
-/// `boundary` and `zone` are the indices of fields that a mark on a strip can set; -1 if there is none.
-/// `remarks` are those of the whole form.
+/// Converts one table of a form for QML, to {kind, name, present, copied, removable, remarks, fields,
+/// boundary, zone}. A field is {index, path (within its table), kind, value, allowed, list, present,
+/// required, help, remarks}. `boundary` and `zone` are the indices of the fields that a mark on the drawn
+/// surface can set; -1 if there is none. The argument `remarks` holds the remarks on the whole form.
 QVariantMap group_of(const design::Group& group, const QVariantList& remarks);
 
 }  // namespace turnpoint::ui

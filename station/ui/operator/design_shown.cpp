@@ -1,4 +1,4 @@
-// What the designer's controller shows: its state in a form for QML.
+// The part of DesignController that converts its state for QML.
 #include <algorithm>
 #include <vector>
 

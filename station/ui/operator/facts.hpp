@@ -24,7 +24,7 @@ inline QStringList to_list(const std::vector<std::string>& texts) {
   return list;
 }
 
-/// The lines of an error's message. An error about files has one line for each problem.
+/// Splits an error's message into lines. An error about files has one line for each problem.
 inline std::vector<std::string> lines_of(const std::exception& error) {
   std::vector<std::string> lines;
   std::istringstream text(error.what());

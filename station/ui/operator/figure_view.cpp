@@ -53,16 +53,26 @@ void FigureView::set_picture(const QVariant& picture) {
   update();
 }
 
+void FigureView::set_paper(const QColor& paper) {
+  paper_ = paper;
+  update();
+}
+
+void FigureView::set_dark(bool dark) {
+  dark_ = dark;
+  update();
+}
+
 void FigureView::paint(QPainter* painter) {
   const QRectF card(0, 0, width(), height()), inside = card.adjusted(kMargin, kMargin, -kMargin, -kMargin);
   if (!picture_.draw || inside.width() < 1 || inside.height() < 1) return;
-  // Fills the item with a card in the figures' white background, because a figure may have other proportions
-  // than the item.
+  // Fills the item with a card in the figures' background, because a figure may have other proportions than
+  // the item.
   painter->setPen(Qt::NoPen);
-  painter->setBrush(Qt::white);
+  painter->setBrush(dark_ ? paper_ : QColor(Qt::white));
   painter->drawRoundedRect(card, kMargin, kMargin);
   const double scale = text_pixels_ / kDrawnText_px;
-  PainterCanvas canvas(*painter, inside);
+  PainterCanvas canvas(*painter, inside, dark_ ? PainterCanvas::Tone::dark : PainterCanvas::Tone::paper);
   picture_.draw(canvas, inside.width() / scale, inside.height() / scale);
 }
 

@@ -1,4 +1,5 @@
 #pragma once
+#include <QColor>
 #include <QQuickPaintedItem>
 
 #include "station/desk/scene_figures.hpp"
@@ -28,11 +29,16 @@ class FigureView : public QQuickPaintedItem {
   QML_ELEMENT
   Q_PROPERTY(QVariant picture READ picture WRITE set_picture NOTIFY pictureChanged)
   Q_PROPERTY(double textPixels MEMBER text_pixels_)
+  /// The colour of the card, and whether the figure is drawn for the dark theme.
+  Q_PROPERTY(QColor paper MEMBER paper_ WRITE set_paper)
+  Q_PROPERTY(bool dark MEMBER dark_ WRITE set_dark)
 
  public:
   explicit FigureView(QQuickItem* parent = nullptr);
   QVariant picture() const { return QVariant::fromValue(picture_); }
   void set_picture(const QVariant& picture);  // the setter of a QML property must have this name (NOLINT)
+  void set_paper(const QColor& paper);        // NOLINT
+  void set_dark(bool dark);                   // NOLINT
   void paint(QPainter* painter) override;
 
  Q_SIGNALS:
@@ -41,6 +47,8 @@ class FigureView : public QQuickPaintedItem {
  private:
   Picture picture_;
   double text_pixels_ = 12;
+  QColor paper_ = Qt::white;
+  bool dark_ = false;
 };
 
 }  // namespace turnpoint::ui

@@ -33,7 +33,7 @@ class LatencyController : public QObject {
 
   explicit LatencyController(calibration::LatencyReference reference, QObject* parent = nullptr);
 
-  /// From now on, a tap counts at the kernel's time stamp; a tap without one is ignored.
+  /// From now on, the time of a tap is the kernel's time stamp. A tap without one is ignored.
   void set_kernel_time(KernelTime kernel_time) { kernel_time_ = std::move(kernel_time); }
 
   /// Adds an edge of the reference line. May be called on any thread.

@@ -25,6 +25,7 @@ OperatorController::~OperatorController() = default;
 void OperatorController::refresh() {
   armed_ = false;
   participant_.clear();
+  too_early_.clear();
   protocols_ = desk::list_studies(request_.protocols, request_.database);
   try {
     participants_ = to_list(desk::known_participants(request_.database));
@@ -90,7 +91,7 @@ void OperatorController::select(int index) {
   selected_ = index;
   language_ = -1;
   words_ = {};
-  refused_.clear();
+  forget_refusal();
   not_live_.clear();
   worker_.abandon();
   if (!entry()->problems.empty()) return fail(entry()->problems);
@@ -146,20 +147,20 @@ void OperatorController::refuse_live(std::vector<std::string> reasons) {
 void OperatorController::chooseLanguage(int index) {
   if (index < -1 || index >= languages().size()) return;
   language_ = index;
-  refused_.clear();
+  forget_refusal();
   Q_EMIT changed();
 }
 
 void OperatorController::enterParticipant(const QString& code) {
   participant_ = code;
-  refused_.clear();
+  forget_refusal();
   Q_EMIT changed();
 }
 
 void OperatorController::setLive(bool live) {
   if (preparing_) return;
   live_ = live;
-  refused_.clear();
+  forget_refusal();
   not_live_.clear();
   Q_EMIT changed();
   if (live_) check_live();
@@ -174,24 +175,44 @@ bool OperatorController::may_begin() const {
   return entry() != nullptr && !checking_ && !preparing_ && words_.problems.empty() && not_live_.empty();
 }
 
-void OperatorController::begin() {
+void OperatorController::begin() { prepare(""); }
+
+void OperatorController::beginEarly(const QString& reason) {
+  const auto why = reason.trimmed().toStdString();
+  if (!too_early_.empty() && !why.empty()) prepare(why);
+}
+
+void OperatorController::forget_refusal() {
+  refused_.clear();
+  too_early_.clear();
+}
+
+void OperatorController::prepare(const std::string& early) {
   if (!may_begin()) return;
   auto request = request_for(live_ ? "live" : "pilot");
   const bool ask_code = participant_.isEmpty();
   const bool ask_language = language_ < 0 && languages().size() > 1;
   if (!ask_code) request.participant = participant_.toStdString();
+  request.early = early;
   if (language_ >= 0) request.language = languages()[language_].toStdString();
   preparing_ = true;
-  refused_.clear();
+  forget_refusal();
   Q_EMIT changed();
   work(
       [this, request, ask_code, ask_language, arm = armed_](const std::stop_token& stop) -> Then {
-        ChosenSession session{setup::prepare(request, stop), ask_language, ask_code, arm};
-        return [this, session] {
-          preparing_ = false;
-          Q_EMIT changed();
-          Q_EMIT chosen(session);
-        };
+        try {
+          ChosenSession session{setup::prepare(request, stop), ask_language, ask_code, arm};
+          return [this, session] {
+            preparing_ = false;
+            Q_EMIT changed();
+            Q_EMIT chosen(session);
+          };
+        } catch (const setup::TooEarly& refused) {
+          return [this, why = refused.problems().front().what] {
+            too_early_ = why;
+            stay();
+          };
+        }
       },
       &OperatorController::refuse);
 }
@@ -203,7 +224,7 @@ void OperatorController::resume() {
 void OperatorController::resumeSession(const QString& session_id) {
   if (preparing_) return;
   preparing_ = true;
-  refused_.clear();
+  forget_refusal();
   Q_EMIT changed();
   work(
       [this, arm = armed_, id = session_id.toStdString()](const std::stop_token&) -> Then {

@@ -37,9 +37,13 @@ class OperatorController : public QObject {
   Q_PROPERTY(int selected READ selected NOTIFY changed)
   Q_PROPERTY(bool checking READ checking NOTIFY changed)
   Q_PROPERTY(QVariantList facts READ facts NOTIFY changed)
-  /// cues of the checked protocol as {name, says, leaks}
+  /// cues that could give the right answer away, as {name, says (the finding in words), leaks (whether it
+  /// does)}
   Q_PROPERTY(QVariantList cues READ cues NOTIFY changed)
   Q_PROPERTY(QStringList problems READ problems NOTIFY changed)
+  /// why the chosen session would begin too early, although a reason of the operator can overrule that; "" if
+  /// it would not
+  Q_PROPERTY(QString tooEarly READ too_early NOTIFY changed)
   Q_PROPERTY(QStringList warnings READ warnings NOTIFY changed)
   Q_PROPERTY(QStringList languages READ languages NOTIFY changed)
   /// index of the chosen language; -1 if the participant chooses it on the screen
@@ -51,7 +55,7 @@ class OperatorController : public QObject {
   Q_PROPERTY(bool armed READ armed NOTIFY changed)
   /// description of the interrupted session; "" if there is none
   Q_PROPERTY(QString interrupted READ interrupted NOTIFY changed)
-  /// age of the last backup as {state: none | recent | old | ahead, hours}
+  /// age of the last backup as {state: none | recent | old | ahead (its time is in the future), hours}
   Q_PROPERTY(QVariantMap backup READ backup NOTIFY changed)
   Q_PROPERTY(bool mayBegin READ may_begin NOTIFY changed)
   Q_PROPERTY(bool preparing READ preparing NOTIFY changed)
@@ -72,6 +76,7 @@ class OperatorController : public QObject {
   QVariantList facts() const;
   QVariantList cues() const;
   QStringList problems() const;
+  QString too_early() const { return QString::fromStdString(too_early_); }
   QStringList warnings() const;
   QStringList languages() const;
   int language() const { return language_; }
@@ -98,6 +103,8 @@ class OperatorController : public QObject {
   Q_INVOKABLE void setArmed(bool armed);
   /// Prepares the chosen session. Then emits chosen(), or sets problems.
   Q_INVOKABLE void begin();
+  /// Prepares the session although it begins too early. The reason is stored with it.
+  Q_INVOKABLE void beginEarly(const QString& reason);
   /// Continues the newest interrupted session.
   Q_INVOKABLE void resume();
   Q_INVOKABLE void resumeSession(const QString& session_id);
@@ -109,6 +116,8 @@ class OperatorController : public QObject {
  private:
   using Then = std::function<void()>;
   setup::RunRequest request_for(const char* mode) const;
+  void prepare(const std::string& early);
+  void forget_refusal();
   void work(std::function<Then(const std::stop_token&)> job,
             void (OperatorController::*failed)(std::vector<std::string>));
   void check_selected();
@@ -128,7 +137,8 @@ class OperatorController : public QObject {
   desk::BackupNote backup_;
   QTimer minutes_;  ///< updates the ages shown on the page, which may be open for days
   desk::CheckWords words_;
-  std::vector<std::string> refused_;   ///< why the last chosen session did not begin
+  std::vector<std::string> refused_;  ///< why the last chosen session did not begin
+  std::string too_early_;
   std::vector<std::string> not_live_;  ///< why the chosen protocol cannot run live
   int selected_ = -1, language_ = -1;
   QString participant_;

@@ -9,8 +9,6 @@ namespace turnpoint::ui {
 
 namespace {
 
-QColor colour_of(const std::string& colour) { return QColor(QString::fromStdString(colour)); }
-
 QPointF point_of(const plot::Point& point) { return {point.first, point.second}; }
 
 QPolygonF points_of(const std::vector<plot::Point>& points) {
@@ -41,14 +39,25 @@ void PainterCanvas::begin(double width, double height, const std::string& /*titl
   painter_.translate(-width / 2, -height / 2);
 }
 
+QColor PainterCanvas::shown(const std::string& colour) const {
+  const QColor given(QString::fromStdString(colour));
+  if (tone_ == Tone::paper) return given;
+  // White becomes the dark theme's card, and black nearly white.
+  constexpr float darkest = 0.13F, lightest = 0.96F;
+  float hue = 0, saturation = 0, lightness = 0, alpha = 1;
+  given.getHslF(&hue, &saturation, &lightness, &alpha);
+  return QColor::fromHslF(std::max(0.0F, hue), saturation, lightest - (lightest - darkest) * lightness,
+                          alpha);
+}
+
 void PainterCanvas::use(const plot::Paint& paint) {
   QPen pen(Qt::NoPen);
   if (!paint.stroke.empty() && paint.width > 0) {
-    pen = QPen(colour_of(paint.stroke), paint.width, Qt::SolidLine, Qt::FlatCap, Qt::RoundJoin);
+    pen = QPen(shown(paint.stroke), paint.width, Qt::SolidLine, Qt::FlatCap, Qt::RoundJoin);
     if (const auto dashes = dashes_of(paint); !dashes.isEmpty()) pen.setDashPattern(dashes);
   }
   painter_.setPen(pen);
-  painter_.setBrush(paint.fill.empty() ? QBrush(Qt::NoBrush) : QBrush(colour_of(paint.fill)));
+  painter_.setBrush(paint.fill.empty() ? QBrush(Qt::NoBrush) : QBrush(shown(paint.fill)));
   painter_.setOpacity(paint.opacity);
 }
 
@@ -93,7 +102,7 @@ void PainterCanvas::text(plot::Point at, const std::string& text, double size, p
   painter_.scale(1.0 / fine, 1.0 / fine);
   painter_.setFont(font);
   painter_.setOpacity(1);
-  painter_.setPen(colour_of(colour));
+  painter_.setPen(shown(colour));
   const double left = anchor == plot::Anchor::start ? 0 : anchor == plot::Anchor::middle ? width / 2 : width;
   painter_.drawText(QPointF(-left, 0), words);
   painter_.restore();

@@ -8,7 +8,11 @@ namespace turnpoint::ui {
 /// Paints a figure as large as possible into the middle of a rectangle of the screen, in the pages' font.
 class PainterCanvas : public plot::Canvas {
  public:
-  PainterCanvas(QPainter& painter, const QRectF& into) : painter_(painter), into_(into) {}
+  /// How the colours of a figure are shown. In the dark, light and dark change places; hues stay.
+  enum class Tone { paper, dark };
+
+  PainterCanvas(QPainter& painter, const QRectF& into, Tone tone = Tone::paper)
+      : painter_(painter), into_(into), tone_(tone) {}
   ~PainterCanvas() override;
   Q_DISABLE_COPY_MOVE(PainterCanvas)
 
@@ -25,9 +29,11 @@ class PainterCanvas : public plot::Canvas {
 
  private:
   void use(const plot::Paint& paint);
+  QColor shown(const std::string& colour) const;
 
   QPainter& painter_;
   QRectF into_;
+  Tone tone_;
   int saved_ = 0;  ///< number of saved states of the painter that must be restored
 };
 

@@ -14,8 +14,8 @@
 
 namespace turnpoint::ui {
 
-/// Scenes of a protocol, with a slider for each of their factors. Plans are made on a separate thread, always
-/// for the newest request. Everything else is for the GUI thread only.
+/// Shows a scene of a protocol, with a slider for each of its factors. Scenes are planned on a separate
+/// thread, which always takes the newest request. Everything else is for the GUI thread only.
 class PreviewController : public QObject {
   Q_OBJECT
   QML_ELEMENT
@@ -35,7 +35,8 @@ class PreviewController : public QObject {
   Q_PROPERTY(QVariant spectrum READ spectrum NOTIFY changed)
 
  public:
-  /// Throws text::BadInput if a file is wrong, and terms::UsageError if the protocol lacks the scene or factor.
+  /// Throws text::BadInput if a file is wrong, and terms::UsageError if the protocol lacks the scene or
+  /// factor.
   explicit PreviewController(const desk::PreviewRequest& request, QObject* parent = nullptr);
   ~PreviewController() override;
 

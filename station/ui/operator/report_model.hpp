@@ -22,7 +22,7 @@ class ReportModel : public QObject {
   /// Names and drawings of the existing figures, beginning with the speed-accuracy trade-off.
   Q_PROPERTY(QStringList pictureNames READ picture_names NOTIFY changed)
   Q_PROPERTY(QVariantList pictures READ pictures NOTIFY changed)
-  /// where the last figure was saved, or why it could not be; "" before that
+  /// where the last figure was saved, or why that failed; "" if no figure was saved yet
   Q_PROPERTY(QString saved READ saved NOTIFY changed)
   Q_PROPERTY(bool maySave READ may_save NOTIFY changed)
 
@@ -32,7 +32,7 @@ class ReportModel : public QObject {
   /// Takes the finished report. May be called on any thread.
   void take(desk::ReportPages pages);
   void clear();
-  /// Figures are saved in this folder, one folder for each report.
+  /// Sets the folder in which figures are saved. Each report gets its own folder in it.
   void save_in(const std::string& folder) { folder_ = QString::fromStdString(folder); }
 
   /// Saves a figure as SVG and as PDF.

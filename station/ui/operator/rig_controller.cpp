@@ -19,34 +19,39 @@ namespace turnpoint::ui {
 
 namespace {
 
-/// The page warns that a calibration ends soon from this number of days before its end.
+/// The page warns that a calibration will expire, from this number of days before it does.
 constexpr int kSoon_days = 14;
 
-using Facts = std::vector<std::pair<std::string, std::string>>;
-
-/// Lists what was measured for a calibration.
-std::string measured(const calibration::Calibration& made) {
-  std::string text;
-  const auto add = [&text](bool there, const char* what) {
-    if (there) text += (text.empty() ? "" : ", ") + std::string(what);
-  };
-  add(!made.transducers.empty(), "response");
-  add(made.boundary.has_value(), "boundary");
-  add(made.friction.has_value(), "friction");
-  add(!made.sound.empty(), "sound level");
-  add(made.panel.has_value(), "panel latency");
-  add(!made.pick_ups.empty(), "pick-ups");
-  add(made.forces.has_value(), "force cells");
-  return text;
+QVariantMap fact(const char* label, const QString& value, const char* text = "") {
+  return {{"label", label}, {"text", text}, {"value", value}, {"parts", QStringList()}};
 }
 
-Facts facts_of(const calibration::Calibration& made, const std::string& path, int left_days) {
-  Facts facts{{"File", std::filesystem::path(path).filename().string()},
-              {"Made on", made.made_on + " (" + std::to_string(made.valid_days - left_days) + " days ago)"},
-              {"Valid", left_days >= 0 ? "for " + std::to_string(left_days) + " more days"
-                                       : "expired " + std::to_string(-left_days) + " days ago"},
-              {"Measured", measured(made)}};
-  if (!made.note.empty()) facts.emplace_back("Note", made.note);
+/// The keys of the texts for what was measured for a calibration.
+QStringList measured(const calibration::Calibration& made) {
+  QStringList parts;
+  const auto add = [&parts](bool there, const char* what) {
+    if (there) parts += what;
+  };
+  add(!made.transducers.empty(), "operator.measured_response");
+  add(made.boundary.has_value(), "operator.measured_boundary");
+  add(made.friction.has_value(), "operator.measured_friction");
+  add(!made.sound.empty(), "operator.measured_sound");
+  add(made.panel.has_value(), "operator.measured_panel");
+  add(!made.pick_ups.empty(), "operator.measured_pick_ups");
+  add(made.forces.has_value(), "operator.measured_forces");
+  return parts;
+}
+
+QVariantList facts_of(const calibration::Calibration& made, const std::string& path, int left_days) {
+  auto parts = fact("operator.fact_measured", "");
+  parts["parts"] = measured(made);
+  QVariantList facts{
+      fact("operator.fact_file", QString::fromStdString(std::filesystem::path(path).filename().string())),
+      fact("operator.fact_made", QString::fromStdString(made.made_on)),
+      fact("operator.fact_valid", QString::number(std::abs(left_days)),
+           left_days >= 0 ? "operator.fact_days_left" : "operator.fact_expired"),
+      parts};
+  if (!made.note.empty()) facts += fact("operator.fact_note", QString::fromStdString(made.note));
   return facts;
 }
 
@@ -62,7 +67,7 @@ const char* word(session::Request::Kind kind) {
                                       : "press_button";
 }
 
-/// The uncertainty, and each weight with its residual.
+/// Returns rows for the page: the uncertainty of the force calibration, and each weight with its residual.
 QVariantList weights_of(const maintenance::ForceResult& result, const std::string& file) {
   QVariantList list;
   const auto add = [&list](const std::string& name, const char* verdict, const std::string& what) {
@@ -98,7 +103,10 @@ RigController::RigController(const setup::StationRequest& request, QObject* pare
     : QObject(parent),
       rig_(request.rig),
       data_folder_(std::filesystem::absolute(request.database).parent_path().string()),
-      worker_(*this) {}
+      guide_(request.rig),
+      worker_(*this) {
+  connect(&guide_, &CalibrationGuide::finished, this, &RigController::open);
+}
 
 void RigController::open() {
   calibration_.clear();
@@ -106,7 +114,7 @@ void RigController::open() {
   if (busy_.isEmpty()) errors_.clear();
   try {
     const auto rig = rig::load(rig_);
-    has_cells_ = rig.capture && !rig.capture->bridges.empty();
+    has_cells_ = rig::has_force_cells(rig);
     const auto file = calibration::newest_for(rig.path);
     if (!file.empty()) {
       const auto made = calibration::load(file);
@@ -114,7 +122,8 @@ void RigController::open() {
       const int left_days = calibration::days_left(made, today);
       calibration_ = facts_of(made, file, left_days);
       const auto problems = calibration::problems(made, rig.sha256, today);
-      for (const auto& problem : problems) calibration_.emplace_back("Not used", problem);
+      for (const auto& problem : problems)
+        calibration_ += fact("operator.fact_not_used", QString::fromStdString(problem));
       calibration_state_ = !problems.empty() ? "bad" : left_days <= kSoon_days ? "ageing" : "good";
     }
   } catch (const std::exception& error) {
@@ -152,7 +161,7 @@ void RigController::run(const QString& what, NewestJob::Job job) {
 void RigController::examine() {
   findings_.clear();
   run("doctor", [this](const std::stop_token&) -> std::function<void()> {
-    std::ostringstream messages;  // the page shows the calibration elsewhere
+    std::ostringstream messages;  // not shown, because the page shows the calibration elsewhere
     auto findings = maintenance::examine(setup::calibrated_rig(rig_, "", messages), data_folder_);
     return [this, findings = std::move(findings)] { findings_ = findings; };
   });
@@ -208,9 +217,24 @@ void RigController::answer(const QString& answer) {
 
 void RigController::show(const Weighing::Shown& shown) {
   if (busy_ != "weights") return;
-  instruction_ = QString::fromStdString(shown.ask);
-  reading_ = QString::fromStdString(shown.reading);
-  asked_ = shown.ask.empty() ? "" : shown.failed ? "repair" : "weight";
+  reading_.clear();
+  step_.clear();
+  if (shown.step) {
+    const auto& step = *shown.step;
+    step_ = {{"tare", step.tare},
+             {"converter", shown.converter},
+             {"grams", step.mass_g},
+             {"mm", step.position_mm},
+             {"pull", step.pull_g},
+             {"remark", QString::fromStdString(step.remark)},
+             {"trouble", QString::fromStdString(shown.trouble)}};
+    if (!shown.unread.empty())
+      reading_ = QStringList(QString::fromStdString(shown.unread));
+    else
+      for (const double cell : shown.cells)
+        reading_ += shown.converter ? QString::number(cell, 'g', 5) : QString::number(cell, 'f', 2);
+  }
+  asked_ = !shown.step ? "" : !shown.trouble.empty() ? "repair" : "weight";
   Q_EMIT changed();
 }
 
@@ -220,8 +244,6 @@ void RigController::ask(const QString& what, const QString& button) {
   asked_button_ = button;
   Q_EMIT changed();
 }
-
-QVariantList RigController::calibration() const { return to_list(calibration_); }
 
 QVariantList RigController::findings() const {
   QVariantList list;

@@ -11,55 +11,65 @@
 #include "station/lines/probe.hpp"
 #include "station/session/self_test.hpp"
 #include "station/setup/station_request.hpp"
+#include "station/ui/operator/calibration_guide.hpp"
 #include "station/ui/operator/weighing.hpp"
 #include "station/ui/platform/newest_job.hpp"
 
 namespace turnpoint::ui {
 
-/// The page of the rig: its calibration and how old this is, the doctor, and the self-test with its readings.
-/// The doctor and the self-test run on a separate thread, one at a time, and use the devices of the rig; no
-/// session may begin meanwhile. GUI thread only.
+/// The page about the rig: its calibration and the calibration's age, the doctor (a check of devices and
+/// settings), and the self-test with its readings. The doctor and the self-test run on a separate thread, one
+/// at a time, and use the devices of the rig; no session may begin meanwhile. GUI thread only.
 class RigController : public QObject {
   Q_OBJECT
   QML_ELEMENT
   QML_UNCREATABLE("made by the program")
   Q_PROPERTY(QString path READ path CONSTANT)
-  Q_PROPERTY(QVariantList calibration READ calibration NOTIFY changed)  ///< facts as {label, value}
+  /// facts as {label, text, value, parts}: keys of texts for the label and for the text into which the value
+  /// is put ("": the value alone), or keys of parts that are listed
+  Q_PROPERTY(QVariantList calibration READ calibration NOTIFY changed)
   /// good, ageing (it expires within 14 days), bad or none
   Q_PROPERTY(QString calibrationState READ calibration_state NOTIFY changed)
   Q_PROPERTY(QString busy READ busy NOTIFY changed)  ///< doctor, self_test, weights or ""
   Q_PROPERTY(bool hasCells READ has_cells NOTIFY changed)
-  /// weights after a calibration of the force cells, like `checks`
+  /// results of a calibration of the force cells, one row for each weight; the fields are those of `checks`
   Q_PROPERTY(QVariantList weights READ weights NOTIFY changed)
-  /// what the operator is asked to do with the weights, and what the cells read meanwhile; in English
-  Q_PROPERTY(QString instruction READ instruction NOTIFY changed)
-  Q_PROPERTY(QString reading READ reading NOTIFY changed)
+  /// what the operator is asked to do with the weights, as {tare, grams, mm, pull, remark, trouble, converter}. A pull
+  /// is in grams, and negative towards the wide edge. `remark` says why a step is repeated, and `trouble` why
+  /// a reading failed; both are in English.
+  Q_PROPERTY(QVariantMap step READ step NOTIFY changed)
+  /// what the three cells read meanwhile, as texts; one text if they cannot be read
+  Q_PROPERTY(QStringList reading READ reading NOTIFY changed)
   /// findings of the doctor as {name, status: ok | warning | failed, what, mend}
   Q_PROPERTY(QVariantList findings READ findings NOTIFY changed)
   /// checks of the self-test as {name, verdict, what, share}. The verdict is ok, failed or absent (not
   /// possible); `share` is the reading as a share of its limit, or -1 for a check without a number.
   Q_PROPERTY(QVariantList checks READ checks NOTIFY changed)
-  /// what the self-test or the weights wait for: press_stop, release_stop, press_button, weight, repair or ""
+  /// what the operator has to do before the self-test or the calibration with weights goes on: press_stop,
+  /// release_stop, press_button, weight, repair or ""
   Q_PROPERTY(QString asked READ asked NOTIFY changed)
   Q_PROPERTY(QString askedButton READ asked_button NOTIFY changed)
   Q_PROPERTY(QStringList errors READ errors NOTIFY changed)
+  /// the guided calibration
+  Q_PROPERTY(turnpoint::ui::CalibrationGuide* guide READ guide CONSTANT)
 
  public:
   explicit RigController(const setup::StationRequest& request, QObject* parent = nullptr);
 
   QString path() const { return QString::fromStdString(rig_); }
-  QVariantList calibration() const;
+  QVariantList calibration() const { return calibration_; }
   QString calibration_state() const { return calibration_state_; }
   QString busy() const { return busy_; }
   QVariantList findings() const;
   QVariantList checks() const;
   bool has_cells() const { return has_cells_; }
   QVariantList weights() const { return weights_; }
-  QString instruction() const { return instruction_; }
-  QString reading() const { return reading_; }
+  QVariantMap step() const { return step_; }
+  QStringList reading() const { return reading_; }
   QString asked() const { return asked_; }
   QString asked_button() const { return asked_button_; }
   QStringList errors() const { return errors_; }
+  CalibrationGuide* guide() { return &guide_; }
 
   /// Reads the calibration again.
   Q_INVOKABLE void open();
@@ -67,7 +77,7 @@ class RigController : public QObject {
   /// Runs the self-test, which arms the amplifier and plays quiet tones. The page therefore makes the
   /// operator hold a button to start it.
   Q_INVOKABLE void selfTest();
-  /// Calibrates the force cells with dead weights. `answer` is read, leave_out or stop.
+  /// Calibrates the force cells with dead weights. The operator replies by answer(): read, leave_out or stop.
   Q_INVOKABLE void weigh();
   Q_INVOKABLE void answer(const QString& answer);
 
@@ -80,7 +90,7 @@ class RigController : public QObject {
   void ask(const QString& what, const QString& button);
 
   std::string rig_, data_folder_;
-  std::vector<std::pair<std::string, std::string>> calibration_;
+  QVariantList calibration_;
   QString calibration_state_ = "none";
   QString busy_, asked_, asked_button_;
   std::vector<lines::Finding> findings_;
@@ -88,8 +98,10 @@ class RigController : public QObject {
   QStringList errors_;
   bool has_cells_ = false;
   QVariantList weights_;
-  QString instruction_, reading_;
+  QVariantMap step_;
+  QStringList reading_;
   Weighing weighing_;
+  CalibrationGuide guide_;
   NewestJob
       worker_;  // The last member, so that its thread ends before the objects that it uses are destroyed.
 };

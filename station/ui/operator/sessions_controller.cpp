@@ -43,7 +43,7 @@ std::vector<std::string> words_of(const store::Withdrawal& gone, const char* ver
                                              gone.participant, verb, gone.sessions.size(), gone.trials,
                                              gone.events, gone.annotations)};
   if (!gone.removed_copies.empty())
-    words.push_back(fmt::format("Copies beside the database {}: {}.", verb, gone.removed_copies.size()));
+    words.push_back(fmt::format("{1} copies beside the database {0}.", verb, gone.removed_copies.size()));
   for (const auto& path : gone.remaining_copies)
     words.push_back(path + " still contains these data or cannot be read. Remove it by hand.");
   return words;
@@ -178,7 +178,7 @@ std::string SessionsController::folder_of(int place) const {
   return disks_[static_cast<std::size_t>(place) - 1].folder;
 }
 
-/// Mounts the disk of a place, if it is a disk that is not mounted, and returns the folder.
+/// Returns the folder of a place. If the place is a disk that is not mounted, mounts it first.
 static std::string mounted(std::string folder, const std::vector<maintenance::Disk>& disks, int place,
                            const maintenance::DiskSources& sources) {
   return place > 0 && folder.empty() ? maintenance::mount(disks[static_cast<std::size_t>(place) - 1], sources)

@@ -27,7 +27,7 @@ class SessionsController : public QObject {
   Q_PROPERTY(QVariantList sessions READ sessions NOTIFY changed)
   Q_PROPERTY(int total READ total NOTIFY changed)  ///< number of all sessions
   Q_PROPERTY(int selected READ selected NOTIFY changed)
-  /// the chosen session, like those in `sessions`, with its notes; empty if none is chosen
+  /// the chosen session, with the same fields as in `sessions`; empty if none is chosen
   Q_PROPERTY(QVariant chosen READ chosen NOTIFY changed)
   Q_PROPERTY(QStringList notes READ notes NOTIFY changed)
   Q_PROPERTY(bool busy READ busy NOTIFY changed)
@@ -45,7 +45,7 @@ class SessionsController : public QObject {
                               QObject* parent = nullptr);
 
   QString search() const { return search_; }
-  // The setter of a QML property must have this name.
+  // Qt calls this function by its name, as the setter of the property `search`.
   void setSearch(const QString& search);  // NOLINT(readability-identifier-naming)
   QVariantList sessions() const;
   int total() const { return static_cast<int>(all_.size()); }
@@ -64,7 +64,7 @@ class SessionsController : public QObject {
   Q_INVOKABLE void select(int index);
   Q_INVOKABLE void makeReport();
   Q_INVOKABLE void annotate(const QString& note);
-  /// Looks again which disks are plugged in.
+  /// Updates the list of disks that are plugged in.
   Q_INVOKABLE void lookForDisks();
   /// Exports the chosen session, or all of them, to a new folder at a place. `format` is csv or bids.
   Q_INVOKABLE void exportTo(int place, bool all, const QString& format);
@@ -76,7 +76,7 @@ class SessionsController : public QObject {
 
  Q_SIGNALS:
   void changed();
-  void planned();  ///< `consequence` is known
+  void planned();  ///< emitted when `consequence` is known
 
  private:
   struct Done {
@@ -98,7 +98,7 @@ class SessionsController : public QObject {
   QStringList said_;
   bool busy_ = false, failed_ = false;
   QString consequence_;
-  std::string withdrawing_;  ///< the participant of `consequence_`
+  std::string withdrawing_;  ///< participant whose withdrawal `consequence_` describes
   ReportModel report_;
   NewestJob
       worker_;  // The last member, so that its thread ends before the objects that it uses are destroyed.

@@ -22,12 +22,13 @@ class StudiesController : public QObject {
   Q_PROPERTY(QVariantList protocols READ protocols NOTIFY changed)
   Q_PROPERTY(int selected READ selected NOTIFY changed)
   Q_PROPERTY(bool checking READ checking NOTIFY changed)
-  /// checking, good, warned or bad; "" if no protocol is chosen
+  /// state of the check: checking, good, warned or bad; "" if no protocol is chosen
   Q_PROPERTY(QString verdict READ verdict NOTIFY changed)
   /// remarks of the check as {kind: problem | warning | note, file, line, what, hint}
   Q_PROPERTY(QVariantList remarks READ remarks NOTIFY changed)
   Q_PROPERTY(QVariantList facts READ facts NOTIFY changed)
-  /// cues as {name, says, leaks, advice}
+  /// cues that could give the right answer away, as {name, says (the finding in words), leaks (whether it
+  /// does), advice}
   Q_PROPERTY(QVariantList cues READ cues NOTIFY changed)
   Q_PROPERTY(QString folder READ folder CONSTANT)
 
@@ -48,7 +49,7 @@ class StudiesController : public QObject {
   /// Reads the folder again, and checks the chosen protocol again, because its file may have changed.
   Q_INVOKABLE void open();
   Q_INVOKABLE void select(int index);
-  /// Selects the protocol of this file, if the folder has it.
+  /// Selects the protocol in this file, if the file is in the station's folder.
   Q_INVOKABLE void selectFile(const QString& path);
   Q_INVOKABLE QString path(int index) const;
 

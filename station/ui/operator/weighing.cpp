@@ -1,7 +1,5 @@
 #include "station/ui/operator/weighing.hpp"
 
-#include <fmt/format.h>
-
 #include <chrono>
 #include <cmath>
 #include <cstddef>
@@ -12,19 +10,20 @@ namespace turnpoint::ui {
 
 namespace {
 
-constexpr std::chrono::milliseconds kGlance{250};  // between two live readings
+constexpr std::chrono::milliseconds kGlance{250};  // time between two live readings
 
-/// Thrown through maintenance::weigh() when the operator ends it.
+/// Thrown out of maintenance::weigh() when the operator ends the calibration.
 struct Stopped {};
 
-std::string live(maintenance::BridgeReader& bridges) {
+void read(maintenance::BridgeReader& bridges, Weighing::Shown& shown) {
+  shown.unread.clear();
   try {
     const auto now = bridges.glance();
-    const auto shown = [&](std::size_t cell) { return std::round(1e5 * now.ratio[cell]) / 100 + 0.0; };
-    return fmt::format("a {:.2f}, b {:.2f}, lateral {:.2f} (thousandths of the excitation)", shown(0),
-                       shown(1), shown(2));
+    shown.converter = now.reference == 0;
+    for (std::size_t cell = 0; cell < 3; ++cell)
+      shown.cells[cell] = shown.converter ? now.ratio[cell] : std::round(1e5 * now.ratio[cell]) / 100 + 0.0;
   } catch (const std::exception& error) {
-    return error.what();
+    shown.unread = error.what();
   }
 }
 
@@ -45,7 +44,7 @@ Weighing::Answer Weighing::await(maintenance::BridgeReader& bridges, Shown shown
     answer_.reset();
   }
   while (!stop.stop_requested()) {
-    shown.reading = live(bridges);
+    read(bridges, shown);
     show(shown);
     std::unique_lock lock(mutex_);
     if (!changed_.wait_for(lock, stop, kGlance, [this] { return answer_.has_value(); })) continue;
@@ -59,12 +58,13 @@ Weighing::Answer Weighing::await(maintenance::BridgeReader& bridges, Shown shown
 std::optional<maintenance::ForceResult> Weighing::run(const rig::Rig& rig, const Show& show,
                                                       const std::stop_token& stop) {
   const auto bridges = maintenance::open_bridges(rig);
+  maintenance::WeightStep now;
   const auto ready = [&](const maintenance::WeightStep& step) {
-    const auto ask = step.remark.empty() ? step.text() : step.remark + " " + step.text();
-    return await(*bridges, {ask, "", false}, show, stop) == Answer::read;
+    now = step;
+    return await(*bridges, {step, "", {}, false, ""}, show, stop) == Answer::read;
   };
   const auto failed = [&](const std::string& why) {
-    await(*bridges, {why + ". Repair it, and read again.", "", true}, show, stop);
+    await(*bridges, {now, why, {}, false, ""}, show, stop);
     return true;
   };
   try {

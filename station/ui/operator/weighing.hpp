@@ -1,4 +1,5 @@
 #pragma once
+#include <array>
 #include <condition_variable>
 #include <functional>
 #include <mutex>
@@ -10,28 +11,35 @@
 
 namespace turnpoint::ui {
 
-/// The conversation between a page and a calibration with dead weights, which runs on another thread.
+/// Passes questions and answers between a page and the calibration of the force cells with dead weights,
+/// which runs on another thread.
 class Weighing {
  public:
   enum class Answer { read, leave_out, stop };
 
   /// What the page shows while it waits for an answer.
   struct Shown {
-    std::string ask;      ///< what the operator is asked to do; "" while the cells are read
-    std::string reading;  ///< what the cells read now
-    bool failed = false;  ///< a reading failed, so the step cannot be left out
+    /// what the operator is asked to do; empty while the cells are read
+    std::optional<maintenance::WeightStep> step;
+    std::string trouble;            ///< why a reading failed; the step can then not be left out
+    /// what the cells read now: in thousandths of the excitation, or in the unit of a converter that has no
+    /// excitation to compare with
+    std::array<double, 3> cells{};
+    bool converter = false;
+    std::string unread;             ///< why they cannot be read now; usually ""
   };
   using Show = std::function<void(Shown)>;
 
-  /// Answers what is asked now. For any thread.
+  /// Answers the current question. May be called on any thread.
   void answer(Answer answer);
 
-  /// Asks for all weights. Returns nothing if the operator or `stop` ended it. Throws what
-  /// maintenance::weigh() throws.
+  /// Runs the calibration, which asks for each weight in turn. Returns nothing if the operator or `stop`
+  /// ended it. Throws what maintenance::weigh() throws.
   std::optional<maintenance::ForceResult> run(const rig::Rig& rig, const Show& show,
                                               const std::stop_token& stop);
 
  private:
+  /// Waits for an answer, and shows the reading of the cells meanwhile.
   Answer await(maintenance::BridgeReader& bridges, Shown shown, const Show& show,
                const std::stop_token& stop);
 

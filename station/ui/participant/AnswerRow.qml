@@ -11,8 +11,8 @@ Item {
     /// Smaller texts below the answers. The list may be shorter than `answers`.
     property var captions: []
     required property int pressed
-    /// The points of a scale may be closer together than other answers, so that more of them fit into one
-    /// row.
+    /// Gap between the buttons. The points of a scale may be closer together than other answers, so that more
+    /// of them fit into one row.
     readonly property real gap: !captioned ? theme.targetGap
         : Math.max(2, Math.min(theme.unit, (width - columns * theme.targetMin) / Math.max(1, columns - 1)))
     readonly property int count: answers.length

@@ -9,7 +9,7 @@ Item {
     required property Texts texts
     required property string version
     property bool armed: true
-    /// True after "No".
+    /// True after the participant has answered "No".
     property bool refused: false
     signal agreed()
     /// Emitted when the operator wants to leave the page after the participant has not consented.

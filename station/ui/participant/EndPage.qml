@@ -70,7 +70,8 @@ Item {
         }
     }
 
-    // The session's numbers, while there is no report or if none could be made.
+    // The session's numbers, for the operator. They are shown if there is no report yet or none could be
+    // made.
     Rectangle {
         visible: root.counting
         LayoutMirroring.enabled: false

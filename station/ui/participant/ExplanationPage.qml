@@ -1,8 +1,8 @@
 import QtQuick
 import Turnpoint
 
-// One page of an explanation: a text, perhaps a picture, and perhaps examples that the participant can feel as
-// often as wished. While an example is presented, nothing can be pressed.
+// One page of an explanation: a text, perhaps a picture, and perhaps examples that participants can feel as
+// often as they like. While an example is presented, nothing can be pressed.
 Item {
     id: root
     required property Theme theme

@@ -7,7 +7,8 @@ Item {
     id: root
     required property Theme theme
     required property string label
-    /// Value, and lower and upper end of the range, from 0 to 1; a value below 0 is not shown.
+    /// The finger's value and the two ends of the range that is asked for, each from 0 to 1 along the bar. A value
+    /// below 0 is not shown.
     required property list<double> bar
     property bool frozen: false
     readonly property bool known: bar.length === 3 && bar[0] >= 0 && !frozen

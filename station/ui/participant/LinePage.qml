@@ -2,7 +2,7 @@ import QtQuick
 import Turnpoint
 
 // Page for a rating on a line between two texts. Nothing is marked, and there is no Done button, until the line
-// is touched, so that no start position pulls the answer.
+// is touched, so that no start position influences the answer.
 Item {
     id: root
     required property Theme theme
@@ -10,7 +10,7 @@ Item {
     required property SessionBridge bridge
     property bool armed: true
     readonly property PageModel page: bridge.page
-    /// The mark, from 0 to 1 along the line; below 0 if there is none.
+    /// Position of the participant's mark, from 0 to 1 along the line; below 0 if there is no mark yet.
     property real mark: -1
     onVisibleChanged: mark = -1
 
@@ -40,12 +40,12 @@ Item {
         LayoutMirroring.enabled: false
         LayoutMirroring.childrenInherit: true
         readonly property int count: root.page.anchorTexts.length
-        /// Where an anchor is, in pixels from the left.
+        /// Position of an anchor (a labelled point of the line), in pixels from the left.
         function place(index: int): real { return line.inset + (root.page.anchorPlaces[index] ?? 0) * (width - 2 * line.inset) }
         anchors { left: parent.left; right: parent.right; bottom: line.top }
         height: 3.4 * root.theme.textBody
-        /// Returns where the space for the text of this anchor ends and that for the next one begins. The
-        /// texts at the two ends may extend to one side only, so they get more space.
+        /// Returns the border between the space for the text of this anchor and that for the text of the next
+        /// one. The texts at the two ends may extend to one side only, so they get more space.
         function border(index: int): real {
             const share = count < 3 ? 0.5 : index === 0 ? 0.6 : index === count - 2 ? 0.4 : 0.5
             return (1 - share) * place(index) + share * place(index + 1)

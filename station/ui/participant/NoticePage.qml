@@ -102,7 +102,7 @@ Item {
             id: sign
             height: 1.3 * line.textSize
             name: line.glyph
-            // turn the arrow, but not the others, for languages that are read from right to left
+            // the symbol "tool" is an arrow; turn it round for languages that are read from right to left
             rotation: root.texts.mirrored && line.glyph === "tool" ? 180 : 0
             color: line.tint
         }

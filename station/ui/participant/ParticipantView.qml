@@ -20,6 +20,9 @@ Rectangle {
     /// Emitted when an operator wants to arm the amplifier; `armable` means that the code has been entered.
     signal armingWanted()
     property bool armable: false
+    /// True if the page is a picture of itself beside the operator's pages. It then chooses the fonts of all texts
+    /// only if its language needs fonts of its own.
+    property bool preview: false
 
     readonly property PageModel page: bridge.page
     readonly property int kind: page.kind
@@ -39,7 +42,7 @@ Rectangle {
         target: Catalogue
         property: "shown"
         value: root.page.language
-        when: root.visible
+        when: root.visible && (!root.preview || /^(zh|ko)/.test(root.page.language))
     }
 
     Theme {
@@ -91,7 +94,8 @@ Rectangle {
         BackButton {
             id: back
             visible: root.page.back
-            // opposite the pause button, which is not mirrored either
+            // The Back button is opposite the pause button. Neither is mirrored for languages read from right
+            // to left.
             anchors { left: undefined; verticalCenter: parent.verticalCenter }
             x: root.leftHanded ? parent.width - width : 0
             theme: theme

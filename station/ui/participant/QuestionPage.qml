@@ -21,7 +21,7 @@ Item {
         contentHeight: Math.max(height, words.implicitHeight)
         clip: true
         boundsBehavior: Flickable.StopAtBounds
-        // a new question begins at its top
+        // scroll to the top of each new question
         readonly property string text: root.page.text
         onTextChanged: contentY = 0
         PlainText {

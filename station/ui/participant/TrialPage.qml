@@ -17,7 +17,8 @@ Item {
     readonly property bool asks: page.answersOpen && page.answers.length > 0
     readonly property bool counted: page.intervals > 1
 
-    // Tapping an answer twice by accident must not also give a confidence: the page ignores taps for a moment.
+    // Tapping an answer twice by accident must not also count as a confidence rating: the page ignores taps for a
+    // moment.
     readonly property bool confides: page.kind === PageModel.Confidence
     onConfidesChanged: if (confides) second.restart()
     Timer {

@@ -40,7 +40,8 @@ void FrameWatch::asked() {
 
 int FrameWatch::end() {
   if (!timer_.isActive()) return 0;
-  // count the time since the last beat; after a blocked event loop, the timer's own call would come too late
+  // count the time since the timer last ran; if the event loop was blocked, the timer's next call would come
+  // too late
   beat();
   timer_.stop();
   const std::scoped_lock lock(mutex_);

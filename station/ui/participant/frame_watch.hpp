@@ -13,7 +13,7 @@ namespace turnpoint::ui {
 /// CLOCK_MONOTONIC; the caller reads the clock.
 class LateFrames {
  public:
-  /// `refresh_Hz` at or below 0 counts as 60.
+  /// `refresh_Hz` is the refresh rate of the screen; a value at or below 0 counts as 60.
   explicit LateFrames(double refresh_Hz) : refresh_Hz_(refresh_Hz > 0 ? refresh_Hz : 60) {}
 
   /// Reports a time span in which the screen could show nothing new.
@@ -25,7 +25,7 @@ class LateFrames {
 
  private:
   double refresh_Hz_;
-  std::int64_t counted_ns_ = 0;  ///< end of the last time span that was counted
+  std::int64_t counted_ns_ = 0;  ///< end of the last wait that count_ includes; no time is counted twice
   int count_ = 0;
 };
 

@@ -61,7 +61,8 @@ class PageModel : public QObject {
   Q_PROPERTY(bool unsaved READ unsaved NOTIFY changed)
   Q_PROPERTY(QStringList summaryLabels READ summary_labels NOTIFY changed)
   Q_PROPERTY(QStringList summaryValues READ summary_values NOTIFY changed)
-  // The bars that guide the finger. Shares are from 0 to 1; below 0 there is no value.
+  // The bars that guide the finger. Each bar is a list of the finger's value and the two ends of the wanted
+  // range, from 0 to 1. A value below 0 means that there is none.
   Q_PROPERTY(bool guided READ is_guided NOTIFY barsMoved)
   Q_PROPERTY(bool barsFrozen READ bars_frozen NOTIFY barsMoved)
   Q_PROPERTY(QList<double> forceBar READ force_bar NOTIFY barsMoved)
@@ -144,9 +145,9 @@ class PageModel : public QObject {
   QString safe() const { return QString::fromStdString(page_.safe); }
   QString to_do() const { return QString::fromStdString(page_.to_do); }
   QString detail() const { return QString::fromStdString(page_.detail); }
-  /// True if only an operator who arms the amplifier can continue from this page.
+  /// True if the session can continue from this page only after an operator has armed the amplifier.
   bool awaits_arming() const { return page_.amplifier == "disarmed" || page_.amplifier == "faulted"; }
-  /// True if only an operator who writes why the session continues can continue from this page.
+  /// True if the session can continue from this page only after an operator has written down why it may.
   bool awaits_note() const {
     return page_.kind == session::PageKind::fault && page_.fault == session::FaultKind::self_test;
   }

@@ -42,7 +42,7 @@ class SessionBridge : public QObject, public session::Display {
 
   /// Shows a page. May be called on any thread; returns at once. Pages appear in the order of the calls.
   void show(const session::Page& page) override;
-  /// Moves the bars of the page; like show().
+  /// Moves the bars that guide the finger. Like show(), it may be called on any thread and returns at once.
   void guide(const session::Guidance& guidance) override;
 
   /// Stamps each touch and mouse press anywhere on the window with the time. A touch that does not become an
@@ -63,9 +63,9 @@ class SessionBridge : public QObject, public session::Display {
   /// `index`.
   void answer(int index, std::int64_t time_ns);
 
-  /// Reports Continue or Done. Only the first press on a page counts.
+  /// Reports that Continue or Done was pressed. Only the first press on a page counts.
   Q_INVOKABLE void next();
-  /// Reports Back on a question or an explanation. Only the first press on a page counts.
+  /// Reports that Back was pressed on a question or an explanation. Only the first press on a page counts.
   Q_INVOKABLE void back();
   /// Reports that an example of an explanation was chosen.
   Q_INVOKABLE void choose(int index);

@@ -12,8 +12,8 @@ namespace turnpoint::ui {
 
 namespace {
 
-/// Interval between the reports that the page is alive. The amplifier guard switches off after two seconds
-/// without one.
+/// Interval at which the page reports that its event loop is running. After two seconds without such a
+/// report, the amplifier guard switches the amplifier off.
 constexpr int kLife_ms = 250;
 
 /// True for pages on which a late frame would matter, so that late frames are counted.
@@ -76,7 +76,7 @@ void SessionRunner::begin(session::Setup setup) {
   thread_ = std::jthread([this] { run(); });
 }
 
-/// Runs on the session thread.
+/// Runs the session. The session thread calls this.
 void SessionRunner::run() {
   try {
     summary_ = session::run(setup_, &bridge_, inputs_, view_.get());
@@ -98,7 +98,7 @@ void SessionRunner::run() {
   Q_EMIT over();
 }
 
-/// Opens the reader for the kernel's time stamps of touches, if the rig names its panel.
+/// Opens the reader for the kernel's time stamps of touches, if the rig file names a touch panel.
 void SessionRunner::open_touch() {
   touch_ = setup::open_touch(setup_.rig, [this](touch::TouchPanelState state) {
     if (state == touch::TouchPanelState::back) return;

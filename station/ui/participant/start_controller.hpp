@@ -26,12 +26,12 @@ class StartController : public QObject {
   /// Returns true for a participant code that is already in the database.
   using Known = std::function<bool(const QString& code)>;
 
-  /// What to ask. The language and the participant are asked for if they are "", consent if its version is
-  /// not "".
+  /// What to ask the participant. The language and the participant's code are asked for if they are "",
+  /// consent if its version is not "".
   struct Questions {
     QStringList languages;
     QString language, participant, consent_version;
-    QString run_mode;  ///< live | pilot | simulated; these pages show it, like those of the session
+    QString run_mode;  ///< live | pilot | simulated; shown on these pages as on the session's pages
   };
 
   explicit StartController(Known known, QObject* parent = nullptr);
@@ -52,7 +52,7 @@ class StartController : public QObject {
   Q_INVOKABLE void chooseLanguage(int index);
   Q_INVOKABLE bool isKnown(const QString& code) const { return known_(code); }
   Q_INVOKABLE void consent();
-  /// Call this if the participant does not consent, or leaves the last page.
+  /// Call this if the participant does not consent, or when the last page is left.
   Q_INVOKABLE void close() { Q_EMIT closed(); }
   /// Goes back to the previous question. Returns false if this is the first one.
   Q_INVOKABLE bool back();
@@ -68,7 +68,7 @@ class StartController : public QObject {
  private:
   void proceed();
 
-  Questions questions_, asked_;  ///< the questions with and without the answers so far
+  Questions questions_, asked_;  ///< the questions with the answers so far filled in, and as they were asked
   Known known_;
   bool with_operator_ = true, consented_ = false;
 };

@@ -61,8 +61,8 @@ SurfaceDrawing::Layout SurfaceDrawing::layout() const {
   at.scale_text = std::max(text_pixels_, 1.8 * at.unit);
   at.flag_text = std::max(text_pixels_, 2.3 * at.unit);
   at.flag_height = std::max(3.6 * at.unit, 1.4 * at.flag_text);
-  // The last number of the scale is centred on the end of the strip, so the margin must have room for half of
-  // it.
+  // The scale's last number is centred on the end of the strip, so the margin must have room for half of the
+  // number.
   const double last =
       QFontMetricsF(font_of(at.scale_text)).horizontalAdvance(QString::number(length_mm_, 'f', 0));
   const double driver = 3.2 * at.unit, margin = std::max(1.8 * at.unit, 0.5 * last + 2);
@@ -167,7 +167,8 @@ void SurfaceDrawing::paint_mark(QPainter& painter, const Layout& at) const {
   painter.setPen(QPen(ink_, std::max(2.0, 0.28 * u), Qt::SolidLine, Qt::FlatCap));
   painter.drawLine(QPointF(x, at.axis_y - half), QPointF(x, at.axis_y + half));
 
-  // The pointer ends at the strip's edge. The number is the one printed on the surface's own scale.
+  // The pointer ends at the strip's edge. Its number is the position on the scale that is printed on the real
+  // surface.
   const double tip_y = at.axis_y - half - 0.25 * u;
   const double flag_y = 0.2 * u, flag_height = at.flag_height;
   QPainterPath pointer;
@@ -199,7 +200,7 @@ void SurfaceDrawing::paint_finger(QPainter& painter, const Layout& at) const {
   const double x = finger_x(at);
   const double tip_y = at.axis_y - (has_mark_ ? 0.2 : 1.4) * u, width_px = kFinger * u;
 
-  // The finger fades out at the bottom: it belongs to the person, not to the drawing.
+  // The finger has no lower end; it fades out at the bottom of the drawing.
   const double bottom = height();
   QPainterPath finger;
   finger.moveTo(x - width_px / 2, bottom);
@@ -226,7 +227,7 @@ void SurfaceDrawing::paint_finger(QPainter& painter, const Layout& at) const {
   painter.setBrush(mixed(paper_, ink_, 0.12));
   painter.drawPath(nail);
 
-  // Two arrows along the strip: slide to and fro.
+  // Two arrows along the strip show that the finger slides to and fro.
   painter.setBrush(accent_);
   for (const int side : {-1, 1}) {
     const double from = x + side * 3.4 * u, to = x + side * 6.6 * u, y = at.axis_y;

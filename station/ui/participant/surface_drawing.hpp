@@ -26,7 +26,7 @@ class SurfaceDrawing : public QQuickPaintedItem {
   explicit SurfaceDrawing(QQuickItem* parent = nullptr);
   void paint(QPainter* painter) override;
 
-  /// x of a position in mm from the wide end, and the position at an x.
+  /// xOf() converts a position in mm from the wide end to an x in pixels; mmAt() converts it back.
   Q_INVOKABLE double xOf(double mm) const;
   Q_INVOKABLE double mmAt(double x) const;
 

@@ -26,7 +26,8 @@ class TouchField : public QQuickItem {
   explicit TouchField(QQuickItem* parent = nullptr);
 
   bool is_open() const { return judge_.is_open(); }
-  void set_open(bool open);  // the setter of a QML property must have this name (NOLINT)
+  // Qt calls this function by its name, as the setter of the property `open` (NOLINT)
+  void set_open(bool open);
   int pressed() const { return pressed_; }
 
  Q_SIGNALS:

@@ -22,6 +22,12 @@ void NewestJob::start(Job job) {
   changed_.notify_one();
 }
 
+void NewestJob::stop() {
+  const std::lock_guard lock(mutex_);
+  stop_next_ = wanted_.has_value();
+  running_.request_stop();
+}
+
 void NewestJob::abandon() {
   ++newest_;
   const std::lock_guard lock(mutex_);
@@ -38,6 +44,7 @@ void NewestJob::run(const std::stop_token& stop) {
       if (!changed_.wait(lock, stop, [this] { return wanted_.has_value(); }) || stop.stop_requested()) return;
       now = *std::exchange(wanted_, std::nullopt);
       running_ = {};
+      if (std::exchange(stop_next_, false)) running_.request_stop();
       abandoned = running_.get_token();
     }
     auto then = now.job(abandoned);

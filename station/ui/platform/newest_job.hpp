@@ -24,6 +24,8 @@ class NewestJob {
 
   /// Starts a job. Call this on the owner's thread; it returns at once.
   void start(Job job);
+  /// Asks the running job to stop. What it returns then still counts.
+  void stop();
   /// Drops the results of all jobs started so far. Call this on the owner's thread; it returns at once.
   void abandon();
 
@@ -39,6 +41,7 @@ class NewestJob {
   std::mutex mutex_;
   std::condition_variable_any changed_;
   std::optional<Wanted> wanted_;
+  bool stop_next_ = false;  ///< a stop was requested before the job began
   std::stop_source running_;
   // The last member, so that the thread is joined before the objects that it uses are destroyed.
   std::jthread thread_;

@@ -33,8 +33,8 @@ std::unique_ptr<QTemporaryFile> eglfs_config(const std::string& card) {
   return file;
 }
 
-/// Hides the mouse pointer, which has no place on a participant's page. Does nothing if the user has set the
-/// environment variable (0 shows the pointer).
+/// Hides the mouse pointer, which has no place on a participant's page. If the user has set Qt's environment
+/// variable for it (0 shows the pointer), that setting stays.
 void hide_pointer() {
   for (const char* variable : {"QT_QPA_EGLFS_HIDECURSOR", "QT_QPA_FB_HIDECURSOR"})
     if (!qEnvironmentVariableIsSet(variable)) qputenv(variable, "1");

@@ -34,7 +34,8 @@ class Application {
   char name_[13] = "turnpoint-ui";
   char* argv_[2] = {name_, nullptr};
   std::unique_ptr<QGuiApplication> application_;
-  // The watchdog and the stop signals both run in the application's event loop.
+  // Both use the application's event loop, so they are declared after the application and destroyed before
+  // it.
   std::unique_ptr<ServiceWatchdog> watchdog_;
   std::unique_ptr<StopSignals> stop_signals_;
 };

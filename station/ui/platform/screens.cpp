@@ -101,7 +101,8 @@ void show_preview(const desk::PreviewRequest& request) {
 void show_design(const cli::DesignRequest& request) {
   const std::filesystem::path file = request.file;
   const bool exists = !request.file.empty() && std::filesystem::exists(file);
-  if (exists) text::read_text_file(request.file);  // refuses what is no file before a window opens
+  if (exists)
+    text::read_text_file(request.file);  // throws, before a window opens, if it is not a readable text file
   const Application application;
   DesignController controller({file.parent_path().string(), request.rig, setup::shipped("protocols")});
   if (exists) {

@@ -41,7 +41,7 @@ class StationWindow : public QObject {
 
   StationWindow(const Place& place, const Operator& allowed, const std::string& database);
 
-  /// Asks the participant what is missing, then runs the session.
+  /// Asks the participant for what is not chosen yet (language, consent, code), then runs the session.
   void ask(const ChosenSession& chosen);
 
   /// Shows the operator's view on this screen during the lifetime of this object.

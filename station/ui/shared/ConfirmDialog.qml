@@ -12,6 +12,7 @@ Rectangle {
     property string keepText
     property string confirmText
     signal confirmed()
+    signal kept()
 
     function open() { visible = true }
 
@@ -45,7 +46,7 @@ Rectangle {
             wrapMode: Text.Wrap
         }
     }
-    // The buttons are stacked, so that neither is where a row of buttons was.
+    // The buttons are stacked, so that they are not at the places of a row of buttons on the page below.
     Column {
         id: buttons
         anchors { horizontalCenter: parent.horizontalCenter; bottom: parent.bottom; bottomMargin: root.theme.controlHeight + 2 * root.theme.targetGap }
@@ -58,7 +59,10 @@ Rectangle {
             theme: root.theme
             armed: !arming.running
             text: root.keepText
-            onActivated: root.visible = false
+            onActivated: {
+                root.visible = false
+                root.kept()
+            }
         }
         ActionButton {
             id: confirm

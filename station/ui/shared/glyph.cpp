@@ -75,6 +75,8 @@ QPainterPath outline(const QString& name) {
                       {{4, 18}, {4, 18.1}},
                       {{9, 18}, {20, 18}}})},
       {"gauge", gauge()},
+      {"previous", lines({{{15, 5}, {9, 12}, {15, 19}}})},
+      {"next", lines({{{9, 5}, {15, 12}, {9, 19}}})},
       {"minus", lines({{{5, 12}, {19, 12}}})},
       {"plus", lines({{{5, 12}, {19, 12}}, {{12, 5}, {12, 19}}})}};
   return outlines.value(name);

@@ -6,9 +6,9 @@
 namespace turnpoint::ui {
 
 /// A symbol drawn in strokes, as wide as it is high: "tick", "cross", "clock", "chevrons" (speed), "rings"
-/// (accuracy), "bars" (pause), "alert", "backspace", "shield", "tool", "dots", "minus", "plus"; any other
-/// name draws nothing. It is painted, because on the frame buffer a Qt Quick Shape is not clipped to a
-/// scrolling area.
+/// (accuracy), "bars" (pause), "alert", "backspace", "shield", "tool" (an arrow), "dots", "run", "sheet",
+/// "list", "gauge", "minus", "plus"; any other name draws nothing. It is painted, because on the frame buffer
+/// a Qt Quick Shape is not clipped to a scrolling area.
 class Glyph : public QQuickPaintedItem {
   Q_OBJECT
   QML_ELEMENT

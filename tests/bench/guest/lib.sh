@@ -82,8 +82,8 @@ loopback() { modprobe snd-aloop pcm_substreams="${1:-1}"; eventually 5 test -e /
 # record SECONDS FILE [RATE]: records raw S32_LE stereo in the background. $! is the recorder's process.
 record() { arecord -q -D hw:Loopback,1 -t raw -f S32_LE -c 2 -r "${3:-192000}" --period-size=9600 --buffer-size=192000 -d "$1" "$2" & }
 
-# disk_begin [WHERE]: mounts the empty `disk` on WHERE (default /run/disk). After the scenario NAME.sh, the
-# script NAME.after checks the content of the disk with power_cuts.py.
+# disk_begin [WHERE]: mounts the empty disk of a scenario that `needs: disk` on WHERE (default /run/disk).
+# After the scenario NAME.sh, the script NAME.after checks the content of the disk with power_cuts.py.
 disk_begin() {
   modprobe virtio_blk; eventually 5 test -b /dev/vda
   mkdir -p "${1:-/run/disk}"
@@ -104,8 +104,8 @@ panel_begin() {
 }
 touch_do() { echo "$*" >&9; }
 
-# screen_begin: loads the driver of the `screen`, and sets the variables that Qt needs to draw on its frame
-# buffer and to read the panel.
+# screen_begin: loads the driver for the screen of a scenario that `needs: screen`, and sets the variables
+# that Qt needs to draw on its frame buffer and to read the panel.
 screen_begin() {
   modprobe bochs; eventually 10 test -e /dev/fb0
   export QT_QPA_PLATFORM=linuxfb QT_QUICK_BACKEND=software QT_QPA_FB_DISABLE_INPUT=1
@@ -121,23 +121,26 @@ screenshot() { kms_screen | python3 "$BENCH_SOURCE/guest/screenshot.py" "$OUT/$1
 action=5c3d0f
 shows() { [ "$(pixel "$1" "$2")" = $action ]; }
 answers_open() { shows 60 400 && shows 740 400; }
+start_page() { shows 112 440; }
 continues() { shows 290 390 && ! shows 60 400; }
 
 # Functions for the installed kiosk on its panel of 800 x 480: `tap X Y` taps, `hold X Y` presses for 1.2 s,
 # and `unlock` enters the operator's code 2580.
 tap() { touch_do tap "$1" "$2"; sleep 0.2; }
 hold() { touch_do down 0 "$1" "$2"; touch_do sleep 1200; touch_do up 0; sleep 1.6; }
-keypad() { shows 280 90 && shows 397 90; }
-operator_code() { eventually 10 keypad; sleep 0.3; tap 397 107; tap 397 188; tap 397 269; tap 397 349; tap 519 349; }
-start_page() { shows 112 440; }
+keypad() { shows 280 120 && shows 400 120; }
+operator_code() { eventually 10 keypad; sleep 0.3; tap 400 148; tap 400 216; tap 400 284; tap 400 352; tap 520 352; }
 unlock() {
   eventually 30 keypad
   ! start_page || fail "the start page is shown without the operator's code"
   operator_code
   eventually 10 start_page
 }
-# begins_pilot: begins the session once the protocol's check has finished, until when the button cannot be pressed.
+# begins_pilot: waits until the protocol's check has finished, which enables the button, and begins the session.
 can_begin() { shows 640 445; }
 begins_pilot() { eventually 60 can_begin; tap 706 445; }
 english() { shows 200 150; }
-goes_on() { eventually 30 continues; sleep 0.7; tap 400 390; }
+# goes_on: taps "continue" until the next page is shown, because a new page ignores taps for a moment. The start page
+# has a dark button at the same place.
+went_on() { ! start_page && continues || return 1; sleep 0.7; tap 400 390; sleep 0.5; ! continues; }
+goes_on() { eventually 30 went_on; }

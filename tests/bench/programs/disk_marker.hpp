@@ -7,9 +7,9 @@
 #include <cstring>
 #include <string>
 
-/// Writes marks into the record of a disk's writes. A mark is a sector behind the file system, written past
-/// all caches but not flushed. A mark in the record proves that the disk had accepted everything recorded
-/// before that.
+/// Writes marks that appear in the record of all writes to a disk. A mark is a sector behind the file system,
+/// written past all caches but not flushed. A mark in the record proves that the disk had accepted everything
+/// recorded before that.
 class DiskMarker {
  public:
   /// Opens `device` as a block device. Exits with a message if that fails.

@@ -110,7 +110,7 @@ void check(long result, const std::string& what) {
   if (result < 0) throw std::runtime_error(what + ": " + snd_strerror(static_cast<int>(result)));
 }
 
-/// One side of the card, S32_LE, with a buffer of half a second.
+/// An open side of the loopback card, with S32_LE samples and a buffer of half a second.
 struct Side {
   Side(const std::string& name, snd_pcm_stream_t stream, unsigned channels, unsigned rate_Hz) : what(name) {
     check(snd_pcm_open(&pcm, name.c_str(), stream, 0), name);

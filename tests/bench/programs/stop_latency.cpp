@@ -122,7 +122,8 @@ int run(int count, const Stop& stop) {
   Times times;
   for (int k = 0; k < count; ++k) {
     const auto way = static_cast<std::size_t>(k % 2);
-    stand_at(priorities[way]);  // set only now, so that the load does not inherit this priority
+    // set the priority only now, so that the threads that load the processor do not inherit it
+    stand_at(priorities[way]);
     amplifier->audio_alive();
     amplifier->session_alive();
     check(amplifier->clear());

@@ -1,6 +1,6 @@
 // watch_rows DATABASE TABLE DEVICE: counts the rows that another process has committed to a table, until
-// killed. Writes each count into the disk's record, as a mark such as "rows 17". With WAL mode and
-// synchronous FULL, a row that a reader sees must survive a power cut.
+// killed. Writes each count as a mark such as "rows 17" (see disk_marker.hpp). With WAL mode and synchronous
+// FULL, a row that a reader sees must survive a power cut.
 #include <sqlite3.h>
 
 #include <algorithm>

@@ -6,7 +6,7 @@ for line in AMP_EN AMP_FAULT STOP AMP_HB BTN_L BTN_R; do pull $line down; done
 loopback
 udevadm settle
 data=/var/lib/turnpoint db=/var/lib/turnpoint/lab.sqlite log=/run/session.log
-# The self-test wants 200 MiB; the disk is filled later.
+# The self-test requires 200 MiB of free space. The disk is filled later.
 mount -t tmpfs -o size=232M,mode=0750,uid="$(id -u turnpoint)",gid="$(id -g turnpoint)" data $data
 rows() { sqlite3 -separator ' ' "file:$db?mode=ro" "$1"; }
 rig_with output=alsa:hw:Loopback,0 amplifier=gpio:enable=AMP_EN,fault=AMP_FAULT,stop=STOP,heartbeat=AMP_HB buttons=gpio:left=BTN_L,right=BTN_R \

@@ -37,7 +37,7 @@ carry_on() { sleep 0.7; tap 535 395; }
 
 systemctl start turnpoint
 eventually 30 keypad
-sleep 0.3; tap 397 107; tap 280 188; tap 519 188; tap 397 269; tap 519 349   # 2468, the wrong code
+sleep 0.3; tap 400 148; tap 280 216; tap 520 216; tap 400 284; tap 520 352   # 2468, the wrong code
 sleep 0.5; keypad || fail "the station accepts 2468, although its code is 2580"
 first=$(systemctl show -P MainPID turnpoint)
 unlock

@@ -13,7 +13,8 @@ wait $plant || fail "the laboratory was too slow for the card"
 grep -q '"underruns": 0' report.json || fail "turnpoint synth reports underruns, or no report"
 read -r frequency level residual <<<"$(measure_tone heard.raw 96000 8 5)"
 near "frequency (Hz)" "$frequency" 30000 0.01
-# 2 um at the drive edge, 0.955 of it at the pick-up (turnpoint field --tone 30000, at 3 mm), 0.1 of full scale per um
+# Expected level: the tone has 2 um at the drive edge and 0.955 times that at the pick-up (`turnpoint field --tone
+# 30000`, at 3 mm); the pick-up gives 0.1 of full scale per um.
 near "level (dB)" "$level" -14.38 0.1
 near "residual (dB re tone)" "$residual" -62.4 1    # noise of 1e-4 of full scale
 cat truth.txt

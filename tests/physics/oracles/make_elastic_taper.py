@@ -101,7 +101,7 @@ def edges(problem, f):
     v = u.astype(complex)
     v[free] = lu.solve(-(a[free][:, held] @ u[held]))
     v = v[centre]
-    # quadratic within each element: its two ends and its middle
+    # The displacement is a quadratic in each element, given by the values at its two ends and its middle.
     def value(s):
         e = min(int(s / (x[2] - x[0])), len(x) // 2 - 1)
         t = (s - x[2 * e]) / (x[2 * e + 2] - x[2 * e])

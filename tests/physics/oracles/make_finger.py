@@ -172,7 +172,7 @@ class Kirchhoff(Strip):
         return np.unique(np.concatenate(self.fixed + self.parity[odd]))
 
 
-# positions from the middle of the smooth zone to the 10 % edge, and beside the centre line
+# positions in m along the centre line, from the middle of the smooth zone to the point with 10 % of the amplitude
 PLACES = dict(brass={19.6e3: (.05, .12, .165, .185, .205), 30e3: (.1, .18, .225, .235)},
               plate={22.4e3: (.05, .08, .095, .115), 30e3: (.05, .1, .135, .15, .165), 40e3: (.05, .12, .165, .19, .205)})
 

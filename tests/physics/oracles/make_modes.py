@@ -159,7 +159,7 @@ def clamped(s, size):
                             (2, b / w0 * (-np.sin(b * e) / np.cos(b) - np.sinh(b * e) / np.cosh(b)) / unit),
                             (5, (b / w0) ** 2 * (-np.cos(b * e) / np.cos(b) - np.cosh(b * e) / np.cosh(b)) / unit)):
             u[nodal[row, ends["drive"]]] = values
-    # direction along the side
+    # unit vector along the side
     t = np.array([1, -s["taper"].numbers[1]]) / np.hypot(1, s["taper"].numbers[1])
     # Along a side, u, its slopes and its second derivative along the side vanish. So u_xx and u_xy follow
     # from u_yy there.
@@ -170,8 +170,8 @@ def clamped(s, size):
     corner = np.intersect1d(ends["side"], np.union1d(ends["drive"], ends["end"]))
     held = np.unique(np.concatenate(held + [nodal[:, corner].ravel()]))
     u[nodal[:, corner]] = 0
-    # At the inner vertices of a side, the second derivatives are g (n n^T), with the single unknown g = u_yy
-    # / n_y^2.
+    # At the inner vertices of a side, the second derivatives are g (n n^T) with the normal n and the single
+    # unknown g = u_yy / n_y^2.
     inner = np.setdiff1d(ends["side"], corner)
     ny2, nx_ny, nx2 = t[0] ** 2, -t[0] * t[1], t[1] ** 2
     q = sp.identity(a.shape[0], format="lil")

@@ -58,7 +58,8 @@ def plane(t, nu, p=5, **kw):
                  [cut(lam * d[1, 0] + d[0, 1], Fz, Fy), cut((lam + 2) * d[1, 1] + d[0, 0], Fz, Fz)]]).tocsc()
     MM = sp.block_diag([cut(M, Fy, Fy), cut(M, Fz, Fz)]).tocsc()
     MA = cut(M, Fx, Fx).tocsc(); KA = cut(d[0, 0] + d[1, 1], Fx, Fx).tocsc()
-    # C is the matrix of the integral of lam A div(b, c) - grad A . (b, c), with u_x = i k A.
+    # C is the matrix of the integral of lam A div(b, c) - grad A . (b, c), where the displacements are u_x = i k A, u_y
+    # = b and u_z = c.
     C = sp.bmat([[cut(lam * d[0] - d[0].T, Fx, Fy), cut(lam * d[1] - d[1].T, Fx, Fz)]]).tocsc()
     return K, MM, MA, KA, C, lam
 

@@ -77,7 +77,7 @@ class Strip:
         return findroot(lambda t: self.response(t, n) / unit, (f, f + step), solver="anderson", tol=mpf("1e-55"), maxsteps=100)
 
     def field(self, f, q):
-        # points that are not at nodes common to several functions
+        # irregular points, so that they do not coincide with nodes that several functions have in common
         points = [self.length * mpf(float(i / 10.37)) for i in range(1, 10)]
         if self.kind == "clamped":
             at, conditions = self.clamped(f, q)

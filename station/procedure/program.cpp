@@ -1,0 +1,94 @@
+#include "station/procedure/program.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <vector>
+
+#include "station/procedure/description.hpp"
+#include "station/procedure/keys.hpp"
+
+namespace turnpoint::procedure {
+
+namespace {
+
+constexpr int kStandInLevels = 25;
+
+class StandIn final : public Procedure {
+ public:
+  explicit StandIn(const Spec& spec)
+      : min_(spec.min.value()), max_(spec.max.value()), trials_(spec.stop.trials.value()) {}
+
+  std::optional<Proposal> next() const override {
+    if (presented_ >= trials_) return std::nullopt;
+    return Proposal{min_ + (max_ - min_) * (presented_ % kStandInLevels) / (kStandInLevels - 1), {}};
+  }
+  void record(Answer) override { ++presented_; }
+  int recorded() const override { return presented_; }
+  int expected() const override { return trials_; }
+  std::uint64_t state_hash() const override { return static_cast<std::uint64_t>(presented_); }
+
+ private:
+  double min_, max_;
+  int trials_, presented_ = 0;
+};
+
+void read_program(text::TableReader& reader, Spec& spec) {
+  read_tracks(reader, spec);
+  auto& program = spec.program;
+  program.file = reader.string("program", "name the file of the program, as seen from this file");
+  program.place = reader.place("program");
+  program.limit_s = reader.number("limit_s", {0.05, 60, text::Range::Ends::closed, "s"}, 2);
+  if (const auto* settings = reader.maybe_table("settings")) program.settings = *settings;
+  spec.min = reader.number("min", any_level);
+  spec.max = reader.number("max", any_level);
+  read_stop(reader, spec);
+}
+
+/// True if JSON can express the value.
+bool expressible(const text::Value& value) {
+  using Kind = text::Value::Kind;
+  if (value.kind == Kind::number && !std::isfinite(value.number)) return false;
+  return value.kind != Kind::date && std::ranges::all_of(value.items, expressible) &&
+         std::ranges::all_of(value.entries, [](const auto& entry) { return expressible(entry.value); });
+}
+
+void validate_program(const Spec& spec, std::vector<Problem>& problems) {
+  if (spec.program.file.empty())
+    problems.push_back({"program", "missing or empty", "the path of an executable file"});
+  if (!spec.min || !spec.max || *spec.min >= *spec.max)
+    problems.push_back({"min", "\"min\" is not less than \"max\"", "min < max"});
+  const auto& stop = spec.stop;
+  const bool others =
+      stop.reversals || stop.min_trials || stop.threshold_sd || stop.entropy_nats || stop.right;
+  if (!stop.trials || others)
+    problems.push_back({"stop",
+                        "a program decides itself when it is done, so \"stop\" only limits its trials",
+                        "stop = { trials = N }"});
+  for (const auto& entry : spec.program.settings.entries)
+    if (!expressible(entry.value))
+      problems.push_back({"settings." + entry.key, "JSON has no such value",
+                          "a finite number, text, true, false, a list or a table of them"});
+}
+
+}  // namespace
+
+std::unique_ptr<Procedure> StandIns::procedure(const Spec& spec, const random::Key&) {
+  return std::make_unique<StandIn>(spec);
+}
+
+extern const Description program{
+    Kind::program,
+    "program",
+    Choice::program,
+    read_program,
+    validate_program,
+    [](const Spec& spec, const Context& context, const random::Key& key) -> std::unique_ptr<Procedure> {
+      if (context.programs == nullptr)
+        throw std::logic_error("procedure " + spec.name + ": nothing was given that starts programs");
+      return context.programs->procedure(spec, key);
+    },
+    [](const Spec&, double, double) -> std::optional<double> { return std::nullopt; },
+};
+
+}  // namespace turnpoint::procedure

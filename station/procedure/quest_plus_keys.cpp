@@ -1,0 +1,259 @@
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "station/procedure/description.hpp"
+#include "station/procedure/grid.hpp"
+#include "station/procedure/keys.hpp"
+#include "station/procedure/psychometric.hpp"
+#include "station/procedure/quest_plus.hpp"
+#include "station/text/number.hpp"
+
+// The descriptions of all procedures with a posterior: their keys, and which specifications are wrong.
+namespace turnpoint::procedure {
+
+namespace {
+
+/// True if this parameter must have a grid: `grid.gradient` with a second dimension, `grid.criterion` with
+/// signal detection, and all others except the floor. With signal detection there is no guess rate.
+bool needs_grid(const Spec& spec, const std::string& parameter) {
+  if (parameter == "gradient") return spec.second.has_value();
+  if (parameter == "criterion") return spec.signal_detection;
+  if (parameter == "guess") return !spec.signal_detection;
+  return parameter != "floor";
+}
+
+void read_axes(text::TableReader& reader, Spec& spec) {
+  std::string needed;
+  for (const auto& parameter : kParameters)
+    if (needs_grid(spec, parameter.name))
+      needed += (needed.empty()                           ? "grid."
+                 : std::string(parameter.name) == "lapse" ? " and grid."
+                                                          : ", grid.") +
+                std::string(parameter.name);
+  if (const auto* grid = reader.table("grid", "give " + needed)) {
+    text::TableReader inner(*grid, reader.path("grid"), reader.findings());
+    for (const auto& [key, axis, prior] : kParameters) {
+      const auto* value = needs_grid(spec, key)
+                              ? inner.require(key, "write a grid: { from, to, step } or { values = [...] }")
+                              : inner.take(key);
+      if (value) spec.*axis = read_grid(*value, inner.path(key), Axis::parameter, reader.findings());
+    }
+    inner.finish();
+  }
+  if (const auto* table = reader.maybe_table("prior")) {
+    text::TableReader inner(*table, reader.path("prior"), reader.findings());
+    for (const auto& [key, axis, prior] : kParameters)
+      if (const auto* value = inner.take(key))
+        spec.*prior = read_prior(*value, inner.path(key), reader.findings());
+    inner.finish();
+  }
+}
+
+void read_second(text::TableReader& reader, Spec& spec) {
+  const auto* table = reader.maybe_table("second");
+  if (!table) return;
+  text::TableReader inner(*table, reader.path("second"), reader.findings());
+  auto& second = spec.second.emplace();
+  second.level = inner.string("level", "write the name of a factor");
+  if (const auto* stimuli =
+          inner.require("stimuli", "give the values from which to choose: { from, to, step }"))
+    second.stimuli = read_grid(*stimuli, inner.path("stimuli"), Axis::stimuli, reader.findings());
+  second.origin = inner.number("origin", any_level, 0);
+  inner.finish();
+}
+
+/// Reads the keys of every procedure with a posterior.
+void read_grids(text::TableReader& reader, Spec& spec) {
+  read_tracks(reader, spec);
+  read_scale(reader, spec);
+  const auto function = reader.word("function", {"weibull", "normal", "logistic", "signal-detection"});
+  spec.signal_detection = function == "signal-detection";
+  spec.function = function == "normal"     ? terms::Function::normal
+                  : function == "logistic" ? terms::Function::logistic
+                                           : terms::Function::weibull;
+  if (const auto* stimuli =
+          reader.require("stimuli", "give the levels from which to choose: { from, to, step }"))
+    spec.stimuli = read_grid(*stimuli, reader.path("stimuli"), Axis::stimuli, reader.findings());
+  read_axes(reader, spec);
+  read_stop(reader, spec);
+}
+
+void read_posterior(text::TableReader& reader, Spec& spec) {
+  read_second(reader, spec);
+  read_grids(reader, spec);
+  std::vector<std::string> parameters;
+  for (const auto& parameter : kParameters) parameters.emplace_back(parameter.name);
+  spec.nuisance = reader.maybe_strings("nuisance");
+  for (const auto& name : spec.nuisance)
+    if (std::find(parameters.begin(), parameters.end(), name) == parameters.end())
+      reader.problem("nuisance", "\"" + name + "\" is not a parameter of the psychometric function",
+                     "allowed: " + text::quoted_list(parameters));
+  reader.word("select", {"min-expected-entropy"}, "min-expected-entropy");
+}
+
+void validate_rate(const char* key, const Grid& grid, std::vector<Problem>& problems) {
+  for (const double rate : grid.values)
+    if (!(rate >= 0 && rate < 1))
+      return problems.push_back({key, "a rate is outside the range from 0 to 1",
+                                 "write probabilities of at least 0 and less than 1"});
+}
+
+void validate_prior(const std::string& key, const Prior& prior, const Grid& grid,
+                    std::vector<Problem>& problems) {
+  if (prior.weights.empty()) return;
+  const auto values = grid.values.size();
+  if (prior.weights.size() != values)
+    problems.push_back({key, std::to_string(prior.weights.size()) + " weights",
+                        "there must be one weight for each value of the grid: " + std::to_string(values)});
+  else if (std::none_of(prior.weights.begin(), prior.weights.end(), [](double w) { return w > 0; }))
+    problems.push_back({key, "all weights are 0", "at least one weight must be above 0"});
+}
+
+/// Adds a problem if the tables of the posterior would be too large: choosing a stimulus would take too long,
+/// or the memory of a small computer would not be enough.
+void validate_size(const Spec& spec, std::vector<Problem>& problems) {
+  constexpr double most = 5e7, most_distances = 5e6, bytes_each = 8;
+  const auto count = [](const Grid& grid) {
+    return static_cast<double>(std::max<std::size_t>(1, grid.values.size()));
+  };
+  const double stimuli = count(spec.stimuli) * (spec.second ? count(spec.second->stimuli) : 1);
+  double parameters = 1;
+  for (const auto& parameter : kParameters) parameters *= count(spec.*parameter.grid);
+  const double places = count(spec.threshold) * count(spec.gradient) * count(spec.floor);
+  const char* what = spec.second ? " thresholds, gradients and floors" : " thresholds";
+  if (stimuli * parameters > most)
+    problems.push_back({"grid.threshold",
+                        text::number(stimuli) + " stimuli and " + text::number(parameters) +
+                            " points of the grid make " + text::number(stimuli * parameters, 3) +
+                            " combinations, too many to choose a level in time (up to " +
+                            text::number(stimuli * parameters * bytes_each / 1e6, 3) + " MB)",
+                        "allow at most 50 million combinations (up to 400 MB)"});
+  else if (stimuli * places > most_distances)
+    problems.push_back({"grid.threshold",
+                        text::number(stimuli) + " stimuli and " + text::number(places) + what + " make " +
+                            text::number(stimuli * places, 3) + " pairs, too many for the memory",
+                        "allow at most 5 million pairs"});
+}
+
+void validate_second(const Spec& spec, std::vector<Problem>& problems) {
+  const auto unused = [&](const char* parameter, const Grid& grid, const Prior& prior) {
+    for (const auto& [table, given] :
+         {std::pair("grid.", !grid.values.empty() || !grid.tied.empty()),
+          std::pair("prior.", prior.normal.has_value() || !prior.weights.empty())})
+      if (given && !spec.second)
+        problems.push_back({table + std::string(parameter), "there is no second dimension",
+                            "leave it out, or add second = { level, stimuli }"});
+  };
+  unused("gradient", spec.gradient, spec.prior_gradient);
+  unused("floor", spec.floor, spec.prior_floor);
+  if (!spec.second) return;
+  if (spec.second->stimuli.values.empty())
+    problems.push_back({"second.stimuli", "missing", "give the values from which to choose"});
+  if (spec.second->level == spec.level)
+    problems.push_back(
+        {"second.level", "\"" + spec.level + "\" is the first dimension too", "another factor"});
+  if (spec.gradient.values.empty())
+    problems.push_back({"grid.gradient", "missing",
+                        "give the values of the change of the threshold per unit of the second dimension"});
+  if (spec.scale != Scale::linear && !positive(spec.floor.values))
+    problems.push_back({"grid.floor", "on a logarithmic scale each floor must be above 0", "above 0"});
+}
+
+void validate_detection(const Spec& spec, std::vector<Problem>& problems) {
+  if (!spec.signal_detection) {
+    if (!spec.criterion.values.empty() || !spec.criterion.tied.empty())
+      problems.push_back({"grid.criterion", "only function = \"signal-detection\" has a criterion",
+                          "leave it out, or set this function"});
+    return;
+  }
+  if (!spec.guess.values.empty() || !spec.guess.tied.empty())
+    problems.push_back({"grid.guess", "in signal detection, false alarms follow from the criterion",
+                        "leave it out, and give grid.criterion"});
+  if (spec.criterion.values.empty())
+    problems.push_back({"grid.criterion", "missing", "give the values of the criterion, such as 0 to 2"});
+  if (spec.tracks.empty())
+    problems.push_back({"tracks", "missing", "write the id of the answer that means \"yes\""});
+  for (const double lapse : spec.lapse.values)
+    if (lapse >= 0.5)
+      return problems.push_back(
+          {"grid.lapse", "both asymptotes would be on the wrong side", "less than 0.5"});
+}
+
+void validate_posterior(const Spec& spec, std::vector<Problem>& problems) {
+  if (spec.stimuli.values.empty())
+    problems.push_back({"stimuli", "missing", "give the levels from which to choose"});
+  if (spec.threshold.values.empty())
+    problems.push_back({"grid.threshold", "missing", "give the values of the threshold"});
+  if (spec.slope.values.empty())
+    problems.push_back({"grid.slope", "missing", "give the values of the slope"});
+  if (!positive(spec.slope.values))
+    problems.push_back({"grid.slope", "each slope must be above 0", "above 0"});
+  for (const auto& parameter : kParameters)
+    if (const auto& tied = (spec.*parameter.grid).tied;
+        !tied.empty() && std::string(parameter.name) != "guess" && std::string(parameter.name) != "lapse")
+      problems.push_back({std::string("grid.") + parameter.name,
+                          "only the guess rate can be tied to the lapse rate",
+                          "write the values of this parameter"});
+  validate_rate("grid.guess", spec.guess, problems);
+  validate_rate("grid.lapse", spec.lapse, problems);
+  for (const auto& [key, grid, prior] : kParameters)
+    validate_prior(std::string("prior.") + key, spec.*prior, spec.*grid, problems);
+  validate_second(spec, problems);
+  validate_detection(spec, problems);
+  validate_size(spec, problems);
+  if (!spec.stop.trials && !spec.stop.threshold_sd && !spec.stop.entropy_nats && !spec.stop.right)
+    problems.push_back({"stop", "no rule ends the procedure", "add trials or threshold_sd"});
+}
+
+void validate_at_threshold(const Spec& spec, std::vector<Problem>& problems) {
+  validate_posterior(spec, problems);
+  for (const auto& [key, grid, unused] : kParameters)
+    if (grid != &Spec::threshold && (spec.*grid).values.size() > 1)
+      problems.push_back({std::string("grid.") + key, "only the threshold is estimated",
+                          "one value, or quest-plus or psi instead"});
+  const auto& prior = spec.prior_threshold;
+  if (spec.kind == Kind::best_pest && (prior.normal || !prior.weights.empty()))
+    problems.push_back({"prior.threshold", "the most likely threshold has no prior",
+                        "leave it out, or write kind = \"zest\""});
+}
+
+std::unique_ptr<Procedure> make_quest_plus(const Spec& spec, const Context&, const random::Key&) {
+  return std::make_unique<QuestPlus>(spec);
+}
+
+/// Returns the probability of an answer of 1 at the threshold of the assumed function, whose asymptotes are
+/// `least` and `most`. In signal detection, `least` is the rate of false alarms, from which the criterion
+/// follows; d' is 1 at the threshold.
+std::optional<double> share_at_threshold(const Spec& spec, double least, double most) {
+  if (spec.signal_detection) {
+    const double lapse = 1 - most, between = 1 - 2 * lapse;
+    if (!(between > 0) || !(least > lapse)) return std::nullopt;
+    return lapse + between * normal_cdf(1 + normal_quantile((least - lapse) / between));
+  }
+  const double way = spec.function == Function::weibull ? 1 - std::exp(-1.0) : 0.5;
+  return least + way * (most - least);
+}
+
+}  // namespace
+
+extern const Description quest_plus{Kind::quest_plus,   "quest-plus",    Choice::posterior, read_posterior,
+                                    validate_posterior, make_quest_plus, share_at_threshold};
+
+extern const Description psi{Kind::psi,          "psi",           Choice::posterior, read_posterior,
+                             validate_posterior, make_quest_plus, share_at_threshold};
+
+extern const Description psi_marginal{Kind::psi_marginal, "psi-marginal",  Choice::posterior, read_posterior,
+                                      validate_posterior, make_quest_plus, share_at_threshold};
+
+extern const Description zest{
+    Kind::zest,        "zest", Choice::posterior, read_grids, validate_at_threshold, make_quest_plus,
+    share_at_threshold};
+
+extern const Description best_pest{Kind::best_pest,       "best-pest",     Choice::posterior, read_grids,
+                                   validate_at_threshold, make_quest_plus, share_at_threshold};
+
+}  // namespace turnpoint::procedure

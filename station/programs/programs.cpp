@@ -1,0 +1,59 @@
+#include "station/programs/programs.hpp"
+
+#include <algorithm>
+#include <filesystem>
+#include <utility>
+
+#include "station/programs/program_observer.hpp"
+#include "station/programs/program_procedure.hpp"
+
+namespace turnpoint::programs {
+
+std::string path_of(const std::string& program, const std::string& protocol_path) {
+  return (std::filesystem::absolute(protocol_path).parent_path() / program).lexically_normal().string();
+}
+
+std::unique_ptr<procedure::Procedure> Programs::procedure(const procedure::Spec& spec,
+                                                          const random::Key& key) {
+  return std::make_unique<ProgramProcedure>(
+      spec, key, path_of(spec.program.file, protocol_path_), [this, name = spec.name](const Identity& it) {
+        add_started({"procedure", name, it.name, it.version, it.path, it.sha256});
+      });
+}
+
+observer::Respondent Programs::respondent(const std::string& observer) {
+  if (!is_program(observer)) return observer::Observer(observer::parse(observer));
+  const auto program =
+      std::make_shared<ProgramObserver>(parse_program("--observer", observer), [this](const Identity& it) {
+        add_started({"observer", "", it.name, it.version, it.path, it.sha256});
+      });
+  return {[program](const observer::Question& question) { return program->answer(question); },
+          [program](const observer::Adjustment& adjustment) { return program->adjust(adjustment); }};
+}
+
+void Programs::add_started(const records::ProgramRow& program) {
+  if (std::ranges::find(started_, program) == started_.end()) started_.push_back(program);
+}
+
+std::vector<records::ProgramRow> Programs::take_started() { return std::exchange(started_, {}); }
+
+std::vector<text::Problem> problems_of(const protocol::Protocol& protocol) {
+  std::vector<text::Problem> problems;
+  Programs programs(protocol.path);
+  for (const auto& spec : protocol.procedures) {
+    if (spec.kind != procedure::Kind::program) continue;
+    try {
+      const auto procedure = programs.procedure(spec, procedure::key_of(protocol.seed.value_or(0), 0, 0, 0));
+      if (!procedure->next())
+        problems.push_back({spec.program.place,
+                            "procedure \"" + spec.name + "\": the program is done before its first trial",
+                            "a program that gives at least one level"});
+    } catch (const terms::ProgramFailed& failed) {
+      problems.push_back({spec.program.place, "procedure \"" + spec.name + "\": " + failed.what(),
+                          "a program that works as protocols/programs.md says"});
+    }
+  }
+  return problems;
+}
+
+}  // namespace turnpoint::programs

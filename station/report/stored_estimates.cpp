@@ -1,0 +1,125 @@
+#include "station/report/stored_estimates.hpp"
+
+#include <algorithm>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "station/procedure/continuation.hpp"
+#include "station/procedure/description.hpp"
+#include "station/protocol/conditions.hpp"
+#include "station/protocol/sources.hpp"
+
+namespace turnpoint::report {
+
+namespace {
+
+/// Returns the place of a procedure among those of its block, which is part of the key of its draws.
+std::size_t place_in_block(const procedure::Spec& spec, const std::string& block,
+                           const protocol::Protocol& protocol) {
+  for (const auto& part : protocol.plan) {
+    const auto& names = protocol::block_of(part).procedures;
+    if (protocol::block_of(part).name == block)
+      return static_cast<std::size_t>(std::find(names.begin(), names.end(), spec.name) - names.begin());
+  }
+  return 0;
+}
+
+/// An answer that a procedure has learned from.
+struct Learned {
+  const records::TrialRow* row;
+  bool one;
+};
+
+/// Gives the procedure the answers of its trials in a block. Returns those from which it has learned; nothing
+/// if a procedure that continues would have presented other levels, because its earlier sessions are not
+/// known.
+std::optional<std::vector<Learned>> replay(const std::vector<records::TrialRow>& trials,
+                                           const procedure::Spec& spec, procedure::Procedure& replayed) {
+  std::vector<Learned> learned;
+  for (const auto& row : trials) {
+    if (row.procedure != spec.name || row.type != terms::TrialType::experimental ||
+        row.outcome == terms::Outcome::fault || row.outcome == terms::Outcome::aborted || !replayed.next())
+      continue;
+    if (spec.continues && replayed.next()->level != row.level) return std::nullopt;
+    if (row.outcome != terms::Outcome::answered) {
+      replayed.record(procedure::Answer::none);
+      continue;
+    }
+    const bool one = spec.tracks.empty() ? row.correct.value_or(false) : row.response == spec.tracks;
+    replayed.record(one ? procedure::Answer::one : procedure::Answer::zero);
+    learned.push_back({&row, one});
+  }
+  return learned;
+}
+
+std::optional<analysis::Interval> interval_of(const procedure::Estimate& estimate) {
+  if (!estimate.interval) return std::nullopt;
+  return analysis::Interval{estimate.interval->first, estimate.interval->second, 0.95};
+}
+
+void add_curve(const std::string& block, const procedure::Spec& spec, const procedure::Procedure& replayed,
+               const std::vector<Learned>& learned, SessionData& data) {
+  if (!spec.second) return;
+  const auto second = protocol::words_of(spec.second->level);
+  ThresholdCurve curve;
+  curve.block = block, curve.procedure = spec.name, curve.label = axis_label(second.name, second.unit);
+  curve.ratios = spec.scale != procedure::Scale::linear;
+  for (const auto& [at, estimate] : replayed.thresholds())
+    curve.points.push_back({at, estimate.mean, *interval_of(estimate)});
+  for (const auto& [row, one] : learned)
+    for (const auto& [name, value] : row->factors)
+      if (const auto* at = std::get_if<double>(&value); at && name == spec.second->level)
+        curve.trials.push_back({*at, row->level.value_or(0), one});
+  data.threshold_curves.push_back(std::move(curve));
+}
+
+}  // namespace
+
+void add_estimates(const std::vector<const records::BlockRecord*>& blocks, const protocol::Protocol& protocol,
+                   SessionData& data) {
+  for (const auto& spec : protocol.procedures) {
+    if (!procedure::follows_answers(spec) || spec.kind == procedure::Kind::program) continue;
+    const auto& kind = procedure::description(spec.kind);
+    const bool posterior = kind.choice == procedure::Choice::posterior;
+    const double least = spec.tracks.empty() ? 1.0 / data.alternatives : 0;
+    for (const auto* block : blocks) {
+      if (block->start.practice) continue;
+      const auto key =
+          procedure::key_of(data.seed, block->start.block_index,
+                            place_in_block(spec, block->start.name, protocol), block->start.attempt);
+      const auto replayed = procedure::make_procedure(spec, {}, key);
+      if (const auto before = data.earlier.find(spec.name); spec.continues && before != data.earlier.end())
+        procedure::continue_from(before->second, spec, *replayed);
+      const auto learned = replay(block->trials, spec, *replayed);
+      if (replayed->recorded() == 0 || !learned) continue;
+      for (const auto& [parameter, estimate] : replayed->estimates())
+        data.estimates.push_back({block->start.name, spec.name, parameter, estimate.mean, estimate.sd,
+                                  posterior ? "mean of its posterior" : estimate.basis,
+                                  unit_of(parameter, spec), interval_of(estimate), kind.choice,
+                                  kind.settles_at(spec, least, 1)});
+      add_curve(block->start.name, spec, *replayed, *learned, data);
+    }
+  }
+}
+
+std::string axis_label(std::string name, const std::string& unit) {
+  if (name[0] >= 'a' && name[0] <= 'z') name[0] = static_cast<char>(name[0] - 'a' + 'A');
+  return name + " (" + (unit.empty() ? "no unit" : unit) + ")";
+}
+
+std::string unit_of(const std::string& parameter, const procedure::Spec& spec) {
+  const auto level = protocol::words_of(spec.level).unit;
+  if (parameter == "criterion") return "SD of noise";
+  if (parameter == "gradient" && spec.second) {
+    const auto second = protocol::words_of(spec.second->level).unit;
+    const auto rise = spec.scale == procedure::Scale::dB      ? "dB"
+                      : spec.scale == procedure::Scale::log10 ? "decades"
+                                                              : level;
+    if (second.empty()) return rise;
+    return (rise.empty() ? "1" : rise) + "/" + second;
+  }
+  return parameter.starts_with("threshold") || parameter == "pse" || parameter == "floor" ? level : "";
+}
+
+}  // namespace turnpoint::report

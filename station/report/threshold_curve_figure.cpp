@@ -1,0 +1,66 @@
+#include <map>
+#include <utility>
+
+#include "station/report/figures.hpp"
+
+namespace turnpoint::report {
+
+namespace {
+
+/// The two answers to a stimulus are drawn beside each other, this share of the axis apart.
+constexpr double kApart = 0.014;
+
+/// One marker for all trials with the same stimulus and answer; its area shows how many they are.
+plot::Points trials_of(const ThresholdCurve& curve, bool logarithmic) {
+  const double apart = kApart * (curve.points.back().second - curve.points.front().second);
+  std::map<std::pair<std::pair<double, double>, bool>, int> counts;
+  for (const auto& trial : curve.trials)
+    if (!logarithmic || trial.level > 0) ++counts[{{trial.second, trial.level}, trial.one}];
+  plot::Points points;
+  points.series = plot::kNeutral;
+  for (const auto& [what, count] : counts) {
+    points.x.push_back(what.first.first + (what.second ? -0.5 : 0.5) * apart),
+        points.y.push_back(what.first.second);
+    points.open.push_back(!what.second);
+    points.weight.push_back(count);
+  }
+  return points;
+}
+
+plot::Chart panel_of(const ThresholdCurve& curve, const std::string& level_label) {
+  plot::Band band;
+  plot::Line line;
+  for (const auto& point : curve.points) {
+    band.x.push_back(point.second), line.x.push_back(point.second);
+    line.y.push_back(point.threshold);
+    band.low.push_back(point.interval.low), band.high.push_back(point.interval.high);
+  }
+  const auto points = trials_of(curve, curve.ratios);
+  auto seconds = line.x, levels = points.y;
+  levels.insert(levels.end(), band.low.begin(), band.low.end());
+  levels.insert(levels.end(), band.high.begin(), band.high.end());
+  plot::Chart panel;
+  panel.title = curve.procedure;
+  panel.x = plot::fitted(curve.label, seconds, 0.06);
+  panel.y = plot::fitted(level_label, levels, 0.08,
+                         curve.ratios ? plot::AxisScale::log10 : plot::AxisScale::linear);
+  panel.layers = {band, points, line};
+  return panel;
+}
+
+}  // namespace
+
+std::optional<plot::Figure> threshold_curve_figure(const Summary& summary) {
+  plot::Figure figure;
+  figure.title = "Threshold along the second dimension";
+  figure.chart_width_px = 620;
+  figure.chart_height_px = 340;
+  figure.caption =
+      "The area of a marker is proportional to its number of trials. Open: wrong, or not the tracked answer.";
+  for (const auto& curve : summary.data.threshold_curves)
+    figure.charts.push_back(panel_of(curve, summary.data.level_label));
+  if (figure.charts.empty()) return std::nullopt;
+  return figure;
+}
+
+}  // namespace turnpoint::report

@@ -1,0 +1,239 @@
+import QtQuick
+import Turnpoint
+
+// The guided calibration: first the measurements to choose from, then one point after another. Each point has a picture
+// of what to do, the tone that is played, and what was read.
+Item {
+    id: root
+    required property Theme theme
+    required property Texts texts
+    required property CalibrationGuide guide
+    readonly property bool measuring: guide.chosen !== ""
+    readonly property string unit: guide.chosen === "response" ? " µm" : guide.chosen === "boundaries" ? " mm" : guide.chosen === "sound" ? " dB" : ""
+    readonly property var point: guide.point
+    readonly property var surface: guide.surface
+    readonly property string reading: point.value ?? ""
+
+    function name(series: string) : string {
+        return series === "response" ? texts.text("operator.guide_response") : series === "boundaries" ? texts.text("operator.guide_boundaries")
+            : series === "friction" ? texts.text("operator.guide_friction") : texts.text("operator.guide_sound")
+    }
+
+    OperatorCard {
+        id: card
+        anchors { left: parent.left; right: parent.right; top: parent.top; bottom: buttons.top; bottomMargin: root.theme.unit }
+        theme: root.theme
+        heading: root.measuring ? root.name(root.guide.chosen) + " · " + root.texts.text("operator.guide_point").arg(root.guide.at + 1).arg(root.guide.count) : ""
+        PlainText {
+            objectName: "guideSays"
+            width: card.inner
+            text: root.guide.chosen === "response" ? root.texts.text("operator.guide_response_text")
+                : root.guide.chosen === "boundaries" ? root.texts.text("operator.guide_boundaries_text")
+                : root.guide.chosen === "friction" ? root.texts.text("operator.guide_friction_text")
+                : root.guide.chosen === "sound" ? root.texts.text("operator.guide_sound_text")
+                : root.guide.file !== "" ? root.texts.text("operator.guide_done").arg(root.guide.file.split("/").pop()) : root.texts.text("operator.guide_text")
+            color: root.theme.ink
+            font.pixelSize: root.theme.textBody
+            wrapMode: Text.Wrap
+        }
+        PlainText {
+            objectName: "guideProblem"
+            visible: text !== ""
+            width: card.inner
+            text: root.guide.problem
+            color: root.theme.wrong
+            font { pixelSize: root.theme.textBody; weight: Font.DemiBold }
+            wrapMode: Text.Wrap
+        }
+        // where to measure: a mark that is dragged to the edge of the sand, or a sign on a picture of the surface
+        Loader {
+            active: root.guide.chosen === "boundaries"
+            visible: active
+            width: card.inner
+            sourceComponent: DesignStrip {
+                objectName: "sandStrip"
+                theme: root.theme
+                texts: root.texts
+                surface: root.surface
+                boundaryMm: root.reading === "" ? Math.round((root.surface.lengthMm ?? 0) / 2) : Number(root.reading)
+                onMoved: (which, mm) => root.guide.enter(mm.toFixed(1))
+            }
+        }
+        Item {
+            visible: root.measuring && root.guide.chosen !== "boundaries"
+            width: card.inner
+            height: Math.max(12 * root.theme.unit, 2 * root.theme.controlHeight)
+            SurfaceDrawing {
+                id: picture
+                anchors { left: parent.left; right: parent.right; bottom: parent.bottom }
+                height: 0.7 * parent.height
+                lengthMm: root.surface.lengthMm ?? 0
+                wideHalfWidthMm: root.surface.wideHalfWidthMm ?? 0
+                narrowHalfWidthMm: root.surface.narrowHalfWidthMm ?? 0
+                wideEndLeft: root.surface.wideEndLeft ?? true
+                showFinger: root.guide.chosen === "friction"
+                textPixels: root.theme.textSmall
+                ink: root.theme.ink
+                paper: root.theme.raised
+                accent: root.theme.action
+            }
+            Glyph {
+                visible: root.guide.chosen !== "friction"
+                name: root.guide.chosen === "sound" ? "gauge" : "rings"
+                color: root.theme.action
+                height: 0.4 * parent.height
+                width: height
+                x: root.guide.chosen === "sound" ? (parent.width - width) / 2 : picture.width > 0 ? picture.xOf(0) - width / 2 + (picture.wideEndLeft ? 1 : -1) * width / 2 : 0
+                y: root.guide.chosen === "sound" ? 0 : 0.45 * parent.height
+            }
+        }
+        PlainText {
+            objectName: "guideTone"
+            visible: root.measuring
+            width: card.inner
+            text: root.texts.text("operator.guide_tone").arg(root.point.kHz ?? "").arg(root.point.um ?? "").arg(root.point.percent ?? "").arg(root.point.transducer ?? "")
+            color: root.theme.quiet
+            font.pixelSize: root.theme.textSmall
+            wrapMode: Text.Wrap
+        }
+        Flow {
+            visible: root.measuring
+            width: card.inner
+            spacing: root.theme.unit
+            ActionButton {
+                objectName: "guidePlay"
+                theme: root.theme
+                danger: root.guide.playing
+                atOnce: root.guide.playing
+                enabled: root.guide.playing || root.guide.mayPlay
+                glyph: root.guide.playing ? "cross" : "run"
+                holdMs: !root.guide.playing && root.guide.real ? 900 : 0
+                text: root.guide.playing ? root.texts.text("operator.guide_left").arg(root.guide.remainingSeconds.toFixed(1))
+                    : root.texts.text(root.guide.real ? "operator.guide_hold" : "operator.guide_play")
+                onActivated: {
+                    if (root.guide.playing) root.guide.stop()
+                    else root.guide.play()
+                }
+            }
+            ActionButton {
+                objectName: "guideReading"
+                theme: root.theme
+                primary: false
+                text: root.texts.text("operator.guide_reading").arg(root.reading === "" ? root.texts.text("operator.guide_none") : root.reading + root.unit)
+                onActivated: entry.ask(false)
+            }
+            ActionButton {
+                objectName: "guidePhase"
+                visible: root.guide.chosen === "response"
+                theme: root.theme
+                primary: false
+                text: root.texts.text("operator.guide_phase").arg((root.point.phase ?? "") === "" ? root.texts.text("operator.guide_none") : root.point.phase + "°")
+                onActivated: entry.ask(true)
+            }
+        }
+        Repeater {
+            model: root.measuring ? [] : root.guide.series
+            Item {
+                id: line
+                required property var modelData
+                width: card.inner
+                height: root.theme.controlHeight
+                PlainText {
+                    anchors { left: parent.left; right: start.left; rightMargin: root.theme.unit; verticalCenter: parent.verticalCenter }
+                    text: (line.modelData.measured ? "✓ " : "") + root.name(line.modelData.name) + " · "
+                        + root.texts.text(line.modelData.measured ? "operator.fact_measured" : "operator.guide_missing")
+                    color: line.modelData.measured ? root.theme.ink : root.theme.quiet
+                    font.pixelSize: root.theme.textBody
+                    wrapMode: Text.Wrap
+                    maximumLineCount: 2
+                    fontSizeMode: Text.Fit
+                    minimumPixelSize: 0.7 * root.theme.textSmall
+                    height: parent.height
+                    verticalAlignment: Text.AlignVCenter
+                }
+                ActionButton {
+                    id: start
+                    objectName: "guide-" + line.modelData.name
+                    anchors.right: parent.right
+                    theme: root.theme
+                    primary: false
+                    text: root.texts.text("operator.guide_begin")
+                    label: text + ": " + root.name(line.modelData.name)
+                    onActivated: root.guide.begin(line.modelData.name)
+                }
+            }
+        }
+        FigureView {
+            objectName: "guideFigure"
+            visible: root.guide.file !== "" && !root.measuring
+            width: card.inner
+            height: Math.max(50 * root.theme.unit, 0.8 * width)
+            textPixels: 0.75 * root.theme.textSmall
+            dark: root.theme.dark
+            paper: root.theme.raised
+            picture: root.guide.figure
+        }
+    }
+    Flow {
+        id: buttons
+        anchors { left: parent.left; right: parent.right; bottom: parent.bottom }
+        visible: root.measuring
+        height: visible ? implicitHeight : 0
+        layoutDirection: Qt.RightToLeft
+        spacing: root.theme.unit
+        ActionButton {
+            objectName: "guideFinish"
+            theme: root.theme
+            enabled: root.guide.mayFinish
+            text: root.texts.text("operator.guide_finish").arg(root.guide.entered).arg(root.guide.count)
+            onActivated: root.guide.finish()
+        }
+        ActionButton {
+            objectName: "guideNext"
+            theme: root.theme
+            primary: false
+            enabled: !root.guide.playing && root.guide.at < root.guide.count - 1
+            glyph: root.texts.mirrored ? "previous" : "next"
+            label: root.texts.text("design.next").arg(card.heading)
+            onActivated: root.guide.show(root.guide.at + 1)
+        }
+        ActionButton {
+            objectName: "guidePrevious"
+            theme: root.theme
+            primary: false
+            enabled: !root.guide.playing && root.guide.at > 0
+            glyph: root.texts.mirrored ? "next" : "previous"
+            label: root.texts.text("design.previous").arg(card.heading)
+            onActivated: root.guide.show(root.guide.at - 1)
+        }
+        ActionButton {
+            objectName: "guideLeave"
+            theme: root.theme
+            primary: false
+            holdMs: root.guide.entered > 0 ? 900 : 0
+            text: root.guide.entered > 0 ? root.texts.text("operator.guide_leave") : root.texts.back
+            onActivated: root.guide.leave()
+        }
+    }
+    EntryDialog {
+        id: entry
+        property bool phase: false
+        objectName: "guideEntry"
+        anchors.fill: parent
+        theme: root.theme
+        title: root.name(root.guide.chosen) + (phase ? " (°)" : root.unit !== "" ? " (" + root.unit.trim() + ")" : "")
+        keepText: root.texts.text("design.use")
+        cancelText: root.texts.text("operator.cancel")
+        emptyAllowed: !phase
+        function ask(forPhase: bool) {
+            phase = forPhase
+            refused = ""
+            open(forPhase ? root.point.phase : root.reading)
+        }
+        onAccepted: text => {
+            if (phase ? root.guide.enterPhase(text) : root.guide.enter(text)) return
+            refused = root.guide.problem
+            open(text)
+        }
+    }
+}

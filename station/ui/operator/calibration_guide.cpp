@@ -1,0 +1,227 @@
+#include "station/ui/operator/calibration_guide.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <exception>
+#include <sstream>
+#include <utility>
+
+#include "station/calibration/apply.hpp"
+#include "station/calibration/calibration.hpp"
+#include "station/desk/preview.hpp"
+#include "station/desk/scene_figures.hpp"
+#include "station/maintenance/play_armed.hpp"
+#include "station/setup/prepare.hpp"
+#include "station/text/number.hpp"
+#include "station/ui/operator/figure_view.hpp"
+
+namespace turnpoint::ui {
+
+namespace {
+
+using maintenance::Series;
+
+constexpr std::pair<Series, const char*> kSeries[] = {{Series::response, "response"},
+                                                      {Series::boundaries, "boundaries"},
+                                                      {Series::friction, "friction"},
+                                                      {Series::sound, "sound"}};
+constexpr int kTick_ms = 100;
+
+bool has(const calibration::Calibration& made, Series series) {
+  switch (series) {
+    case Series::response:
+      return !made.transducers.empty();
+    case Series::boundaries:
+      return made.boundary.has_value();
+    case Series::friction:
+      return made.friction.has_value();
+    case Series::sound:
+      return !made.sound.empty();
+  }
+  return false;
+}
+
+QString shown(const std::optional<double>& value) {
+  return value ? QString::fromStdString(text::number(*value, 5)) : QString();
+}
+
+/// A number as people type it, also with a decimal comma.
+std::optional<double> number_in(QString typed) {
+  bool fine = false;
+  const double value = typed.trimmed().replace(',', '.').toDouble(&fine);
+  return fine && std::isfinite(value) ? std::optional(value) : std::nullopt;
+}
+
+}  // namespace
+
+CalibrationGuide::CalibrationGuide(std::string rig, QObject* parent)
+    : QObject(parent), path_(std::move(rig)), job_(*this) {
+  tick_.setInterval(kTick_ms);
+  connect(&tick_, &QTimer::timeout, this, &CalibrationGuide::ticked);
+  rest_.setSingleShot(true);
+  connect(&rest_, &QTimer::timeout, this, &CalibrationGuide::changed);
+}
+
+QVariantList CalibrationGuide::series() const {
+  std::optional<calibration::Calibration> made;
+  try {
+    if (const auto newest = calibration::newest_for(path_); !newest.empty()) made = calibration::load(newest);
+  } catch (const std::exception&) {
+    // the page says elsewhere that the calibration cannot be read
+  }
+  QVariantList list;
+  for (const auto& [series, name] : kSeries)
+    list += QVariantMap{{"name", name}, {"measured", made.has_value() && has(*made, series)}};
+  return list;
+}
+
+QString CalibrationGuide::chosen() const {
+  const auto found = std::find_if(std::begin(kSeries), std::end(kSeries),
+                                  [&](const auto& one) { return one.first == chosen_; });
+  return found == std::end(kSeries) ? QString() : found->second;
+}
+
+bool CalibrationGuide::refuse(const QString& problem) {
+  problem_ = problem;
+  Q_EMIT changed();
+  return false;
+}
+
+void CalibrationGuide::begin(const QString& series) {
+  const auto found = std::find_if(std::begin(kSeries), std::end(kSeries),
+                                  [&](const auto& one) { return series == one.second; });
+  if (found == std::end(kSeries) || playing_) return;
+  leave();
+  try {
+    std::ostringstream messages;  // the page says elsewhere which calibration is used
+    rig_ = setup::calibrated_rig(path_, "", messages);
+    points_ = maintenance::series_points(*rig_, found->first);
+    chosen_ = found->first;
+    real_ = maintenance::can_be_felt(*rig_);
+    const auto outline = desk::outline_of(*rig_);
+    surface_ = {{"lengthMm", outline.length_mm},
+                {"wideHalfWidthMm", outline.wide_half_width_mm},
+                {"narrowHalfWidthMm", outline.narrow_half_width_mm},
+                {"wideEndLeft", outline.wide_end_left}};
+  } catch (const std::exception& error) {
+    problem_ = error.what();
+  }
+  Q_EMIT changed();
+}
+
+void CalibrationGuide::play() {
+  if (!may_play()) return;
+  playing_ = true;
+  problem_.clear();
+  begun_.start();
+  tick_.start();
+  Q_EMIT changed();
+  job_.start([this, rig = *rig_, point = points_[static_cast<std::size_t>(at_)]](
+                 const std::stop_token& stop) -> std::function<void()> {
+    QString problem;
+    try {
+      maintenance::play_point(rig, point, stop);
+    } catch (const std::exception& error) {
+      problem = error.what();
+    }
+    return [this, problem, rest_s = maintenance::rest_after_tone_s(rig)] {
+      playing_ = false;
+      problem_ = problem;
+      tick_.stop();
+      if (real_) rest_.start(static_cast<int>(1e3 * rest_s));
+      Q_EMIT changed();
+    };
+  });
+}
+
+void CalibrationGuide::stop() {
+  if (playing_) job_.stop();
+}
+
+double CalibrationGuide::remaining_s() const {
+  if (!playing_ || !rig_) return 0;
+  return std::max(0.0, maintenance::tone_length_s(*rig_) - 1e-3 * static_cast<double>(begun_.elapsed()));
+}
+
+bool CalibrationGuide::enter(const QString& typed) {
+  if (points_.empty()) return false;
+  auto& point = points_[static_cast<std::size_t>(at_)];
+  const auto value = number_in(typed);
+  const auto [low, high] = maintenance::possible_values(*rig_, *chosen_);
+  if (!typed.trimmed().isEmpty() && (!value || *value < low || *value > high))
+    return refuse(QString("%1 … %2").arg(low).arg(high));
+  point.value = value;
+  problem_.clear();
+  Q_EMIT changed();
+  return true;
+}
+
+bool CalibrationGuide::enterPhase(const QString& typed) {
+  if (points_.empty()) return false;
+  const auto value = number_in(typed);
+  if (!value || std::abs(*value) > 360) return refuse("-360 … 360");
+  points_[static_cast<std::size_t>(at_)].phase_deg = value;
+  problem_.clear();
+  Q_EMIT changed();
+  return true;
+}
+
+void CalibrationGuide::show(int point) {
+  if (playing_ || point < 0 || point >= count()) return;
+  at_ = point;
+  problem_.clear();
+  Q_EMIT changed();
+}
+
+int CalibrationGuide::entered() const {
+  return static_cast<int>(std::count_if(points_.begin(), points_.end(),
+                                        [](const auto& point) { return point.value.has_value(); }));
+}
+
+bool CalibrationGuide::may_finish() const {
+  return chosen_ && !playing_ && entered() >= maintenance::least_points(*chosen_);
+}
+
+QVariantMap CalibrationGuide::point() const {
+  if (points_.empty()) return {};
+  const auto& point = points_[static_cast<std::size_t>(at_)];
+  return {{"transducer", QString::fromStdString(point.transducer)},
+          {"kHz", QString::number(1e-3 * point.frequency_Hz, 'f', 2)},
+          {"um", QString::fromStdString(text::number(point.displacement_um, 3))},
+          {"percent", QString::fromStdString(text::number(100 * point.full_scale, 3))},
+          {"value", shown(point.value)},
+          {"phase", shown(point.phase_deg)}};
+}
+
+void CalibrationGuide::finish() {
+  if (!may_finish()) return;
+  try {
+    // the fit begins from the rig file, as `turnpoint calibrate` does
+    const auto result = maintenance::finish_series(rig::load(path_), *chosen_, points_);
+    file_ = QString::fromStdString(result.file);
+    figure_ = to_variant(desk::drawing_of(result.figure));
+    chosen_.reset();
+    points_.clear();
+    at_ = 0;
+    problem_.clear();
+  } catch (const std::exception& error) {
+    refuse(error.what());
+    return;
+  }
+  Q_EMIT changed();
+  Q_EMIT finished();
+}
+
+void CalibrationGuide::leave() {
+  stop();
+  chosen_.reset();
+  points_.clear();
+  at_ = 0;
+  problem_.clear(), file_.clear();
+  figure_ = {};
+  Q_EMIT changed();
+}
+
+}  // namespace turnpoint::ui
+
+#include "moc_calibration_guide.cpp"

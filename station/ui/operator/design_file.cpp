@@ -1,0 +1,95 @@
+// The designer's controller and the file: saving, and what is suggested while somebody types its text.
+#include <QFileInfo>
+#include <algorithm>
+#include <exception>
+#include <utility>
+
+#include "station/design/completion.hpp"
+#include "station/system/read_file.hpp"
+#include "station/system/write_file.hpp"
+#include "station/text/toml.hpp"
+#include "station/ui/operator/design_controller.hpp"
+#include "station/ui/operator/design_lists.hpp"
+
+namespace turnpoint::ui {
+
+bool DesignController::changed_on_disk() const {
+  return !saved_.empty() && QFileInfo::exists(QString::fromStdString(path_)) &&
+         system::read_file(path_) != saved_;
+}
+
+/// Sessions of the old text and of the new one must not be taken for the same study, so the version differs.
+void DesignController::raise_version() {
+  const auto version = std::exchange(old_version_, "");
+  const auto* part =
+      draft_->document() == nullptr ? nullptr : draft_->document()->find({"protocol", "version"});
+  if (version.empty() || part == nullptr || draft_->document()->value(*part).string != version) return;
+  take_change(
+      draft_->document()->with({"protocol", "version"}, design::toml_string(design::next_version(version))));
+}
+
+bool DesignController::write_to(const std::string& path) {
+  if (!place_.folder.empty()) system::make_folder(place_.folder);
+  system::write_file(path, draft_->text());
+  path_ = path;
+  name_ = QFileInfo(QString::fromStdString(path)).completeBaseName().toStdString();
+  saved_ = draft_->text();
+  saved_as_ = QString::fromStdString(path);
+  trouble_.clear();
+  Q_EMIT changed();
+  Q_EMIT saved();
+  return true;
+}
+
+bool DesignController::save(const QString& name) try {
+  if (!draft_) return false;
+  if (name.isEmpty() || name.toStdString() == name_) {
+    if (changed_on_disk()) return refuse("on_disk");
+    raise_version();
+    return write_to(path_);
+  }
+  if (!is_name(name)) return refuse("name");
+  const auto path = path_for(name.toStdString());
+  if (QFileInfo::exists(QString::fromStdString(path))) return refuse("taken");
+  if (draft_->document() == nullptr) return refuse(QString::fromStdString(draft_->problems().front().what));
+  take_change(draft_->document()->with({"protocol", "id"}, design::toml_string(name.toStdString())));
+  old_version_.clear();
+  return write_to(path);
+} catch (const std::exception& error) {
+  return refuse(error.what());
+}
+
+bool DesignController::overwrite() try {
+  if (!draft_) return false;
+  raise_version();
+  return write_to(path_);
+} catch (const std::exception& error) {
+  return refuse(error.what());
+}
+
+/// The reloaded text is one more change, so undo() returns to the text that was edited.
+bool DesignController::reload() try {
+  if (!draft_) return false;
+  const auto text = text::read_text_file(path_);
+  saved_ = text;
+  take_change(text);
+  return true;
+} catch (const std::exception& error) {
+  return refuse(error.what());
+}
+
+QVariantMap DesignController::complete(const QString& text, int at) const {
+  if (!schema_) return {};
+  const auto source = text.toStdString();
+  const auto bytes = static_cast<std::size_t>(text.left(at).toUtf8().size());
+  const auto found = design::complete(*schema_, source, bytes);
+  QVariantList words;
+  for (const auto& one : found.suggestions)
+    words += QVariantMap{{"word", QString::fromStdString(one.word)},
+                         {"insert", QString::fromStdString(one.insert)},
+                         {"help", QString::fromStdString(one.help)}};
+  const auto from = QString::fromStdString(source.substr(0, std::min(found.from, bytes))).size();
+  return {{"from", static_cast<int>(from)}, {"words", words}};
+}
+
+}  // namespace turnpoint::ui

@@ -1,0 +1,70 @@
+#include "station/ui/operator/feeling.hpp"
+
+#include <cmath>
+#include <exception>
+#include <sstream>
+#include <vector>
+
+#include "station/desk/preview.hpp"
+#include "station/maintenance/feel_scene.hpp"
+#include "station/setup/prepare.hpp"
+
+namespace turnpoint::ui {
+
+Feeling::Feeling(QObject* parent) : QObject(parent), job_(*this) {
+  rest_.setSingleShot(true);
+  connect(&rest_, &QTimer::timeout, this, &Feeling::changed);
+}
+
+void Feeling::follow(const protocol::Protocol& protocol, const std::string& rig, bool real) {
+  protocol_ = protocol;
+  rig_ = rig;
+  real_ = real;
+  Q_EMIT changed();
+}
+
+void Feeling::forget() {
+  stop();
+  protocol_.reset();
+  last_.clear();
+  problem_.clear();
+  Q_EMIT changed();
+}
+
+void Feeling::play(const QString& scene) {
+  if (!possible()) return;
+  playing_ = last_ = scene;
+  problem_.clear();
+  tones_ = 0;
+  Q_EMIT changed();
+  job_.start([this, protocol = *protocol_, path = rig_,
+              scene = scene.toStdString()](const std::stop_token& stop) -> std::function<void()> {
+    maintenance::FeltScene felt;
+    QString problem;
+    try {
+      std::ostringstream messages;  // the rig's page says which calibration is used
+      const auto rig = setup::calibrated_rig(path, "", messages);
+      std::vector<std::string> assumed;
+      felt = maintenance::feel_scene(rig, protocol, scene, desk::factors_for(protocol, {}, assumed), stop);
+    } catch (const std::exception& error) {
+      problem = error.what();
+    }
+    return [this, felt, problem] {
+      playing_.clear();
+      problem_ = problem;
+      seconds_ = felt.length_s;
+      tones_ = felt.tones;
+      peak_percent_ = static_cast<int>(std::lround(100 * felt.peak));
+      if (real_ && felt.rest_s > 0) rest_.start(static_cast<int>(1e3 * felt.rest_s));
+      Q_EMIT changed();
+    };
+  });
+}
+
+void Feeling::stop() {
+  if (!playing_.isEmpty()) job_.stop();
+}
+
+}  // namespace turnpoint::ui
+
+#include "moc_feeling.cpp"
