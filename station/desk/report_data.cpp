@@ -9,6 +9,7 @@
 #include <string>
 
 #include "station/protocol/protocol.hpp"
+#include "station/report/stored_estimates.hpp"
 #include "station/report/stored_trials.hpp"
 #include "station/session/planned_session.hpp"
 #include "station/store/open.hpp"
@@ -223,6 +224,20 @@ void add_programs(const std::vector<records::EventRow>& events, report::SessionD
     }
 }
 
+void add_own_estimates(const std::string& database, const store::StoredSession& stored,
+                       const protocol::Protocol& protocol, report::SessionData& data) {
+  procedure::EarlierTrials earlier;
+  try {
+    earlier = session::earlier_trials(database, protocol, stored.session);
+  } catch (const std::runtime_error&) {
+    // The earlier sessions cannot be repeated by this program. The report then has no estimates of procedures
+    // that continue.
+  }
+  data.seed = stored.session.start.seed;
+  report::add_estimates(stored.blocks, protocol, earlier, data);
+  report::add_program_estimates(stored.blocks, stored.events, protocol, data);
+}
+
 report::SessionData report_data(const std::string& database, const std::string& session_id) {
   const auto stored = store::read_session(database, session_id);
   const auto& start = stored.session.start;
@@ -247,15 +262,8 @@ report::SessionData report_data(const std::string& database, const std::string& 
           answer.questionnaire + ": " + answer.item +
               (answer.occasion > 0 ? " (after block " + std::to_string(answer.occasion) + ")" : ""),
           answer.answer);
-  data.seed = start.seed;
-  try {
-    data.earlier = session::earlier_trials(database, protocol, stored.session);
-  } catch (const std::runtime_error&) {
-    // The earlier sessions cannot be repeated by this program. The report then has no estimates of procedures
-    // that continue.
-  }
   report::add_trials(stored.blocks, protocol, data);
-  report::add_program_estimates(stored.blocks, stored.events, data);
+  add_own_estimates(database, stored, protocol, data);
   add_programs(stored.events, data);
   add_health(stored, data);
   data.measured = measured_trials(stored.blocks);

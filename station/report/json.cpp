@@ -282,15 +282,7 @@ std::string to_json(const Summary& summary) {
   for (const auto& entry : summary.discriminations)
     json["discrimination"].push_back(discrimination_json(entry));
   json["estimates"] = Json::array();
-  for (const auto& estimate : data.estimates)
-    json["estimates"].push_back({{"procedure", estimate.procedure},
-                                 {"block", estimate.block},
-                                 {"parameter", estimate.parameter},
-                                 {"mean", value(estimate.mean)},
-                                 {"sd", value(estimate.sd)},
-                                 {"interval", estimate.interval ? value(*estimate.interval) : Json(nullptr)},
-                                 {"unit", estimate.unit},
-                                 {"basis", estimate.basis}});
+  for (const auto& estimate : data.estimates) json["estimates"].push_back(value(estimate));
   json["threshold_curves"] = threshold_curves_json(data.threshold_curves);
   json["bias"] = nullptr;
   if (summary.bias)

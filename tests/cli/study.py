@@ -193,5 +193,46 @@ class Groups(unittest.TestCase):
         self.assertLess(half / error, 3.3)
 
 
+class OwnEstimates(unittest.TestCase):
+    """What adaptive procedures estimate themselves, session by session."""
+
+    def setUp(self):
+        self.folder = tempfile.mkdtemp()
+        self.addCleanup(shutil.rmtree, self.folder)
+        for person, seed in (("P01", 3), ("P01", 4), ("P02", 5)):
+            self.call("run", "boundary-adaptive", "--participant", person, "--db", "lab.sqlite", "--headless",
+                      "--observer", "sim", "--seed", str(seed))
+
+    def call(self, *words):
+        return subprocess.run([PROGRAM, *words], cwd=self.folder, check=True, capture_output=True, text=True).stdout
+
+    def test_a_study_has_the_estimates_that_the_reports_of_its_sessions_have(self):
+        study = json.loads(self.call("report", "--study", "--db", "lab.sqlite", "--json"))
+        sessions = 0
+        for person in study["participants"]:
+            of_sessions = []
+            for session in person["sessions"]:
+                report = json.loads(self.call("report", "--db", "lab.sqlite", "--session", session, "--json"))
+                self.assertTrue(report["estimates"])
+                of_sessions += [{"session": session, **estimate} for estimate in report["estimates"]]
+                sessions += 1
+            self.assertEqual(person["estimates"], of_sessions)
+        self.assertEqual(sessions, 3)
+        self.call("report", "--study", "--db", "lab.sqlite", "--out", "study.html", "--tables", "tables")
+        with open(os.path.join(self.folder, "tables/estimates.csv"), encoding="utf-8", newline="") as table:
+            rows = [(row["participant"], row["session"], row["procedure"], row["parameter"], float(row["mean"]))
+                    for row in csv.DictReader(table)]
+        expected = [(person["participant"], own["session"], own["procedure"], own["parameter"], own["mean"])
+                    for person in study["participants"] for own in person["estimates"]]
+        self.assertEqual([row[:4] for row in rows], [row[:4] for row in expected])
+        for row, own in zip(rows, expected):
+            self.assertAlmostEqual(row[4], own[4], delta=1e-9 * abs(own[4]))
+        with open(os.path.join(self.folder, "study.html"), encoding="utf-8") as file:
+            page = file.read()
+        self.assertIn("<h2>The procedures\u2019 own estimates</h2>", page)
+        for _, session, *_ in expected:
+            self.assertIn(f"<td>{session}</td>", page)
+
+
 if __name__ == "__main__":
     unittest.main()

@@ -51,8 +51,6 @@ Item {
             if (inside) scroll.contentY = Math.max(0, Math.min(y - 100, scroll.contentHeight - scroll.height))
         }
         function tap(name) {
-            appears(name)
-            wait(40)
             reveal(appears(name))
             wait(20)
             const item = appears(name)
@@ -70,11 +68,7 @@ Item {
             return designPage().design.groups[table].fields.find(one => one.path.join(".") === key).value
         }
         function designPage() { return appears("designPage") }
-        /// Waits for the check, whose remarks rebuild the form. A press during that moment would be lost.
-        function checked() { tryVerify(() => designPage().design.verdict !== "checking", 60000) }
         function tapField(key, table = 0) {
-            checked()
-            wait(40)
             reveal(appears(field(key, table)))
             wait(20)
             const item = appears(field(key, table))
@@ -96,6 +90,18 @@ Item {
         }
         function saved(name) { return room.startOf("protocols", name + ".toml", 100000) }
 
+        function test_the_form_waits_while_a_finger_is_on_it() {
+            begin("contrast", "pressed")
+            tap("section-question")
+            verify(!designPage().design.touched)
+            const item = appears(field("question.en"))
+            mousePress(item, 0.8 * item.width, 15)
+            verify(designPage().design.touched)
+            verify(!shown("fieldEntry"))
+            mouseRelease(item, 0.8 * item.width, 15)
+            verify(!designPage().design.touched)
+            appears("fieldEntry")                      // the press has reached the field, too
+        }
         function test_a_jnd_study_from_nothing_to_a_passing_check_in_at_most_60_taps() {
             begin("contrast", "jnd")
             tap("section-question")
@@ -105,12 +111,9 @@ Item {
             tap("keepEntry")
             tap("section-scenes")
             tryVerify(() => Object.keys(designPage().design.profiles).length > 0, 20000)
-            checked()
-            const area = appears("strip0")
-            const strip = find(area, "dragArea")
-            const mark = find(area, "zoneMark")
-            tryVerify(() => mark.x > 0)                // the strip has its width
-            wait(50)
+            tryVerify(() => find(appears("strip0"), "zoneMark").x > 0)   // the strip has its width
+            const strip = find(appears("strip0"), "dragArea")
+            const mark = find(appears("strip0"), "zoneMark")
             const from = mark.x + mark.width / 2
             mousePress(strip, from, strip.height / 2)
             mouseMove(strip, from + 20, strip.height / 2)

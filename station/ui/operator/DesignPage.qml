@@ -280,7 +280,15 @@ Rectangle {
         onConfirmed: root.design.overwrite()
     }
 
-    Component.onDestruction: design.precision.watched = false
+    // Lies on top and sees every finger on the page, but leaves it to the control below.
+    Item {
+        anchors.fill: parent
+        PointHandler { onActiveChanged: root.design.touched = active }
+    }
+    Component.onDestruction: {
+        design.touched = false
+        design.precision.watched = false
+    }
 
     function save() {
         if (!design.save("") && design.trouble === "on_disk") onDisk.open()

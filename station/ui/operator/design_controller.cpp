@@ -218,6 +218,13 @@ const design::Group* DesignController::group(int index) const {
                                                                : nullptr;
 }
 
+void DesignController::touch(bool touched) {
+  touched_ = touched;
+  check_job_.hold(touched);
+  profile_job_.hold(touched);
+  Q_EMIT touchedChanged();
+}
+
 void DesignController::show(int section) {
   if (section < 0 || section >= static_cast<int>(form_.size()) || section == section_) return;
   section_ = section;

@@ -66,6 +66,9 @@ class DesignController : public QObject {
   Q_PROPERTY(QVariantList timeline READ timeline NOTIFY changed)
   /// profile of displacement and friction of each scene, by name
   Q_PROPERTY(QVariantMap profiles READ profiles NOTIFY profilesChanged)
+  /// True while a finger is on the page. Meanwhile the results of checks wait, because they rebuild the form,
+  /// and a press on a control that is rebuilt would be lost.
+  Q_PROPERTY(bool touched READ touched WRITE touch NOTIFY touchedChanged)
   /// What follows the draft beside the forms.
   Q_PROPERTY(turnpoint::ui::PagesPreview* pages READ pages CONSTANT)
   Q_PROPERTY(turnpoint::ui::Precision* precision READ precision CONSTANT)
@@ -95,6 +98,8 @@ class DesignController : public QObject {
   QVariantMap surface() const { return surface_; }
   QVariantList timeline() const { return timeline_; }
   QVariantMap profiles() const { return profiles_; }
+  bool touched() const { return touched_; }
+  void touch(bool touched);
   PagesPreview* pages() { return &pages_; }
   Precision* precision() { return &precision_; }
   Feeling* feeling() { return &feeling_; }
@@ -136,6 +141,7 @@ class DesignController : public QObject {
  Q_SIGNALS:
   void changed();
   void profilesChanged();
+  void touchedChanged();
   void reached(int group, int field);
   void saved();
 
@@ -173,7 +179,7 @@ class DesignController : public QObject {
   QVariantMap surface_, profiles_;
   QVariantList timeline_;
   int section_ = 0;
-  bool checking_ = false;
+  bool checking_ = false, touched_ = false;
   PagesPreview pages_{this};
   Precision precision_{this};
   Feeling feeling_{this};
