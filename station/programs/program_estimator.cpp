@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "station/programs/program_choice.hpp"
+#include "station/terms/usage_error.hpp"
 
 namespace turnpoint::programs {
 
@@ -63,6 +64,8 @@ std::map<std::string, procedure::Estimate> estimates_in(const Json& message, con
 Estimated estimated_by(const std::string& estimator, const protocol::Protocol& protocol,
                        const std::vector<records::BlockRecord>& blocks) {
   const auto choice = parse_program("--estimator", estimator);
+  if (const auto problem = problem_of(choice.path); !problem.empty())
+    throw terms::UsageError("--estimator " + estimator + ": " + problem);
   auto choices = Json::array();
   for (const auto& answer : protocol.task.choices) choices.push_back(answer.id);
   Conversation with(choice.path, choice.limit_s,

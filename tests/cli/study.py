@@ -200,7 +200,7 @@ class OwnEstimates(unittest.TestCase):
         self.folder = tempfile.mkdtemp()
         self.addCleanup(shutil.rmtree, self.folder)
         for person, seed in (("P01", 3), ("P01", 4), ("P02", 5)):
-            self.call("run", "boundary-adaptive", "--participant", person, "--db", "lab.sqlite", "--headless",
+            self.call("run", "friction-staircase", "--participant", person, "--db", "lab.sqlite", "--headless",
                       "--observer", "sim", "--seed", str(seed))
 
     def call(self, *words):

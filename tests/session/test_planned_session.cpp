@@ -195,7 +195,8 @@ TEST_CASE("a live session on the same day is refused, unless the operator gives 
   now = ::mktime(&tomorrow);
   char date[20];
   ::strftime(date, sizeof date, "%Y-%m-%d", &tomorrow);
-  CHECK_THROWS_WITH(meet(), Catch::Contains(std::string("session 2 is allowed from ") + date));
+  CHECK_THROWS_WITH(meet(),
+                    Catch::Matchers::ContainsSubstring(std::string("session 2 is allowed from ") + date));
   CHECK(store::list_sessions(setup.database).size() == 1);  // nothing was stored
 
   setup.early = "only in town today";
@@ -304,15 +305,17 @@ TEST_CASE("a procedure that continues goes on where the participant's last sessi
   }
   SECTION("another version of the protocol is refused, and nothing is stored") {
     request.protocol = continuing_study(folder, "1.1.0");
-    CHECK_THROWS_WITH(setup::prepare(request),
-                      Catch::Contains("participant P01 had session 1 with version 1.0.0") &&
-                          Catch::Contains("this file is version 1.1.0"));
+    CHECK_THROWS_WITH(
+        setup::prepare(request),
+        Catch::Matchers::ContainsSubstring("participant P01 had session 1 with version 1.0.0") &&
+            Catch::Matchers::ContainsSubstring("this file is version 1.1.0"));
     CHECK(store::list_sessions(request.database).size() == 1);
   }
   SECTION("a changed procedure of the same version is refused, and nothing is stored") {
     auto source = system::read_file(request.protocol);
     std::ofstream(request.protocol) << replaced(source, "start = -6.0", "start = -7.0");
-    CHECK_THROWS_WITH(run(request), Catch::Contains("would present level -7, but level -6 is stored"));
+    CHECK_THROWS_WITH(run(request),
+                      Catch::Matchers::ContainsSubstring("would present level -7, but level -6 is stored"));
     CHECK(store::list_sessions(request.database).size() == 1);
   }
 }
