@@ -233,8 +233,7 @@ void add_own_estimates(const std::string& database, const store::StoredSession& 
     // The earlier sessions cannot be repeated by this program. The report then has no estimates of procedures
     // that continue.
   }
-  data.seed = stored.session.start.seed;
-  report::add_estimates(stored.blocks, protocol, earlier, data);
+  report::add_estimates(stored.blocks, protocol, stored.session.start.seed, earlier, data);
   report::add_program_estimates(stored.blocks, stored.events, protocol, data);
 }
 
@@ -262,6 +261,7 @@ report::SessionData report_data(const std::string& database, const std::string& 
           answer.questionnaire + ": " + answer.item +
               (answer.occasion > 0 ? " (after block " + std::to_string(answer.occasion) + ")" : ""),
           answer.answer);
+  data.seed = start.seed;
   report::add_trials(stored.blocks, protocol, data);
   add_own_estimates(database, stored, protocol, data);
   add_programs(stored.events, data);

@@ -14,8 +14,7 @@ namespace turnpoint::desk {
 /// if this program can no longer read the protocol text.
 report::SessionData report_data(const std::string& database, const std::string& session_id);
 
-/// Adds to `data` what the procedures of a stored session, and its separate programs, estimated themselves,
-/// and the session's seed.
+/// Adds to `data` what the procedures of a stored session, and its separate programs, estimated themselves.
 void add_own_estimates(const std::string& database, const store::StoredSession& stored,
                        const protocol::Protocol& protocol, report::SessionData& data);
 

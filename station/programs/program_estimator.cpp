@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "station/programs/program_choice.hpp"
-#include "station/terms/usage_error.hpp"
 
 namespace turnpoint::programs {
 
@@ -63,9 +62,7 @@ std::map<std::string, procedure::Estimate> estimates_in(const Json& message, con
 
 Estimated estimated_by(const std::string& estimator, const protocol::Protocol& protocol,
                        const std::vector<records::BlockRecord>& blocks) {
-  const auto choice = parse_program("--estimator", estimator);
-  if (const auto problem = problem_of(choice.path); !problem.empty())
-    throw terms::UsageError("--estimator " + estimator + ": " + problem);
+  const auto choice = existing_program("--estimator", estimator);
   auto choices = Json::array();
   for (const auto& answer : protocol.task.choices) choices.push_back(answer.id);
   Conversation with(choice.path, choice.limit_s,

@@ -86,7 +86,7 @@ std::string unit_of_program(const std::string& parameter, const protocol::Protoc
 }  // namespace
 
 void add_estimates(const std::vector<records::BlockRecord>& blocks, const protocol::Protocol& protocol,
-                   const procedure::EarlierTrials& earlier, SessionData& data) {
+                   std::uint64_t seed, const procedure::EarlierTrials& earlier, SessionData& data) {
   const auto counted = last_attempts(blocks);
   const auto choices = std::max<std::size_t>(2, protocol.task.choices.size());
   for (const auto& spec : protocol.procedures) {
@@ -97,8 +97,8 @@ void add_estimates(const std::vector<records::BlockRecord>& blocks, const protoc
     for (const auto* block : counted) {
       if (block->start.practice) continue;
       const auto key =
-          procedure::key_of(data.seed, block->start.block_index,
-                            place_in_block(spec, block->start.name, protocol), block->start.attempt);
+          procedure::key_of(seed, block->start.block_index, place_in_block(spec, block->start.name, protocol),
+                            block->start.attempt);
       const auto replayed = procedure::make_procedure(spec, {}, key);
       if (const auto before = earlier.find(spec.name); spec.continues && before != earlier.end())
         procedure::continue_from(before->second, spec, *replayed);

@@ -1,4 +1,5 @@
 #pragma once
+#include <cstdint>
 #include <map>
 #include <string>
 #include <vector>
@@ -11,10 +12,10 @@
 namespace turnpoint::report {
 
 /// Recomputes the final estimates of adaptive procedures from the stored answers of a session, from the last
-/// attempt at each block, and adds them to `data`. Needs `data.seed`, the session's seed. `earlier` are the
+/// attempt at each block, and adds them to `data`. `seed` is that of the session, and `earlier` are the
 /// trials of the participant's earlier sessions, for procedures that continue.
 void add_estimates(const std::vector<records::BlockRecord>& blocks, const protocol::Protocol& protocol,
-                   const procedure::EarlierTrials& earlier, SessionData& data);
+                   std::uint64_t seed, const procedure::EarlierTrials& earlier, SessionData& data);
 
 /// Adds the estimates that separate programs gave at the end of these blocks.
 void add_program_estimates(const std::vector<records::BlockRecord>& blocks,

@@ -29,7 +29,7 @@ inline report::SessionData data_of(const std::string& source, const std::string&
       protocol, sequence_index, 5, simulation::rehearser(observer::Observer(observer::parse(observer))));
   report::SessionData data;
   report::add_trials(rehearsal.blocks, protocol, data);
-  report::add_estimates(rehearsal.blocks, protocol, {}, data);
+  report::add_estimates(rehearsal.blocks, protocol, 5, {}, data);
   data.replicates = 40;
   return data;
 }

@@ -15,7 +15,7 @@ TEST_CASE("a report has each procedure's own estimate, as it was at the end of t
         protocol, 0, 5, simulation::rehearser(observer::Observer(observer::parse("sim"))));
     report::SessionData data;
     report::add_trials(rehearsal.blocks, protocol, data);
-    report::add_estimates(rehearsal.blocks, protocol, {}, data);
+    report::add_estimates(rehearsal.blocks, protocol, 5, {}, data);
     data.replicates = 40;
     REQUIRE_FALSE(data.estimates.empty());
     const auto html = report::to_html(report::summarise(data));
@@ -62,9 +62,8 @@ TEST_CASE("the report recomputes the estimates of the method of limits from the 
   for (const std::uint64_t seed : {1, 2, 3}) {
     const auto rehearsal = simulation::rehearse(protocol, 0, seed, simulation::rehearser(observer));
     report::SessionData data;
-    data.seed = seed;
     report::add_trials(rehearsal.blocks, protocol, data);
-    report::add_estimates(rehearsal.blocks, protocol, {}, data);
+    report::add_estimates(rehearsal.blocks, protocol, seed, {}, data);
     REQUIRE(rehearsal.estimates.size() == 8);
     REQUIRE(data.estimates.size() == 8);
     for (std::size_t i = 0; i < 8; ++i) {

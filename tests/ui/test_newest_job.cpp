@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "tests/support/catch.hpp"
+#include "tests/ui/event_loop.hpp"
 
 using namespace turnpoint;
 
@@ -25,10 +26,7 @@ struct Owner : QObject {
 
 /// A page that receives the results of its jobs.
 struct Page {
-  int argc = 1;
-  char name[5] = "test";
-  char* argv[2] = {name, nullptr};
-  QCoreApplication application{argc, argv};
+  EventLoop<> loop;
   Owner owner;
   std::vector<int> received;
   ui::NewestJob job{owner};

@@ -14,6 +14,7 @@
 #include "station/ui/operator/operator_controller.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/temporary_folder.hpp"
+#include "tests/ui/event_loop.hpp"
 
 using namespace turnpoint;
 using ui::OperatorController;
@@ -68,10 +69,7 @@ class HeldChecks {
 
 /// The start page without its window. It has three protocols, of which one cannot be used.
 struct StartPage {
-  int argc = 1;
-  char name[5] = "test";
-  char* argv[2] = {name, nullptr};
-  QCoreApplication application{argc, argv};
+  EventLoop<> loop;
   TemporaryFolder folder;
   HeldChecks checks;
   int events = 0;
