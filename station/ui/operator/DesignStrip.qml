@@ -13,7 +13,6 @@ Item {
     property real boundaryMm: -1
     property real zoneMm: -1
     property var profile
-    readonly property bool dragged: drag.held !== null
     signal moved(which: string, mm: real)
 
     height: strip.height + (picture.visible ? picture.height + 0.5 * theme.unit : 0) + hint.height
