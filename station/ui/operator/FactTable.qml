@@ -1,7 +1,8 @@
 import QtQuick
 import Turnpoint
 
-// A table of labels and values under a heading, for the operator's pages.
+// A table of labels and values under a heading, for the operator's pages. In a language that is read from right to
+// left, English values are at the right as well, so that both columns have a straight edge.
 Column {
     id: root
     required property Theme theme
@@ -31,6 +32,7 @@ Column {
                 text: line.modelData.label
                 color: root.theme.quiet
                 font.pixelSize: root.theme.textSmall
+                horizontalAlignment: Text.AlignLeft
                 wrapMode: Text.Wrap
             }
             PlainText {
@@ -39,6 +41,7 @@ Column {
                 text: line.modelData.value
                 color: root.theme.ink
                 font { pixelSize: root.theme.textSmall; weight: Font.DemiBold }
+                horizontalAlignment: Text.AlignLeft
                 wrapMode: Text.Wrap
             }
         }

@@ -2,7 +2,7 @@ import QtQuick
 import Turnpoint
 
 // Letters and digits on the screen, for a station without a keyboard. `full` adds capitals and more signs, for
-// sentences.
+// sentences. The keys have the same order in languages that are read from right to left, like those of a keyboard.
 Column {
     id: root
     required property Theme theme
@@ -13,6 +13,8 @@ Column {
     readonly property var rows: full ? ["1234567890", "qwertyuiop", "asdfghjkl-", "zxcvbnm,. ", "?!'():/+*=_"]
         : ["1234567890", "qwertyuiop", "asdfghjkl-", "zxcvbnm,. "]
     spacing: 0.4 * theme.unit
+    LayoutMirroring.enabled: false
+    LayoutMirroring.childrenInherit: true
 
     Repeater {
         model: root.rows
