@@ -14,13 +14,27 @@ namespace turnpoint::session {
 /// stored session.
 protocol::Visit visit_of(const store::SessionRecord& session);
 
+/// A planned session that would begin before the protocol's minimum number of days has passed. Dates look
+/// like 2026-11-24.
+struct EarlySession {
+  std::string participant;
+  int number = 0;            ///< the session that would begin
+  std::string allowed_from;  ///< the first day on which it may begin
+  int last_number = 0;       ///< the participant's last session
+  std::string last_day;
+  int min_days = 0;  ///< the protocol's minimum number of days between sessions
+};
+
+/// Describes it in English, for the command line and the log.
+std::string describe(const EarlySession& early);
+
 /// The planned session that a participant does next, or the reason why it cannot begin now.
 struct NextSession {
   std::optional<int> number;  ///< empty if the protocol plans no sessions
   std::string problem;        ///< why the session cannot begin; "" if it can
   std::string allowed;        ///< what is possible instead
-  /// true if the problem is only that too few days have passed, so that a reason overrules it
-  bool too_early = false;
+  /// set if the problem is only that too few days have passed, so that a reason overrules it
+  std::optional<EarlySession> too_early;
   /// why it would be refused if the operator had not given a reason
   std::string overruled;
 };

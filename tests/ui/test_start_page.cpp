@@ -1,4 +1,5 @@
 #include <QCoreApplication>
+#include <QDate>
 #include <QTimer>
 #include <chrono>
 #include <condition_variable>
@@ -229,8 +230,14 @@ TEST_CASE("the operator begins a session that comes too early only with a reason
   start.page->enterParticipant("P01");
   start.page->begin();
   REQUIRE(start.comes(settled));
-  CHECK(start.page->too_early().contains("session 2 is allowed from"));
-  CHECK_FALSE(start.page->too_early().contains("--early"));
+  const auto early = start.page->too_early();
+  CHECK(early["participant"] == "P01");
+  CHECK(early["session"] == 2);
+  CHECK(early["last"] == 1);
+  CHECK(early["minDays"] == 1);
+  const auto last_day = QDate::fromString(early["lastDay"].toString(), Qt::ISODate);
+  CHECK(last_day.toString(Qt::ISODate).toStdString() == today.started_local.substr(0, 10));
+  CHECK(early["from"] == last_day.addDays(1).toString(Qt::ISODate));
   CHECK(start.page->problems().isEmpty());
   CHECK(chosen.empty());
   start.page->beginEarly("  ");  // no reason

@@ -12,6 +12,8 @@ Rectangle {
     readonly property real gap: look.unit
     /// On a tall screen, items that are side by side on a wide screen are stacked.
     readonly property bool tall: height > width
+    /// Why the chosen session would begin too early; "" if it would not.
+    readonly property string tooEarly: texts.tooEarly(operating.tooEarly)
 
     color: look.paper
 
@@ -82,15 +84,17 @@ Rectangle {
             // An interrupted session is at the top, because the operator has most likely come to continue it.
             Rectangle {
                 id: interrupted
-                visible: root.operating.interrupted !== ""
+                visible: says.text !== ""
                 anchors { left: parent.left; right: parent.right; top: header.bottom; margins: look.margin; topMargin: visible ? root.gap : 0 }
                 height: visible ? resume.height + 1.2 * look.unit : 0
                 radius: look.radius
                 color: look.raised
                 border { color: look.action; width: look.stroke }
                 PlainText {
+                    id: says
+                    objectName: "interruptedSession"
                     anchors { left: parent.left; right: resume.left; verticalCenter: parent.verticalCenter; margins: 1.2 * look.unit }
-                    text: root.operating.interrupted
+                    text: texts.interrupted(root.operating.interrupted)
                     color: look.ink
                     font { pixelSize: look.textBody; weight: Font.DemiBold }
                     elide: Text.ElideRight
@@ -142,6 +146,7 @@ Rectangle {
                 }
                 Flickable {
                     id: scroll
+                    objectName: "summaryScroll"
                     anchors { fill: parent; margins: 1.4 * look.unit }
                     visible: !root.operating.checking
                     contentHeight: sheet.height
@@ -175,7 +180,8 @@ Rectangle {
                         }
                         // The session is refused, but the operator may overrule that with a reason.
                         Row {
-                            visible: root.operating.tooEarly !== ""
+                            objectName: "refusedAsEarly"
+                            visible: root.tooEarly !== ""
                             width: sheet.width
                             spacing: 0.8 * look.unit
                             Glyph {
@@ -186,7 +192,7 @@ Rectangle {
                             }
                             PlainText {
                                 width: parent.width - earlySign.width - parent.spacing
-                                text: root.operating.tooEarly
+                                text: root.tooEarly
                                 color: look.wrong
                                 font { pixelSize: look.textSmall; weight: Font.DemiBold }
                                 wrapMode: Text.Wrap
@@ -194,7 +200,8 @@ Rectangle {
                         }
                         ActionButton {
                             objectName: "beginEarly"
-                            visible: root.operating.tooEarly !== ""
+                            anchors.left: parent.left
+                            visible: root.tooEarly !== ""
                             theme: look
                             enabled: root.operating.mayBegin
                             primary: false
@@ -215,6 +222,7 @@ Rectangle {
                             width: parent.width
                             spacing: 0.35 * look.unit
                             PlainText {
+                                width: parent.width
                                 text: texts.text("operator.cues")
                                 color: look.action
                                 font { pixelSize: look.textBody; weight: Font.Bold }
@@ -228,6 +236,7 @@ Rectangle {
                                     height: named.implicitHeight
                                     Glyph {
                                         id: mark
+                                        anchors.left: parent.left
                                         visible: cue.modelData.leaks
                                         height: 1.1 * look.textSmall
                                         name: "alert"
@@ -235,8 +244,8 @@ Rectangle {
                                     }
                                     PlainText {
                                         id: named
-                                        x: 1.8 * look.textSmall
-                                        width: parent.width - x
+                                        anchors { left: parent.left; leftMargin: 1.8 * look.textSmall; right: parent.right }
+                                        horizontalAlignment: Text.AlignLeft
                                         text: cue.modelData.name + ": " + cue.modelData.says
                                         color: cue.modelData.leaks ? look.wrong : look.quiet
                                         font { pixelSize: look.textSmall; weight: cue.modelData.leaks ? Font.DemiBold : Font.Normal }
@@ -280,7 +289,8 @@ Rectangle {
                         spacing: root.gap
                         Row {
                             spacing: root.gap
-                            rightPadding: 2 * root.gap
+                            leftPadding: texts.mirrored ? 2 * root.gap : 0
+                            rightPadding: texts.mirrored ? 0 : 2 * root.gap
                             Caption { text: texts.text("operator.participant") }
                             Choice {
                                 objectName: "askCode"
@@ -327,12 +337,14 @@ Rectangle {
                         height: wide ? look.controlHeight : ready.height + root.gap + begin.height
                         Flow {
                             id: ready
+                            anchors.left: parent.left
                             width: last.wide ? parent.width - begin.width - root.gap : parent.width
                             spacing: root.gap
                             Row {
                                 id: mode
                                 spacing: root.gap
-                                rightPadding: root.gap
+                                leftPadding: texts.mirrored ? root.gap : 0
+                                rightPadding: texts.mirrored ? 0 : root.gap
                                 Choice {
                                     objectName: "pilot"
                                     chosen: !root.operating.live
@@ -381,7 +393,7 @@ Rectangle {
         theme: look
         sentences: true
         title: texts.text("operator.early_title")
-        help: root.operating.tooEarly
+        help: root.tooEarly
         keepText: texts.text("operator.begin_early")
         cancelText: texts.text("operator.cancel")
         onAccepted: text => root.operating.beginEarly(text)

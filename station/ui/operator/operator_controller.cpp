@@ -25,7 +25,7 @@ OperatorController::~OperatorController() = default;
 void OperatorController::refresh() {
   armed_ = false;
   participant_.clear();
-  too_early_.clear();
+  too_early_.reset();
   protocols_ = desk::list_studies(request_.protocols, request_.database);
   try {
     participants_ = to_list(desk::known_participants(request_.database));
@@ -179,12 +179,12 @@ void OperatorController::begin() { prepare(""); }
 
 void OperatorController::beginEarly(const QString& reason) {
   const auto why = reason.trimmed().toStdString();
-  if (!too_early_.empty() && !why.empty()) prepare(why);
+  if (too_early_ && !why.empty()) prepare(why);
 }
 
 void OperatorController::forget_refusal() {
   refused_.clear();
-  too_early_.clear();
+  too_early_.reset();
 }
 
 void OperatorController::prepare(const std::string& early) {
@@ -208,8 +208,8 @@ void OperatorController::prepare(const std::string& early) {
             Q_EMIT chosen(session);
           };
         } catch (const setup::TooEarly& refused) {
-          return [this, why = refused.problems().front().what] {
-            too_early_ = why;
+          return [this, early = refused.early()] {
+            too_early_ = early;
             stay();
           };
         }
@@ -261,6 +261,14 @@ QStringList OperatorController::problems() const {
 }
 QStringList OperatorController::warnings() const { return to_list(words_.warnings); }
 
+QVariantMap OperatorController::too_early() const {
+  if (!too_early_) return {};
+  return {
+      {"participant", QString::fromStdString(too_early_->participant)}, {"session", too_early_->number},
+      {"from", QString::fromStdString(too_early_->allowed_from)},       {"last", too_early_->last_number},
+      {"lastDay", QString::fromStdString(too_early_->last_day)},        {"minDays", too_early_->min_days}};
+}
+
 QVariantList OperatorController::cues() const {
   QVariantList list;
   for (const auto& cue : words_.cues)
@@ -283,13 +291,12 @@ QVariantMap OperatorController::backup() const {
   return {{"state", state}, {"hours", backup_.hours}};
 }
 
-QString OperatorController::interrupted() const {
+QVariantMap OperatorController::interrupted() const {
   if (!interrupted_) return {};
-  return QStringLiteral("%1, %2: %3 trials stored, interrupted %4 ago")
-      .arg(QString::fromStdString(interrupted_->participant),
-           QString::fromStdString(interrupted_->protocol_id))
-      .arg(interrupted_->trials)
-      .arg(QString::fromStdString(desk::age_in_words(interrupted_->age_s)));
+  return {{"participant", QString::fromStdString(interrupted_->participant)},
+          {"protocol", QString::fromStdString(interrupted_->protocol_id)},
+          {"trials", interrupted_->trials},
+          {"ageS", interrupted_->age_s}};
 }
 
 }  // namespace turnpoint::ui

@@ -44,6 +44,33 @@ QtObject {
         return text("backup_days").arg(Math.floor(backup.hours / 24))
     }
 
+    // `session` is {participant, protocol, trials, ageS}, or empty
+    function interrupted(session) {
+        if (session.participant === undefined) return ""
+        return text("operator.interrupted").arg(session.participant).arg(session.protocol).arg(session.trials).arg(ago(session.ageS))
+    }
+    function ago(seconds: real) : string {
+        if (seconds < 0) return text("operator.ago_ahead")
+        if (seconds < 120) return text("operator.ago_now")
+        if (seconds < 7200) return text("operator.ago_minutes").arg(Math.floor(seconds / 60))
+        if (seconds < 172800) return text("operator.ago_hours").arg(Math.floor(seconds / 3600))
+        return text("operator.ago_days").arg(Math.floor(seconds / 86400))
+    }
+
+    // A day such as 2026-11-24 in words. Chinese and Japanese have no spaces, so word joiners keep the day on one
+    // line.
+    function day(date: string) : string {
+        const said = Catalogue.day(date, language)
+        return /^(ja|zh)/.test(language) ? said.split("").join("\u2060") : said
+    }
+
+    // `early` is {participant, session, from, last, lastDay, minDays}, or empty
+    function tooEarly(early) {
+        if (early.session === undefined) return ""
+        return text("operator.too_early").arg(early.session).arg(early.participant).arg(day(early.from))
+            .arg(early.last).arg(day(early.lastDay)).arg(early.minDays)
+    }
+
     readonly property string proceed: text("proceed")
     readonly property string done: text("done")
     readonly property string pressDone: text("press_done")
