@@ -766,6 +766,10 @@ class Screen(Folder):
             for option in re.findall(r"--[a-z-]+", advice):
                 self.assertIn(option, self.helps[words[0]])
 
+    def test_a_panel_that_cannot_be_turned_so(self):
+        self.refused_in_one_sentence(["station", "--db", "lab.sqlite"], 'TURNPOINT_ROTATION: "45"; allowed are 0, 90, 180 and 270 degrees',
+                                     QT_QPA_PLATFORM="offscreen", TURNPOINT_ROTATION="45", XDG_RUNTIME_DIR=self.folder)
+
     def test_the_station_opens_its_window(self):
         with self.assertRaises(subprocess.TimeoutExpired):
             subprocess.run([PROGRAM, "station", "--db", "lab.sqlite"], cwd=self.folder, timeout=5, check=False,

@@ -71,8 +71,8 @@ Rectangle {
             anchors.fill: parent
             onPressed: mouse => {
                 flash.restart()
-                const place = mapToItem(root, mouse.x, mouse.y)
-                root.controller.tap(place.x / root.width, place.y / root.height)
+                const window = root.Window.window, place = mapToItem(null, mouse.x, mouse.y)
+                root.controller.tap(place.x / window.width, place.y / window.height)
             }
         }
     }

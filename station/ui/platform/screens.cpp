@@ -21,7 +21,7 @@ namespace {
 
 StationWindow::Place place_on(const Application& application, bool fullscreen) {
   return {pixels_per_mm(application.screen()), application.window_size(),
-          fullscreen || application.is_bare_panel()};
+          fullscreen || application.is_bare_panel(), panel_rotation_deg()};
 }
 
 /// Makes a stop signal end the event loop, from the moment at which the window shows its first page. Before
@@ -50,6 +50,7 @@ void show_until_closed(const Application& application, const QString& page, cons
   auto& window = load_page(engine, page,
                            {{"controller", controller},
                             {"pixelsPerMm", pixels_per_mm(application.screen())},
+                            {"turned", panel_rotation_deg()},
                             {"width", application.window_size().width()},
                             {"height", application.window_size().height()}});
   if (application.is_bare_panel()) window.showFullScreen();

@@ -90,6 +90,7 @@ StationWindow::StationWindow(const Place& place, const Operator& allowed, const 
                         {"operatorLock", QVariant::fromValue(&lock_)},
                         {"locked", allowed.locked},
                         {"pixelsPerMm", place.pixels_per_mm},
+                        {"turned", place.rotation_deg},
                         {"width", place.size.width()},
                         {"height", place.size.height()}});
   keep_screen_beside(engine_, database);

@@ -29,6 +29,7 @@ class StationWindow : public QObject {
     double pixels_per_mm = 4;
     QSize size;
     bool bare_panel = false;  ///< true if the window fills the screen
+    int rotation_deg = 0;     ///< the angle by which the pages are turned clockwise, see panel_rotation_deg()
   };
 
   struct Operator {
