@@ -108,9 +108,11 @@ class RealStage : public Stage {
   }
 
   std::optional<std::int64_t> glide(const drive::ToneSet& to, double seconds) override {
-    const auto at = glide_to(*stream_, presented_, to, seconds);
-    if (at && feed_) feed_->watch().changed(presented_.size() - 1);
-    return at;
+    const auto change = glide_to(*stream_, presented_, to, seconds);
+    if (!change) return std::nullopt;
+    if (feed_)
+      feed_->watch().changed(presented_.size() - 1, *change, drive::format_of(stream_->config().output));
+    return presented_.back().start_frame + change->at_frame;
   }
 
   std::int64_t silence() override {

@@ -83,28 +83,25 @@ void VibrationWatch::expect(std::span<const drive::PreparedBurst> intervals, std
 
 void VibrationWatch::cut(std::int64_t from_frame) {
   const std::lock_guard lock(mutex_);
-  for (auto& proof : proofs_)
-    if (proof) proof->stopped(from_frame);
+  for (auto& proof : proofs_) proof->stopped(from_frame);
   if (finger_) finger_->cut(from_frame);
 }
 
-void VibrationWatch::changed(std::size_t interval) {
+void VibrationWatch::changed(std::size_t interval, const drive::Change& change, const drive::Format& format) {
   const std::lock_guard lock(mutex_);
-  if (interval < proofs_.size()) proofs_[interval].reset();
+  if (interval < proofs_.size()) proofs_[interval]->changed(change, format);
 }
 
 bool VibrationWatch::needs(std::int64_t first_frame, std::int64_t end_frame) const {
   const std::lock_guard lock(mutex_);
   return std::any_of(proofs_.begin(), proofs_.end(), [&](const auto& proof) {
-    return proof && !proof->complete() && first_frame < proof->end_frame() &&
-           end_frame > proof->first_frame();
+    return !proof->complete() && first_frame < proof->end_frame() && end_frame > proof->first_frame();
   });
 }
 
 void VibrationWatch::push(const sensing::CaptureBlock& block) {
   const std::lock_guard lock(mutex_);
-  for (auto& proof : proofs_)
-    if (proof) proof->push(block);
+  for (auto& proof : proofs_) proof->push(block);
   if (finger_ && !setup_.finger->own_clock) finger_->push(block);
 }
 
@@ -117,14 +114,14 @@ std::int64_t VibrationWatch::known_at(std::size_t interval) const {
   const std::lock_guard lock(mutex_);
   auto frame = std::numeric_limits<std::int64_t>::min();
   if (interval >= proofs_.size()) return frame;
-  if (proofs_[interval]) frame = proofs_[interval]->end_frame();
+  frame = proofs_[interval]->end_frame();
   if (finger_ && interval + 1 == proofs_.size()) frame = std::max(frame, finger_->known_at());
   return frame;
 }
 
 std::shared_ptr<const sensing::IntervalResult> VibrationWatch::result(std::size_t interval) {
   const std::lock_guard lock(mutex_);
-  if (interval >= proofs_.size() || !proofs_[interval]) return nullptr;
+  if (interval >= proofs_.size()) return nullptr;
   const auto contact = finger_ ? finger_->contact(interval) : setup_.in_contact;
   return std::make_shared<sensing::IntervalResult>(proofs_[interval]->result(contact));
 }

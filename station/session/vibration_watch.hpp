@@ -55,9 +55,9 @@ class VibrationWatch {
   /// Tells the watch that all bursts ramp down from this playback frame on. Intervals that have not begun by
   /// then are dropped.
   void cut(std::int64_t from_frame);
-  /// Tells the watch that this interval glides to other tones. A glide is not measured, so the interval stays
-  /// unproven.
-  void changed(std::size_t interval);
+  /// Tells the watch that this interval, which is playing, glides to other tones. `format` is that of the
+  /// output.
+  void changed(std::size_t interval, const drive::Change& change, const drive::Format& format);
 
   /// True if one of the expected intervals needs captured frames from this range.
   bool needs(std::int64_t first_frame, std::int64_t end_frame) const;
@@ -81,7 +81,6 @@ class VibrationWatch {
   CaptureSetup setup_;
   const std::vector<sensing::PickUp> calibrated_;
   mutable std::mutex mutex_;
-  /// null for an interval whose vibration is not measured
   std::vector<std::unique_ptr<sensing::IntervalProof>> proofs_;
   std::optional<sensing::TrialFinger> finger_;
 };

@@ -108,9 +108,10 @@ class VirtualStage : public Stage {
   }
 
   std::optional<std::int64_t> glide(const drive::ToneSet& to, double seconds) override {
-    const auto at = glide_to(*stream_, presented_, to, seconds);
-    if (at && watch_) watch_->changed(presented_.size() - 1);
-    return at;
+    const auto change = glide_to(*stream_, presented_, to, seconds);
+    if (!change) return std::nullopt;
+    if (watch_) watch_->changed(presented_.size() - 1, *change, drive::format_of(stream_->config().output));
+    return presented_.back().start_frame + change->at_frame;
   }
 
   std::int64_t silence() override {
