@@ -239,8 +239,10 @@ std::optional<plot::Figure> live_times(const std::vector<LiveTrial>& trials) {
   return alone("Response times", panel);
 }
 
-LiveView::LiveView(const protocol::Protocol& protocol, const rig::Rig& rig, OnState on_state)
+LiveView::LiveView(const protocol::Protocol& protocol, const rig::Rig& rig, OnState on_state,
+                   OnGauges on_gauges)
     : on_state_(std::move(on_state)),
+      on_gauges_(std::move(on_gauges)),
       level_(protocol.procedures.empty() ? "Level" : protocol.procedures.front().level),
       asked_(protocol.sensing),
       adjusted_(protocol.task.adjusts),
@@ -257,6 +259,13 @@ void LiveView::trial_begins(const trial::TrialSpec& spec, const protocol::Block&
 
 void LiveView::surface_follows(const trial::TrialSpec& spec, const scene::DrivePlan& plan) {
   push({{}, Setting{spec.factors, plan}, {}});
+}
+
+void LiveView::finger_moved(const std::optional<session::FingerSeen>& finger) {
+  const auto gauges = finger_gauges(finger, asked_, rig_);
+  if (!on_gauges_ || gauges_ == gauges) return;
+  gauges_ = gauges;
+  on_gauges_(gauges);
 }
 
 void LiveView::trial_ended(const trial::TrialSpec& spec, const records::TrialRow& row) {

@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "station/desk/finger_gauges.hpp"
 #include "station/desk/preview.hpp"
 #include "station/desk/scene_figures.hpp"
 #include "station/plot/chart.hpp"
@@ -74,13 +75,18 @@ class LiveView : public session::Monitor {
  public:
   /// Receives each new state. Called on LiveView's own thread.
   using OnState = std::function<void(LiveState)>;
-  LiveView(const protocol::Protocol& protocol, const rig::Rig& rig, OnState on_state);
+  /// Receives the gauges whenever they change. Called on the session thread; must return at once.
+  using OnGauges = std::function<void(FingerGauges)>;
+  LiveView(const protocol::Protocol& protocol, const rig::Rig& rig, OnState on_state,
+           OnGauges on_gauges = {});
   ~LiveView() override;
 
   void trial_begins(const trial::TrialSpec& spec, const protocol::Block& block,
                     const session::PlanAhead::Plans& plans) override;
   void surface_follows(const trial::TrialSpec& spec, const scene::DrivePlan& plan) override;
   void trial_ended(const trial::TrialSpec& spec, const records::TrialRow& row) override;
+  bool watches_finger() const override { return static_cast<bool>(on_gauges_); }
+  void finger_moved(const std::optional<session::FingerSeen>& finger) override;
 
  private:
   struct Begun {
@@ -106,6 +112,8 @@ class LiveView : public session::Monitor {
   void tell();
 
   OnState on_state_;
+  OnGauges on_gauges_;
+  std::optional<FingerGauges> gauges_;  ///< as they were last shown; used on the session thread alone
   /// name of the factor that the first procedure varies, or "Level" if there is no procedure
   std::string level_;
   std::optional<protocol::Sensing> asked_;

@@ -266,24 +266,36 @@ Rectangle {
                     wrapMode: Text.Wrap
                 }
                 FactTable { width: parent.width; theme: look; heading: texts.text("live.course"); facts: root.live.course }
-                Row {
+                // What the force cells say of the finger at this moment, also if the participant sees no bars.
+                Column {
                     objectName: "gauges"
-                    visible: root.bridge.page.guided && !root.over
+                    visible: root.live.gauged && !root.over
                     width: parent.width
-                    spacing: look.unit
-                    GuidanceBar {
-                        width: (parent.width - look.unit) / 2
-                        theme: look
-                        label: texts.text("live.force")
-                        bar: root.bridge.page.forceBar
-                        frozen: root.bridge.page.barsFrozen
+                    spacing: 0.6 * look.unit
+                    Row {
+                        width: parent.width
+                        spacing: look.unit
+                        GuidanceBar {
+                            objectName: "forceGauge"
+                            width: (parent.width - look.unit) / 2
+                            theme: look
+                            label: texts.text("live.force") + " " + root.live.gaugeFigures[0]
+                            bar: root.live.forceGauge
+                        }
+                        GuidanceBar {
+                            objectName: "speedGauge"
+                            width: (parent.width - look.unit) / 2
+                            theme: look
+                            label: texts.text("live.speed") + " " + root.live.gaugeFigures[1]
+                            bar: root.live.speedGauge
+                        }
                     }
                     GuidanceBar {
-                        width: (parent.width - look.unit) / 2
+                        objectName: "positionGauge"
+                        width: parent.width
                         theme: look
-                        label: texts.text("live.speed")
-                        bar: root.bridge.page.speedBar
-                        frozen: root.bridge.page.barsFrozen
+                        label: texts.text("live.position") + " " + root.live.gaugeFigures[2]
+                        bar: root.live.positionGauge
                     }
                 }
                 FactTable { visible: root.live.sensors.length > 0; width: parent.width; theme: look; heading: texts.text("live.sensors"); facts: root.live.sensors }

@@ -69,8 +69,10 @@ void SessionRunner::begin(session::Setup setup) {
   empty.language = setup_.language;
   empty.run_mode = store::name(setup_.run_mode);
   bridge_.show(empty);
-  view_ = std::make_unique<desk::LiveView>(setup_.protocol, setup_.rig,
-                                           [this](desk::LiveState state) { live_.take(std::move(state)); });
+  live_.take(std::optional<desk::FingerGauges>{});
+  view_ = std::make_unique<desk::LiveView>(
+      setup_.protocol, setup_.rig, [this](desk::LiveState state) { live_.take(std::move(state)); },
+      [this](desk::FingerGauges gauges) { live_.take(std::optional(std::move(gauges))); });
   inputs_.page_alive(system::monotonic_ns());
   life_.start(kLife_ms);
   thread_ = std::jthread([this] { run(); });
