@@ -63,7 +63,10 @@ struct Guidance {
     bool operator==(const Bar&) const = default;
   };
   std::optional<Bar> force, speed;  ///< empty if the protocol accepts any value
-  bool frozen = false;              ///< the bars stand still, because a stimulus is being presented
+  /// The speed at which the finger is to slide: the middle of the protocol's range. It is the same in all
+  /// trials. Empty if the protocol accepts any speed.
+  std::optional<double> pace_mm_s = {};
+  bool frozen = false;  ///< the bars stand still, because a stimulus is being presented
   bool operator==(const Guidance&) const = default;
 };
 

@@ -211,6 +211,7 @@ Page guided(Page page, bool frozen = false) {
   session::Guidance bars;
   bars.force = session::Guidance::Bar{0.5, 0.36, 0.67};
   bars.speed = session::Guidance::Bar{0.12, 0.22, 0.67};
+  bars.pace_mm_s = 80;
   bars.frozen = frozen;
   page.guidance = bars;
   return page;

@@ -67,6 +67,7 @@ class PageModel : public QObject {
   Q_PROPERTY(bool barsFrozen READ bars_frozen NOTIFY barsMoved)
   Q_PROPERTY(QList<double> forceBar READ force_bar NOTIFY barsMoved)
   Q_PROPERTY(QList<double> speedBar READ speed_bar NOTIFY barsMoved)
+  Q_PROPERTY(double paceMmPerS READ pace_mm_s NOTIFY barsMoved)
 
  public:
   /// The values of session::PageKind under names that QML can use.
@@ -106,6 +107,8 @@ class PageModel : public QObject {
   /// there is no such bar.
   QList<double> force_bar() const;
   QList<double> speed_bar() const;
+  /// The speed at which the finger is to slide; 0 if there is none.
+  double pace_mm_s() const { return page_.guidance ? page_.guidance->pace_mm_s.value_or(0) : 0; }
   Kind kind() const;
   QString title() const { return QString::fromStdString(page_.title); }
   QString text() const { return QString::fromStdString(page_.text); }
