@@ -30,7 +30,7 @@ Item {
         id: surface
         visible: !root.counted && !root.page.answerNow && height > 12 * root.theme.unit && (root.cue || root.stimulus || root.page.kind === PageModel.Response)
         anchors { left: parent.left; right: parent.right; top: parent.top }
-        height: Math.max(0, Math.min(0.46 * parent.height, parent.height - answers.height - bars.height - pacer.height - (bars.visible ? 5.5 : 10) * root.theme.unit))
+        height: Math.max(0, Math.min(0.46 * parent.height, parent.height - answers.height - bars.height - pacer.height - (pacer.visible ? 6.6 : bars.visible ? 5.5 : 10) * root.theme.unit))
         lengthMm: root.page.lengthMm
         wideHalfWidthMm: root.page.wideHalfWidthMm
         narrowHalfWidthMm: root.page.narrowHalfWidthMm
@@ -106,7 +106,9 @@ Item {
     Pacer {
         id: pacer
         objectName: "pacer"
-        visible: bars.visible && root.page.paceMmPerS > 0
+        // On a small panel the question and the answers come first.
+        readonly property bool fits: root.height - answers.height - bars.height - implicitHeight >= 6.6 * root.theme.unit
+        visible: bars.visible && root.page.paceMmPerS > 0 && fits
         anchors { left: parent.left; right: parent.right; bottom: answers.top; bottomMargin: visible ? root.theme.unit : 0 }
         height: visible ? implicitHeight : 0
         theme: root.theme
