@@ -207,7 +207,8 @@ std::vector<analysis::FrictionCurve> curves_of(const session::AlongStrip& along)
     auto curve = along.curve(direction);
     if (curve.friction.empty()) continue;
     curves.push_back({direction > 0 ? "towards the narrow end" : "towards the wide end",
-                      std::move(curve.from_boundary_mm), std::move(curve.friction), std::move(curve.se)});
+                      std::move(curve.from_boundary_mm), std::move(curve.friction), std::move(curve.se),
+                      direction > 0});
   }
   return curves;
 }

@@ -6,7 +6,8 @@
 
 namespace turnpoint::report {
 
-/// The figures of a report. Each function returns nullopt if the session has no data for its figure.
+/// The figures of a report, in the language of its SessionData. Each function returns nullopt if the session
+/// has no data for its figure.
 
 /// Plots the proportion of answers at each level with its Wilson interval, and the fitted curve with its
 /// band. The area of a marker is proportional to the number of trials.
@@ -43,6 +44,7 @@ std::optional<plot::Figure> finger_figure(const Summary& summary);
 std::optional<plot::Figure> friction_figure(const Summary& summary);
 /// Plots friction along the strip beside the planned boundary, with bars of one standard error. Empty without
 /// curves.
-std::optional<plot::Chart> strip_chart(const std::vector<analysis::FrictionCurve>& curves);
+std::optional<plot::Chart> strip_chart(const std::vector<analysis::FrictionCurve>& curves,
+                                       const std::string& language = "en");
 
 }  // namespace turnpoint::report

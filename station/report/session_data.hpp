@@ -81,7 +81,8 @@ struct MeasuredTrial {
 struct SessionData {
   std::string title;  ///< title of the protocol
   std::string participant, session_id, run_mode, status;
-  std::vector<Fact> facts;  ///< rows for the head of the report: protocol, date, rig, ...
+  std::string language = "en";  ///< the language of the figures, such as "de"
+  std::vector<Fact> facts;      ///< rows for the head of the report: protocol, date, rig, ...
   /// rows for the table "The station": xruns, calibration age, restarts, ...
   std::vector<Fact> health;
   Design design = Design::forced_choice;

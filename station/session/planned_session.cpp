@@ -94,14 +94,6 @@ void check_days(const Setup& setup, const std::vector<const store::SessionRecord
 
 }  // namespace
 
-std::string describe(const EarlySession& early) {
-  return fmt::format(
-      "participant {} had session {} on {}, and the protocol asks for at least {} day{} between sessions: "
-      "session {} is allowed from {}",
-      early.participant, early.last_number, early.last_day, early.min_days, early.min_days == 1 ? "" : "s",
-      early.number, early.allowed_from);
-}
-
 protocol::Visit visit_of(const store::SessionRecord& session) {
   return {session.sequence_index, session.start.planned_session.value_or(1)};
 }

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "station/protocol/protocol.hpp"
+#include "station/session/early_session.hpp"
 #include "station/session/session.hpp"
 #include "station/store/session_log.hpp"
 #include "station/trial/earlier_trials.hpp"
@@ -13,20 +14,6 @@ namespace turnpoint::session {
 /// Returns the participant's place in the counterbalancing, and the number of the planned session, of a
 /// stored session.
 protocol::Visit visit_of(const store::SessionRecord& session);
-
-/// A planned session that would begin before the protocol's minimum number of days has passed. Dates look
-/// like 2026-11-24.
-struct EarlySession {
-  std::string participant;
-  int number = 0;            ///< the session that would begin
-  std::string allowed_from;  ///< the first day on which it may begin
-  int last_number = 0;       ///< the participant's last session
-  std::string last_day;
-  int min_days = 0;  ///< the protocol's minimum number of days between sessions
-};
-
-/// Describes it in English, for the command line and the log.
-std::string describe(const EarlySession& early);
 
 /// The planned session that a participant does next, or the reason why it cannot begin now.
 struct NextSession {

@@ -155,6 +155,7 @@ struct Begun {
 
 Begun begin(const Setup& setup, Stage& stage, programs::Programs& programs) {
   const auto next = next_session(setup);
+  if (next.too_early) throw TooEarly(next.problem + "; " + next.allowed, *next.too_early);
   if (!next.problem.empty()) throw terms::UsageError(next.problem + "; " + next.allowed);
   auto earlier = earlier_trials(setup, next);
   // With one seed for all participants, the planned sessions still have different orders.

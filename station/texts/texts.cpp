@@ -70,6 +70,24 @@ const std::string& text(std::string_view key, std::string_view language) {
   return found->second;
 }
 
+std::string say(const Phrase& phrase, std::string_view language) {
+  auto said = phrase.key.empty() ? phrase.words : std::string();
+  if (phrase.key.empty()) {
+    for (const auto& value : phrase.values) said += say(value, language);
+    return said;
+  }
+  const auto& pattern = text(phrase.key, language);
+  for (std::size_t i = 0; i < pattern.size(); ++i) {
+    const bool place = pattern[i] == '%' && i + 1 < pattern.size() && pattern[i + 1] >= '1' &&
+                       pattern[i + 1] < '1' + static_cast<int>(phrase.values.size());
+    if (place)
+      said += say(phrase.values[static_cast<std::size_t>(pattern[++i] - '1')], language);
+    else
+      said += pattern[i];
+  }
+  return said;
+}
+
 FaultText fault_text(terms::FaultKind kind, const std::string& language) {
   const auto key = std::string("fault.") + terms::name(kind);
   const bool own = in(language).count(key + ".safe") > 0;

@@ -3,6 +3,7 @@
 #include <map>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "station/terms/fault.hpp"
@@ -24,6 +25,19 @@ Translation translation(const std::string& language);
 /// Returns one text in the given language ("de", "de-CH"), or in English if the station does not speak that
 /// language. Throws std::logic_error for a key that no catalogue has.
 const std::string& text(std::string_view key, std::string_view language);
+
+/// What somebody is to be told, in a language that is chosen later: the text with this key, with `values` in
+/// its places %1, %2 and so on. Without a key: `words`, which are the same in every language (a number, a
+/// name from a protocol), and then all `values` one after another.
+struct Phrase {
+  std::string key, words;
+  std::vector<Phrase> values;
+  bool operator==(const Phrase&) const = default;
+};
+/// A phrase that is the same in every language.
+inline Phrase plain(std::string words) { return {"", std::move(words), {}}; }
+/// Returns the phrase in the given language. Throws std::logic_error for a key that no catalogue has.
+std::string say(const Phrase& phrase, std::string_view language);
 
 /// The explanation of a fault for the person in front of the screen: what happened, what is safe, what to do.
 struct FaultText {

@@ -10,7 +10,6 @@
 
 #include "station/desk/choices.hpp"
 #include "station/desk/live_view.hpp"
-#include "station/desk/report_pages.hpp"
 #include "station/plot/svg.hpp"
 #include "station/setup/prepare.hpp"
 #include "station/store/read.hpp"
@@ -255,37 +254,6 @@ TEST_CASE("a slider that moves fast is shown a few times a second, and finally a
   CHECK(states.back().surfaces.size() == 1);
 }
 
-TEST_CASE("the report on the screen has the numbers and figures of the speed-accuracy trade-off",
-          "[operator]") {
-  const Folder folder;
-  session::Inputs inputs;
-  const auto summary = session::run(setup::prepare(demo_in(folder)), nullptr, inputs);
-  const auto pages = desk::report_pages(summary.database, summary.session_id);
-  CHECK(value_of(pages.outcomes, "Presented") == "10");
-  CHECK_FALSE(value_of(pages.speed_accuracy, "proportion right").empty());
-  CHECK(pages.levels);
-  CHECK_FALSE(pages.health.empty());
-}
-
-TEST_CASE("the report on the screen has the finger's forces and friction, if force cells recorded",
-          "[operator]") {
-  report::Summary summary;
-  summary.data.design = report::Design::ratings;
-  CHECK(desk::report_pages(summary).forces.empty());
-  CHECK_FALSE(desk::report_pages(summary).finger);
-  std::vector<analysis::FingerTrial> trials;
-  for (int i = 0; i < 4; ++i) {
-    analysis::FingerTrial trial{i, "speed", true, 0.5, 80.0 + i, 0.3, 0.8, 150.0, 150.5 + 0.1 * i, 0.2};
-    trials.push_back(trial);
-  }
-  summary.finger = analysis::finger(trials, {});
-  const auto pages = desk::report_pages(summary);
-  CHECK(value_of(pages.forces, "speed: speed").find("81.5 [") == 0);
-  CHECK(value_of(pages.forces, "speed: felt \u2212 planned boundary").find(" mm") != std::string::npos);
-  CHECK(pages.finger);
-  CHECK(pages.friction);
-}
-
 TEST_CASE("new studies are saved with the protocols or, if that is not possible, beside the database",
           "[desk]") {
   const Folder folder;
@@ -362,12 +330,32 @@ TEST_CASE("the description of a check begins with the cues that could give answe
   check.cues.reports = {{"pitch", 0, 0, "Hz", 0.5, 0.5}, {"loudness", 0, 1, "dB", 0.9, 0.5}};
   const auto words = desk::words_of(check);
   REQUIRE(words.cues.size() == 2);
-  CHECK(words.cues[0].name == "loudness");
+  CHECK(texts::say(words.cues[0].name, "en") == "loudness");
+  CHECK(texts::say(words.cues[0].says, "en") == "90 % right with this cue alone (chance 50 %)");
+  CHECK(texts::say(words.cues[0].says, "de") == "90 % richtig nur mit diesem Hinweisreiz (Zufall 50 %)");
   CHECK(words.cues[0].leaks);
   CHECK_FALSE(words.cues[1].leaks);
   check.problems.push_back({{"a.toml", 3, 1}, "what", "allowed"});
   CHECK(desk::words_of(check).facts.empty());
   CHECK(desk::words_of(check).problems.front() == "a.toml:3:1: what; allowed");
+}
+
+TEST_CASE("the facts of a check are said in each language, with the names from the protocol", "[operator]") {
+  simulation::Check check;
+  check.rig_name = "plate";
+  check.duration_s = {300, 360, 480};
+  check.blocks = {{"session 2, group trained", 2, "trained", "main", "speed", false, {20, 20, 20}}};
+  const auto said = [&](const char* language) {
+    std::vector<std::string> lines;
+    for (const auto& [label, value] : desk::words_of(check).facts)
+      lines.push_back(texts::say(label, language) + ": " + texts::say(value, language));
+    return lines;
+  };
+  using Lines = std::vector<std::string>;
+  CHECK(said("en") == Lines{"Rig: plate", "Trials: 0", "Duration: 6 (5 to 8) min",
+                            "Block: session 2, group trained: main (speed), trials: 20"});
+  CHECK(said("de") == Lines{"Aufbau: plate", "Durchgänge: 0", "Dauer: 6 (5 bis 8) min",
+                            "Block: Sitzung 2, Gruppe trained: main (speed), Durchgänge: 20"});
 }
 
 TEST_CASE("a check that is no longer wanted is abandoned before it plans anything", "[operator]") {

@@ -268,6 +268,40 @@ int shoot_places(const QString& out, const QStringList& sizes, const QStringList
   });
 }
 
+/// Renders the pages about a session in one language: the view of a running session, reports, and what is
+/// measured or tried out apart from a session.
+int shoot_sessions(const QString& out, const QStringList& sizes, const QString& shown,
+                   turnpoint::ui::OperatorController& operating) {
+  using namespace turnpoint;
+  const std::string source = TURNPOINT_SOURCE_DIR, language = shown.toStdString();
+  ui::PreviewController preview(
+      {source + "/protocols/demo.toml", source + "/tests/support/thin_plate.toml", "", {}});
+  ui::PreviewController zones(
+      {source + "/protocols/friction-2ifc.toml", source + "/tests/support/thin_plate.toml", "", {}});
+  wait_for([&] { return !preview.busy() && !zones.busy(); });
+  const auto live = ui::live_exhibit("boundary-adaptive", 40, language),
+             live2 = ui::live_exhibit("friction-2ifc", 12, language);
+  const auto live3 = ui::live_exhibit("two-spots-oddity", 12, language);
+  const auto report = ui::report_exhibit("speed-accuracy", language),
+             report2 = ui::report_exhibit("boundary-constant", language),
+             report3 = ui::forces_exhibit("speed-accuracy", language);
+  ui::LatencyController latency(calibration::LatencyReference::photodiode);
+  return shoot_each(out, sizes, {{shown, {shown}}}, [&](OperatorCamera& camera) {
+    camera.shoot("OperatorPage.qml", "participant",
+                 {{"operating", QVariant::fromValue(&operating)}, {"typing", true}});
+    camera.shoot_live(live, "live");
+    camera.shoot_live(live2, "live-2ifc");
+    camera.shoot_live(live3, "live-oddity");
+    camera.shoot_report(report, "report-trade");
+    camera.shoot_report(report2, "report-boundary");
+    camera.shoot_report(report3, "report-forces", 3);
+    camera.shoot_report(report3, "report-friction", 4);
+    camera.shoot("PreviewPage.qml", "preview", {{"controller", QVariant::fromValue(&preview)}});
+    camera.shoot("PreviewPage.qml", "preview-zone", {{"controller", QVariant::fromValue(&zones)}});
+    camera.shoot("LatencyPage.qml", "panel-latency", {{"controller", QVariant::fromValue(&latency)}});
+  });
+}
+
 int shoot_operator(const QString& out, const QStringList& sizes, const QStringList& languages) {
   using namespace turnpoint;
   const std::string source = TURNPOINT_SOURCE_DIR;
@@ -279,33 +313,9 @@ int shoot_operator(const QString& out, const QStringList& sizes, const QStringLi
   ui::OperatorController operating({source + "/protocols", "plate.toml", "lab.sqlite"});
   operating.select(9);
   wait_for([&] { return !operating.checking(); });
-  const int places = shoot_places(out, sizes, languages, operating);
-  ui::PreviewController preview(
-      {source + "/protocols/demo.toml", source + "/tests/support/thin_plate.toml", "", {}});
-  ui::PreviewController zones(
-      {source + "/protocols/friction-2ifc.toml", source + "/tests/support/thin_plate.toml", "", {}});
-  wait_for([&] { return !preview.busy() && !zones.busy(); });
-  const auto live = ui::live_exhibit("boundary-adaptive", 40), live2 = ui::live_exhibit("friction-2ifc", 12);
-  const auto live3 = ui::live_exhibit("two-spots-oddity", 12);
-  const auto report = ui::report_exhibit("speed-accuracy"), report2 = ui::report_exhibit("boundary-constant"),
-             report3 = ui::forces_exhibit("speed-accuracy");
-  ui::LatencyController latency(calibration::LatencyReference::photodiode);
-  Looks looks;
-  for (const auto& language : languages) looks.push_back({language, {language}});
-  return places + shoot_each(out, sizes, looks, [&](OperatorCamera& camera) {
-           camera.shoot("OperatorPage.qml", "participant",
-                        {{"operating", QVariant::fromValue(&operating)}, {"typing", true}});
-           camera.shoot_live(live, "live");
-           camera.shoot_live(live2, "live-2ifc");
-           camera.shoot_live(live3, "live-oddity");
-           camera.shoot_report(report, "report-trade");
-           camera.shoot_report(report2, "report-boundary");
-           camera.shoot_report(report3, "report-forces", 3);
-           camera.shoot_report(report3, "report-friction", 4);
-           camera.shoot("PreviewPage.qml", "preview", {{"controller", QVariant::fromValue(&preview)}});
-           camera.shoot("PreviewPage.qml", "preview-zone", {{"controller", QVariant::fromValue(&zones)}});
-           camera.shoot("LatencyPage.qml", "panel-latency", {{"controller", QVariant::fromValue(&latency)}});
-         });
+  int count = shoot_places(out, sizes, languages, operating);
+  for (const auto& language : languages) count += shoot_sessions(out, sizes, language, operating);
+  return count;
 }
 
 int shoot_all(Camera& camera, const QString& language) {

@@ -64,6 +64,10 @@ class StationRoom : public QObject {
   /// Writes a protocol file with two mistakes into the folder of protocols.
   Q_INVOKABLE void addMistaken();
 
+  /// Plans two sessions for each participant, with a day between them, and stores that T1 had the first one
+  /// today.
+  Q_INVOKABLE void planSessions();
+
   /// Adds simulated pick-ups and force cells to the rig.
   Q_INVOKABLE void addCells();
   /// Writes a calibration of the rig (response, friction, sound level), as `turnpoint calibrate` does.

@@ -120,11 +120,11 @@ Item {
             room.open("7391")
             tryVerify(() => operating.mayBegin, 20000)
             tap("live")
-            tryVerify(() => operating.problems.length > 0, 20000)
-            verify(operating.problems[0].includes("the illustrative friction curve"), operating.problems[0])
+            tryVerify(() => operating.notLive.length > 0, 20000)
+            verify(operating.notLive[0].includes("the illustrative friction curve"), operating.notLive[0])
             // the illustrative curve is allowed in a pilot session
             tap("pilot")
-            compare(operating.problems, [])
+            compare(operating.notLive, [])
             compare(operating.mayBegin, true)
 
             const offset = measurePanel()

@@ -61,6 +61,7 @@ OperatorCard {
     FactTable {
         width: root.inner
         theme: root.theme
+        texts: root.texts
         heading: root.texts.text("operator.the_session")
         facts: root.design.facts
         labelWidth: 0.32 * width
@@ -73,14 +74,14 @@ OperatorCard {
             width: root.inner
             PlainText {
                 width: parent.width
-                text: root.texts.text("operator.cues") + ": " + cue.modelData.name + ", " + cue.modelData.says
+                text: root.texts.text("operator.cues") + ": " + root.texts.say(cue.modelData.name) + ", " + root.texts.say(cue.modelData.says)
                 color: root.theme.ink
                 font { pixelSize: root.theme.textSmall; weight: Font.Bold }
                 wrapMode: Text.Wrap
             }
             PlainText {
                 width: parent.width
-                text: "→ " + cue.modelData.advice
+                text: root.texts.arrow + root.texts.say(cue.modelData.advice)
                 color: root.theme.quiet
                 font.pixelSize: root.theme.textSmall
                 wrapMode: Text.Wrap

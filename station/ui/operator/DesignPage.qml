@@ -31,6 +31,11 @@ Rectangle {
         dense: true
     }
     Texts { id: texts; language: OperatorScreen.language }
+    Binding {
+        target: root.design
+        property: "language"
+        value: OperatorScreen.language
+    }
 
     function trouble() : string {
         return design.trouble === "taken" ? texts.text("design.taken").arg(naming.typed) : design.trouble === "name" ? texts.text("design.name_of_study")

@@ -1,11 +1,13 @@
 import QtQuick
 import Turnpoint
 
-// A table of labels and values under a heading, for the operator's pages. In a language that is read from right to
-// left, English values are at the right as well, so that both columns have a straight edge.
+// A table of labels and values under a heading, for the operator's pages. Both are phrases (see Texts.say). In a
+// language that is read from right to left, English values are at the right as well, so that both columns have a
+// straight edge.
 Column {
     id: root
     required property Theme theme
+    required property Texts texts
     required property var facts
     property string heading
     property real labelWidth: 0.4 * width
@@ -29,7 +31,7 @@ Column {
                 id: label
                 anchors.left: parent.left
                 width: root.labelWidth - root.theme.unit
-                text: line.modelData.label
+                text: root.texts.say(line.modelData.label)
                 color: root.theme.quiet
                 font.pixelSize: root.theme.textSmall
                 horizontalAlignment: Text.AlignLeft
@@ -38,7 +40,7 @@ Column {
             PlainText {
                 id: value
                 anchors { left: label.right; leftMargin: root.theme.unit; right: parent.right }
-                text: line.modelData.value
+                text: root.texts.say(line.modelData.value)
                 color: root.theme.ink
                 font { pixelSize: root.theme.textSmall; weight: Font.DemiBold }
                 horizontalAlignment: Text.AlignLeft

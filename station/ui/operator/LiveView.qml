@@ -265,7 +265,7 @@ Rectangle {
                     font { pixelSize: look.textBody; weight: Font.DemiBold }
                     wrapMode: Text.Wrap
                 }
-                FactTable { width: parent.width; theme: look; heading: texts.text("live.course"); facts: root.live.course }
+                FactTable { width: parent.width; theme: look; texts: texts; heading: texts.text("live.course"); facts: root.live.course }
                 // What the force cells say of the finger at this moment, also if the participant sees no bars.
                 Column {
                     objectName: "gauges"
@@ -298,9 +298,9 @@ Rectangle {
                         bar: root.live.positionGauge
                     }
                 }
-                FactTable { visible: root.live.sensors.length > 0; width: parent.width; theme: look; heading: texts.text("live.sensors"); facts: root.live.sensors }
-                FactTable { width: parent.width; theme: look; heading: texts.text("live.limits"); facts: root.live.limits }
-                FactTable { width: parent.width; theme: look; heading: texts.text("live.surface"); facts: root.live.scene; labelWidth: 0.3 * width }
+                FactTable { visible: root.live.sensors.length > 0; width: parent.width; theme: look; texts: texts; heading: texts.text("live.sensors"); facts: root.live.sensors }
+                FactTable { width: parent.width; theme: look; texts: texts; heading: texts.text("live.limits"); facts: root.live.limits }
+                FactTable { width: parent.width; theme: look; texts: texts; heading: texts.text("live.surface"); facts: root.live.scene; labelWidth: 0.3 * width }
             }
         }
         ScrollCue { theme: look; place: scroll }

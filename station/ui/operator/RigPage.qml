@@ -60,6 +60,7 @@ Rectangle {
         FactTable {
             width: state.inner
             theme: look
+            texts: texts
             labelWidth: 0.3 * width
             facts: root.calibrationFacts.map(fact => ({
                 label: texts.text(fact.label),

@@ -12,6 +12,14 @@ Rectangle {
     required property string tooEarly
     signal earlyWanted()
 
+    /// Why no session can begin.
+    function reasons() {
+        const all = []
+        for (const problem of operating.problems) all.push(problem)
+        for (const reason of operating.notLive) all.push(texts.text("operator.not_live").arg(reason))
+        return all
+    }
+
     radius: root.theme.radius
     color: root.theme.raised
     border { color: root.theme.line; width: 1 }
@@ -35,7 +43,7 @@ Rectangle {
             width: scroll.width
             spacing: 1.1 * root.theme.unit
             Repeater {
-                model: root.operating.problems
+                model: root.reasons()
                 Row {
                     id: problem
                     required property string modelData
@@ -91,6 +99,7 @@ Rectangle {
             FactTable {
                 width: parent.width
                 theme: root.theme
+                texts: root.texts
                 heading: root.texts.text("operator.the_session")
                 facts: root.operating.facts
                 labelWidth: 0.32 * width
@@ -124,7 +133,7 @@ Rectangle {
                             id: named
                             anchors { left: parent.left; leftMargin: 1.8 * root.theme.textSmall; right: parent.right }
                             horizontalAlignment: Text.AlignLeft
-                            text: cue.modelData.name + ": " + cue.modelData.says
+                            text: root.texts.say(cue.modelData.name) + ": " + root.texts.say(cue.modelData.says)
                             color: cue.modelData.leaks ? root.theme.wrong : root.theme.quiet
                             font { pixelSize: root.theme.textSmall; weight: cue.modelData.leaks ? Font.DemiBold : Font.Normal }
                             wrapMode: Text.Wrap

@@ -105,7 +105,7 @@ Rectangle {
                         }
                         PlainText {
                             width: parent.width
-                            text: row.modelData.started + "   ·   " + row.modelData.mode + "   ·   " + row.modelData.status
+                            text: row.modelData.started + "   ·   " + texts.named(row.modelData.mode) + "   ·   " + texts.named(row.modelData.status)
                             color: row.chosen ? look.actionText : look.quiet
                             font.pixelSize: look.textSmall
                             elide: Text.ElideRight
@@ -153,11 +153,12 @@ Rectangle {
             visible: root.some
             width: card.inner
             theme: look
+            texts: texts
             labelWidth: 0.34 * width
             facts: root.some ? [{ label: texts.text("operator.protocol"), value: root.sessions.chosen.protocol },
                                 { label: texts.text("operator.started"), value: root.sessions.chosen.started },
-                                { label: texts.text("operator.mode"), value: root.sessions.chosen.mode },
-                                { label: texts.text("operator.status"), value: root.sessions.chosen.status + (root.sessions.chosen.reason === "" ? "" : ": " + root.sessions.chosen.reason) },
+                                { label: texts.text("operator.mode"), value: texts.named(root.sessions.chosen.mode) },
+                                { label: texts.text("operator.status"), value: texts.named(root.sessions.chosen.status) + (root.sessions.chosen.reason === "" ? "" : ": " + root.sessions.chosen.reason) },
                                 { label: texts.text("operator.trials"), value: String(root.sessions.chosen.trials) },
                                 { label: "ID", value: root.sessions.chosen.id }] : []
         }
@@ -196,7 +197,7 @@ Rectangle {
                 primary: false
                 text: texts.text("operator.report")
                 onActivated: {
-                    root.sessions.makeReport()
+                    root.sessions.makeReport(OperatorScreen.language)
                     reporting.wanted = true
                 }
             }

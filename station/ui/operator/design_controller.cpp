@@ -176,7 +176,7 @@ void DesignController::start_check() {
 }
 
 void DesignController::start_profiles() {
-  profile_job_.start([this, source = draft_->text(), path = path_,
+  profile_job_.start([this, source = draft_->text(), path = path_, language = language_.toStdString(),
                       rig = place_.rig](const std::stop_token& stop) -> std::function<void()> {
     QVariantMap profiles;
     try {
@@ -188,7 +188,7 @@ void DesignController::start_profiles() {
         const auto look = preview.look(scene, factors);
         if (look.problem.empty())
           profiles[QString::fromStdString(scene)] =
-              to_variant(desk::drawing_of(desk::profile_figure({look})));
+              to_variant(desk::drawing_of(desk::profile_figure({look}, language)));
       }
     } catch (const std::exception&) {
       // A scene that cannot be planned has no profile. The check reports what is wrong.

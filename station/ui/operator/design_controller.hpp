@@ -48,6 +48,8 @@ class DesignController : public QObject {
   /// remarks of the check as {kind: problem | warning | note, line, what, hint}
   Q_PROPERTY(QVariantList remarks READ remarks NOTIFY changed)
   Q_PROPERTY(QVariantList facts READ facts NOTIFY changed)
+  /// language of the figures, such as "de"
+  Q_PROPERTY(QString language READ language WRITE set_language NOTIFY changed)
   Q_PROPERTY(QVariantList cues READ cues NOTIFY changed)
   /// state of the check: checking, good, warned or bad
   Q_PROPERTY(QString verdict READ verdict NOTIFY changed)
@@ -87,6 +89,8 @@ class DesignController : public QObject {
   QVariantList groups() const;
   QVariantList remarks() const;
   QVariantList facts() const;
+  QString language() const { return language_; }
+  void set_language(const QString& language);  // the setter of a QML property must have this name (NOLINT)
   QVariantList cues() const;
   QString verdict() const;
   QString text() const;
@@ -183,6 +187,7 @@ class DesignController : public QObject {
   PagesPreview pages_{this};
   Precision precision_{this};
   Feeling feeling_{this};
+  QString language_ = "en";
   // The last members, so that their threads end before the objects that they use are destroyed.
   NewestJob check_job_, profile_job_;
 };

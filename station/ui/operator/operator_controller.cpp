@@ -9,6 +9,7 @@
 #include "station/setup/prepare.hpp"
 #include "station/setup/resume.hpp"
 #include "station/ui/operator/facts.hpp"
+#include "station/ui/shared/early_session.hpp"
 
 namespace turnpoint::ui {
 
@@ -139,7 +140,6 @@ void OperatorController::check_live() {
 }
 
 void OperatorController::refuse_live(std::vector<std::string> reasons) {
-  for (auto& reason : reasons) reason.insert(0, "Live is not possible: ");
   not_live_ = std::move(reasons);
   stay();
 }
@@ -256,25 +256,16 @@ QVariantList OperatorController::protocols() const {
 }
 
 QVariantList OperatorController::facts() const { return to_list(words_.facts); }
-QStringList OperatorController::problems() const {
-  return to_list(words_.problems) + to_list(not_live_) + to_list(refused_);
-}
+QStringList OperatorController::problems() const { return to_list(words_.problems) + to_list(refused_); }
+QStringList OperatorController::not_live() const { return to_list(not_live_); }
 QStringList OperatorController::warnings() const { return to_list(words_.warnings); }
 
-QVariantMap OperatorController::too_early() const {
-  if (!too_early_) return {};
-  return {
-      {"participant", QString::fromStdString(too_early_->participant)}, {"session", too_early_->number},
-      {"from", QString::fromStdString(too_early_->allowed_from)},       {"last", too_early_->last_number},
-      {"lastDay", QString::fromStdString(too_early_->last_day)},        {"minDays", too_early_->min_days}};
-}
+QVariantMap OperatorController::too_early() const { return too_early_ ? to_map(*too_early_) : QVariantMap(); }
 
 QVariantList OperatorController::cues() const {
   QVariantList list;
   for (const auto& cue : words_.cues)
-    list += QVariantMap{{"name", QString::fromStdString(cue.name)},
-                        {"says", QString::fromStdString(cue.says)},
-                        {"leaks", cue.leaks}};
+    list += QVariantMap{{"name", to_variant(cue.name)}, {"says", to_variant(cue.says)}, {"leaks", cue.leaks}};
   return list;
 }
 

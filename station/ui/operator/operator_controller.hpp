@@ -41,9 +41,10 @@ class OperatorController : public QObject {
   /// does)}
   Q_PROPERTY(QVariantList cues READ cues NOTIFY changed)
   Q_PROPERTY(QStringList problems READ problems NOTIFY changed)
-  /// set if the chosen session would begin too early, which a reason of the operator can overrule:
-  /// {participant, session, from (the first allowed day), last (the last session), lastDay, minDays}; days
-  /// look like 2026-11-24
+  /// why the chosen protocol cannot run live
+  Q_PROPERTY(QStringList notLive READ not_live NOTIFY changed)
+  /// set if the chosen session would begin too early, which a reason of the operator can overrule (see
+  /// to_map() in early_session.hpp)
   Q_PROPERTY(QVariantMap tooEarly READ too_early NOTIFY changed)
   Q_PROPERTY(QStringList warnings READ warnings NOTIFY changed)
   Q_PROPERTY(QStringList languages READ languages NOTIFY changed)
@@ -78,6 +79,7 @@ class OperatorController : public QObject {
   QVariantList facts() const;
   QVariantList cues() const;
   QStringList problems() const;
+  QStringList not_live() const;
   QVariantMap too_early() const;
   QStringList warnings() const;
   QStringList languages() const;

@@ -12,6 +12,8 @@ Item {
     property bool armable: false
     readonly property PageModel page: bridge.page
     readonly property bool failed: page.kind === PageModel.Failed
+    /// Why the session did not begin because it would be too early; "" if that is not the reason.
+    readonly property string tooEarly: texts.tooEarly(page.early)
     readonly property bool fault: page.kind === PageModel.Fault || failed
     readonly property bool explained: fault && !failed && page.safe !== ""
     /// On a tall screen, each text has a line of its own below its heading, and is larger.
@@ -59,7 +61,7 @@ Item {
         }
         PlainText {
             width: parent.width
-            text: root.page.title !== "" ? root.texts.phrased(root.page.title)
+            text: root.page.title !== "" ? root.texts.phrased(root.page.title) : root.tooEarly !== "" ? root.texts.declinedTitle
                 : root.failed ? root.texts.failedTitle : root.fault ? root.texts.faultTitle : root.texts.paused
             color: root.theme.ink
             font { pixelSize: 0.85 * root.theme.textTitle; weight: Font.Bold }
@@ -68,7 +70,8 @@ Item {
         }
         PlainText {
             width: parent.width
-            text: root.page.text !== "" ? root.texts.phrased(root.page.text) : root.texts.pausedText
+            objectName: "notice"
+            text: root.tooEarly !== "" ? root.tooEarly : root.page.text !== "" ? root.texts.phrased(root.page.text) : root.texts.pausedText
             color: root.theme.quiet
             font.pixelSize: root.theme.textBody
             lineHeight: 1.2
@@ -79,7 +82,7 @@ Item {
         }
         PlainText {
             width: parent.width
-            visible: root.failed
+            visible: root.failed && root.tooEarly === ""
             text: root.texts.failedText
             color: root.theme.ink
             font { pixelSize: root.theme.textBody; weight: Font.DemiBold }

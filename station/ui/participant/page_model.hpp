@@ -55,11 +55,13 @@ class PageModel : public QObject {
   Q_PROPERTY(QString safe READ safe NOTIFY changed)
   Q_PROPERTY(QString toDo READ to_do NOTIFY changed)
   Q_PROPERTY(QString detail READ detail NOTIFY changed)
+  /// set on a failed page if the session would have begun too early (see to_map() in early_session.hpp)
+  Q_PROPERTY(QVariantMap early READ early NOTIFY changed)
   Q_PROPERTY(bool awaitsArming READ awaits_arming NOTIFY changed)
   Q_PROPERTY(bool awaitsNote READ awaits_note NOTIFY changed)
   Q_PROPERTY(bool resumable READ resumable NOTIFY changed)
   Q_PROPERTY(bool unsaved READ unsaved NOTIFY changed)
-  Q_PROPERTY(QStringList summaryLabels READ summary_labels NOTIFY changed)
+  Q_PROPERTY(QVariantList summaryLabels READ summary_labels NOTIFY changed)
   Q_PROPERTY(QStringList summaryValues READ summary_values NOTIFY changed)
   // The bars that guide the finger. Each bar is a list of the finger's value and the two ends of the wanted
   // range, from 0 to 1. A value below 0 means that there is none.
@@ -147,6 +149,7 @@ class PageModel : public QObject {
   QString run_mode() const { return QString::fromStdString(page_.run_mode); }
   QString safe() const { return QString::fromStdString(page_.safe); }
   QString to_do() const { return QString::fromStdString(page_.to_do); }
+  QVariantMap early() const;
   QString detail() const { return QString::fromStdString(page_.detail); }
   /// True if the session can continue from this page only after an operator has armed the amplifier.
   bool awaits_arming() const { return page_.amplifier == "disarmed" || page_.amplifier == "faulted"; }
@@ -159,7 +162,7 @@ class PageModel : public QObject {
   bool unsaved() const {
     return page_.kind == session::PageKind::fault && page_.fault == session::FaultKind::disk_full;
   }
-  QStringList summary_labels() const;
+  QVariantList summary_labels() const;
   QStringList summary_values() const;
 
  Q_SIGNALS:

@@ -6,6 +6,8 @@ import Turnpoint
 QtObject {
     required property string language
     readonly property bool mirrored: Catalogue.mirrored(language)
+    /// What stands before a piece of advice.
+    readonly property string arrow: mirrored ? "← " : "→ "
 
     function text(key: string) : string { return phrased(Catalogue.text(key, language)) }
 
@@ -30,6 +32,23 @@ QtObject {
         // a closing bracket ends the phrase, unless a particle in hiragana follows it
         if (/[」』)]/.test(text[i])) return !hiragana.test(text[i + 1])
         return hiragana.test(text[i]) && !polite(i) && (begins.test(text[i + 1]) || polite(i + 1))
+    }
+
+    // Says a phrase that C++ gives: a string, or {key, values}, whose values are phrases as well. Without a key, the
+    // values follow one another.
+    function say(phrase) : string {
+        if (phrase === undefined || typeof phrase === "string") return phrase ?? ""
+        const values = phrase.values.map(value => say(value))
+        if (phrase.key === "") return values.join("")
+        return text(phrase.key).replace(/%([1-9])/g, (place, number) => values[number - 1] ?? place)
+    }
+
+    // What the run mode or the status of a session is called; a word that is not known stays as it is.
+    function named(word: string) : string {
+        const keys = { live: "operator.mode_live", pilot: "operator.mode_pilot", simulated: "operator.mode_simulated",
+                       running: "operator.status_running", "not ended": "operator.status_running", completed: "operator.status_completed", interrupted: "operator.status_interrupted",
+                       abandoned: "operator.status_abandoned", stopped: "operator.status_stopped" }
+        return word in keys ? text(keys[word]) : word
     }
 
     // `backup` is {state: none | recent | old | ahead, hours}
