@@ -110,11 +110,12 @@ Rectangle {
                         height: Math.max(title.implicitHeight, tools.height)
                         PlainText {
                             id: title
+                            objectName: "title" + table.index
                             anchors { left: parent.left; right: tools.left; verticalCenter: parent.verticalCenter }
                             text: root.design.label([table.modelData.kind], root.texts.language) + (table.modelData.name === "" ? "" : "  “" + table.modelData.name + "”")
                             color: root.theme.action
                             font { pixelSize: root.theme.textTitle; weight: Font.Bold }
-                            elide: Text.ElideRight
+                            wrapMode: Text.Wrap
                         }
                         Row {
                             id: tools
