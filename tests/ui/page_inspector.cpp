@@ -189,10 +189,11 @@ std::pair<QString, QString> read_aloud(QQuickItem* item) {
   return {role_word(interface->role()), interface->text(QAccessible::Name)};
 }
 
+/// True for an item that acts on touches: one with a tap handler, or an area that is no mere shield.
 bool reacts_to_taps(const QQuickItem* item) {
   for (const auto* child : item->children())
     if (child->inherits("QQuickTapHandler")) return true;
-  return false;
+  return item->inherits("QQuickMouseArea") && item->isEnabled() && !item->property("shield").toBool();
 }
 
 void for_each_visible(QQuickItem* item, const std::function<void(QQuickItem*)>& visit) {
@@ -216,7 +217,9 @@ QStringList PageInspector::unnamedControls(QQuickItem* page) const {
   QStringList found;
   for_each_visible(page, [&found](QQuickItem* item) {
     const auto [role, name] = read_aloud(item);
-    if (role.isEmpty() ? reacts_to_taps(item) : name.trimmed().isEmpty())
+    // An area may lie in the control whose touches it takes.
+    const bool inside = item->inherits("QQuickMouseArea") && !read_aloud(item->parentItem()).first.isEmpty();
+    if (role.isEmpty() ? reacts_to_taps(item) && !inside : name.trimmed().isEmpty())
       found += QString(item->metaObject()->className()) + " " + item->objectName() + " " + role;
   });
   return found;

@@ -37,6 +37,8 @@ Item {
         ink: root.theme.ink
         paper: root.theme.raised
         accent: root.theme.action
+        Accessible.role: Accessible.Slider
+        Accessible.name: hint.text
 
         component Mark: Rectangle {
             id: mark

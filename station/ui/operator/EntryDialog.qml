@@ -44,7 +44,7 @@ Rectangle {
 
     visible: false
     color: theme.paper
-    MouseArea { anchors.fill: parent }
+    Shield {}
     Keys.onEscapePressed: visible = false
     // With large text on a small screen, the dialog scrolls.
     Flickable {

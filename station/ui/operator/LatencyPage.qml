@@ -51,6 +51,8 @@ Rectangle {
     Rectangle {
         id: field
         objectName: "latencyField"
+        Accessible.role: Accessible.Button
+        Accessible.name: "Touch field"
         anchors { left: parent.left; right: parent.right; top: words.bottom; bottom: buttons.top; margins: look.margin }
         radius: look.radius
         color: flash.running ? "white" : "black"

@@ -121,6 +121,7 @@ Rectangle {
             }
             ActionButton {
                 objectName: "liveClose"
+                label: texts.close
                 visible: root.closable
                 theme: look
                 primary: false
@@ -310,7 +311,7 @@ Rectangle {
         visible: root.noting
         anchors.fill: parent
         color: look.paper
-        MouseArea { anchors.fill: parent }
+        Shield {}
         Column {
             anchors { fill: parent; margins: 2 * look.unit }
             spacing: look.unit

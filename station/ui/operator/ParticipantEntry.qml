@@ -12,7 +12,7 @@ Rectangle {
     signal closed()
 
     color: root.theme.paper
-    MouseArea { anchors.fill: parent }
+    Shield {}
     CodePage {
         id: codePage
         objectName: "operatorCode"

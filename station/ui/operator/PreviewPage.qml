@@ -77,6 +77,8 @@ Rectangle {
         }
         Item {
             id: track
+            Accessible.role: Accessible.Slider
+            Accessible.name: name.text
             anchors { left: name.right; right: parent.right; verticalCenter: parent.verticalCenter }
             height: parent.height
             Rectangle {

@@ -79,7 +79,7 @@ Item {
         LayoutMirroring.childrenInherit: true
         anchors.fill: parent
         color: root.theme.paper
-        MouseArea { anchors.fill: parent }
+        Shield {}
         PlainText {
             id: heading
             anchors { left: parent.left; right: parent.right; top: parent.top }

@@ -16,6 +16,8 @@ Column {
     LayoutMirroring.enabled: false
     LayoutMirroring.childrenInherit: true
 
+    Texts { id: texts; language: OperatorScreen.language }
+
     Repeater {
         model: root.rows
         Row {
@@ -33,6 +35,7 @@ Column {
                     quiet: true
                     width: (root.width - 11 * line.spacing) / 11.5
                     height: Math.min(root.theme.controlHeight, width)
+                    label: modelData === " " ? texts.text("space") : text
                     text: modelData === " " ? "␣" : root.capitals ? modelData.toUpperCase() : modelData
                     onActivated: {
                         root.typed(root.capitals ? modelData.toUpperCase() : modelData)
@@ -49,6 +52,7 @@ Column {
                 width: 1.5 * (root.width - 11 * line.spacing) / 11.5
                 height: Math.min(root.theme.controlHeight, width)
                 glyph: "backspace"
+                label: texts.text("erase")
                 onActivated: root.erased()
             }
             ActionButton {
@@ -60,6 +64,7 @@ Column {
                 width: 1.5 * (root.width - 11 * line.spacing) / 11.5
                 height: Math.min(root.theme.controlHeight, width)
                 text: "Aa"
+                label: texts.text("capitals")
                 onActivated: root.capitals = !root.capitals
             }
         }
