@@ -38,7 +38,7 @@ Watched watch_demo(const std::string& capture) {
   session::Inputs inputs;
   {
     desk::LiveView view(
-        setup.protocol, setup.rig, [](const desk::LiveState&) {},
+        setup.protocol, setup.rig, [](const desk::LiveState&) {}, "en",
         [&](desk::FingerGauges gauges) { watched.gauges.push_back(std::move(gauges)); });
     session::run(setup, &participant, inputs, std::make_unique<session::SimulatedRoom>(setup.rig), &view);
   }
