@@ -106,8 +106,8 @@ Item {
     Pacer {
         id: pacer
         objectName: "pacer"
-        // On a small panel the question and the answers come first.
-        readonly property bool fits: root.height - answers.height - bars.height - implicitHeight >= 6.6 * root.theme.unit
+        // On a small panel the question, the answers and the dots of the intervals come first.
+        readonly property bool fits: root.height - answers.height - bars.height - implicitHeight >= (root.counted ? 19.6 : 6.6) * root.theme.unit
         visible: bars.visible && root.page.paceMmPerS > 0 && fits
         anchors { left: parent.left; right: parent.right; bottom: answers.top; bottomMargin: visible ? root.theme.unit : 0 }
         height: visible ? implicitHeight : 0
