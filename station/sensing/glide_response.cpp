@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <unsupported/Eigen/FFT>
 
 #include "station/drive/ramp.hpp"
 
@@ -21,29 +22,6 @@ constexpr double kMargin_Hz = 6000, kPerGlide = 500;
 
 Amplitude turned(std::uint64_t phase) noexcept {
   return {drive::sine_of_phase(phase + drive::quarter_cycle), drive::sine_of_phase(phase)};
-}
-
-// Discrete Fourier transform in place, by repeated halving; the length is a power of two. `sign` is -1 for
-// the transform to frequencies, and 1 for the inverse, which is not divided by the length.
-void fourier(std::vector<Amplitude>& values, int sign) {
-  const std::size_t count = values.size();
-  for (std::size_t i = 1, j = 0; i < count; ++i) {
-    std::size_t bit = count >> 1;
-    for (; j & bit; bit >>= 1) j ^= bit;
-    j ^= bit;
-    if (i < j) std::swap(values[i], values[j]);
-  }
-  std::vector<Amplitude> turn(count / 2);
-  for (std::size_t k = 0; k < turn.size(); ++k)
-    turn[k] = std::polar(1.0, sign * 2 * M_PI * static_cast<double>(k) / static_cast<double>(count));
-  for (std::size_t half = 1; half < count; half *= 2)
-    for (std::size_t first = 0; first < count; first += 2 * half)
-      for (std::size_t k = 0; k < half; ++k) {
-        const Amplitude even = values[first + k],
-                        odd = values[first + half + k] * turn[k * (count / 2 / half)];
-        values[first + k] = even + odd;
-        values[first + half + k] = even - odd;
-      }
 }
 
 const Transfer* calibration_of(const PickUp& pick_up, int channel) {
@@ -91,13 +69,15 @@ GlideResponse::GlideResponse(const Glide& glide, const GlidingTone& tone, const 
   const Transfer& calibrated = *calibration_of(pick_up, tone.channel);
   const double low_Hz = calibrated.frequency_Hz.front(), high_Hz = calibrated.frequency_Hz.back();
   const auto count = static_cast<double>(values_.size());
-  fourier(values_, -1);
-  for (std::size_t k = 0; k < values_.size(); ++k) {
+  Eigen::FFT<double> transform;
+  std::vector<Amplitude> spectrum;
+  transform.fwd(spectrum, values_);
+  for (std::size_t k = 0; k < spectrum.size(); ++k) {
     const double place = static_cast<double>(k) - (2 * k < values_.size() ? 0 : count);
     const double frequency_Hz = hertz(middle) + place / count * rate_Hz / static_cast<double>(step_);
-    values_[k] *= *response(pick_up, tone.channel, std::clamp(frequency_Hz, low_Hz, high_Hz)) / count;
+    spectrum[k] *= *response(pick_up, tone.channel, std::clamp(frequency_Hz, low_Hz, high_Hz));
   }
-  fourier(values_, 1);
+  transform.inv(values_, spectrum);
   for (std::size_t k = 0; k < values_.size(); ++k) values_[k] *= std::conj(turn[k]);
 }
 
