@@ -10,11 +10,12 @@ bool SessionRun::is_finger_watched() const {
 
 /// Moves the bars if Guide::kEvery_ns has passed since they were last moved.
 void SessionRun::move_bars() {
-  if (stage_->now_ns() < guide_due_ns_) return;
+  const bool watched = is_finger_watched();
+  if ((!guide_.guides() && !watched) || stage_->now_ns() < guide_due_ns_) return;
   guide_due_ns_ = stage_->now_ns() + Guide::kEvery_ns;
   const auto finger = stage_->finger_now();
   if (guide_.move(finger) && display_ != nullptr) display_->guide(*guide_.bars());
-  if (!is_finger_watched()) return;
+  if (!watched) return;
   const bool touches = finger && finger->contact;
   monitor_->finger_moved(
       touches ? std::optional(FingerSeen{finger->normal_N, finger->speed_mm_s, finger->position_mm})
