@@ -1,7 +1,5 @@
 #include <sys/stat.h>
 
-#include <unistd.h>
-
 #include <chrono>
 #include <condition_variable>
 #include <filesystem>
@@ -14,30 +12,13 @@
 #include "station/setup/prepare.hpp"
 #include "station/store/read.hpp"
 #include "station/text/number.hpp"
+#include "tests/desk/demo.hpp"
 #include "tests/support/catch.hpp"
 
 using namespace turnpoint;
 namespace fs = std::filesystem;
 
 namespace {
-
-const std::string kSource = TURNPOINT_SOURCE_DIR;
-
-struct Folder {
-  fs::path path = fs::temp_directory_path() / ("turnpoint-operator-" + std::to_string(::getpid()));
-  Folder() {
-    fs::remove_all(path);
-    fs::create_directories(path);
-  }
-  ~Folder() { fs::remove_all(path); }
-};
-
-std::string value_of(const std::vector<std::pair<std::string, std::string>>& facts,
-                     const std::string& label) {
-  for (const auto& [name, value] : facts)
-    if (name == label) return value;
-  return "";
-}
 
 desk::LiveTrial answered(bool correct, double response_time_s) {
   desk::LiveTrial trial;
@@ -71,17 +52,6 @@ std::vector<std::string> drives_shown(const desk::LiveState& state) {
     drives.push_back(value.substr(from, value.find(" on ") + 3 - from));
   }
   return drives;
-}
-
-setup::RunRequest demo_in(const Folder& folder) {
-  setup::RunRequest request;
-  request.protocol = kSource + "/protocols/demo.toml";
-  request.rig = kSource + "/tests/support/thin_plate.toml";
-  request.participant = "P09";
-  request.database = (folder.path / "a.sqlite").string();
-  request.observer = "sim";
-  request.seed = 4;
-  return request;
 }
 
 }  // namespace
@@ -146,7 +116,7 @@ TEST_CASE("the used part of the limits is computed from the last minute", "[oper
 }
 
 TEST_CASE("the live view follows a session trial by trial and draws what is on the surface", "[operator]") {
-  const Folder folder;
+  const TemporaryFolder folder;
   const auto setup = setup::prepare(demo_in(folder));
   std::mutex mutex;
   std::condition_variable told;
@@ -177,7 +147,7 @@ TEST_CASE("the live view shows what is played: each scene of each interval, with
   const auto* protocol = GENERATE("demo", "speed-accuracy", "two-spots-oddity");
   CAPTURE(protocol);
   constexpr int trials = 6;
-  const Folder folder;
+  const TemporaryFolder folder;
   auto request = demo_in(folder);
   request.protocol = kSource + "/protocols/" + protocol + ".toml";
   const auto setup = setup::prepare(request);
@@ -220,7 +190,7 @@ TEST_CASE("the live view shows what is played: each scene of each interval, with
 
 TEST_CASE("a slider that moves fast is shown a few times a second, and finally at its last position",
           "[operator]") {
-  const Folder folder;
+  const TemporaryFolder folder;
   auto request = demo_in(folder);
   request.protocol = kSource + "/protocols/boundary-adjustment.toml";
   const auto setup = setup::prepare(request);
@@ -256,11 +226,11 @@ TEST_CASE("a slider that moves fast is shown a few times a second, and finally a
 
 TEST_CASE("new studies are saved with the protocols or, if that is not possible, beside the database",
           "[desk]") {
-  const Folder folder;
-  const auto database = (folder.path / "data/lab.sqlite").string();
-  const auto own = (folder.path / "data/protocols").string(), shipped = (folder.path / "shipped").string();
-  CHECK(desk::folder_for_studies(folder.path.string(), database) == folder.path.string());
-  CHECK(desk::folder_for_studies((folder.path / "none").string(), database) == own);
+  const TemporaryFolder folder;
+  const auto database = folder / "data/lab.sqlite";
+  const auto own = folder / "data/protocols", shipped = folder / "shipped";
+  CHECK(desk::folder_for_studies(folder.path, database) == folder.path);
+  CHECK(desk::folder_for_studies(folder / "none", database) == own);
   std::filesystem::create_directories(own);
   std::filesystem::create_directories(shipped);
   std::filesystem::copy_file(TURNPOINT_SOURCE_DIR "/protocols/demo.toml", own + "/mine.toml");
@@ -274,11 +244,11 @@ TEST_CASE("new studies are saved with the protocols or, if that is not possible,
 }
 
 TEST_CASE("the list of protocol files in a folder includes those that cannot be used", "[operator]") {
-  const Folder folder;
-  fs::copy_file(kSource + "/protocols/demo.toml", folder.path / "a.toml");
-  std::ofstream(folder.path / "b.toml") << "format = 3\n";
-  std::ofstream(folder.path / "notes.txt") << "no protocol\n";
-  const auto list = desk::list_protocols(folder.path.string());
+  const TemporaryFolder folder;
+  fs::copy_file(kSource + "/protocols/demo.toml", folder / "a.toml");
+  std::ofstream(folder / "b.toml") << "format = 3\n";
+  std::ofstream(folder / "notes.txt") << "no protocol\n";
+  const auto list = desk::list_protocols(folder.path);
   REQUIRE(list.size() == 2);
   CHECK(list[0].id == "demo");
   CHECK(list[0].languages.size() == 3);
@@ -287,14 +257,14 @@ TEST_CASE("the list of protocol files in a folder includes those that cannot be 
 }
 
 TEST_CASE("an unusable entry among the protocols has a message and does not hide the others", "[operator]") {
-  const Folder folder;
+  const TemporaryFolder folder;
   const auto shipped = std::string(TURNPOINT_SOURCE_DIR) + "/protocols/demo.toml";
-  fs::copy_file(shipped, folder.path / "demo.toml");
-  fs::create_symlink("/nowhere/at/all", folder.path / "dangling.toml");
-  fs::create_symlink("anna@host.1234", folder.path / ".#demo.toml");
-  fs::create_directory(folder.path / "folder.toml");
-  REQUIRE(::mkfifo((folder.path / "pipe.toml").c_str(), 0600) == 0);
-  const auto list = desk::list_protocols(folder.path.string());
+  fs::copy_file(shipped, folder / "demo.toml");
+  fs::create_symlink("/nowhere/at/all", folder / "dangling.toml");
+  fs::create_symlink("anna@host.1234", folder / ".#demo.toml");
+  fs::create_directory(folder / "folder.toml");
+  REQUIRE(::mkfifo((folder / "pipe.toml").c_str(), 0600) == 0);
+  const auto list = desk::list_protocols(folder.path);
   REQUIRE(list.size() == 4);
   for (const auto& entry : list) {
     INFO(entry.path);
@@ -304,7 +274,7 @@ TEST_CASE("an unusable entry among the protocols has a message and does not hide
 
 TEST_CASE("participants are listed once they have a stored session, and an interrupted session is offered",
           "[operator]") {
-  const Folder folder;
+  const TemporaryFolder folder;
   const auto request = demo_in(folder);
   CHECK(desk::known_participants(request.database).empty());
   CHECK_FALSE(desk::interrupted_note(request.database).has_value());
@@ -371,7 +341,7 @@ TEST_CASE("a check that is no longer wanted is abandoned before it plans anythin
 
 TEST_CASE("preparing a session that is no longer wanted is abandoned before it plans anything",
           "[operator]") {
-  const Folder folder;
+  const TemporaryFolder folder;
   std::stop_source stop;
   CHECK(setup::prepare(demo_in(folder), stop.get_token()).participant == "P09");
   stop.request_stop();

@@ -1,53 +1,15 @@
 // Tests the report of a session on the screen: its tables, its figures, and their language.
-#include <unistd.h>
-
-#include <filesystem>
-
 #include "station/desk/live_facts.hpp"
 #include "station/desk/report_pages.hpp"
 #include "station/plot/svg.hpp"
-#include "station/setup/prepare.hpp"
+#include "tests/desk/demo.hpp"
 #include "tests/support/catch.hpp"
 
 using namespace turnpoint;
-namespace fs = std::filesystem;
-
-namespace {
-
-const std::string kSource = TURNPOINT_SOURCE_DIR;
-
-struct Folder {
-  fs::path path = fs::temp_directory_path() / ("turnpoint-report-pages-" + std::to_string(::getpid()));
-  Folder() {
-    fs::remove_all(path);
-    fs::create_directories(path);
-  }
-  ~Folder() { fs::remove_all(path); }
-};
-
-std::string value_of(const std::vector<std::pair<std::string, std::string>>& facts,
-                     const std::string& label) {
-  for (const auto& [name, value] : facts)
-    if (name == label) return value;
-  return "";
-}
-
-setup::RunRequest demo_in(const Folder& folder) {
-  setup::RunRequest request;
-  request.protocol = kSource + "/protocols/demo.toml";
-  request.rig = kSource + "/tests/support/thin_plate.toml";
-  request.participant = "P09";
-  request.database = (folder.path / "a.sqlite").string();
-  request.observer = "sim";
-  request.seed = 4;
-  return request;
-}
-
-}  // namespace
 
 TEST_CASE("the report on the screen has the numbers and figures of the speed-accuracy trade-off",
           "[operator]") {
-  const Folder folder;
+  const TemporaryFolder folder;
   session::Inputs inputs;
   const auto summary = session::run(setup::prepare(demo_in(folder)), nullptr, inputs);
   const auto pages = desk::report_pages(summary.database, summary.session_id);
@@ -59,7 +21,7 @@ TEST_CASE("the report on the screen has the numbers and figures of the speed-acc
 
 TEST_CASE("tables and figures of the report on the screen are in the language of the operator",
           "[operator]") {
-  const Folder folder;
+  const TemporaryFolder folder;
   session::Inputs inputs;
   const auto summary = session::run(setup::prepare(demo_in(folder)), nullptr, inputs);
   const auto svg_of = [](const desk::Drawing& drawing) {

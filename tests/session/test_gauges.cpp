@@ -25,13 +25,7 @@ struct Participant : session::Display {
 
 Watched watch_demo(const std::string& capture) {
   const TemporaryFolder folder;
-  setup::RunRequest request;
-  request.protocol = shipped("demo");
-  request.rig = with_capture(folder, capture);
-  request.participant = "P01";
-  request.database = folder / "a.sqlite";
-  request.observer = "sim";
-  request.seed = 7;
+  const auto request = request_in(folder, shipped("demo"), capture);
   const auto setup = setup::prepare(request);
   Watched watched;
   Participant participant;

@@ -124,13 +124,7 @@ std::array<double, 2> friction_of(const std::vector<double>& normal, const std::
 
 void run_guided(Session& made, const std::string& guidance) {
   TemporaryFolder folder;
-  setup::RunRequest request;
-  request.protocol = two_intervals(folder, guidance);
-  request.rig = with_capture(folder, kCells);
-  request.participant = "P01";
-  request.database = folder / "a.sqlite";
-  request.observer = "sim";
-  request.seed = 7;
+  const auto request = request_in(folder, two_intervals(folder, guidance));
   const auto setup = setup::prepare(request);
   session::Inputs inputs;
   const auto summary = session::run(setup, &made.watcher, inputs,
