@@ -106,7 +106,8 @@ struct StartPage {
 
   std::string shown() const {
     for (const auto& fact : page->facts())
-      if (fact.toMap()["label"] == "Rig") return fact.toMap()["value"].toString().toStdString();
+      if (fact.toMap()["label"].toMap()["key"] == "operator.rig")
+        return fact.toMap()["value"].toString().toStdString();
     return "";
   }
 };
