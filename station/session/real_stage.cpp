@@ -115,11 +115,17 @@ class RealStage : public Stage {
     return presented_.back().start_frame + change->at_frame;
   }
 
-  std::int64_t silence() override {
+  std::int64_t silence(bool awaits_heard) override {
     // If the last burst has not begun, it is cancelled and never reported as heard, so do not wait for that
     // report.
     const auto from = stream_->earliest_frame();
-    if (!presented_.empty() && presented_.back().start_frame >= from) unheard_ = 0;
+    if (!presented_.empty() && presented_.back().start_frame >= from) {
+      unheard_ = 0;
+      // Somebody has answered at a time when the stimulus should have been playing, so the drive is stalled.
+      if (awaits_heard)
+        push_fault(now_ns(), FaultKind::stimulus_missed,
+                   "the trial was answered before the drive had begun the stimulus");
+    }
     if (feed_) feed_->watch().cut(stream_->counters().frames);
     const auto silent_ns = ramp_down(*stream_, presented_, now_ns());
     triggers_->cut(from, stream_->frame_at(silent_ns).value_or(from), now_ns());

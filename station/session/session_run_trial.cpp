@@ -212,7 +212,7 @@ void SessionRun::perform(const std::vector<trial::Action>& actions, Running& tri
         show_phase(trial.machine.phase(), trial);
         break;
       case trial::ActionKind::silence: {
-        const auto silent_ns = stage_->silence();
+        const auto silent_ns = stage_->silence(!trial.machine.done());
         for (auto& interval : surface_) interval.off_ns = std::min(interval.off_ns, silent_ns);
         break;
       }

@@ -114,7 +114,7 @@ class VirtualStage : public Stage {
     return presented_.back().start_frame + change->at_frame;
   }
 
-  std::int64_t silence() override {
+  std::int64_t silence(bool) override {
     const auto from = stream_->earliest_frame();
     std::erase_if(unheard_, [from](const Presented& interval) { return interval.start_frame >= from; });
     for (auto& interval : unheard_)
