@@ -5,6 +5,7 @@
 #include <QFile>
 #include <chrono>
 
+#include "station/desk/live_facts.hpp"
 #include "station/session/planned_session.hpp"
 #include "station/store/session_log.hpp"
 
@@ -58,9 +59,13 @@ double OperatorDesk::keptLatencyMs() const {
   return kept && kept->touch ? 1e3 * kept->touch->median_s : 0;
 }
 
-void OperatorDesk::tellLive(const QString& heading) {
+void OperatorDesk::tellLive(const QString& heading, const QString& language) {
   desk::LiveState state;
   state.heading = heading.toStdString();
+  desk::LiveTrial scored, caught;
+  scored.correct = caught.correct = true;
+  caught.type = terms::TrialType::catch_trial;
+  state.course = desk::course_of({scored, caught}, language.toStdString());
   live_.take(state);
 }
 

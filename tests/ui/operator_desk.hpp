@@ -42,7 +42,7 @@ class OperatorDesk : public QObject {
   Q_INVOKABLE void pressed(double ago_ms);
   /// The latency in milliseconds that the operator accepted; 0 before that.
   Q_INVOKABLE double keptLatencyMs() const;
-  Q_INVOKABLE void tellLive(const QString& heading);
+  Q_INVOKABLE void tellLive(const QString& heading, const QString& language = "en");
 
  Q_SIGNALS:
   void chosenChanged();

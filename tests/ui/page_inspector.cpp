@@ -113,7 +113,7 @@ QStringList PageInspector::brokenWords(QQuickItem* page) const {
     // Qt may have shrunk the font so that the text fits, so use the size that Qt reports.
     font.setPixelSize(text.property("fontInfo").value<QJSValue>().property("pixelSize").toInt());
     const QFontMetricsF metrics(font);
-    for (const auto& word : text.property("text").toString().split(QRegularExpression("\\s+")))
+    for (const auto& word : text.property("text").toString().split(QRegularExpression("[\\s\u00ad]+")))
       if (!has_ideographs(word) && metrics.horizontalAdvance(word) > text.width() + 1) broken += word;
   });
   return broken;

@@ -64,7 +64,7 @@ OperatorCard {
         texts: root.texts
         heading: root.texts.text("operator.the_session")
         facts: root.design.facts
-        labelWidth: 0.32 * width
+        labelShare: 0.32
     }
     Repeater {
         model: root.design.cues

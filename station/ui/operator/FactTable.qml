@@ -10,9 +10,17 @@ Column {
     required property Texts texts
     required property var facts
     property string heading
-    property real labelWidth: 0.4 * width
+    /// Share of the width that the labels have, or more if a word needs it.
+    property real labelShare: 0.4
+    readonly property real labelWidth: {
+        let widest = 0
+        for (const fact of facts)
+            for (const word of texts.say(fact.label).split(/[\s\u00ad]+/)) widest = Math.max(widest, metrics.advanceWidth(word))
+        return Math.max(labelShare * width, Math.min(0.6 * width, widest + 1.2 * theme.unit))
+    }
     spacing: 0.35 * theme.unit
 
+    FontMetrics { id: metrics; font.pixelSize: root.theme.textSmall }
     PlainText {
         visible: root.heading !== "" && root.facts.length > 0
         width: root.width

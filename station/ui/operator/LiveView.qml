@@ -135,7 +135,7 @@ Rectangle {
     Column {
         id: surfaces
         anchors { left: parent.left; top: header.bottom; leftMargin: look.margin; topMargin: look.unit }
-        width: root.tall ? root.width - 2 * look.margin : side.x - look.unit - look.margin
+        width: root.tall ? root.width - 2 * look.margin : root.width - side.width - look.unit - 2 * look.margin
         height: (root.live.surfaces.length > 1 ? 0.4 : 0.24) * (root.tall ? 0.62 : 1) * (root.height - header.height - frame.band)
         spacing: 0.4 * look.unit
         Repeater {
@@ -153,6 +153,7 @@ Rectangle {
     }
     Item {
         id: pictures
+        objectName: "figures"
         anchors { left: surfaces.left; right: surfaces.right; top: surfaces.bottom; bottom: root.tall ? side.top : parent.bottom; topMargin: 0.6 * look.unit; bottomMargin: root.tall ? look.unit : frame.edge + look.unit }
         // Show three figures if there is enough room for each. Otherwise show one, with buttons to choose it.
         // The figures in the lower row need room for legends.
@@ -228,6 +229,7 @@ Rectangle {
     }
     Rectangle {
         id: side
+        objectName: "facts"
         anchors { right: parent.right; bottom: parent.bottom; rightMargin: look.margin; bottomMargin: frame.edge + look.unit }
         width: root.tall ? parent.width - 2 * look.margin : 0.36 * parent.width
         height: (parent.height - header.y - header.height - look.unit - anchors.bottomMargin) * (root.tall ? 0.4 : 1)
@@ -301,7 +303,7 @@ Rectangle {
                 }
                 FactTable { visible: root.live.sensors.length > 0; width: parent.width; theme: look; texts: texts; heading: texts.text("live.sensors"); facts: root.live.sensors }
                 FactTable { width: parent.width; theme: look; texts: texts; heading: texts.text("live.limits"); facts: root.live.limits }
-                FactTable { width: parent.width; theme: look; texts: texts; heading: texts.text("live.surface"); facts: root.live.scene; labelWidth: 0.3 * width }
+                FactTable { width: parent.width; theme: look; texts: texts; heading: texts.text("live.surface"); facts: root.live.scene; labelShare: 0.3 }
             }
         }
         ScrollCue { theme: look; place: scroll }
@@ -316,7 +318,7 @@ Rectangle {
             anchors { fill: parent; margins: 2 * look.unit }
             spacing: look.unit
             PlainText {
-                text: "A note to be stored with the session"
+                text: texts.text("operator.note_title")
                 color: look.ink
                 font { pixelSize: look.textTitle; weight: Font.Bold }
             }

@@ -200,8 +200,8 @@ Rectangle {
                 id: sheet
                 width: scroll.width
                 spacing: look.unit
-                FactTable { width: parent.width; theme: look; texts: texts; heading: "Plan"; facts: root.controller.facts; labelWidth: 0.32 * width }
-                FactTable { width: parent.width; theme: look; texts: texts; heading: "Cues"; facts: root.controller.cues; labelWidth: 0.5 * width }
+                FactTable { width: parent.width; theme: look; texts: texts; heading: "Plan"; facts: root.controller.facts; labelShare: 0.32 }
+                FactTable { width: parent.width; theme: look; texts: texts; heading: "Cues"; facts: root.controller.cues; labelShare: 0.5 }
             }
         }
         ScrollCue { theme: look; place: scroll }

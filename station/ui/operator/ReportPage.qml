@@ -113,10 +113,10 @@ Rectangle {
                 id: sheet
                 width: scroll.width
                 spacing: look.unit
-                FactTable { width: parent.width; theme: look; texts: texts; heading: texts.text("operator.trials"); facts: root.report.outcomes; labelWidth: 0.5 * width }
-                FactTable { width: parent.width; theme: look; texts: texts; heading: texts.text("report.speed_accuracy"); facts: root.report.trade; labelWidth: 0.5 * width }
-                FactTable { width: parent.width; theme: look; texts: texts; heading: texts.text("report.fit"); facts: root.report.fit; labelWidth: 0.5 * width }
-                FactTable { width: parent.width; theme: look; texts: texts; heading: texts.text("report.finger"); facts: root.report.forces; labelWidth: 0.5 * width }
+                FactTable { width: parent.width; theme: look; texts: texts; heading: texts.text("operator.trials"); facts: root.report.outcomes; labelShare: 0.5 }
+                FactTable { width: parent.width; theme: look; texts: texts; heading: texts.text("report.speed_accuracy"); facts: root.report.trade; labelShare: 0.5 }
+                FactTable { width: parent.width; theme: look; texts: texts; heading: texts.text("report.fit"); facts: root.report.fit; labelShare: 0.5 }
+                FactTable { width: parent.width; theme: look; texts: texts; heading: texts.text("report.finger"); facts: root.report.forces; labelShare: 0.5 }
                 Repeater {
                     model: root.report.statements
                     PlainText {
@@ -128,7 +128,7 @@ Rectangle {
                         wrapMode: Text.Wrap
                     }
                 }
-                FactTable { width: parent.width; theme: look; texts: texts; heading: texts.text("report.station"); facts: root.report.health; labelWidth: 0.5 * width }
+                FactTable { width: parent.width; theme: look; texts: texts; heading: texts.text("report.station"); facts: root.report.health; labelShare: 0.5 }
             }
         }
         ScrollCue { theme: look; place: scroll }

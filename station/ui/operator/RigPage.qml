@@ -61,7 +61,7 @@ Rectangle {
             width: state.inner
             theme: look
             texts: texts
-            labelWidth: 0.3 * width
+            labelShare: 0.3
             facts: root.calibrationFacts.map(fact => ({
                 label: texts.text(fact.label),
                 value: fact.parts.length > 0 ? fact.parts.map(part => texts.text(part)).join(", ") : fact.text === "" ? fact.value : texts.text(fact.text).arg(fact.value)

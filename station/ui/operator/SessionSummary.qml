@@ -102,7 +102,7 @@ Rectangle {
                 texts: root.texts
                 heading: root.texts.text("operator.the_session")
                 facts: root.operating.facts
-                labelWidth: 0.32 * width
+                labelShare: 0.32
             }
             Column {
                 visible: root.operating.cues.length > 0

@@ -154,7 +154,7 @@ Rectangle {
             width: card.inner
             theme: look
             texts: texts
-            labelWidth: 0.34 * width
+            labelShare: 0.34
             facts: root.some ? [{ label: texts.text("operator.protocol"), value: root.sessions.chosen.protocol },
                                 { label: texts.text("operator.started"), value: root.sessions.chosen.started },
                                 { label: texts.text("operator.mode"), value: texts.named(root.sessions.chosen.mode) },

@@ -92,7 +92,7 @@ Rectangle {
             texts: texts
             heading: texts.text("operator.the_session")
             facts: root.studies.facts
-            labelWidth: 0.32 * width
+            labelShare: 0.32
         }
         PlainText {
             visible: root.studies.cues.length > 0
