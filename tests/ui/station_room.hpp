@@ -48,6 +48,8 @@ class StationRoom : public QObject {
   Q_INVOKABLE void reopenLocked(const QString& code);
   /// Ends the program, deletes the protocol, and starts the program again.
   Q_INVOKABLE void reopenEmpty(const QString& code);
+  /// Lets the latency of the touch panel be measured without a panel and without button lines.
+  Q_INVOKABLE void pretendPanel(turnpoint::ui::CalibrationGuide* guide);
   Q_INVOKABLE void close();
   Q_INVOKABLE void addSecondScreen();
   /// Plugs in a USB stick "Test, 16 GB", which is simulated by folders. It is not mounted yet.

@@ -15,8 +15,7 @@ Item {
     readonly property string reading: point.value ?? ""
 
     function name(series: string) : string {
-        return series === "response" ? texts.text("operator.guide_response") : series === "boundaries" ? texts.text("operator.guide_boundaries")
-            : series === "friction" ? texts.text("operator.guide_friction") : texts.text("operator.guide_sound")
+        return series === "" ? "" : texts.text("operator.guide_" + series)
     }
 
     OperatorCard {
@@ -96,6 +95,38 @@ Item {
             font.pixelSize: root.theme.textSmall
             wrapMode: Text.Wrap
         }
+        // What the pick-ups read while the tone plays, as a text and as a bar up to the converter's full scale.
+        Repeater {
+            model: root.measuring ? root.guide.readings : []
+            Column {
+                id: reading
+                required property var modelData
+                objectName: "guideLive"
+                width: card.inner
+                spacing: 0.2 * root.theme.unit
+                PlainText {
+                    width: parent.width
+                    text: root.texts.text("operator.guide_pick_up").arg(reading.modelData.channel)
+                        .arg((reading.modelData.um === "" ? "" : reading.modelData.um + " µm, ") + root.texts.text("operator.guide_of_range").arg(reading.modelData.percent.toFixed(1)))
+                    color: root.theme.ink
+                    font.pixelSize: root.theme.textBody
+                    wrapMode: Text.Wrap
+                }
+                Rectangle {
+                    width: parent.width
+                    height: 0.8 * root.theme.unit
+                    radius: height / 2
+                    color: root.theme.paper
+                    border { color: root.theme.line; width: 1 }
+                    Rectangle {
+                        width: Math.max(height, parent.width * Math.min(1, reading.modelData.percent / 100))
+                        height: parent.height
+                        radius: height / 2
+                        color: reading.modelData.percent >= 98 ? root.theme.wrong : root.theme.action
+                    }
+                }
+            }
+        }
         Flow {
             visible: root.measuring
             width: card.inner
@@ -165,7 +196,7 @@ Item {
         }
         FigureView {
             objectName: "guideFigure"
-            visible: root.guide.file !== "" && !root.measuring
+            visible: root.guide.figure !== undefined && !root.measuring
             width: card.inner
             height: Math.max(50 * root.theme.unit, 0.8 * width)
             textPixels: 0.75 * root.theme.textSmall

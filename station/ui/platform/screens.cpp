@@ -119,11 +119,7 @@ void show_design(const cli::DesignRequest& request) {
 std::optional<calibration::PanelLatency> measure_latency(const maintenance::LatencyRequest& request) {
   const Application application;
   LatencyController controller(request.reference);
-  maintenance::LatencyDevices devices(rig::load(request.rig),
-                                      [&controller](std::int64_t time_ns) { controller.edge(time_ns); });
-  if (devices.has_kernel_times())
-    controller.set_kernel_time(
-        [&devices](double x, double y, std::int64_t seen_ns) { return devices.claim(x, y, seen_ns); });
+  controller.open(rig::load(request.rig));
   show_until_closed(application, "LatencyWindow.qml", QVariant::fromValue(&controller));
   return controller.kept();
 }
