@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <map>
 
 #include "station/report/words.hpp"
@@ -34,9 +35,27 @@ int count(const std::vector<LiveTrial>& trials, terms::Outcome outcome) {
                                         [&](const LiveTrial& trial) { return trial.outcome == outcome; }));
 }
 
-std::string vibration(const LiveTrial& trial) {
-  const bool measured = trial.proof != records::Proof::unproven;
-  return records::name(trial.proof) + (measured ? ": " + trial.measured : std::string());
+// In the order of terms::Proof and terms::ProofCause.
+constexpr const char* kProofs[] = {"proof.unproven", "proof.ok",      "proof.flagged",
+                                   "proof.refused",  "proof.stopped", "proof.lost"};
+constexpr const char* kCauses[] = {"",
+                                   "proof_cause.gap",
+                                   "proof_cause.clipped",
+                                   "proof_cause.dead",
+                                   "proof_cause.frequency",
+                                   "proof_cause.half",
+                                   "proof_cause.late",
+                                   "proof_cause.phase",
+                                   "proof_cause.level",
+                                   "proof_cause.residual",
+                                   "proof_cause.noisy"};
+static_assert(std::size(kProofs) == terms::proofs.size() && std::size(kCauses) == terms::proof_causes.size());
+
+std::string vibration(const LiveTrial& trial, const Words& words) {
+  std::string said = words(kProofs[static_cast<std::size_t>(trial.proof)]);
+  if (trial.proof_cause != records::ProofCause::none)
+    said += std::string("; ") + words(kCauses[static_cast<std::size_t>(trial.proof_cause)]);
+  return said;
 }
 
 /// Adds the latest estimate of each procedure that has one, with its 95 % interval.
@@ -107,7 +126,7 @@ Facts course_of(const std::vector<LiveTrial>& trials, const std::string& languag
                                                              count(trials, Outcome::anticipation)));
   facts.emplace_back(words("report.void"),
                      whole(count(trials, Outcome::fault) + count(trials, Outcome::aborted)));
-  if (!trials.empty()) facts.emplace_back(words("live.vibration"), vibration(trials.back()));
+  if (!trials.empty()) facts.emplace_back(words("live.vibration"), vibration(trials.back(), words));
   facts.emplace_back("Xruns", whole(xruns));
   facts.emplace_back(words("live.other_touches"), whole(extra));
   return facts;

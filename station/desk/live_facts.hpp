@@ -23,7 +23,7 @@ struct LiveTrial {
   double stimulus_s = 0;            ///< duration for which the stimulus was presented
   int xruns = 0, extra_touches = 0;
   records::Proof proof = records::Proof::unproven;
-  std::string measured;  ///< what the pick-up measured, in words
+  records::ProofCause proof_cause = records::ProofCause::none;
 };
 
 /// The functions below say everything in a language such as "de".

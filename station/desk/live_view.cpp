@@ -10,7 +10,6 @@
 #include "station/desk/scene_figures.hpp"
 #include "station/report/figures.hpp"
 #include "station/report/words.hpp"
-#include "station/session/rows.hpp"
 #include "station/text/number.hpp"
 
 namespace turnpoint::desk {
@@ -94,7 +93,7 @@ void LiveView::trial_ended(const trial::TrialSpec& spec, const records::TrialRow
   trial.xruns = row.xruns;
   trial.extra_touches = row.extra_touches;
   trial.proof = row.proof;
-  trial.measured = session::describe_proof(row);
+  trial.proof_cause = row.proof_cause;
   push({{}, {}, trial, std::make_shared<records::TrialRow>(row)});
 }
 

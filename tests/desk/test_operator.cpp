@@ -11,7 +11,9 @@
 #include "station/plot/svg.hpp"
 #include "station/setup/prepare.hpp"
 #include "station/store/read.hpp"
+#include "station/terms/proof.hpp"
 #include "station/text/number.hpp"
+#include "station/texts/texts.hpp"
 #include "tests/desk/demo.hpp"
 #include "tests/support/catch.hpp"
 
@@ -89,15 +91,21 @@ TEST_CASE("the progress of a session shows each procedure's latest estimate with
 
 TEST_CASE("the progress of a session shows what the pick-up measured in the last trial", "[operator]") {
   std::vector<desk::LiveTrial> trials(2);
-  const auto shown = [&] {
-    for (const auto& [label, value] : desk::course_of(trials))
-      if (label == "Vibration, last trial") return value;
-    return std::string();
+  const auto shown = [&](const std::string& language) {
+    const auto label = texts::say({"live.vibration", "", {}}, language);
+    return value_of(desk::course_of(trials, language), label);
   };
-  CHECK(shown() == "unproven");
+  CHECK(shown("en") == "not measured");
   trials.back().proof = records::Proof::refused;
-  trials.back().measured = "the surface does not move; level -62.0 dB";
-  CHECK(shown() == "refused: the surface does not move; level -62.0 dB");
+  trials.back().proof_cause = records::ProofCause::dead;
+  CHECK(shown("en") == "too far off: the trial is repeated; the surface does not move");
+  CHECK(shown("de") == "zu weit daneben: der Durchgang wird wiederholt; die Oberfläche bewegt sich nicht");
+  for (const char* language : {"en", "de", "es", "ja", "zh", "ar"})
+    for (const auto verdict : terms::proofs)
+      for (const auto cause : terms::proof_causes) {
+        trials.back().proof = verdict, trials.back().proof_cause = cause;
+        CHECK_FALSE(shown(language).empty());
+      }
 }
 
 TEST_CASE("the used part of the limits is computed from the last minute", "[operator]") {

@@ -239,6 +239,10 @@ int shoot_places(const QString& out, const QStringList& sizes, const QStringList
     camera.shoot("RigPage.qml", "weights", {{"rig", QVariant::fromValue(&weighing)}, {"tab", "weights"}});
     for (const char* series : {"", "boundaries", "response", "friction", "sound"}) {
       weighed.guide()->begin(series);
+      if (series == std::string("response")) {
+        weighed.guide()->play();
+        wait_for([&] { return !weighed.guide()->readings().isEmpty(); });
+      }
       camera.shoot("RigPage.qml", QString("guide-") + series,
                    {{"rig", QVariant::fromValue(&weighed)}, {"tab", "guide"}});
       weighed.guide()->leave();

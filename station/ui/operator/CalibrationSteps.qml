@@ -15,7 +15,9 @@ Item {
     readonly property string reading: point.value ?? ""
 
     function name(series: string) : string {
-        return series === "" ? "" : texts.text("operator.guide_" + series)
+        const names = { response: "operator.guide_response", boundaries: "operator.guide_boundaries", friction: "operator.guide_friction",
+                        sound: "operator.guide_sound", panel_button: "operator.guide_panel_button", panel_photodiode: "operator.guide_panel_photodiode" }
+        return series === "" ? "" : texts.text(names[series])
     }
 
     OperatorCard {

@@ -42,7 +42,7 @@ Rectangle {
             objectName: "result"
             width: parent.width
             text: texts.text("latency.counts").arg(root.controller.taps).arg(root.controller.edges).arg(root.controller.pairs).arg(root.controller.wanted)
-                .arg(texts.text("latency." + root.controller.quality)) + "\n" + (root.controller.medianMs === undefined ? " "
+                .arg(texts.text(root.controller.quality === "kernel" ? "latency.kernel" : "latency.toolkit")) + "\n" + (root.controller.medianMs === undefined ? " "
                 : texts.text("latency.result").arg(root.controller.medianMs.toFixed(2)).arg(root.controller.jitterMs.toFixed(2)).arg(root.controller.unmatched).arg(root.controller.taps))
             color: look.ink
             font { pixelSize: look.textBody; weight: Font.DemiBold }
