@@ -225,6 +225,23 @@ QStringList PageInspector::unnamedControls(QQuickItem* page) const {
   return found;
 }
 
+QStringList PageInspector::unreadTexts(QQuickItem* page) const {
+  QStringList found;
+  for_each_visible(page, [&found](QQuickItem* item) {
+    const auto text = item->property("text").toString();
+    if (!item->inherits("QQuickText") || text.trimmed().isEmpty()) return;
+    bool in_control = false;
+    for (auto* around = item->parentItem(); around != nullptr; around = around->parentItem())
+      in_control = in_control || !read_aloud(around).second.isEmpty();
+    auto* interface = QAccessible::queryAccessibleInterface(item);
+    const bool read = item->property("readAloud").toBool() && interface != nullptr &&
+                      interface->role() == QAccessible::StaticText &&
+                      interface->text(QAccessible::Name) == text;
+    if (read == in_control) found += (read ? "twice: " : "not read: ") + text;
+  });
+  return found;
+}
+
 QString PageInspector::picture() {
   const auto path = folder_.filePath("picture.png");
   QImage image(40, 40, QImage::Format_RGB32);

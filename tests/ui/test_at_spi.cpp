@@ -1,4 +1,4 @@
-// Starts the station on an X server and reads its start page over AT-SPI, as a screen reader does. Needs a
+// Starts the station on an X server, and reads and uses the operator's pages over AT-SPI, as a screen reader does. Needs a
 // session bus, an X server and at-spi2-core (`dbus-run-session -- xvfb-run`).
 #include <QCoreApplication>
 #include <QDBusArgument>
@@ -73,6 +73,26 @@ bool is_showing(const Node& node) {
   return !bits.isEmpty() && ((bits[0] >> showing) & 1U) != 0;
 }
 
+/// Presses a control, as a screen reader or a switch does. Returns false if it cannot be pressed.
+bool press(const Node& node) {
+  const auto answer = ask(node, "org.a11y.atspi.Action", "GetActions");
+  if (answer.isEmpty() || !answer[0].canConvert<QDBusArgument>()) return false;
+  const auto list = answer[0].value<QDBusArgument>();
+  int press = -1;
+  list.beginArray();
+  for (int index = 0; !list.atEnd(); ++index) {
+    QString name, description, keys;
+    list.beginStructure();
+    list >> name >> description >> keys;
+    list.endStructure();
+    if (name == "Press") press = index;
+  }
+  list.endArray();
+  if (press < 0) return false;
+  const auto done = ask(node, "org.a11y.atspi.Action", "DoAction", {press});
+  return !done.isEmpty() && done[0].toBool();
+}
+
 void listen(const Node& node, std::vector<Heard>& heard) {
   if (!is_showing(node)) return;
   const auto role = ask(node, kAccessible, "GetRoleName");
@@ -141,15 +161,10 @@ bool is_control(const QString& role) {
 
 }  // namespace
 
-TEST_CASE("a screen reader finds the controls of the start page over AT-SPI, with role and name",
-          "[at-spi]") {
-  int argc = 1;
-  char name[] = "test_at_spi";
-  char* argv[] = {name, nullptr};
-  const QCoreApplication application(argc, argv);
-  const Station station;
-  for (const char* tab : {"Run", "Studies", "Sessions", "Rig"}) station.await("page tab", tab);
-  station.await("push button", "Begin pilot");
+namespace {
+
+/// Checks that each control which is shown has a name. Returns how many there are.
+int named_controls(const Station& station) {
   int controls = 0;
   for (const auto& object : station.heard()) {
     if (!is_control(object.role)) continue;
@@ -157,5 +172,40 @@ TEST_CASE("a screen reader finds the controls of the start page over AT-SPI, wit
     INFO(object.role.toStdString() << " " << object.node.path.toStdString());
     CHECK_FALSE(object.name.trimmed().isEmpty());
   }
-  CHECK(controls > 8);
+  return controls;
+}
+
+}  // namespace
+
+TEST_CASE("the operator's pages are read and used over AT-SPI", "[at-spi]") {
+  int argc = 1;
+  char name[] = "test_at_spi";
+  char* argv[] = {name, nullptr};
+  const QCoreApplication application(argc, argv);
+  const Station station;
+  for (const char* tab : {"Run", "Studies", "Sessions", "Rig"}) station.await("page tab", tab);
+  station.await("push button", "Begin pilot");
+  CHECK(named_controls(station) > 8);
+
+  // Each page is opened by pressing its tab, and shows a control and a text of its own.
+  const struct {
+    const char *tab, *button, *text;
+  } pages[] = {
+      {"Studies", "New study", "The session"},
+      {"Sessions", "Withdraw participant …", "No session has been recorded yet. Begin one under Run."},
+      {"Rig", "Examine the rig", "This screen"}};
+  for (const auto& page : pages) {
+    REQUIRE(press(station.await("page tab", page.tab).node));
+    station.await("push button", page.button);
+    station.await("label", page.text);
+    CHECK(named_controls(station) > 5);
+  }
+
+  // A protocol is chosen, and the participant's code is asked for.
+  REQUIRE(press(station.await("page tab", "Run").node));
+  REQUIRE(press(station.await("list item", "demo, Demo: where does the smooth part end?").node));
+  station.await("label", "main, trials: 10");  // what `check` says of the demo
+  REQUIRE(press(station.await("push button", "enter it now").node));
+  station.await("push button", "A");
+  CHECK(named_controls(station) > 20);
 }

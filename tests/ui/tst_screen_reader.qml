@@ -78,6 +78,7 @@ Item {
         function complete(place) {
             wait(50)
             compare(inspector.unnamedControls(room.screen), [], place)
+            compare(inspector.unreadTexts(room.screen), [], place)
         }
 
         function test_a_control_without_a_role_is_detected_and_a_shield_is_none() {
@@ -93,6 +94,7 @@ Item {
             script.show(row.tag, "de")
             tryCompare(shownPage, "count", before + 1)
             compare(inspector.unnamedControls(view), [])
+            compare(inspector.unreadTexts(view), [])
         }
         function test_every_control_of_pages_that_stand_alone_has_a_role_and_a_name_data() {
             return [{ tag: "live", component: live }, { tag: "code", component: code }, { tag: "latency", component: latency }]
@@ -102,6 +104,7 @@ Item {
             wait(20)
             verify(inspector.controls(page.item).length > 0)
             compare(inspector.unnamedControls(page.item), [])
+            compare(inspector.unreadTexts(page.item), [])
         }
         function test_every_key_for_the_code_of_a_participant_is_a_button_with_a_name() {
             page.sourceComponent = code

@@ -33,7 +33,8 @@ OperatorCard {
             border { color: problem ? root.theme.wrong : root.theme.line; width: activeFocus ? root.theme.stroke : root.theme.stroke / 2 }
             activeFocusOnTab: true
             Accessible.role: Accessible.Button
-            Accessible.name: modelData.what
+            Accessible.name: (problem ? root.texts.text("operator.problem") : modelData.kind === "warning" ? root.texts.text("operator.warning") : root.texts.text("operator.remark"))
+                + ": " + modelData.what + (modelData.hint === "" ? "" : ". " + modelData.hint)
             Accessible.onPressAction: root.remarkChosen(index)
             Keys.onReturnPressed: root.remarkChosen(index)
             Keys.onSpacePressed: root.remarkChosen(index)
@@ -41,6 +42,7 @@ OperatorCard {
                 id: words
                 anchors { left: parent.left; right: parent.right; verticalCenter: parent.verticalCenter; margins: 0.8 * root.theme.unit }
                 PlainText {
+                    readAloud: false
                     width: parent.width
                     text: (remark.problem ? root.texts.text("operator.problem") : remark.modelData.kind === "warning" ? root.texts.text("operator.warning") : root.texts.text("operator.remark"))
                         + (remark.modelData.line > 0 ? "   ·   " + root.texts.text("operator.line").arg(remark.modelData.line) : "")
@@ -48,6 +50,7 @@ OperatorCard {
                     font { pixelSize: root.theme.textSmall; weight: Font.Bold }
                 }
                 PlainText {
+                    readAloud: false
                     width: parent.width
                     text: remark.modelData.what + (remark.modelData.hint === "" ? "" : "\n→ " + remark.modelData.hint)
                     color: root.theme.ink

@@ -73,6 +73,7 @@ Item {
         Keys.onReturnPressed: root.editWanted()
         Keys.onSpacePressed: root.editWanted()
         PlainText {
+            readAloud: false
             id: shown
             anchors { left: parent.left; right: parent.right; verticalCenter: parent.verticalCenter; margins: root.theme.unit }
             text: root.field.present ? root.field.value : root.texts.text("design.not_set")

@@ -59,6 +59,7 @@ Item {
                 color: root.theme.action
                 PlainText {
                     id: flag
+                    readAloud: false
                     anchors.centerIn: parent
                     text: mark.text + " " + mark.mm + " mm"
                     color: root.theme.actionText

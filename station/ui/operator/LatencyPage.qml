@@ -88,12 +88,11 @@ Rectangle {
         layoutDirection: Qt.RightToLeft
         spacing: look.unit
         ActionButton {
-            objectName: "latencyLeave"
+            objectName: "latencyKeep"
             theme: look
-            primary: false
-            holdMs: root.controller.taps > 0 ? 900 : 0
-            text: root.controller.taps > 0 ? texts.text("operator.guide_leave") : texts.back
-            onActivated: root.closed()
+            enabled: root.controller.pairs >= root.controller.wanted
+            text: texts.text("latency.keep")
+            onActivated: root.controller.keep()
         }
         ActionButton {
             objectName: "latencyAgain"
@@ -104,11 +103,12 @@ Rectangle {
             onActivated: root.controller.again()
         }
         ActionButton {
-            objectName: "latencyKeep"
+            objectName: "latencyLeave"
             theme: look
-            enabled: root.controller.pairs >= root.controller.wanted
-            text: texts.text("latency.keep")
-            onActivated: root.controller.keep()
+            primary: false
+            holdMs: root.controller.taps > 0 ? 900 : 0
+            text: root.controller.taps > 0 ? texts.text("operator.guide_leave") : texts.back
+            onActivated: root.closed()
         }
     }
 }

@@ -61,6 +61,7 @@ Rectangle {
                 id: words
                 anchors { left: parent.left; right: parent.right; verticalCenter: parent.verticalCenter; margins: 0.9 * root.theme.unit }
                 PlainText {
+                    readAloud: false
                     width: parent.width
                     text: card.entry.id
                     color: card.chosen ? root.theme.actionText : root.theme.ink
@@ -68,6 +69,7 @@ Rectangle {
                     elide: Text.ElideRight
                 }
                 PlainText {
+                    readAloud: false
                     width: parent.width
                     text: card.entry.usable ? card.entry.title : root.unusableText
                     color: card.chosen ? root.theme.actionText : card.entry.usable ? root.theme.quiet : root.theme.wrong

@@ -97,6 +97,7 @@ Rectangle {
                         id: words
                         anchors { left: parent.left; right: parent.right; verticalCenter: parent.verticalCenter; margins: 0.9 * look.unit }
                         PlainText {
+                            readAloud: false
                             width: parent.width
                             text: row.modelData.person + "   ·   " + row.modelData.protocol
                             color: row.chosen ? look.actionText : look.ink
@@ -104,6 +105,7 @@ Rectangle {
                             elide: Text.ElideRight
                         }
                         PlainText {
+                            readAloud: false
                             width: parent.width
                             text: row.modelData.started + "   ·   " + texts.named(row.modelData.mode) + "   ·   " + texts.named(row.modelData.status)
                             color: row.chosen ? look.actionText : look.quiet

@@ -140,6 +140,7 @@ Item {
         Accessible.onPressAction: if (enabled && armed) tapped()
         opacity: enabled ? 1 : 0.35
         PlainText {
+            readAloud: false
             anchors.centerIn: parent
             text: key.label
             color: key.filled ? root.theme.actionText : root.theme.ink
