@@ -8,6 +8,7 @@
 #include "station/drive/prepared_burst.hpp"
 #include "station/rig/rig.hpp"
 #include "station/sensing/interval_proof.hpp"
+#include "station/sensing/silence_proof.hpp"
 #include "station/sensing/trial_finger.hpp"
 
 namespace turnpoint::session {
@@ -37,8 +38,9 @@ void use(const rig::ForceCells& cells, sensing::FingerSetup& finger);
 /// The force cells of a rig; empty if they are not calibrated.
 std::optional<sensing::FingerSetup> calibrated_finger(const rig::Rig& rig);
 
-/// Judges the intervals of a trial by the signals of the pick-ups, and measures the finger with the force
-/// cells. One thread may push samples while the session thread calls the other functions.
+/// Judges the intervals of a trial, and the silence before the first of them, by the signals of the pick-ups,
+/// and measures the finger with the force cells. One thread may push samples while the session thread calls
+/// the other functions.
 class VibrationWatch {
  public:
   explicit VibrationWatch(CaptureSetup setup);
@@ -50,7 +52,8 @@ class VibrationWatch {
   void set_drift(double share);
 
   /// Announces the intervals of a trial, with absolute start frames, in order. They replace those of the
-  /// previous trial. Nobody is asked to touch the surface before playback frame `quiet_until`.
+  /// previous trial. Nobody is asked to touch the surface before playback frame `quiet_until`. From then
+  /// on, but at most for the last 80 ms before the first interval, the surface must be silent.
   void expect(std::span<const drive::PreparedBurst> intervals, std::int64_t quiet_until);
   /// Tells the watch that all bursts ramp down from this playback frame on. Intervals that have not begun by
   /// then are dropped.
@@ -67,7 +70,8 @@ class VibrationWatch {
 
   /// Returns the captured frame after which the result of an interval is known.
   std::int64_t known_at(std::size_t interval) const;
-  /// The result of an interval. Frames that were not captured by now count as lost. Null if the interval is
+  /// The result of an interval; that of the first one includes the silence before it, if at least 50 ms of it
+  /// were captured. Frames that were not captured by now count as lost. Null if the interval is
   /// not expected.
   std::shared_ptr<const sensing::IntervalResult> result(std::size_t interval);
   /// Returns force and movement of the finger at this moment. Empty if they are not known, and without force
@@ -82,6 +86,8 @@ class VibrationWatch {
   const std::vector<sensing::PickUp> calibrated_;
   mutable std::mutex mutex_;
   std::vector<std::unique_ptr<sensing::IntervalProof>> proofs_;
+  std::optional<sensing::SilenceProof> silence_;      ///< empty if no interval is expected
+  std::int64_t silence_begin_ = 0, silence_end_ = 0;  ///< captured frames of the silence
   std::optional<sensing::TrialFinger> finger_;
 };
 
