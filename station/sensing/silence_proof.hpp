@@ -16,7 +16,7 @@ struct SilenceResult {
   double level_dB = -200, rms_dB = -200;
 };
 
-/// Measures whether the surface is at rest between two intervals. Allocates only in its constructor. For an
+/// Measures whether the surface is at rest between two intervals. Taking frames allocates nothing. For an
 /// ordinary thread.
 class SilenceProof {
  public:
