@@ -125,7 +125,12 @@ double SilenceProof::strongest_tone() const {
 
 SilenceResult SilenceProof::result() const {
   SilenceResult result;
-  if (!measured_ || !(planned_ > 0)) return result;
+  if (!(planned_ > 0)) return result;
+  if (!measured_) {
+    result.verdict = terms::Proof::lost;
+    result.cause = terms::ProofCause::gap;
+    return result;
+  }
   result.rms_dB = in_dB(std::sqrt(largest_ / planned_));
   result.level_dB = in_dB(std::sqrt(strongest_tone() / planned_));
   const auto cause = terms::ProofCause::noisy;

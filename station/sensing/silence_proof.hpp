@@ -7,15 +7,6 @@
 
 namespace turnpoint::sensing {
 
-/// Vibration between intervals, as measured by a pick-up.
-struct SilenceResult {
-  terms::Proof verdict = terms::Proof::unproven;  ///< `unproven` if fewer than 50 ms were captured
-  terms::ProofCause cause = terms::ProofCause::none;
-  /// The strongest tone of any frequency in the loudest 50 ms, and the rms of everything in them. Both are
-  /// relative to the burst, after the high-pass filter. The pick-up's own noise counts only for the rms.
-  double level_dB = -200, rms_dB = -200;
-};
-
 /// Measures whether the surface is at rest between two intervals. Taking frames allocates nothing. For an
 /// ordinary thread.
 class SilenceProof {

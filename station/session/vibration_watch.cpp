@@ -12,7 +12,8 @@ namespace turnpoint::session {
 
 namespace {
 
-// Before each trial, a silence of this length is measured; the page with the cue is shown for longer.
+// Before each trial, a silence of this length is measured; the page with the cue is shown for longer. If the
+// stimulus comes sooner, as in the self-test, at least 50 ms must remain after the ringing: see kExpected_ns.
 constexpr double kSilence_s = 0.08;
 constexpr double kRinging_s = 0.005;  // how long the plate goes on moving: 7 time constants at Q 60
 
@@ -29,12 +30,15 @@ sensing::CaptureBlock part_of(const sensing::CaptureBlock& block, std::int64_t b
   return part;
 }
 
-/// The verdict on an interval before which the surface was not silent.
+/// Adds the silence before an interval to the verdict on the interval.
 void add_silence(const sensing::SilenceResult& silence, sensing::IntervalResult& result) {
+  result.silence = silence;
   if (silence.verdict == terms::Proof::unproven) return;
-  auto all = sensing::concluded({{result.cause, result.verdict}, {silence.cause, silence.verdict}});
+  // The stimulus itself is still proven if only the silence before it is not known, so the trial counts.
+  const auto verdict = silence.verdict == terms::Proof::lost ? terms::Proof::flagged : silence.verdict;
+  auto all = sensing::concluded({{result.cause, result.verdict}, {silence.cause, verdict}});
   // A surface that already moved before the stimulus also explains the residual during the stimulus.
-  if (all.cause == terms::ProofCause::residual && silence.verdict == all.verdict) all.cause = silence.cause;
+  if (all.cause == terms::ProofCause::residual && verdict == all.verdict) all.cause = silence.cause;
   result.verdict = all.verdict;
   result.cause = all.cause;
 }

@@ -18,6 +18,10 @@ constexpr double kCarrier = 0.5;
 /// The load for which a force cell is rated.
 constexpr double kRated_N = 10;
 
+/// VibrationWatch::expect must be called at least this long before the onset. Otherwise too little of the
+/// silence before the stimulus is left to be judged, and the trial is flagged.
+constexpr std::int64_t kExpected_ns = 65'000'000;
+
 /// What a rig captures, with the calibration and the limits by which the captured signals are judged.
 struct CaptureSetup {
   int rate_Hz = 192000;
@@ -70,9 +74,9 @@ class VibrationWatch {
 
   /// Returns the captured frame after which the result of an interval is known.
   std::int64_t known_at(std::size_t interval) const;
-  /// The result of an interval; that of the first one includes the silence before it, if at least 50 ms of it
-  /// were captured. Frames that were not captured by now count as lost. Null if the interval is
-  /// not expected.
+  /// The result of an interval; that of the first one includes the silence before it. If fewer than 50 ms of
+  /// the silence were captured, the interval is flagged with the cause `gap`. Frames that were not captured
+  /// by now count as lost. Null if the interval is not expected.
   std::shared_ptr<const sensing::IntervalResult> result(std::size_t interval);
   /// Returns force and movement of the finger at this moment. Empty if they are not known, and without force
   /// cells.

@@ -94,6 +94,7 @@ class VirtualStage : public Stage {
                              std::int64_t earliest_ns) override {
     // The bursts of an aborted trial may still be ramping down. They occupy the drive until they are silent.
     advance_to(quiet_ns_);
+    if (watch_) earliest_ns = std::max(earliest_ns, now_ns_ + kExpected_ns);
     if (triggers_.active())
       earliest_ns = std::max(earliest_ns, stream_->time_of(triggers_.free_from()).value());
     const auto onsets = schedule(*stream_, intervals, earliest_ns, presented_);

@@ -2,7 +2,6 @@
 #include <random>
 #include <vector>
 
-#include "station/sensing/silence_proof.hpp"
 #include "tests/sensing/proofs.hpp"
 #include "tests/support/catch.hpp"
 
@@ -279,64 +278,4 @@ TEST_CASE("both sets of tones of a burst with a change are proven as the synthes
   }
   plan.burst.changes[0].frames += 1;  // one more frame turns the phase after the glide by 0.6 degrees
   CHECK(std::fabs(run().tones[2].phase_error_deg) > 0.5);
-}
-
-TEST_CASE("silence is measured against the plan", "[sensing][proof]") {
-  Room room;
-  room.noise = 1e-6;
-  const auto burst = three_tones();
-  const auto level_of = [&](double amplitude) {
-    SilenceProof proof(plan_of(room, burst));
-    room.extra = [amplitude](double t) {
-      return t > -0.3 && t < -0.2 ? amplitude * std::sin(2 * M_PI * 30000 * t) : 0;
-    };
-    const std::int64_t first = burst.start_frame - 60'000;
-    const auto samples = captured(room, burst, first, 55'000);
-    in_blocks(room, samples, first, {384}, [&](const CaptureBlock& block) { proof.push(block); });
-    return proof.result();
-  };
-  // The rms of the plan is 0.5 sqrt(0.3^2 + 0.25^2 + 0.2^2) / sqrt(2) = 0.155, with a pick-up gain of 0.5.
-  CHECK(level_of(0).verdict == Proof::ok);
-  CHECK(level_of(0.155 * std::sqrt(2) * 1e-3).level_dB == Approx(-60).margin(1));
-  CHECK(level_of(0.155 * std::sqrt(2) * 1e-3).verdict == Proof::flagged);
-  CHECK(level_of(0.155 * std::sqrt(2) * 1e-3).cause == ProofCause::noisy);
-  CHECK(level_of(0.01).verdict == Proof::refused);
-  SilenceProof nothing(plan_of(room, burst));
-  CHECK(nothing.result().verdict == Proof::unproven);
-}
-
-TEST_CASE("in a silence, the pick-up's own noise is not a vibration, and a tone weaker than this noise is",
-          "[sensing][proof]") {
-  const auto burst = three_tones();
-  constexpr double planned = 0.155;  // rms, see above
-  const auto in_silence = [&](double noise_dB, double tone_dB, std::uint64_t seed) {
-    Room room;
-    room.seed = seed;
-    room.noise = planned * std::pow(10, noise_dB / 20);
-    const double amplitude = planned * std::sqrt(2) * std::pow(10, tone_dB / 20);
-    room.extra = [amplitude](double t) { return amplitude * std::sin(2 * M_PI * 27312.4 * t); };
-    SilenceProof proof(plan_of(room, burst));
-    const std::int64_t first = burst.start_frame - 20'000;
-    const auto samples = captured(room, burst, first, 18'000);
-    in_blocks(room, samples, first, {384}, [&](const CaptureBlock& block) { proof.push(block); });
-    return proof.result();
-  };
-  for (std::uint64_t seed = 1; seed <= 200; ++seed)
-    for (const double noise_dB : {-65.0, -42.0}) {
-      const auto result = in_silence(noise_dB, -200, seed);
-      CAPTURE(seed, noise_dB, result.level_dB);
-      CHECK(result.verdict == Proof::ok);
-    }
-  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
-    const auto weak = in_silence(-62, -68, seed);
-    CHECK(weak.verdict == Proof::flagged);
-    CHECK(weak.cause == ProofCause::noisy);
-    // The high-pass filter weakens this tone by 0.9 dB more than the planned tones.
-    CHECK(weak.level_dB == Approx(-68.9).margin(0.9));
-    CHECK(in_silence(-62, -48, seed).verdict == Proof::refused);
-  }
-  // Noise as strong as a residual that is not accepted is not accepted in a silence, either.
-  CHECK(in_silence(-35, -200, 1).verdict == Proof::flagged);
-  CHECK(in_silence(-25, -200, 1).verdict == Proof::refused);
-  CHECK(in_silence(-15, -200, 1).verdict == Proof::stopped);
 }
