@@ -9,6 +9,7 @@
 #include <stdexcept>
 
 #include "physics/boundary_map.hpp"
+#include "station/protocol/carrier_advice.hpp"
 #include "station/protocol/combinations.hpp"
 #include "station/protocol/key_places.hpp"
 #include "station/protocol/resolve.hpp"
@@ -398,6 +399,8 @@ Survey survey(const Protocol& protocol, const rig::Rig& rig, const std::stop_tok
   check_friction_tables(protocol, rig, survey);
   check_limits(protocol, rig, survey);
   plan_scenes(protocol, rig, stop, progress, survey);
+  for (auto& warning : carrier_warnings(protocol, rig, survey.sights))
+    survey.warnings.push_back(std::move(warning));
   for (auto& warning : advice(protocol)) survey.warnings.push_back(std::move(warning));
   return survey;
 }

@@ -178,7 +178,7 @@ struct Capture {
 };
 
 /// Where the temperatures of the surface and of the frame that clamps it are read: hwmon:NAME/tempN or
-/// hwmon:NAME@DEVICE/tempN (`system/thermometer.hpp`).
+/// iio:NAME/temp (`system/thermometer.hpp`).
 struct Thermometers {
   std::string plate_uri, frame_uri;
 };

@@ -60,6 +60,16 @@ struct GlideToneProof {
   double phase_error_deg = 0;
 };
 
+/// Vibration between intervals, as measured by a pick-up.
+struct SilenceResult {
+  /// `unproven` if the burst has no steady tones to compare with, `lost` if fewer than 50 ms were captured
+  terms::Proof verdict = terms::Proof::unproven;
+  terms::ProofCause cause = terms::ProofCause::none;
+  /// The strongest tone of any frequency in the loudest 50 ms, and the rms of everything in them. Both are
+  /// relative to the burst, after the high-pass filter. The pick-up's own noise counts only for the rms.
+  double level_dB = -200, rms_dB = -200;
+};
+
 /// What the pick-ups measured of one interval.
 struct IntervalResult {
   /// `unproven` if there is a tone that no pick-up can judge, or if the interval is too short to measure.
@@ -76,9 +86,10 @@ struct IntervalResult {
   std::optional<Product> product;
   /// time at which the envelope reaches half its level, measured minus planned
   std::optional<double> onset_error_us;
-  std::optional<double> found_Hz;  ///< if the cause is `frequency`: the frequency of the vibration
-  double largest_sample = 0;       ///< largest sample of the pick-ups, as a fraction of full scale
-  std::int64_t lost_frames = 0;    ///< lost frames within the interval, rounded up to blocks of 1 ms
+  std::optional<double> found_Hz;        ///< if the cause is `frequency`: the frequency of the vibration
+  double largest_sample = 0;             ///< largest sample of the pick-ups, as a fraction of full scale
+  std::int64_t lost_frames = 0;          ///< lost frames within the interval, rounded up to blocks of 1 ms
+  std::optional<SilenceResult> silence;  ///< the silence before the interval, if it is the first of a trial
 };
 
 /// A verdict on one measured quantity, and the cause that the quantity points to.

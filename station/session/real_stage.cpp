@@ -29,9 +29,6 @@ constexpr std::int64_t kHeard_ns = 1'000'000'000;
 constexpr std::int64_t kPilot_ns = 1'000'000'000;               // longest wait for the captured pilot
 constexpr double kTare_s = sensing::TrialFinger::tare_s + 0.1;  // 0.1 s longer than the tare, for the filter
 constexpr std::int64_t kMeasured_ns = 1'000'000'000;  // longest wait for the captured frames of an interval
-// The measurement of an interval (its proof) needs captured frames from before the onset, so expect() must be
-// called at least this long before the onset.
-constexpr std::int64_t kExpected_ns = 50'000'000;
 // time from the end of the last stimulus to switching the amplifier off
 constexpr std::int64_t kTail_ns = 20'000'000;
 // longest wait for a converter of force cells that was connected again

@@ -66,11 +66,20 @@ const char* kind_of(InputKind kind) {
   return "";
 }
 
+/// What is known of the silence before an interval.
+std::string silence_before(const sensing::IntervalResult& measured) {
+  if (!measured.silence || measured.silence->verdict == terms::Proof::unproven) return "";
+  if (measured.silence->verdict == terms::Proof::lost) return "; silence before it not measured";
+  return fmt::format("; silence before it: tone {:.0f} dB, all {:.0f} dB", measured.silence->level_dB,
+                     measured.silence->rms_dB);
+}
+
 std::string value_of(const Input& input) {
   if (input.kind == InputKind::fault)
     return input.text.empty() ? name(input.fault) : fmt::format("{}: {}", name(input.fault), input.text);
   if (input.kind == InputKind::measured)
-    return fmt::format("{} {} {}", input.value, name(input.measured->verdict), name(input.measured->cause));
+    return fmt::format("{} {} {}{}", input.value, name(input.measured->verdict), name(input.measured->cause),
+                       silence_before(*input.measured));
   if (!input.text.empty()) return input.text;
   if (input.kind == InputKind::slider || input.kind == InputKind::value) return text::exact(input.number);
   if (input.kind == InputKind::contact && input.number >= 0)

@@ -71,6 +71,34 @@ TEST_CASE("a protocol that watches the finger needs force cells, and real ones n
   CHECK(contains(found(rig), "the rig has no force cells"));
 }
 
+TEST_CASE("tones whose products come near the carrier of the force cells give a warning with the figures",
+          "[protocol]") {
+  const auto warnings = [](const rig::Rig& rig, const std::string& second_Hz) {
+    const auto text = replaced(
+        source("demo.toml"), "boundary_mm = \"mark_mm + offset_mm\"\nedge = \"p50\"\ndisplacement_um = 1.0\n",
+        "tones = [{ frequency_Hz = 30000, displacement_um = 0.5 }, { frequency_Hz = " + second_Hz +
+            ", displacement_um = 0.5 }]\n");
+    return all_of(
+        protocol::survey(protocol::parse(replaced(text, "boundary_mm = 0.5, ", ""), "p.toml"), rig).warnings);
+  };
+  auto rig = with_cells(quick_rig());
+  const auto told = warnings(rig, "33400");
+  CAPTURE(told);
+  CHECK(contains(told, "p.toml:24:"));
+  CHECK(contains(
+      told,
+      "scene \"edge\" in block \"main\": 3 x 33400 Hz - 3 x 30000 Hz = 10200 Hz is only 325 Hz from the "
+      "carrier of the force cells (10525 Hz)"));
+  CHECK(contains(told, "that of 33400 Hz to 33308 Hz or lower"));
+  CHECK_FALSE(contains(warnings(rig, "33308"), "carrier"));
+  CHECK_FALSE(contains(warnings(quick_rig(), "33400"), "carrier"));
+  rig.capture->forces = rig::ForceCells{};
+  rig.capture->forces->carrier_Hz = 8425;
+  CHECK_FALSE(contains(warnings(rig, "33400"), "carrier"));
+  rig.capture->bridges.clear();
+  CHECK_FALSE(contains(warnings(rig, "33400"), "carrier"));
+}
+
 TEST_CASE("every shipped protocol can be run on the simulated rig, without a warning", "[protocol]") {
   check_shipped(simulated());
 }

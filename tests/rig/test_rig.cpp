@@ -308,6 +308,19 @@ TEST_CASE("a rig gives out trigger codes on the marker channel and on lines, and
   CHECK(contains(with("[trigger_lines]\nuri = \"gpio:bit1=A\"\n"), "has no line \"bit0\""));
 }
 
+TEST_CASE("a thermometer is of one of two subsystems of the kernel", "[rig]") {
+  const auto with = [](const std::string& plate) {
+    return problems("[limits]", "[temperature]\nplate = \"" + plate +
+                                    "\"\nframe = \"hwmon:lm75@1-0049/temp1\"\n[limits]");
+  };
+  for (const char* good :
+       {"hwmon:lm75/temp1", "iio:tmp117/temp", "iio:tmp117@1-0048/temp", "iio:mlx90614/temp_object"})
+    CHECK(with(good).empty());
+  for (const char* bad :
+       {"hwmon:lm75/temp", "hwmon:lm75", "iio:tmp117", "iio:tmp117/in_temp", "iio:/temp", "lm75/temp1"})
+    CHECK(contains(with(bad), "does not name a temperature sensor"));
+}
+
 TEST_CASE("a device may have more channels than the rig uses, not fewer", "[rig]") {
   CHECK(rig::parse(source(), "r.toml").output.device_channels == 0);
   CHECK(rig::parse(replaced(source(), "rate_Hz = 192000", "rate_Hz = 192000\ndevice_channels = 10"), "r.toml")

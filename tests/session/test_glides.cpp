@@ -59,9 +59,9 @@ procedures = ["levels"]
   return path;
 }
 
-/// Captured frames from the moment before a trial until its change begins: the simulated room begins 26 ms
-/// before the onset, and captures what is played 400 frames later.
-constexpr std::int64_t kToChange = 4'994 + 153'600;
+/// Captured frames from the moment before a trial until its change begins: the simulated room begins 130
+/// ms before the onset, and captures what is played 400 frames later.
+constexpr std::int64_t kToChange = 24'960 + 153'600;
 
 void halve(plant::Plant& plant, std::int64_t from, std::int64_t frames) {
   plant.add(
