@@ -312,8 +312,8 @@ std::string to_html(const Summary& summary) {
       html += "<h2>Psychometric function</h2>\n" + picture(psychometric_figure(summary));
     for (const auto& named : summary.fits) html += fit_table(named, data);
     html += threshold_curve_section(summary) + confusion_section(summary) + estimate_section(data) +
-            detection_section(summary) + discrimination_section(summary) + signal_section(summary) +
-            trade_section(summary);
+            detection_section(summary) + roc_section(summary) + discrimination_section(summary) +
+            signal_section(summary) + trade_section(summary);
   } else {
     html += settings_section(summary);
   }

@@ -143,6 +143,7 @@ constexpr Recorded kSessions[] = {
     {"magnitude-free", "e896a54b91f9083a", "5820a77bdc8728a7"},
     {"magnitude-standard", "e896a54b91f9083a", "20f24ce4e08d1d1d"},
     {"friction-confidence", "d9bac3caf1dcf808", "6dfc0cdffeb0ca19"},
+    {"friction-detection", "d23c74f732cff1ab", "5242a5137d095406"},
     {"friction-identification", "159c20d40d282069", "e21434fc588e8d9e"},
     {"friction-3ifc", "12249024c7cd68c7", "ddb1edda9eb2a2eb"},
     {"friction-abx", "c95786baf94d2faf", "81a6d1b7adaa8862"},
