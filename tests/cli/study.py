@@ -234,5 +234,71 @@ class OwnEstimates(unittest.TestCase):
             self.assertIn(f"<td>{session}</td>", page)
 
 
+class Measures(unittest.TestCase):
+    """Measures of other tasks than speed and accuracy are those of the sessions' own reports."""
+
+    def setUp(self):
+        self.folder = tempfile.mkdtemp()
+        self.addCleanup(shutil.rmtree, self.folder)
+
+    def call(self, *words):
+        return subprocess.run([PROGRAM, *words], cwd=self.folder, check=True, capture_output=True, text=True).stdout
+
+    def both(self, protocol):
+        """The measures of a participant in the report of a study, and the report of the participant's session."""
+        database = protocol + ".sqlite"
+        for person in ("P01", "P02"):
+            self.call("run", protocol, "--participant", person, "--db", database, "--headless", "--observer", "sim",
+                      "--seed", person[1:])
+        self.call("report", "--study", "--db", database, "--out", "study.html", "--tables", protocol)
+        with open(os.path.join(self.folder, protocol, "measures.csv"), encoding="utf-8", newline="") as table:
+            found = {row["measure"]: float(row["value"]) for row in csv.DictReader(table) if row["participant"] == "P02"}
+        return found, json.loads(self.call("report", "--db", database, "--participant", "P02", "--json"))
+
+    def equal(self, found, wanted):
+        self.assertAlmostEqual(found, wanted, delta=1e-9 * abs(wanted))
+
+    def test_ratings_have_their_mean_at_each_level(self):
+        found, report = self.both("smoothness-points")
+        levels = report["judgements"][0]["levels"]
+        self.assertEqual(len(levels), 5)
+        for level in levels:
+            self.equal(found[f"mean rating at {level['level']:g} \u00b5m"], level["mean"]["value"])
+
+    def test_numbers_have_their_geometric_mean_at_each_level(self):
+        found, report = self.both("magnitude-free")
+        for level in report["judgements"][0]["levels"]:
+            self.equal(found[f"geometric mean at {level['level']:g} \u00b5m"], level["mean"]["value"])
+
+    def test_abx_has_d_prime_by_both_models(self):
+        found, report = self.both("friction-abx")
+        d_primes = report["discrimination"][-1]["d_prime"]
+        self.assertEqual(len(d_primes), 2)
+        for d_prime in d_primes:
+            self.equal(found[f"d', {d_prime['model']}"], d_prime["value"])
+
+    def test_a_response_signal_has_the_curve_of_sensitivity(self):
+        found, report = self.both("response-signal")
+        curve = report["response_signal"][0]
+        names = (("asymptote of d'", "asymptote"), ("rate of d'", "rate_per_s"), ("intercept of d'", "intercept_s"))
+        for name, key in names:
+            if curve[key] is None:
+                self.assertNotIn(name, found)
+            else:
+                self.equal(found[name], curve[key]["value"])
+        self.assertTrue(any(curve[key] for _, key in names))
+
+    def test_detection_with_confidence_has_the_area_under_the_roc(self):
+        found, report = self.both("friction-detection")
+        self.assertIsNone(report["roc"][-1]["level"])
+        self.assertEqual(len(report["roc"]), 4)
+        self.equal(found["area under the ROC"], report["roc"][-1]["area"]["value"])
+        self.assertGreater(report["catch"]["trials"], 0)
+
+    def test_settings_have_the_difference_of_their_sides(self):
+        found, report = self.both("boundary-adjustment")
+        self.equal(found["settings from below minus from above"], report["settings"][0]["side_difference"]["value"])
+
+
 if __name__ == "__main__":
     unittest.main()
