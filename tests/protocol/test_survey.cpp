@@ -233,3 +233,9 @@ TEST_CASE("counts that balance cannot make equal are noted, for one factor and f
         "fewer levels"));
   }
 }
+
+TEST_CASE("a level that is listed several times is noted once, with how often it comes", "[protocol]") {
+  const auto notes = all_of(protocol::notes(protocol::parse(source("friction-detection.toml"), "p.toml")));
+  CHECK(contains(notes, "the level 0 is listed 3 times, so it is presented 3 times as often"));
+  CHECK(notes.find("is listed") == notes.rfind("is listed"));
+}
