@@ -290,7 +290,8 @@ std::string course_section(const Summary& summary) {
              " %" +
              (summary.bias->criterion ? ", criterion c = " + number(*summary.bias->criterion, 2) : ""));
   line("Trend of response time", trend(summary.fatigue.response_time_s, " s"));
-  line("Trend of accuracy", trend(summary.fatigue.proportion_correct, " (proportion correct)"));
+  if (summary.data.scored && summary.data.design != Design::adjustment)
+    line("Trend of accuracy", trend(summary.fatigue.proportion_correct, " (proportion correct)"));
   html += "</table>\n" + picture(trace_figure(summary));
   if (summary.bias) html += notes(summary.bias->statements);
   return html + notes(summary.fatigue.statements);

@@ -188,6 +188,7 @@ TEST_CASE("ratings and numbers are reported by level, and right and wrong are le
   CHECK(html.find("Geometric mean") != std::string::npos);
   CHECK(html.find("Exponent of Stevens") != std::string::npos);
   CHECK(html.find("Proportion correct") == std::string::npos);
+  CHECK(html.find("Trend of accuracy") == std::string::npos);
 }
 
 TEST_CASE("identification is reported as a confusion matrix, without a curve and without d'", "[report]") {
