@@ -135,7 +135,7 @@ void add_measures(const Summary& summary, StudyPerson& person) {
   for (const auto& entry : summary.discriminations)
     if (!entry.level)
       for (const auto& [model, d_prime] : entry.d_primes)
-        measures.add(entry.condition, std::string("d', ") + analysis::name(model), "",
+        measures.add(entry.condition, std::string("d' (") + analysis::name(model) + ")", "",
                      std::optional(d_prime.value));
   for (const auto& curve : summary.curves) {
     measures.add(curve.condition, "asymptote of d'", "", curve.asymptote);

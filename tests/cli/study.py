@@ -108,7 +108,7 @@ class Study(unittest.TestCase):
             self.skipTest("needs pandas")
         out = subprocess.run([sys.executable, os.path.join(SCRIPTS, "study.py"), "tables"], cwd=self.folder, capture_output=True, text=True,
                              check=True).stdout
-        found = {tuple(line.split(",")[:3]): line.split(",")[3:] for line in out.splitlines()}
+        found = {tuple(line[:3]): line[3:] for line in csv.reader(out.splitlines())}
         for effect in self.study["effects"]:
             key = (effect["measure"], effect["first"], effect["second"])
             # pandas sorts the conditions, so the difference may have the opposite sign
@@ -122,7 +122,7 @@ class Study(unittest.TestCase):
             self.skipTest("needs R and lme4")
         out = subprocess.run(["Rscript", os.path.join(SCRIPTS, "study.R"), "tables"], cwd=self.folder, capture_output=True, text=True,
                              check=True).stdout
-        found = [line.split(",") for line in out.splitlines()]
+        found = list(csv.reader(out.splitlines()))
         errors = {}
         for row in self.rows("groups.csv"):
             errors["rate", row["condition"]] = float(row["rate_se"])
@@ -275,7 +275,7 @@ class Measures(unittest.TestCase):
         d_primes = report["discrimination"][-1]["d_prime"]
         self.assertEqual(len(d_primes), 2)
         for d_prime in d_primes:
-            self.equal(found[f"d', {d_prime['model']}"], d_prime["value"])
+            self.equal(found[f"d' ({d_prime['model']})"], d_prime["value"])
 
     def test_a_response_signal_has_the_curve_of_sensitivity(self):
         found, report = self.both("response-signal")
@@ -294,6 +294,27 @@ class Measures(unittest.TestCase):
         self.assertEqual(len(report["roc"]), 4)
         self.equal(found["area under the ROC"], report["roc"][-1]["area"]["value"])
         self.assertGreater(report["catch"]["trials"], 0)
+
+    def test_the_scripts_quote_conditions_of_two_factors(self):
+        with open(os.path.join(SOURCE, "protocols/demo.toml"), encoding="utf-8") as file:
+            source = file.read().replace("repeats = 2", "repeats = 12") + '\n[analysis]\nby = ["finger", "mark_mm"]\n'
+        finger = '[[factor]]\nname = "finger"\nlevels = ["wet", "dry"]\n\n[scene.edge]'
+        with open(os.path.join(self.folder, "two.toml"), "w", encoding="utf-8") as file:
+            file.write(source.replace("[scene.edge]", finger, 1))
+        for person in ("1", "2", "3"):
+            self.call("run", "two.toml", "--participant", "P" + person, "--db", "two.sqlite", "--headless",
+                      "--observer", "sim:threshold=12", "--seed", person)
+        self.call("report", "--study", "--db", "two.sqlite", "--out", "two.html", "--tables", "two")
+        scripts = [(["Rscript", "-e", "library(lme4)"], ["Rscript", "study.R"], 4),
+                   ([sys.executable, "-c", "import pandas"], [sys.executable, "study.py"], 6)]
+        for needed, (program, script), fields in scripts:
+            if not has(needed):
+                continue
+            out = subprocess.run([program, os.path.join(SCRIPTS, script), "two"], cwd=self.folder, check=True,
+                                 capture_output=True, text=True).stdout
+            lines = list(csv.reader(out.splitlines()))
+            self.assertIn("wet, mark 150 mm", [line[1] for line in lines])
+            self.assertEqual({len(line) for line in lines}, {fields})
 
     def test_settings_have_the_difference_of_their_sides(self):
         found, report = self.both("boundary-adjustment")
