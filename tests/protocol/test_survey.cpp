@@ -130,6 +130,16 @@ TEST_CASE("devices that the task needs and the rig lacks are named at the key th
   const auto headphones = rig::parse(
       replaced(quick_rig_source(), "[limits]", "[noise]\nchannel = 1\nrms = 0.05\n[limits]"), "r.toml");
   CHECK(problems(masked, headphones).empty());
+  const auto by_tone =
+      replaced(source("response-signal.toml"), "window_s = 0.4", "window_s = 0.4, by = \"tone\"");
+  CHECK(contains(problems(by_tone, headphones),
+                 "p.toml:51:61: the response signal is a tone, but the rig has none"));
+  const auto tone = rig::parse(
+      replaced(
+          quick_rig_source(), "[limits]",
+          "[noise]\nchannel = 1\nrms = 0.05\nsignal = { frequency_Hz = 1000, amplitude = 0.2 }\n[limits]"),
+      "r.toml");
+  CHECK(problems(by_tone, tone).empty());
 }
 
 TEST_CASE("tones that last longer than the rig allows are refused", "[protocol]") {
