@@ -299,6 +299,10 @@ void check_devices(const Protocol& protocol, const rig::Rig& rig, Survey& survey
   if (task.sound == Sound::masking_noise && !rig.noise)
     add(task.sound_place, "the task needs masking noise, but the rig has none",
         "use a rig with [noise] (headphones on a spare channel), or leave out \"sound\"");
+  const auto& signal = protocol.timing.signal;
+  if (signal && signal->by == ResponseSignal::By::tone && !(rig.noise && rig.noise->signal))
+    add(signal->by_place, "the response signal is a tone, but the rig has none",
+        "use a rig with [noise] (headphones on a spare channel) and its \"signal\", or set by = \"screen\"");
   const auto zero = protocol.timing.response_zero;
   const bool contact = zero == ResponseZero::first_contact || zero == ResponseZero::lift_off;
   if (contact && !rig.contact_uri)

@@ -29,6 +29,8 @@ std::optional<plot::Figure> judgement_figure(const Summary& summary);
 std::optional<plot::Figure> vibration_figure(const Summary& summary);
 /// Plots d' against the response time at each lag of the response signal, and the fitted curve.
 std::optional<plot::Figure> signal_figure(const Summary& summary);
+/// Plots hits against false alarms for each degree of confidence, with one curve for each level.
+std::optional<plot::Figure> roc_figure(const Summary& summary);
 /// Plots the share of each answer by stimulus, in one chart for each condition.
 std::optional<plot::Figure> confusion_figure(const Summary& summary);
 /// Plots accuracy against response time in two panels: the conditional accuracy functions, and one point for

@@ -38,6 +38,9 @@ std::string estimate_section(const SessionData& data);
 /// The section on the threshold along the second dimension of the stimuli; "" if there is none.
 std::string threshold_curve_section(const Summary& summary);
 
+/// The section on the ROC of answers with confidence; "" if there is none.
+std::string roc_section(const Summary& summary);
+
 /// The section on accuracy at the response signal; "" if there was none.
 std::string signal_section(const Summary& summary);
 

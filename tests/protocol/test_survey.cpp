@@ -158,6 +158,16 @@ TEST_CASE("devices that the task needs and the rig lacks are named at the key th
   const auto headphones = rig::parse(
       replaced(quick_rig_source(), "[limits]", "[noise]\nchannel = 1\nrms = 0.05\n[limits]"), "r.toml");
   CHECK(problems(masked, headphones).empty());
+  const auto by_tone =
+      replaced(source("response-signal.toml"), "window_s = 0.4", "window_s = 0.4, by = \"tone\"");
+  CHECK(contains(problems(by_tone, headphones),
+                 "p.toml:51:61: the response signal is a tone, but the rig has none"));
+  const auto tone = rig::parse(
+      replaced(
+          quick_rig_source(), "[limits]",
+          "[noise]\nchannel = 1\nrms = 0.05\nsignal = { frequency_Hz = 1000, amplitude = 0.2 }\n[limits]"),
+      "r.toml");
+  CHECK(problems(by_tone, tone).empty());
 }
 
 TEST_CASE("tones that last longer than the rig allows are refused", "[protocol]") {
@@ -260,4 +270,10 @@ TEST_CASE("counts that balance cannot make equal are noted, for one factor and f
         "each of the 2250000 combinations of \"many\" and \"more\" 0 or 1 times; use fewer factors or "
         "fewer levels"));
   }
+}
+
+TEST_CASE("a level that is listed several times is noted once, with how often it comes", "[protocol]") {
+  const auto notes = all_of(protocol::notes(protocol::parse(source("friction-detection.toml"), "p.toml")));
+  CHECK(contains(notes, "the level 0 is listed 3 times, so it is presented 3 times as often"));
+  CHECK(notes.find("is listed") == notes.rfind("is listed"));
 }

@@ -108,6 +108,29 @@ TEST_CASE("yes/no is analysed as yes/no", "[report]") {
   }
 }
 
+TEST_CASE("yes/no with confidence has the ROC of these ratings, and its area follows from d'", "[report]") {
+  const auto text = [](const std::string& word) {
+    return "{ en = \"" + word + "\", de = \"" + word + "\" }";
+  };
+  const auto confident =
+      replaced(replaced(yes_no("", 1, 120), "device = \"buttons\"", "device = \"touch\""), "[timing]",
+               "[task.confidence]\nquestion = " + text("Sure?") + "\nlabels = [" + text("no") + ", " +
+                   text("fairly") + ", " + text("yes") + "]\n\n[timing]");
+  const auto data = data_of(confident, "sim:threshold=0.1,lapse=0,criterion=0.6745");
+  const auto report = report_of(data);
+  REQUIRE(report["roc"].size() == 4);
+  CHECK(report["roc"][1]["level"] == 0.1);
+  CHECK(report["roc"][1]["points"].size() == 7);
+  // d' is 1.349 at this level. The area under the whole curve is Phi(1.349 / sqrt 2) = 0.830; with few
+  // ratings it is slightly smaller.
+  CHECK(report["roc"][1]["area"]["value"].get<double>() == Approx(0.815).margin(0.06));
+  CHECK(report["roc"][3]["level"].is_null());
+  const auto html = report::to_html(report::summarise(data));
+  CHECK(html.find("Receiver operating characteristic") != std::string::npos);
+  CHECK(report_of(data_of(yes_no("", 1, 10)))["roc"].empty());
+  CHECK(report_of(data_of(shipped("friction-confidence")))["roc"].empty());  // no trial without a signal
+}
+
 TEST_CASE("same-different counts pairs that are the same as false alarms", "[report]") {
   const auto data = data_of(shipped("friction-same-different"), "sim:threshold=-14,lapse=0");
   const auto report = report_of(data);
@@ -165,6 +188,7 @@ TEST_CASE("ratings and numbers are reported by level, and right and wrong are le
   CHECK(html.find("Geometric mean") != std::string::npos);
   CHECK(html.find("Exponent of Stevens") != std::string::npos);
   CHECK(html.find("Proportion correct") == std::string::npos);
+  CHECK(html.find("Trend of accuracy") == std::string::npos);
 }
 
 TEST_CASE("identification is reported as a confusion matrix, without a curve and without d'", "[report]") {

@@ -174,13 +174,16 @@ TEST_CASE("invalid values in a rig file are refused, with what is allowed", "[ri
 TEST_CASE("spare channels carry a marker and masking noise", "[rig]") {
   const std::string both =
       "[marker]\nchannel = 1\nkind = \"tone\"\nfrequency_Hz = 5000\nduration_ms = 2\n"
-      "[noise]\nchannel = 3\nrms = 0.05\n\n[limits]";
+      "[noise]\nchannel = 3\nrms = 0.05\nsignal = { frequency_Hz = 1000, amplitude = 0.2 }\n\n[limits]";
   const auto rig = rig::parse(replaced(source(), "[limits]", both), "r.toml");
   REQUIRE(rig.marker);
   CHECK(rig.marker->kind == rig::Marker::Kind::tone);
   CHECK(rig.marker->duration_s == Approx(2e-3));
   REQUIRE(rig.noise);
   CHECK(rig.noise->high_Hz == 8000);
+  REQUIRE(rig.noise->signal);
+  CHECK(rig.noise->signal->frequency_Hz == 1000);
+  CHECK(rig.noise->signal->amplitude == 0.2);
   CHECK(rig::channels(rig) == 4);
   CHECK(rig::channels(rig::load(simulated)) == 2);
 }
