@@ -6,6 +6,7 @@
 #include <complex>
 #include <numbers>
 #include <stdexcept>
+#include <unsupported/Eigen/FFT>
 
 #include "station/sensing/lock_in.hpp"
 #include "station/sensing/planned_lines.hpp"
@@ -30,28 +31,6 @@ Compared compared_with(const IntervalPlan& plan) {
   const auto lines = planned_lines(stretches.front(), plan.pick_ups, plan.rate_Hz);
   const std::size_t main = main_pick_up(lines, plan.pick_ups.size());
   return {plan.pick_ups[main].channel, planned_power(lines, main)};
-}
-
-/// Fourier transform in place (radix 2). The number of values must be a power of 2.
-void transform(std::vector<std::complex<double>>& values) {
-  const std::size_t count = values.size();
-  for (std::size_t i = 1, j = 0; i < count; ++i) {  // sorts by the reversed bits of the index
-    std::size_t bit = count >> 1;
-    for (; j & bit; bit >>= 1) j ^= bit;
-    j ^= bit;
-    if (i < j) std::swap(values[i], values[j]);
-  }
-  for (std::size_t half = 1; half < count; half *= 2) {
-    const auto step = std::polar(1.0, -std::numbers::pi / static_cast<double>(half));
-    for (std::size_t start = 0; start < count; start += 2 * half) {
-      std::complex<double> turn = 1;
-      for (std::size_t k = start; k < start + half; ++k, turn *= step) {
-        const auto even = values[k], odd = turn * values[k + half];
-        values[k] = even + odd;
-        values[k + half] = even - odd;
-      }
-    }
-  }
 }
 
 // A tone in noise is a line that is this many times stronger than the mean of all lines. The strongest of the
@@ -97,15 +76,17 @@ void SilenceProof::take(const AlignedBlock& block) noexcept {
 /// The mean square of the strongest tone in the loudest window; 0 if no tone stands out of the noise.
 double SilenceProof::strongest_tone() const {
   const std::size_t count = loudest_.size();
-  std::vector<std::complex<double>> spectrum(std::bit_ceil(count));
+  std::vector<double> windowed(std::bit_ceil(count));
   double weights = 0;
   for (std::size_t n = 0; n < count; ++n) {
     const double hann =
         1 - std::cos(2 * std::numbers::pi * (static_cast<double>(n) + 0.5) / static_cast<double>(count));
-    spectrum[n] = hann * loudest_[n];
+    windowed[n] = hann * loudest_[n];
     weights += hann * hann;
   }
-  transform(spectrum);
+  Eigen::FFT<double> fourier;
+  std::vector<std::complex<double>> spectrum;
+  fourier.fwd(spectrum, windowed);
   // A line is the energy within the main lobe of the window: two bins of the unpadded transform on each side.
   const std::size_t half = spectrum.size() / 2, reach = 2 * spectrum.size() / count;
   double lobe = 0, total = 0, strongest = 0;
