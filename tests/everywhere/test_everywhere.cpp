@@ -146,6 +146,8 @@ constexpr Recorded kSessions[] = {
     {"friction-detection", "d23c74f732cff1ab", "5242a5137d095406"},
     {"friction-identification", "159c20d40d282069", "e21434fc588e8d9e"},
     {"friction-3ifc", "12249024c7cd68c7", "ddb1edda9eb2a2eb"},
+    {"friction-4ifc", "3ede10aa7ad28604", "64d5c3c1dddfe0b2"},
+    {"friction-time-limit", "f69f132afbca3235", "edf57a000a356226"},
     {"friction-abx", "c95786baf94d2faf", "81a6d1b7adaa8862"},
     {"limits-boundary", "f095f41207962b6a", "8d35ed030edf1940"},
     {"response-signal", "ef371dbbfaebe6ce", "5d99f9739e94ada6"},
