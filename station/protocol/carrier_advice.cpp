@@ -15,9 +15,9 @@ namespace {
 using scene::ToneProduct;
 using text::number;
 
-/// Says how far one tone must be moved so that the product leaves the band.
+/// Says how far one tone must be moved so that the filter of the force stops the product.
 std::string remedy(const ToneProduct& product, double carrier_Hz, int rate_Hz) {
-  const double shift_Hz = std::ceil((scene::force_band_Hz - product.distance_Hz) / std::abs(product.first));
+  const double shift_Hz = std::ceil((scene::force_stop_Hz - product.distance_Hz) / std::abs(product.first));
   const auto distance_at = [&](double first_Hz) {
     const double sum_Hz = product.first * first_Hz + product.second * product.second_Hz;
     const double captured_Hz = std::abs(sum_Hz - rate_Hz * std::round(sum_Hz / rate_Hz));
@@ -63,7 +63,7 @@ std::vector<text::Problem> carrier_warnings(const Protocol& protocol, const rig:
              (sight.factors.empty() ? "" : " at " + format(sight.factors)) + ": " +
              scene::name(found.product) + " is only " + number(found.product.distance_Hz, 3) +
              " Hz from the carrier of the force cells (" + number(carrier_Hz) +
-             " Hz), so distortion can look like a force" +
+             " Hz), so distortion can appear as an oscillation of the force" +
              (found.cases > 1 ? " (and in " + std::to_string(found.cases - 1) + " more cases)" : ""),
          remedy(found.product, carrier_Hz, rate_Hz)});
   }

@@ -26,9 +26,10 @@ std::string name(const ToneProduct& product);
 /// - f_j. Among equally near ones, that of the lowest order is returned.
 std::optional<ToneProduct> nearest_product(std::span<const double> tones_Hz, double near_Hz, int rate_Hz);
 
-/// A product nearer to the carrier than this is passed by the filter of the force signal, at least in part:
-/// the filter passes 400 Hz on both sides of the carrier and stops 600 Hz.
-inline constexpr double force_band_Hz = 600;
+/// The filter of the force signal passes this band on both sides of the carrier, and stops everything beyond
+/// `force_stop_Hz`. A product at a distance d from the carrier is an oscillation of the force with frequency
+/// d.
+inline constexpr double force_band_Hz = 400, force_stop_Hz = 600;
 
 /// A carrier, and its distance from the nearest distortion product of the drive tones.
 struct CarrierChoice {
@@ -45,7 +46,7 @@ inline constexpr double enough_clearance_Hz = 1500;
 ///
 /// With many tones, there is often no carrier with enough clearance. For random plans from 22.4 to 46 kHz
 /// with tones at least 1 kHz apart, there is one in 98 % of plans with two tones, 58 % with three and 11 %
-/// with four. A clearance above force_band_Hz still keeps the products out of the force. This clearance is
+/// with four. A clearance above force_stop_Hz still keeps the products out of the force. This clearance is
 /// reached in 99 % of plans with three tones, 81 % with four, 15 % with six, and hardly any with eight.
 CarrierChoice choose_carrier(std::span<const std::vector<double>> plans, int rate_Hz);
 

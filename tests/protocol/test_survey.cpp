@@ -89,8 +89,12 @@ TEST_CASE("tones whose products come near the carrier of the force cells give a 
       told,
       "scene \"edge\" in block \"main\": 3 x 33400 Hz - 3 x 30000 Hz = 10200 Hz is only 325 Hz from the "
       "carrier of the force cells (10525 Hz)"));
+  CHECK(contains(told, "an oscillation of the force"));
   CHECK(contains(told, "that of 33400 Hz to 33308 Hz or lower"));
   CHECK_FALSE(contains(warnings(rig, "33308"), "carrier"));
+  // 3 x 3376 Hz is 397 Hz from the carrier, 3 x 3374 Hz is 403 Hz from it
+  CHECK(contains(warnings(rig, "33376"), "carrier"));
+  CHECK_FALSE(contains(warnings(rig, "33374"), "carrier"));
   CHECK_FALSE(contains(warnings(quick_rig(), "33400"), "carrier"));
   rig.capture->forces = rig::ForceCells{};
   rig.capture->forces->carrier_Hz = 8425;
