@@ -102,19 +102,6 @@ double accuracy(const Rule& rule, const Asked& asked, const std::vector<Look>& l
   return all > 0 ? right / all : 0;
 }
 
-void weight_by_answer(std::vector<Look>& looks, double odds) {
-  Shares sums{};
-  for (const auto& look : looks) sums[static_cast<std::size_t>(look.correct)] += look.weight;
-  for (auto& look : looks)
-    look.weight *= (look.correct == 0 ? odds : 1) / sums[static_cast<std::size_t>(look.correct)];
-}
-
-Rule always(int answer) {
-  Rule rule;
-  rule.ranges = {{std::numeric_limits<double>::infinity(), answer}};
-  return rule;
-}
-
 Rule best_rule(const Asked& asked, const std::vector<Look>& looks, const Grain& grain) {
   Rule best;
   best.grain = grain;
@@ -135,29 +122,6 @@ Rule best_rule(const Asked& asked, const std::vector<Look>& looks, const Grain& 
     if (right > most + 1e-9) most = right, best = rule;
   }
   return best;
-}
-
-std::vector<Rule> criteria(const Asked& asked, const std::vector<Look>& looks, const Grain& grain,
-                           int count) {
-  std::vector<double> values;
-  for (const auto& look : looks) values.push_back(banded(Statistic::value, look.x));
-  std::sort(values.begin(), values.end());
-  std::vector<Rule> rules;
-  double last = -std::numeric_limits<double>::infinity();
-  for (int k = 1; k <= count; ++k) {
-    const auto at = values.begin() + static_cast<std::ptrdiff_t>(values.size()) * k / (count + 1);
-    const auto above = std::find_if(at, values.end(), [&](double v) { return v - *at > grain.absolute; });
-    if (above == values.end()) break;
-    const double end = 0.5 * (*std::prev(above) + *above);
-    if (!(end > last)) continue;
-    last = end;
-    Rule rule;
-    rule.grain = grain;
-    rule.ranges = {{end, 0}, {std::numeric_limits<double>::infinity(), 1}};
-    if (accuracy(rule, asked, looks) < 0.5) std::swap(rule.ranges[0].answer, rule.ranges[1].answer);
-    rules.push_back(std::move(rule));
-  }
-  return rules;
 }
 
 }  // namespace turnpoint::simulation

@@ -51,7 +51,6 @@ struct Grain {
 struct CueRange {
   double end = 0;  ///< upper end of the range; infinity for the last range
   int answer = 0;
-  bool operator==(const CueRange&) const = default;
 };
 
 struct Rule {
@@ -70,18 +69,7 @@ Shares shares(const Rule& rule, const Asked& asked, const CueValues& x);
 /// Returns the proportion correct of an observer who uses `rule` in the trials `looks`; 0 if there are none.
 double accuracy(const Rule& rule, const Asked& asked, const std::vector<Look>& looks);
 
-/// Weights the trials so that the first answer is right `odds` times as often as each other answer.
-void weight_by_answer(std::vector<Look>& looks, double odds);
-
-/// The rule of an observer who always gives the same answer.
-Rule always(int answer);
-
 /// Returns the rule with the highest proportion correct in the trials `looks`.
 Rule best_rule(const Asked& asked, const std::vector<Look>& looks, const Grain& grain);
-
-/// Returns up to `count` rules with one criterion, evenly spread over the cue's values in the trials `looks`,
-/// for one interval and two answers. On each side of the criterion is the answer that is right there more
-/// often.
-std::vector<Rule> criteria(const Asked& asked, const std::vector<Look>& looks, const Grain& grain, int count);
 
 }  // namespace turnpoint::simulation

@@ -78,19 +78,3 @@ TEST_CASE("of four intervals the one with the target is found; X is matched in a
   CHECK(best(sample, {{{2, 1, 2}, 1, 1}, {{1, 1, 2}, 0, 1}, {{2, 2, 1}, 0, 1}}) == 1);
   CHECK(best(abx, {{{1, 1, 1}, 1, 1}, {{1, 1, 1}, 0, 1}}) == Approx(0.5));
 }
-
-TEST_CASE("criteria lie between different values of a cue, each with the answer that is more often right",
-          "[cues]") {
-  std::vector<Look> looks;
-  for (int k = 0; k < 10; ++k) looks.push_back(single(k, k >= 6 ? 0 : 1));
-  const auto rules = simulation::criteria(single_interval, looks, {1e-3, 0}, 96);
-  REQUIRE(rules.size() == 9);  // one between each two neighbours
-  for (std::size_t k = 0; k < rules.size(); ++k) {
-    REQUIRE(rules[k].ranges.size() == 2);
-    CHECK(rules[k].ranges[0].end == Approx(static_cast<double>(k) + 0.5));
-    CHECK(simulation::accuracy(rules[k], single_interval, looks) >= 0.5);
-  }
-  CHECK(simulation::accuracy(rules[5], single_interval, looks) == 1);
-  CHECK(simulation::criteria(single_interval, looks, {1e-3, 0}, 3).size() == 3);
-  CHECK(simulation::criteria(single_interval, {single(5, 0), single(5, 1)}, {1e-3, 0}, 9).empty());
-}
