@@ -258,7 +258,9 @@ class Measures(unittest.TestCase):
                       "--seed", person[1:])
         self.call("report", "--study", "--db", database, "--out", "study.html", "--tables", protocol)
         with open(os.path.join(self.folder, protocol, "measures.csv"), encoding="utf-8", newline="") as table:
-            found = {row["measure"]: float(row["value"]) for row in csv.DictReader(table) if row["participant"] == "P02"}
+            rows = [row for row in csv.DictReader(table) if row["participant"] == "P02"]
+        self.conditions = {(row["condition"], row["measure"]): float(row["value"]) for row in rows}
+        found = {row["measure"]: float(row["value"]) for row in rows}
         return found, json.loads(self.call("report", "--db", database, "--participant", "P02", "--json"))
 
     def equal(self, found, wanted):
@@ -322,8 +324,11 @@ class Measures(unittest.TestCase):
             self.assertEqual({len(line) for line in lines}, {fields})
 
     def test_settings_have_the_difference_of_their_sides(self):
-        found, report = self.both("boundary-adjustment")
-        self.equal(found["settings from below minus from above"], report["settings"][0]["side_difference"]["value"])
+        report = self.both("boundary-adjustment")[1]
+        self.assertEqual(len(report["settings"]), 3)  # one for each mark
+        for settings in report["settings"]:
+            self.equal(self.conditions[settings["condition"], "settings from below minus from above"],
+                       settings["side_difference"]["value"])
 
 
 if __name__ == "__main__":
