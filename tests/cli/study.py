@@ -327,8 +327,8 @@ class Measures(unittest.TestCase):
         report = self.both("boundary-adjustment")[1]
         self.assertEqual(len(report["settings"]), 3)  # one for each mark
         for settings in report["settings"]:
-            self.equal(self.conditions[settings["condition"], "settings from below minus from above"],
-                       settings["side_difference"]["value"])
+            condition = "settings, " + settings["condition"]  # a study also names the procedure
+            self.equal(self.conditions[condition, "settings from below minus from above"], settings["side_difference"]["value"])
 
 
 if __name__ == "__main__":
