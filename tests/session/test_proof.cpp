@@ -10,12 +10,8 @@ using terms::ProofCause;
 
 TEST_CASE("without a pick-up a session runs, and each trial is unproven", "[session][proof]") {
   TemporaryFolder folder;
-  setup::RunRequest request;
-  request.protocol = kSource + "/protocols/demo.toml";
+  auto request = request_in(folder, shipped("demo"));
   request.rig = kSource + "/tests/support/thin_plate.toml";
-  request.participant = "P01";
-  request.database = folder / "a.sqlite";
-  request.observer = "sim";
   session::Inputs inputs;
   const auto summary = session::run(setup::prepare(request), nullptr, inputs);
   for (const auto& block : store::read_session(request.database, summary.session_id).blocks)
