@@ -2,6 +2,7 @@
 // not.
 #include <cmath>
 
+#include "physics/friction.hpp"
 #include "station/session/vibration_watch.hpp"
 #include "tests/sensing/proofs.hpp"
 #include "tests/support/catch.hpp"
@@ -56,4 +57,15 @@ TEST_CASE("a trial before which the silence could not be measured is flagged, an
 TEST_CASE("a stimulus that follows as soon as it may still leaves time to measure the silence",
           "[session][proof]") {
   CHECK(after_silence(session::kExpected_ns * 1e-9).verdict == Proof::ok);
+}
+
+TEST_CASE("broadband sound at the limits of the silence lowers friction by 0.04 % and 0.4 %",
+          "[session][proof]") {
+  const physics::FrictionMap friction;  // the curve of a rig that has not measured its own
+  const double plan_m = 1.5e-6;
+  const auto lowered = [&](double level_dB) {
+    return 1 - friction.relative_friction(plan_m * std::pow(10, level_dB / 20));
+  };
+  CHECK(lowered(-40) == Approx(0.0004).epsilon(0.25));
+  CHECK(lowered(-30) == Approx(0.004).epsilon(0.25));
 }
