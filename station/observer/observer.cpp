@@ -17,8 +17,8 @@ constexpr double kLn2 = 0.69314718055994531;
 // largest |z| that is used: beyond it the tail of the normal distribution is below 1e-9, and its logarithm
 // loses precision
 constexpr double kSurest_sd = 6;
-constexpr double kRatingStep_sd =
-    0.5;  // distance between the criteria of neighbouring ratings, also of confidence
+// distance between the criteria of neighbouring ratings, also of confidence
+constexpr double kRatingStep_sd = 0.5;
 constexpr double kLinePoints = 9;
 constexpr double kSqrt2 = 1.4142135623730951, kSqrt6 = 2.4494897427831779;
 constexpr double kNormalPeak = 0.39894228040143268;  // density of the standard normal distribution at 0
