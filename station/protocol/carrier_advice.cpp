@@ -6,6 +6,7 @@
 #include <string>
 
 #include "station/scene/force_carrier.hpp"
+#include "station/terms/force_carrier.hpp"
 #include "station/text/number.hpp"
 
 namespace turnpoint::protocol {
@@ -20,8 +21,7 @@ std::string remedy(const ToneProduct& product, double carrier_Hz, int rate_Hz) {
   const double shift_Hz = std::ceil((scene::force_stop_Hz - product.distance_Hz) / std::abs(product.first));
   const auto distance_at = [&](double first_Hz) {
     const double sum_Hz = product.first * first_Hz + product.second * product.second_Hz;
-    const double captured_Hz = std::abs(sum_Hz - rate_Hz * std::round(sum_Hz / rate_Hz));
-    return std::abs(captured_Hz - carrier_Hz);
+    return std::abs(scene::captured_at(sum_Hz, rate_Hz) - carrier_Hz);
   };
   const double higher_Hz = product.first_Hz + shift_Hz, lower_Hz = product.first_Hz - shift_Hz;
   const bool up = distance_at(higher_Hz) > distance_at(lower_Hz);
@@ -42,7 +42,7 @@ std::vector<text::Problem> carrier_warnings(const Protocol& protocol, const rig:
                                             const std::vector<Sight>& sights) {
   if (!rig.capture || rig.capture->bridges.empty()) return {};
   const bool calibrated = rig.capture->forces && rig.capture->forces->carrier_Hz > 0;
-  const double carrier_Hz = calibrated ? rig.capture->forces->carrier_Hz : scene::carriers_Hz.front();
+  const double carrier_Hz = calibrated ? rig.capture->forces->carrier_Hz : terms::kForceCarrier_Hz;
   const int rate_Hz = rig.output.rate_Hz;
   std::map<std::string, Worst> worst;
   for (const auto& sight : sights) {

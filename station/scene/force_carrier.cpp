@@ -2,29 +2,15 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "station/text/number.hpp"
 
 namespace turnpoint::scene {
 
-namespace {
-
-double folded(double frequency_Hz, int rate_Hz) {
+double captured_at(double frequency_Hz, int rate_Hz) {
   return std::abs(frequency_Hz - rate_Hz * std::round(frequency_Hz / rate_Hz));
 }
-
-double clearance_Hz(double carrier_Hz, std::span<const std::vector<double>> plans, int rate_Hz) {
-  double nearest = std::numeric_limits<double>::infinity();
-  for (const auto& tones : plans)
-    if (const auto product = nearest_product(tones, carrier_Hz, rate_Hz))
-      nearest = std::min(nearest, product->distance_Hz);
-  return nearest;
-}
-
-}  // namespace
 
 std::string name(const ToneProduct& product) {
   const auto term = [](int factor, double frequency_Hz) {
@@ -43,7 +29,7 @@ std::string name(const ToneProduct& product) {
 std::optional<ToneProduct> nearest_product(std::span<const double> tones_Hz, double near_Hz, int rate_Hz) {
   std::optional<ToneProduct> nearest;
   const auto see = [&](double f, double g, int first, int second) {
-    ToneProduct product{f, g, first, second, folded(first * f + second * g, rate_Hz), 0};
+    ToneProduct product{f, g, first, second, captured_at(first * f + second * g, rate_Hz), 0};
     product.distance_Hz = std::abs(product.captured_Hz - near_Hz);
     if (!nearest || product.distance_Hz < nearest->distance_Hz) nearest = product;
   };
@@ -55,16 +41,6 @@ std::optional<ToneProduct> nearest_product(std::span<const double> tones_Hz, dou
       for (int k = 1; k <= 4 && f > g; ++k) see(f, g, k, -k);
     }
   return nearest;
-}
-
-CarrierChoice choose_carrier(std::span<const std::vector<double>> plans, int rate_Hz) {
-  CarrierChoice best{carriers_Hz.front(), -1};
-  for (const double carrier_Hz : carriers_Hz) {
-    const double clearance = clearance_Hz(carrier_Hz, plans, rate_Hz);
-    if (clearance >= enough_clearance_Hz) return {carrier_Hz, clearance};
-    if (clearance > best.clearance_Hz) best = {carrier_Hz, clearance};
-  }
-  return best;
 }
 
 }  // namespace turnpoint::scene

@@ -4,11 +4,10 @@
 #include <string>
 #include <vector>
 
-#include "station/terms/force_carriers.hpp"
-
 namespace turnpoint::scene {
 
-using terms::carriers_Hz;
+/// Where a frequency appears in a capture with this sampling rate: at itself, or at its alias.
+double captured_at(double frequency_Hz, int rate_Hz);
 
 /// A frequency that amplifiers of slight nonlinearity add to two tones, or a tone itself.
 struct ToneProduct {
@@ -30,24 +29,5 @@ std::optional<ToneProduct> nearest_product(std::span<const double> tones_Hz, dou
 /// `force_stop_Hz`. A product at a distance d from the carrier is an oscillation of the force with frequency
 /// d.
 inline constexpr double force_band_Hz = 400, force_stop_Hz = 600;
-
-/// A carrier, and its distance from the nearest distortion product of the drive tones.
-struct CarrierChoice {
-  double carrier_Hz = carriers_Hz.front();
-  double clearance_Hz = 0;
-};
-/// With this clearance (distance from the nearest distortion product of the drive tones), the products are
-/// far outside the filter of either band.
-inline constexpr double enough_clearance_Hz = 1500;
-
-/// Chooses the first of carriers_Hz with enough clearance, or else the one with the most clearance. Each plan
-/// lists the tones of one stimulus of a block. Tones of different plans never sound together, but all plans
-/// get the same carrier.
-///
-/// With many tones, there is often no carrier with enough clearance. For random plans from 22.4 to 46 kHz
-/// with tones at least 1 kHz apart, there is one in 98 % of plans with two tones, 58 % with three and 11 %
-/// with four. A clearance above force_stop_Hz still keeps the products out of the force. This clearance is
-/// reached in 99 % of plans with three tones, 81 % with four, 15 % with six, and hardly any with eight.
-CarrierChoice choose_carrier(std::span<const std::vector<double>> plans, int rate_Hz);
 
 }  // namespace turnpoint::scene

@@ -6,11 +6,9 @@
 #include "station/sensing/capture_block.hpp"
 #include "station/sensing/carrier_filter.hpp"
 #include "station/sensing/decimator.hpp"
-#include "station/terms/force_carriers.hpp"
+#include "station/terms/force_carrier.hpp"
 
 namespace turnpoint::sensing {
-
-using terms::carriers_Hz;
 
 /// Bandwidth of the force signal and rate of its points. `force` passes 0 to 400 Hz, stops 600 Hz and above,
 /// and gives 1000 points a second. `wide` passes 0 to 1 kHz, stops 2 kHz and above, and gives 4000 points a
@@ -25,7 +23,7 @@ inline constexpr std::size_t bridge_count = 3;
 /// a and b below the surface, and the lateral cell.
 struct BridgeOptions {
   int rate_Hz = 192000;  ///< sampling rate; must be a multiple of 8000
-  double carrier_Hz = carriers_Hz.front();
+  double carrier_Hz = terms::kForceCarrier_Hz;
   Band band = Band::force;
   int channels = 4;   ///< number of channels in a captured frame
   int reference = 0;  ///< captured channel of the excitation itself

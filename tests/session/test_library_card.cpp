@@ -15,6 +15,7 @@
 #include "station/store/open.hpp"
 #include "station/store/signal_code.hpp"
 #include "station/store/stored_signals.hpp"
+#include "station/terms/force_carrier.hpp"
 #include "tests/session/library_card.hpp"
 #include "tests/session/live_room.hpp"
 #include "tests/support/catch.hpp"
@@ -115,7 +116,7 @@ rig::ForceCells cells_of(double length_mm) {
     }
   rig::ForceCells cells;
   cells.matrix = sensing::fit_weights(weights).calibration.matrix();
-  cells.carrier_Hz = sensing::carriers_Hz.front();
+  cells.carrier_Hz = terms::kForceCarrier_Hz;
   cells.reference_amplitude = kReference * session::kCarrier;
   cells.rated_ratio.fill(10 * kPerN);
   return cells;
