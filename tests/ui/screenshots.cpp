@@ -241,7 +241,11 @@ int shoot_places(const QString& out, const QStringList& sizes, const QStringList
       weighed.guide()->begin(series);
       if (series == std::string("response")) {
         weighed.guide()->play();
-        wait_for([&] { return !weighed.guide()->readings().isEmpty(); });
+        const auto percent = [&] {
+          const auto readings = weighed.guide()->readings();
+          return readings.isEmpty() ? 0 : readings[0].toMap()["percent"].toDouble();
+        };
+        wait_for([&] { return percent() > 1; });  // the first reading is from the ramp of the tone
       }
       camera.shoot("RigPage.qml", QString("guide-") + series,
                    {{"rig", QVariant::fromValue(&weighed)}, {"tab", "guide"}});
