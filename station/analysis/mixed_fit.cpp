@@ -207,9 +207,8 @@ MixedResult fit_mixed(const std::vector<PersonCounts>& data, const MixedOptions&
   auto people = scaled(data, options);
   if (people.people.size() < kFewestPeople)
     return {std::nullopt,
-            {{"few-participants", std::to_string(people.people.size()) +
-                                      " participants with answers are too few for a group; at least 3 are "
-                                      "needed."}}};
+            {{"few-participants", "A group needs at least 3 participants with answers; this one has " +
+                                      std::to_string(people.people.size()) + "."}}};
   const auto pooled = together(people, options);
   if (!pooled.parameters) return {std::nullopt, pooled.statements};
   const double rate = rate_from_slope(options.function, pooled.parameters->slope) * people.width;

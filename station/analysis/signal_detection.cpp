@@ -140,4 +140,43 @@ std::optional<Roc> roc(const std::vector<int>& noise, const std::vector<int>& si
   return result;
 }
 
+std::vector<RatedDetection> rocs(const std::vector<TrialRecord>& trials,
+                                 const std::vector<std::string>& order, int positive,
+                                 std::size_t most_levels) {
+  const auto used = [](const TrialRecord& trial) {
+    return trial.type == TrialType::experimental && trial.outcome == Outcome::answered && trial.response &&
+           trial.right_choice && trial.confidence;
+  };
+  int degrees = 0;
+  for (const auto& trial : trials)
+    if (used(trial)) degrees = std::max(degrees, *trial.confidence);
+  const std::vector<int> none(static_cast<std::size_t>(2 * degrees));
+  std::vector<RatedDetection> result;
+  for (const auto& condition : conditions_of(trials, order)) {
+    RatedDetection all{condition, std::nullopt, none, none, {}};
+    std::map<double, std::vector<int>> levels;
+    for (const auto& trial : trials) {
+      if (!used(trial) || trial.instruction != condition) continue;
+      const int rating =
+          *trial.response == positive ? degrees + *trial.confidence - 1 : degrees - *trial.confidence;
+      const auto at = static_cast<std::size_t>(rating);
+      if (*trial.right_choice != positive) {
+        ++all.noise[at];
+        continue;
+      }
+      ++all.signal[at];
+      ++levels.try_emplace(std::fabs(trial.level.value_or(0)), none).first->second[at];
+    }
+    const auto add = [&](RatedDetection entry) {
+      if (degrees == 0) return;
+      if (const auto curve = roc(entry.noise, entry.signal))
+        entry.roc = *curve, result.push_back(std::move(entry));
+    };
+    if (levels.size() <= most_levels)
+      for (const auto& [level, signal] : levels) add({condition, level, all.noise, signal, {}});
+    add(all);
+  }
+  return result;
+}
+
 }  // namespace turnpoint::analysis

@@ -74,6 +74,21 @@ struct Roc {
 /// fewer than 2 ratings, lists of different length, or negative counts.
 std::optional<Roc> roc(const std::vector<int>& noise, const std::vector<int>& signal);
 
+/// The ROC of answers "yes" and "no" that were given with a confidence, at one level or over all levels.
+struct RatedDetection {
+  std::string condition;
+  std::optional<double> level;     ///< absolute value of the level; empty for all levels together
+  std::vector<int> noise, signal;  ///< numbers of trials, from the surest "no" to the surest "yes"
+  Roc roc;
+};
+
+/// Computes the curves of answered experimental trials that have a right answer and a confidence. Conditions,
+/// levels, `positive` and `most_levels` are as for detect() with Detecting::presence: all levels share the
+/// noise. Levels without noise trials or without signal trials are left out.
+std::vector<RatedDetection> rocs(const std::vector<TrialRecord>& trials,
+                                 const std::vector<std::string>& order, int positive,
+                                 std::size_t most_levels = 8);
+
 /// Returns the proportion correct with the log-linear correction, (k + 0.5) / (n + 1); empty for n = 0.
 std::optional<double> log_linear_proportion(int successes, int trials);
 

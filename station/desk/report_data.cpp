@@ -9,6 +9,7 @@
 #include <string>
 
 #include "station/protocol/protocol.hpp"
+#include "station/report/stored_estimates.hpp"
 #include "station/report/stored_trials.hpp"
 #include "station/session/planned_session.hpp"
 #include "station/store/open.hpp"
@@ -206,7 +207,8 @@ std::vector<analysis::FrictionCurve> curves_of(const session::AlongStrip& along)
     auto curve = along.curve(direction);
     if (curve.friction.empty()) continue;
     curves.push_back({direction > 0 ? "towards the narrow end" : "towards the wide end",
-                      std::move(curve.from_boundary_mm), std::move(curve.friction), std::move(curve.se)});
+                      std::move(curve.from_boundary_mm), std::move(curve.friction), std::move(curve.se),
+                      direction > 0});
   }
   return curves;
 }
@@ -221,6 +223,19 @@ void add_programs(const std::vector<records::EventRow>& events, report::SessionD
           program.procedure.empty() ? "Program of the observer" : "Program of " + program.procedure;
       if (told.insert(name + fact).second) data.facts.emplace_back(name, std::move(fact));
     }
+}
+
+void add_own_estimates(const std::string& database, const store::StoredSession& stored,
+                       const protocol::Protocol& protocol, report::SessionData& data) {
+  procedure::EarlierTrials earlier;
+  try {
+    earlier = session::earlier_trials(database, protocol, stored.session);
+  } catch (const std::runtime_error&) {
+    // The earlier sessions cannot be repeated by this program. The report then has no estimates of procedures
+    // that continue.
+  }
+  report::add_estimates(stored.blocks, protocol, stored.session.start.seed, earlier, data);
+  report::add_program_estimates(stored.blocks, stored.events, protocol, data);
 }
 
 report::SessionData report_data(const std::string& database, const std::string& session_id) {
@@ -248,14 +263,8 @@ report::SessionData report_data(const std::string& database, const std::string& 
               (answer.occasion > 0 ? " (after block " + std::to_string(answer.occasion) + ")" : ""),
           answer.answer);
   data.seed = start.seed;
-  try {
-    data.earlier = session::earlier_trials(database, protocol, stored.session);
-  } catch (const std::runtime_error&) {
-    // The earlier sessions cannot be repeated by this program. The report then has no estimates of procedures
-    // that continue.
-  }
   report::add_trials(stored.blocks, protocol, data);
-  report::add_program_estimates(stored.blocks, stored.events, data);
+  add_own_estimates(database, stored, protocol, data);
   add_programs(stored.events, data);
   add_health(stored, data);
   data.measured = measured_trials(stored.blocks);

@@ -14,6 +14,7 @@
 #include "station/session/simulated_room.hpp"
 #include "station/session/stage.hpp"
 #include "station/system/clocks.hpp"
+#include "station/terms/force_carrier.hpp"
 #include "station/terms/usage_error.hpp"
 
 namespace turnpoint::maintenance {
@@ -27,7 +28,7 @@ sensing::BridgeOptions bridge_options(const rig::Rig& rig, double reference_ampl
   const auto& capture = *rig.capture;
   sensing::BridgeOptions options;
   options.rate_Hz = rig.output.rate_Hz;
-  options.carrier_Hz = sensing::carriers_Hz.front();
+  options.carrier_Hz = terms::kForceCarrier_Hz;
   options.channels = capture.channels;
   options.reference = capture.reference;
   options.bridges = {capture.bridges[0], capture.bridges[1], capture.bridges[2]};

@@ -10,6 +10,7 @@
 #include "station/calibration/apply.hpp"
 #include "station/maintenance/panel_latency.hpp"
 #include "station/system/write_file.hpp"
+#include "station/terms/force_carrier.hpp"
 #include "station/terms/usage_error.hpp"
 #include "station/text/number.hpp"
 
@@ -309,7 +310,7 @@ ForceResult weigh(const rig::Rig& rig, BridgeReader& bridges,
   made.cells.changes = fit.calibration.changes();
   const auto& tares = weighing.tares();
   made.cells.reference_amplitude = tares.front().reference;
-  if (tares.front().reference > 0) made.cells.carrier_Hz = sensing::carriers_Hz.front();
+  if (tares.front().reference > 0) made.cells.carrier_Hz = terms::kForceCarrier_Hz;
   made.cells.rated_ratio = rated_ratios(weights);
   const double middle_Nmm = 0.5 * 0.5e3 * rig.surface.length_m;
   made.sd = fit.calibration.sd(readings_under(made.cells.matrix, {0.5, 0.25, middle_Nmm}));

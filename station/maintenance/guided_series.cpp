@@ -13,7 +13,6 @@
 #include "station/drive/burst.hpp"
 #include "station/maintenance/calibrate.hpp"
 #include "station/maintenance/panel_latency.hpp"
-#include "station/maintenance/play_armed.hpp"
 #include "station/scene/transducer.hpp"
 #include "station/system/write_file.hpp"
 #include "station/terms/usage_error.hpp"
@@ -151,7 +150,8 @@ double rest_after_tone_s(const rig::Rig& rig) {
   return std::max(kToneRest_s, tone_length_s(rig) * (1 / rig.limits.duty - 1));
 }
 
-void play_point(const rig::Rig& rig, const SeriesPoint& point, const std::stop_token& stop) {
+void play_point(const rig::Rig& rig, const SeriesPoint& point, const std::stop_token& stop,
+                const OnToneReadings& on_readings) {
   const auto frames = [&](double s) {
     return static_cast<std::int64_t>(std::llround(s * rig.output.rate_Hz));
   };
@@ -164,7 +164,7 @@ void play_point(const rig::Rig& rig, const SeriesPoint& point, const std::stop_t
   burst.ramp.frames = frames(kRamp_s);
   burst.tones.count = 1;
   burst.tones.tones[0] = {point.frequency_Hz, point.full_scale, 0, transducer->channel};
-  play_on_rig(rig, burst, stop);
+  play_and_read(rig, burst, stop, on_readings);
 }
 
 SeriesResult finish_series(const rig::Rig& rig, Series series, const std::vector<SeriesPoint>& points) {

@@ -20,6 +20,9 @@ std::vector<double> places_of(const std::vector<Pickup>& pickups) {
 // The friction under the fingertip is the mean of this many equal parts.
 constexpr int kFingertipParts = 10;
 
+// frequency of the fault `sounding`
+constexpr double kSounding_Hz = 27000;
+
 /// Interpolates linearly between values at positions that are `step_m` apart.
 double between(const std::vector<double>& values, double step_m, double x_m) {
   const double place = std::clamp(x_m / step_m, 0.0, static_cast<double>(values.size() - 1));
@@ -237,6 +240,7 @@ void Plant::next_frame(std::span<double> out) {
   double edge = edge_um(full_scale);
   for (auto& tone : tones_) tone.lock_in.add(edge);
   if (now_.frequency != 1) edge = shifted_edge_um();
+  if (now_.sounding_um > 0) edge += now_.sounding_um * phasor(kSounding_Hz / setup_.rate_Hz, world_).real();
   filters_[filter_].second.step(edge);
 
   CellForces forces = forces_on(setup_.cells, load_);

@@ -113,7 +113,8 @@ enum class FaultKind {
   no_reference,     ///< the reference channel carries only noise
   finger_lifts,     ///< the finger is not on the surface
   gap,              ///< `amount` captured frames are lost at `from_frame` (480)
-  warmer            ///< surface and cells are warmer by `amount` kelvin (10)
+  warmer,           ///< surface and cells are warmer by `amount` kelvin (10)
+  sounding          ///< the drive edge also moves at 27 kHz, by `amount` um (0.05), whatever is played
 };
 
 /// The name of the enumerator, with spaces instead of underscores: "transducer dead".

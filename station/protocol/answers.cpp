@@ -103,6 +103,22 @@ bool explored(const Task& task) {
          task.kind == TaskKind::adjustment;
 }
 
+std::optional<double> stimulus_end_s(const Protocol& protocol) {
+  const auto& task = protocol.task;
+  const auto whole = task.duration_s ? task.duration_s : protocol.timing.explore_s;
+  if (!explored(task) || !whole || task.intervals.empty()) return std::nullopt;
+  const auto scenes = task.intervals.back().size();
+  switch (protocol.timing.response_zero) {
+    case ResponseZero::go_cue:
+      return *whole;
+    case ResponseZero::change:
+      if (scenes < 2) return std::nullopt;
+      return *whole - (task.foreperiod_s ? task.foreperiod_s->high : *whole / static_cast<double>(scenes));
+    default:
+      return std::nullopt;
+  }
+}
+
 std::optional<double> accepted(const ValueAnswer& answer, double given) {
   const double scale = std::pow(10.0, answer.decimals);
   const double value = std::round(given * scale) / scale;

@@ -172,6 +172,11 @@ using terms::ResponseZero;
 struct ResponseSignal {
   Linear after_s;  ///< time of the signal in s, counted from response_zero
   double window_s = 0;
+  /// The participant sees the signal on the screen, or hears a tone on the rig's headphones, which begins on
+  /// the very frame.
+  enum class By { screen, tone };
+  By by = By::screen;
+  Place by_place;
 };
 
 struct Timing {

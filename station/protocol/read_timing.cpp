@@ -32,6 +32,8 @@ void read_signal(TableReader& timing, Reading& reading) {
   if (const auto after = read_time(reader, "after_s", {0.02, 60, Range::Ends::closed, "s"}, reading))
     signal.after_s = *after;
   signal.window_s = reader.number("window_s", {0.05, 10, Range::Ends::closed, "s"});
+  if (reader.maybe_word("by", {"screen", "tone"}) == "tone") signal.by = ResponseSignal::By::tone;
+  signal.by_place = reader.place("by");
   reader.finish();
   reading.protocol.timing.signal = signal;
 }

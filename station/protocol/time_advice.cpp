@@ -1,6 +1,7 @@
 #include <algorithm>
 
 #include "station/protocol/advice_list.hpp"
+#include "station/protocol/answers.hpp"
 #include "station/protocol/expression.hpp"
 #include "station/text/number.hpp"
 
@@ -46,6 +47,20 @@ void check_change(AdviceList& advice) {
                "the foreperiod plus the transition must be well below " + number(whole_s) + " s");
 }
 
+// A person who slides over the surface judges what it does at the signal. After the tones there is nothing to
+// feel.
+void check_lag(AdviceList& advice, const ResponseSignal& signal) {
+  const double latest_s = bounds(signal.after_s, advice.protocol.factors).second;
+  const auto end_s = stimulus_end_s(advice.protocol);
+  const std::string key = "timing.response_signal.after_s";
+  if (end_s && signal.by == ResponseSignal::By::screen && latest_s > *end_s)
+    advice.add(key,
+               "the signal can come " + number(latest_s) + " s after \"" +
+                   name(advice.protocol.timing.response_zero) + "\", when the tones may have ended " +
+                   number(latest_s - *end_s) + " s before",
+               "at most " + number(*end_s) + " s, or longer tones");
+}
+
 }  // namespace
 
 void advise_on_times(AdviceList& advice) {
@@ -59,6 +74,7 @@ void advise_on_times(AdviceList& advice) {
     advice.add("timing.response_signal.window_s",
                "nobody can answer within " + number(timing.signal->window_s) + " s of a signal",
                number(shortest_deadline_s) + " s or more");
+  if (timing.signal) check_lag(advice, *timing.signal);
   check_length(advice, "timing.iti_s", timing.iti_s.high);
   check_length(advice, "timing.explore_s", timing.explore_s.value_or(0));
   check_length(advice, "task.duration_s", task.duration_s.value_or(0));

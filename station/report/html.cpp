@@ -290,7 +290,8 @@ std::string course_section(const Summary& summary) {
              " %" +
              (summary.bias->criterion ? ", criterion c = " + number(*summary.bias->criterion, 2) : ""));
   line("Trend of response time", trend(summary.fatigue.response_time_s, " s"));
-  line("Trend of accuracy", trend(summary.fatigue.proportion_correct, " (proportion correct)"));
+  if (summary.data.scored && summary.data.design != Design::adjustment)
+    line("Trend of accuracy", trend(summary.fatigue.proportion_correct, " (proportion correct)"));
   html += "</table>\n" + picture(trace_figure(summary));
   if (summary.bias) html += notes(summary.bias->statements);
   return html + notes(summary.fatigue.statements);
@@ -312,8 +313,8 @@ std::string to_html(const Summary& summary) {
       html += "<h2>Psychometric function</h2>\n" + picture(psychometric_figure(summary));
     for (const auto& named : summary.fits) html += fit_table(named, data);
     html += threshold_curve_section(summary) + confusion_section(summary) + estimate_section(data) +
-            detection_section(summary) + discrimination_section(summary) + signal_section(summary) +
-            trade_section(summary);
+            detection_section(summary) + roc_section(summary) + discrimination_section(summary) +
+            signal_section(summary) + trade_section(summary);
   } else {
     html += settings_section(summary);
   }

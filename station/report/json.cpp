@@ -186,6 +186,17 @@ Json confusion_json(const analysis::Confusion& confusion, const SessionData& dat
   return json;
 }
 
+Json roc_json(const analysis::RatedDetection& entry) {
+  Json json{{"condition", entry.condition}, {"level", value(entry.level)}};
+  json["noise"] = entry.noise;  // numbers of trials, from the surest no to the surest yes
+  json["signal"] = entry.signal;
+  json["points"] = Json::array();
+  for (const auto& point : entry.roc.points)
+    json["points"].push_back({{"false_alarms", value(point.false_alarms)}, {"hits", value(point.hits)}});
+  json["area"] = value(std::optional(entry.roc.area));
+  return json;
+}
+
 Json discrimination_json(const analysis::Discrimination& entry) {
   Json json{{"condition", entry.condition}, {"level", value(entry.level)}};
   json["correct"] = proportion_json(entry.right);
@@ -261,6 +272,8 @@ std::string to_json(const Summary& summary) {
                                  {"correct_rejections", entry.counts.correct_rejections},
                                  {"d_prime", value(entry.d_prime)},
                                  {"criterion", value(entry.criterion)}});
+  json["roc"] = Json::array();
+  for (const auto& entry : summary.rocs) json["roc"].push_back(roc_json(entry));
   json["response_signal"] = Json::array();
   for (const auto& curve : summary.curves) {
     auto lags = Json::array();
@@ -282,15 +295,7 @@ std::string to_json(const Summary& summary) {
   for (const auto& entry : summary.discriminations)
     json["discrimination"].push_back(discrimination_json(entry));
   json["estimates"] = Json::array();
-  for (const auto& estimate : data.estimates)
-    json["estimates"].push_back({{"procedure", estimate.procedure},
-                                 {"block", estimate.block},
-                                 {"parameter", estimate.parameter},
-                                 {"mean", value(estimate.mean)},
-                                 {"sd", value(estimate.sd)},
-                                 {"interval", estimate.interval ? value(*estimate.interval) : Json(nullptr)},
-                                 {"unit", estimate.unit},
-                                 {"basis", estimate.basis}});
+  for (const auto& estimate : data.estimates) json["estimates"].push_back(value(estimate));
   json["threshold_curves"] = threshold_curves_json(data.threshold_curves);
   json["bias"] = nullptr;
   if (summary.bias)

@@ -6,6 +6,7 @@
 
 #include "station/analysis/estimate.hpp"
 #include "station/analysis/psychometric_fit.hpp"
+#include "station/report/session_data.hpp"
 
 namespace turnpoint::report {
 
@@ -28,6 +29,17 @@ inline Json value(const std::optional<analysis::ParameterInterval>& interval) {
           {"high", value(interval->interval.high)},
           {"touches_low", interval->touches_low},
           {"touches_high", interval->touches_high}};
+}
+
+inline Json value(const ProcedureEstimate& estimate) {
+  return {{"procedure", estimate.procedure},
+          {"block", estimate.block},
+          {"parameter", estimate.parameter},
+          {"mean", value(estimate.mean)},
+          {"sd", value(estimate.sd)},
+          {"interval", estimate.interval ? value(*estimate.interval) : Json(nullptr)},
+          {"unit", estimate.unit},
+          {"basis", estimate.basis}};
 }
 
 inline Json value(const std::vector<analysis::Statement>& statements) {

@@ -79,12 +79,10 @@ struct MeasuredTrial {
 
 /// All data for a report. They come from a database (desk/report_data.cpp) or from a simulated session.
 struct SessionData {
-  /// the trials of the participant's earlier sessions, for procedures that continue; set it before
-  /// add_trials()
-  procedure::EarlierTrials earlier = {};
   std::string title;  ///< title of the protocol
   std::string participant, session_id, run_mode, status;
-  std::vector<Fact> facts;  ///< rows for the head of the report: protocol, date, rig, ...
+  std::string language = "en";  ///< the language of the figures, such as "de"
+  std::vector<Fact> facts;      ///< rows for the head of the report: protocol, date, rig, ...
   /// rows for the table "The station": xruns, calibration age, restarts, ...
   std::vector<Fact> health;
   Design design = Design::forced_choice;

@@ -236,6 +236,8 @@ Summary summarise(const SessionData& data) {
   summary.trade = analysis::trade(data.trials, trade_options(data));
   hide(data, summary.trade);
   summary.detections = detections_of(data);
+  if (data.design == Design::yes_no && !summary.detections.empty())
+    summary.rocs = analysis::rocs(data.trials, data.conditions, data.positive);
   if (data.choices.size() == 2 && shows(data, "response-signal"))
     summary.curves = analysis::response_signal(data.trials, data.conditions, detecting(data), positive(data));
   if (!data.deciding.empty() && shows(data, "dprime"))

@@ -178,16 +178,23 @@ struct Capture {
 };
 
 /// Where the temperatures of the surface and of the frame that clamps it are read: hwmon:NAME/tempN or
-/// hwmon:NAME@DEVICE/tempN (`system/thermometer.hpp`).
+/// iio:NAME/temp (`system/thermometer.hpp`).
 struct Thermometers {
   std::string plate_uri, frame_uri;
 };
 
-/// Headphones that mask the audible part of a stimulus, for protocols that require it.
+/// Headphones that mask the audible part of a stimulus or give the response signal, for protocols that
+/// require it.
 struct MaskingNoise {
   int channel = 1;
   double rms = 0;  ///< level of the noise; 1 is full scale
   double low_Hz = 100, high_Hz = 8000;
+  /// the tone that asks for an answer, for protocols whose response signal is a tone; amplitude 1 is full
+  /// scale
+  struct Signal {
+    double frequency_Hz = 0, amplitude = 0;
+  };
+  std::optional<Signal> signal = {};
 };
 
 /// The relation between amplitude and relative friction: the illustrative load-sharing curve or a measured

@@ -5,6 +5,8 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "station/terms/limits.hpp"
+
 namespace turnpoint::session {
 
 drive::ToneSet tones_of(const scene::DrivePlan& plan) {
@@ -60,6 +62,12 @@ void mark(drive::Burst& burst, const rig::Marker& marker, int rate_Hz, const Mar
 
 void mask(drive::Burst& burst, const rig::MaskingNoise& noise, std::uint64_t seed) {
   burst.noise = {noise.channel, noise.rms, noise.low_Hz, noise.high_Hz, seed};
+}
+
+void signal(drive::Burst& burst, const rig::MaskingNoise& headphones, double at_s, int rate_Hz) {
+  const auto frames = [rate_Hz](double s) { return static_cast<std::int64_t>(std::llround(s * rate_Hz)); };
+  burst.signal = {headphones.channel, headphones.signal->amplitude, headphones.signal->frequency_Hz,
+                  frames(at_s),       frames(terms::kSignal_s),     {frames(0.1 * terms::kSignal_s)}};
 }
 
 }  // namespace turnpoint::session

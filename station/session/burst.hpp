@@ -25,6 +25,10 @@ struct MarkerCodes {
 };
 void mark(drive::Burst& burst, const rig::Marker& marker, int rate_Hz, const MarkerCodes& codes = {});
 
+/// Adds the tone on the rig's headphones that asks for an answer, `at_s` after the burst's onset. It lasts
+/// 50 ms (terms::kSignal_s), with ramps of 5 ms.
+void signal(drive::Burst& burst, const rig::MaskingNoise& headphones, double at_s, int rate_Hz);
+
 /// Adds the rig's masking noise. A different `seed` for each interval gives each interval different noise.
 void mask(drive::Burst& burst, const rig::MaskingNoise& noise, std::uint64_t seed);
 

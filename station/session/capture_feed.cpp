@@ -1,4 +1,5 @@
 #include "station/session/capture_feed.hpp"
+#include "station/terms/force_carrier.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -37,7 +38,7 @@ std::optional<CardCapture> card_capture_of(const rig::Rig& rig) {
   plan.setup.channels = rig.capture->channels;
   plan.setup.pick_ups = calibrated_pick_ups(*rig.capture);
   plan.pilot = pilot_of(rig);
-  if (!rig.capture->bridges.empty()) plan.pilot.carrier_Hz = sensing::carriers_Hz.front();
+  if (!rig.capture->bridges.empty()) plan.pilot.carrier_Hz = terms::kForceCarrier_Hz;
   plan.setup.finger = calibrated_finger(rig);
   plan.cells = cell_plan_of(rig);
   plan.reference = rig.capture->reference;

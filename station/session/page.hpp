@@ -3,7 +3,9 @@
 #include <string>
 #include <vector>
 
+#include "station/session/early_session.hpp"
 #include "station/terms/fault.hpp"
+#include "station/texts/texts.hpp"
 
 namespace turnpoint::session {
 
@@ -63,13 +65,17 @@ struct Guidance {
     bool operator==(const Bar&) const = default;
   };
   std::optional<Bar> force, speed;  ///< empty if the protocol accepts any value
-  bool frozen = false;              ///< the bars stand still, because a stimulus is being presented
+  /// The speed at which the finger is to slide: the middle of the protocol's range. It is the same in all
+  /// trials. Empty if the protocol accepts any speed.
+  std::optional<double> pace_mm_s = {};
+  bool frozen = false;  ///< the bars stand still, because a stimulus is being presented
   bool operator==(const Guidance&) const = default;
 };
 
-/// A line of the operator's summary at the end of a session.
+/// A line of the operator's summary at the end of a session, whose label is said in the operator's language.
 struct SummaryLine {
-  std::string label, value;
+  texts::Phrase label;
+  std::string value;
 };
 
 struct Page {
@@ -110,6 +116,8 @@ struct Page {
   std::string run_mode;
   bool resumable = false;            ///< on the end page: the session can be continued later
   std::vector<SummaryLine> summary;  ///< on the end page: summary of the session for the operator
+  /// on a page of kind `failed`: set if the session did not begin because it would be too early
+  std::optional<EarlySession> early;
   FaultKind fault = FaultKind::other;
   std::string safe, to_do;  ///< on a fault page: what is safe and what to do; `text` says what happened
   std::string detail;       ///< on a fault page: the detail that is also logged; may be ""

@@ -162,6 +162,9 @@ std::vector<drive::PreparedBurst> PlanAhead::bursts_of(const trial::TrialSpec& t
                           times[i].length_s, rate_Hz);
     if (rig_.marker) mark(burst, *rig_.marker, rate_Hz, codes);
     if (rig_.noise && task.sound == protocol::Sound::masking_noise) mask(burst, *rig_.noise, noise.bits());
+    if (const auto at_s = trial::tone_signal_s(protocol_, trial);
+        at_s && rig_.noise && rig_.noise->signal && i + 1 == plans.size())
+      signal(burst, *rig_.noise, *at_s, rate_Hz);
     burst.start_frame = start_frame;
     start_frame += burst.length_frames + std::llround(task.gap_s.value_or(0) * rate_Hz);
     bursts.push_back(drive::prepare(burst, drive::format_of(stream.output), stream.limits));

@@ -29,9 +29,6 @@ constexpr std::int64_t kHeard_ns = 1'000'000'000;
 constexpr std::int64_t kPilot_ns = 1'000'000'000;               // longest wait for the captured pilot
 constexpr double kTare_s = sensing::TrialFinger::tare_s + 0.1;  // 0.1 s longer than the tare, for the filter
 constexpr std::int64_t kMeasured_ns = 1'000'000'000;  // longest wait for the captured frames of an interval
-// The measurement of an interval (its proof) needs captured frames from before the onset, so expect() must be
-// called at least this long before the onset.
-constexpr std::int64_t kExpected_ns = 50'000'000;
 // time from the end of the last stimulus to switching the amplifier off
 constexpr std::int64_t kTail_ns = 20'000'000;
 // longest wait for a converter of force cells that was connected again
@@ -108,16 +105,24 @@ class RealStage : public Stage {
   }
 
   std::optional<std::int64_t> glide(const drive::ToneSet& to, double seconds) override {
-    const auto at = glide_to(*stream_, presented_, to, seconds);
-    if (at && feed_) feed_->watch().changed(presented_.size() - 1);
-    return at;
+    const auto change = glide_to(*stream_, presented_, to, seconds);
+    if (!change) return std::nullopt;
+    if (feed_)
+      feed_->watch().changed(presented_.size() - 1, *change, drive::format_of(stream_->config().output));
+    return presented_.back().start_frame + change->at_frame;
   }
 
-  std::int64_t silence() override {
+  std::int64_t silence(bool awaits_heard) override {
     // If the last burst has not begun, it is cancelled and never reported as heard, so do not wait for that
     // report.
     const auto from = stream_->earliest_frame();
-    if (!presented_.empty() && presented_.back().start_frame >= from) unheard_ = 0;
+    if (!presented_.empty() && presented_.back().start_frame >= from) {
+      unheard_ = 0;
+      // Somebody has answered at a time when the stimulus should have been playing, so the drive is stalled.
+      if (awaits_heard)
+        push_fault(now_ns(), FaultKind::stimulus_missed,
+                   "the trial was answered before the drive had begun the stimulus");
+    }
     if (feed_) feed_->watch().cut(stream_->counters().frames);
     const auto silent_ns = ramp_down(*stream_, presented_, now_ns());
     triggers_->cut(from, stream_->frame_at(silent_ns).value_or(from), now_ns());

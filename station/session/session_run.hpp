@@ -106,6 +106,7 @@ class SessionRun {
   void finish_triggers();
 
   // Bars that guide the finger (session_run_guidance.cpp).
+  bool is_finger_watched() const;
   void move_bars();
   void hold_bars(trial::Phase phase, const Running& trial);
 

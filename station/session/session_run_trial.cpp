@@ -149,7 +149,7 @@ void SessionRun::drive_trial(Running& trial, std::optional<trial::EventKind> cut
     const auto wake = machine.wake_ns();
     const auto follow_ns = trial.slider ? trial.slider->glide_due_ns().value_or(kForever) : kForever;
     const auto until = std::min(wake.value_or(kForever), follow_ns);
-    const auto bars_ns = guide_.guides() ? guide_due_ns_ : kForever;
+    const auto bars_ns = guide_.guides() || is_finger_watched() ? guide_due_ns_ : kForever;
     auto input = stage_->wait_until(std::min(until, bars_ns));
     if (input)
       handle_in_trial(std::move(*input), trial);
@@ -212,7 +212,7 @@ void SessionRun::perform(const std::vector<trial::Action>& actions, Running& tri
         show_phase(trial.machine.phase(), trial);
         break;
       case trial::ActionKind::silence: {
-        const auto silent_ns = stage_->silence();
+        const auto silent_ns = stage_->silence(!trial.machine.done());
         for (auto& interval : surface_) interval.off_ns = std::min(interval.off_ns, silent_ns);
         break;
       }

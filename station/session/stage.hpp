@@ -71,7 +71,10 @@ class Stage {
   /// Ramps all bursts down now, and cancels those that have not begun. Returns the time at which the surface
   /// will be silent. If the converter does not report its position, this time is an upper limit; if the
   /// converter is gone, it is the time of the loss.
-  virtual std::int64_t silence() = 0;
+  /// `awaits_heard` says that the trial has not ended: it still waits for the report that each interval was
+  /// played (InputKind::heard). No such report comes for an interval that is cancelled, so a fault comes
+  /// instead.
+  virtual std::int64_t silence(bool awaits_heard) = 0;
 
   /// Why the amplifier refused a command; empty if it did not.
   using Refusal = std::optional<Fault>;

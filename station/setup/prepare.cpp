@@ -200,7 +200,7 @@ session::Setup prepare(const RunRequest& request, const std::stop_token& stop) {
         {{}, refused.what(), "use the file with that version for the participant's other sessions"});
   }
   if (problems.empty()) problems = programs::problems_of(setup.protocol);
-  if (problems.empty() && next.too_early) throw TooEarly({{}, next.problem, next.allowed});
+  if (problems.empty() && next.too_early) throw TooEarly({{}, next.problem, next.allowed}, *next.too_early);
   if (next.too_early) problems.push_back({{}, next.problem, next.allowed});
   if (!problems.empty()) throw text::BadInput(problems);
   return setup;

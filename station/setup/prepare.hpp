@@ -6,6 +6,7 @@
 #include <string>
 #include <utility>
 
+#include "station/session/planned_session.hpp"
 #include "station/session/session.hpp"
 #include "station/text/problem.hpp"
 
@@ -40,7 +41,12 @@ struct RunRequest {
 /// last one. RunRequest::early overrules that.
 class TooEarly : public text::BadInput {
  public:
-  explicit TooEarly(text::Problem problem) : BadInput({std::move(problem)}) {}
+  TooEarly(text::Problem problem, session::EarlySession early)
+      : BadInput({std::move(problem)}), early_(std::move(early)) {}
+  const session::EarlySession& early() const { return early_; }
+
+ private:
+  session::EarlySession early_;
 };
 
 /// Loads and checks everything that a session needs, and applies the calibration to the rig. Throws

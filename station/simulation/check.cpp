@@ -78,8 +78,13 @@ Estimate simulate(const Protocol& protocol, const protocol::Visit& visit, std::u
   for (const auto& [start, trials] : rehearsal.blocks) {
     // Repeated practice is listed as one block. Its number of trials is the sum over all attempts.
     if (start.attempt == 0) {
-      estimate.blocks.push_back(
-          {protocol::in_words(protocol, visit), start.name, start.instruction, start.practice, {}});
+      estimate.blocks.push_back({protocol::in_words(protocol, visit),
+                                 protocol.sessions ? visit.session : 0,
+                                 protocol::group_name(protocol, visit),
+                                 start.name,
+                                 start.instruction,
+                                 start.practice,
+                                 {}});
       estimate.trials.push_back(0);
     }
     estimate.trials.back() += static_cast<double>(trials.size());

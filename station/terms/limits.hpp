@@ -25,4 +25,7 @@ inline constexpr std::int64_t kTouchToAnswer_ns = 60'000'000;
 inline constexpr std::int64_t kWatermark_ns = 80'000'000;
 static_assert(kOneTouch_ns < kTouchToAnswer_ns && kTouchToAnswer_ns < kWatermark_ns);
 
+/// Length of the tone that asks for an answer (a response signal on headphones).
+inline constexpr double kSignal_s = 0.05;
+
 }  // namespace turnpoint::terms

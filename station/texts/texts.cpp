@@ -9,7 +9,7 @@ namespace turnpoint::texts {
 
 namespace {
 
-using Texts = std::map<std::string, std::string>;
+using Texts = std::map<std::string, std::string, std::less<>>;
 
 struct Spoken {
   Texts texts;
@@ -27,9 +27,9 @@ void read(const text::Value& table, const std::string& above, Spoken& spoken) {
   }
 }
 
-const std::map<std::string, Spoken>& all() {
+const std::map<std::string, Spoken, std::less<>>& all() {
   static const auto read_once = [] {
-    std::map<std::string, Spoken> all;
+    std::map<std::string, Spoken, std::less<>> all;
     for (const auto& [language, toml] : catalogues)
       read(text::parse_toml(toml, std::string(language) + ".toml"), "", all[language]);
     return all;
@@ -37,7 +37,7 @@ const std::map<std::string, Spoken>& all() {
   return read_once;
 }
 
-const Texts& in(const std::string& language) {
+const Texts& in(std::string_view language) {
   const auto spoken = all().find(language.substr(0, 2));
   return (spoken == all().end() ? all().at("en") : spoken->second).texts;
 }
@@ -50,7 +50,12 @@ std::vector<std::string> languages() {
   return codes;
 }
 
-const Texts& catalogue(const std::string& language) { return all().at(language).texts; }
+const Texts& catalogue(std::string_view language) {
+  const auto spoken = all().find(language);
+  if (spoken == all().end())
+    throw std::logic_error("no texts in the language \"" + std::string(language) + "\"");
+  return spoken->second.texts;
+}
 
 Translation translation(const std::string& language) {
   const auto spoken = all().find(language.substr(0, 2));
@@ -58,11 +63,29 @@ Translation translation(const std::string& language) {
   return spoken->second.read_by_native_speaker ? Translation::read : Translation::unread;
 }
 
-const std::string& text(const std::string& key, const std::string& language) {
+const std::string& text(std::string_view key, std::string_view language) {
   const auto& texts = in(language);
   const auto found = texts.find(key);
-  if (found == texts.end()) throw std::logic_error("no text has the key \"" + key + "\"");
+  if (found == texts.end()) throw std::logic_error("no text has the key \"" + std::string(key) + "\"");
   return found->second;
+}
+
+std::string say(const Phrase& phrase, std::string_view language) {
+  auto said = phrase.key.empty() ? phrase.words : std::string();
+  if (phrase.key.empty()) {
+    for (const auto& value : phrase.values) said += say(value, language);
+    return said;
+  }
+  const auto& pattern = text(phrase.key, language);
+  for (std::size_t i = 0; i < pattern.size(); ++i) {
+    const bool place = pattern[i] == '%' && i + 1 < pattern.size() && pattern[i + 1] >= '1' &&
+                       pattern[i + 1] < '1' + static_cast<int>(phrase.values.size());
+    if (place)
+      said += say(phrase.values[static_cast<std::size_t>(pattern[++i] - '1')], language);
+    else
+      said += pattern[i];
+  }
+  return said;
 }
 
 FaultText fault_text(terms::FaultKind kind, const std::string& language) {

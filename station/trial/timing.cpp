@@ -34,6 +34,13 @@ std::vector<IntervalTimes> interval_times(const protocol::Protocol& protocol, co
   return times;
 }
 
+std::optional<double> tone_signal_s(const protocol::Protocol& protocol, const TrialSpec& spec) {
+  const auto& signal = protocol.timing.signal;
+  if (!spec.signal_s || !signal || signal->by != protocol::ResponseSignal::By::tone) return std::nullopt;
+  const bool at_change = zero_of(protocol, spec) == terms::ResponseZero::change;
+  return *spec.signal_s + (at_change ? interval_times(protocol, spec).back().starts_s.front() : 0);
+}
+
 terms::ResponseZero zero_of(const protocol::Protocol& protocol, const TrialSpec& spec) {
   return spec.strokes ? terms::ResponseZero::interval_off : protocol.timing.response_zero;
 }

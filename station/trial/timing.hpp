@@ -1,4 +1,7 @@
 #pragma once
+#include <optional>
+#include <vector>
+
 #include "station/protocol/protocol.hpp"
 #include "station/trial/director.hpp"
 #include "station/trial/machine.hpp"
@@ -20,5 +23,9 @@ struct IntervalTimes {
   std::vector<double> starts_s;
 };
 std::vector<IntervalTimes> interval_times(const protocol::Protocol& protocol, const TrialSpec& spec);
+
+/// Returns the time from the onset of the last interval to its response signal, if the signal is a tone,
+/// which is part of the stimulus.
+std::optional<double> tone_signal_s(const protocol::Protocol& protocol, const TrialSpec& spec);
 
 }  // namespace turnpoint::trial

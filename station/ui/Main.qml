@@ -21,6 +21,8 @@ Window {
     /// True while the operator's page is locked, until somebody has typed the code.
     property bool locked: false
     required property real pixelsPerMm
+    /// The angle in degrees by which the pages are turned clockwise, because the panel is not mounted upright.
+    property int turned: 0
     property bool leftHanded: false
     readonly property bool asking: start.stage === StartController.Language || start.stage === StartController.Consent
                                    || start.stage === StartController.Code
@@ -78,8 +80,8 @@ Window {
     }
     Theme {
         id: theme
-        width: root.width
-        height: root.height
+        width: panel.width
+        height: panel.height
         pixelsPerMm: root.pixelsPerMm
     }
     Texts {
@@ -93,137 +95,142 @@ Window {
         value: root.start.language
         when: root.asking
     }
-    RunModeFrame {
-        id: frame
-        anchors.fill: parent
-        LayoutMirroring.enabled: texts.mirrored
-        LayoutMirroring.childrenInherit: true
-        visible: root.asking && shown
-        theme: theme
-        texts: texts
-        runMode: root.asking ? root.start.runMode : ""
-    }
-    Item {
-        LayoutMirroring.enabled: texts.mirrored
-        LayoutMirroring.childrenInherit: true
-        anchors { fill: parent; margins: theme.margin; topMargin: frame.band + (frame.shown ? theme.unit : theme.margin) }
-        LanguagePage {
-            objectName: "languagePage"
-            anchors.fill: parent
-            visible: root.start.stage === StartController.Language
-            theme: theme
-            texts: texts
-            armed: !arming.running
-            names: root.start.languageNames
-            onBack: root.back()
-            onChosen: index => root.start.chooseLanguage(index)
-        }
-        ConsentPage {
-            objectName: "consentPage"
-            anchors.fill: parent
-            visible: root.start.stage === StartController.Consent
-            theme: theme
-            texts: texts
-            version: root.start.consentVersion
-            armed: !arming.running
-            onBack: root.back()
-            onAgreed: root.start.consent()
-            onDeclined: root.leave()
-        }
-        CodePage {
-            id: codePage
-            objectName: "codePage"
-            anchors.fill: parent
-            visible: root.start.stage === StartController.Code
-            theme: theme
-            texts: texts
-            leftHanded: root.leftHanded
-            asksHand: true
-            armed: !arming.running
-            onBack: root.back()
-            onHandChosen: left => root.leftHanded = left
-            onEdited: code => codePage.known = root.start.isKnown(code)
-            onAccepted: code => root.start.enterCode(code)
-        }
-    }
-    Loader {
-        id: session
-        anchors.fill: parent
-        visible: root.start.stage === StartController.Session
-        active: root.begun || visible
-        sourceComponent: ParticipantView {
-            objectName: "participantView"
-            bridge: root.bridge
-            pixelsPerMm: root.pixelsPerMm
-            leftHanded: root.leftHanded
-            hasReport: root.report.ready
-            onClosed: root.leave()
-            onReportWanted: root.ask("report")
-            onOperatorWanted: root.ask("view")
-            onArmingWanted: root.ask("arm")
-        }
-    }
-    OperatorGate {
-        id: gate
-        objectName: "gate"
-        anchors.fill: parent
-        visible: false
-        theme: theme
-        lock: root.operatorLock
-        last: root.locked
-        onAbandoned: visible = false
-        onPassed: {
-            visible = false
-            root.grant()
-        }
-    }
+    TurnedPanel {
+        id: panel
+        degrees: root.turned
 
-    // Each of these pages is created when it is first needed, so that the station's first page does not wait
-    // for it.
-    Loader {
-        id: liveView
-        property bool wanted: false
-        anchors.fill: parent
-        active: wanted
-        sourceComponent: LiveView {
-            objectName: "liveView"
-            live: root.live
-            bridge: root.bridge
-            pixelsPerMm: root.pixelsPerMm
-            closable: true
-            onClosed: liveView.wanted = false
+        RunModeFrame {
+            id: frame
+            anchors.fill: parent
+            LayoutMirroring.enabled: texts.mirrored
+            LayoutMirroring.childrenInherit: true
+            visible: root.asking && shown
+            theme: theme
+            texts: texts
+            runMode: root.asking ? root.start.runMode : ""
         }
-        // Closes the operator's view when the session continues, because nothing of that view may be visible
-        // in a trial.
-        Connections {
-            target: root.bridge
-            function onShown() { if (root.participant?.inTrial ?? false) liveView.wanted = false }
+        Item {
+            LayoutMirroring.enabled: texts.mirrored
+            LayoutMirroring.childrenInherit: true
+            anchors { fill: parent; margins: theme.margin; topMargin: frame.band + (frame.shown ? theme.unit : theme.margin) }
+            LanguagePage {
+                objectName: "languagePage"
+                anchors.fill: parent
+                visible: root.start.stage === StartController.Language
+                theme: theme
+                texts: texts
+                armed: !arming.running
+                names: root.start.languageNames
+                onBack: root.back()
+                onChosen: index => root.start.chooseLanguage(index)
+            }
+            ConsentPage {
+                objectName: "consentPage"
+                anchors.fill: parent
+                visible: root.start.stage === StartController.Consent
+                theme: theme
+                texts: texts
+                version: root.start.consentVersion
+                armed: !arming.running
+                onBack: root.back()
+                onAgreed: root.start.consent()
+                onDeclined: root.leave()
+            }
+            CodePage {
+                id: codePage
+                objectName: "codePage"
+                anchors.fill: parent
+                visible: root.start.stage === StartController.Code
+                theme: theme
+                texts: texts
+                leftHanded: root.leftHanded
+                asksHand: true
+                armed: !arming.running
+                onBack: root.back()
+                onHandChosen: left => root.leftHanded = left
+                onEdited: code => codePage.known = root.start.isKnown(code)
+                onAccepted: code => root.start.enterCode(code)
+            }
         }
-    }
-    Loader {
-        id: reportPage
-        property bool wanted: false
-        anchors.fill: parent
-        active: wanted
-        sourceComponent: ReportPage {
-            objectName: "reportPage"
-            report: root.report
-            runMode: root.bridge.page.runMode
-            pixelsPerMm: root.pixelsPerMm
-            onClosed: reportPage.wanted = false
+        Loader {
+            id: session
+            anchors.fill: parent
+            visible: root.start.stage === StartController.Session
+            active: root.begun || visible
+            sourceComponent: ParticipantView {
+                objectName: "participantView"
+                bridge: root.bridge
+                pixelsPerMm: root.pixelsPerMm
+                leftHanded: root.leftHanded
+                hasReport: root.report.ready
+                onClosed: root.leave()
+                onReportWanted: root.ask("report")
+                onOperatorWanted: root.ask("view")
+                onArmingWanted: root.ask("arm")
+            }
         }
-    }
-    Loader {
-        anchors.fill: parent
-        active: root.operating !== null && root.start.stage === StartController.Operator && !root.locked
-        sourceComponent: StationPages {
-            objectName: "stationPages"
-            operating: root.operating
-            studies: root.studies
-            sessions: root.sessions
-            rig: root.rig
-            design: root.design
-            pixelsPerMm: root.pixelsPerMm
+        OperatorGate {
+            id: gate
+            objectName: "gate"
+            anchors.fill: parent
+            visible: false
+            theme: theme
+            lock: root.operatorLock
+            last: root.locked
+            onAbandoned: visible = false
+            onPassed: {
+                visible = false
+                root.grant()
+            }
+        }
+
+        // Each of these pages is created when it is first needed, so that the station's first page does not wait
+        // for it.
+        Loader {
+            id: liveView
+            property bool wanted: false
+            anchors.fill: parent
+            active: wanted
+            sourceComponent: LiveView {
+                objectName: "liveView"
+                live: root.live
+                bridge: root.bridge
+                pixelsPerMm: root.pixelsPerMm
+                closable: true
+                onClosed: liveView.wanted = false
+            }
+            // Closes the operator's view when the session continues, because nothing of that view may be visible
+            // in a trial.
+            Connections {
+                target: root.bridge
+                function onShown() { if (root.participant?.inTrial ?? false) liveView.wanted = false }
+            }
+        }
+        Loader {
+            id: reportPage
+            property bool wanted: false
+            anchors.fill: parent
+            active: wanted
+            sourceComponent: ReportPage {
+                objectName: "reportPage"
+                report: root.report
+                runMode: root.bridge.page.runMode
+                pixelsPerMm: root.pixelsPerMm
+                onClosed: reportPage.wanted = false
+            }
+        }
+        Loader {
+            anchors.fill: parent
+            active: root.operating !== null && root.start.stage === StartController.Operator && !root.locked
+            sourceComponent: StationPages {
+                objectName: "stationPages"
+                operating: root.operating
+                studies: root.studies
+                sessions: root.sessions
+                rig: root.rig
+                design: root.design
+                pixelsPerMm: root.pixelsPerMm
+            }
         }
     }
 }

@@ -43,7 +43,7 @@ std::vector<std::int32_t> captured_frames() {
   std::normal_distribution<double> noise(0, 1000);
   for (std::size_t n = 0; n < played.size(); ++n)
     for (std::size_t c = 0; c < kChannels; ++c) {
-      const double carrier = 1e9 * std::sin(2 * M_PI * carriers_Hz[0] / kRate_Hz * static_cast<double>(n));
+      const double carrier = 1e9 * std::sin(2 * M_PI * turnpoint::terms::kForceCarrier_Hz / kRate_Hz * static_cast<double>(n));
       const double value = c >= 4 ? played[n] : carrier;
       samples[n * kChannels + c] = static_cast<std::int32_t>(value + noise(random));
     }

@@ -384,6 +384,21 @@ class Report(Folder):
         _, out, _ = run(["report", "--db", "lab.sqlite"], self.folder)
         self.assertRegex(out, r"\n  threshold: threshold -?[0-9.]+ \(SD [0-9.]+\), 95 % -?[0-9.]+ to -?[0-9.]+\n")
 
+    def test_an_estimator_is_found_by_a_relative_path(self):
+        self.add_sessions()
+        os.mkdir(os.path.join(self.folder, "programs"))
+        for place in ("mine.py", "programs/mine.py"):
+            shutil.copy(os.path.join(SOURCE, "protocols/programs/right_answers.py"), os.path.join(self.folder, place))
+            status, out, err = run(["report", "--db", "lab.sqlite", "--estimator", f"program:{place},limit_s=60", "--json"], self.folder)
+            self.assertEqual(status, 0, err)
+            document = json.loads(out)
+            share = [e["mean"] for e in document["estimates"] if (e["procedure"], e["parameter"]) == ("right-answers", "proportion right")]
+            self.assertEqual(len(share), 1)
+            self.assertTrue(0 < share[0] <= 1, share)
+            self.assertIn("right-answers", document["facts"]["Estimator"])
+        for wrong, why in (("program:absent.py", "absent.py"), ("program:mine.py,limit_s=0", "limit_s must be above 0"), ("mine.py", "no program")):
+            self.refused_in_one_sentence(["report", "--db", "lab.sqlite", "--estimator", wrong], why)
+
 
 class Readme(Folder):
     def test_the_tour_of_the_readme_runs_as_it_stands(self):
@@ -750,6 +765,10 @@ class Screen(Folder):
             self.refused_in_one_sentence(words, "no screen: no DISPLAY", advice, QT_QPA_PLATFORM=None)
             for option in re.findall(r"--[a-z-]+", advice):
                 self.assertIn(option, self.helps[words[0]])
+
+    def test_a_panel_that_cannot_be_turned_so(self):
+        self.refused_in_one_sentence(["station", "--db", "lab.sqlite"], 'TURNPOINT_ROTATION: "45"; allowed are 0, 90, 180 and 270 degrees',
+                                     QT_QPA_PLATFORM="offscreen", TURNPOINT_ROTATION="45", XDG_RUNTIME_DIR=self.folder)
 
     def test_the_station_opens_its_window(self):
         with self.assertRaises(subprocess.TimeoutExpired):

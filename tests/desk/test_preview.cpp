@@ -59,6 +59,9 @@ TEST_CASE("the chart of friction under a fingertip shows the loaded surface", "[
     return *std::min_element(y.begin(), y.end());
   };
   CHECK(figure.charts.at(1).title == "Friction under a fingertip");
+  const auto german = desk::profile_figure({look}, "de");
+  CHECK(german.charts.at(1).title == "Reibung unter einer Fingerkuppe");
+  CHECK(german.charts.at(0).x.label == "Abstand vom breiten Ende (mm)");
   CHECK(lowest(1) == look.under.lowest_friction);
   const auto& free = look.profile.friction;
   CHECK(lowest(1) > *std::min_element(free.begin(), free.end()) + 0.1);

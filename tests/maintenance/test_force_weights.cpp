@@ -126,7 +126,7 @@ TEST_CASE("a failed reading can be repeated, steps can be left out, and a moving
   CHECK(repeated.steps.size() == 32);
   for (const auto& rest : repeated.residuals) CHECK(std::abs(rest.normal_N) < 1e-9);
   bridges.reads = 0;
-  CHECK_THROWS_WITH(weigh(rig, bridges, kReady, kGiveUp), Catch::Contains("cell b"));
+  CHECK_THROWS_WITH(weigh(rig, bridges, kReady, kGiveUp), Catch::Matchers::ContainsSubstring("cell b"));
   bridges.fails_at = -1;
   const auto some = [](const WeightStep& step) { return step.tare || step.mass_g == 200; };
   CHECK(weigh(rig, bridges, some, kGiveUp).steps.size() == 17);
@@ -134,7 +134,8 @@ TEST_CASE("a failed reading can be repeated, steps can be left out, and a moving
                       rig, bridges, [](const WeightStep& step) { return step.tare; }, kGiveUp),
                   terms::UsageError);
   bridges.creep_N = 5e-3;
-  CHECK_THROWS_WITH(weigh(rig, bridges, kReady, kGiveUp), Catch::Contains("the zero of the cells moved"));
+  CHECK_THROWS_WITH(weigh(rig, bridges, kReady, kGiveUp),
+                    Catch::Matchers::ContainsSubstring("the zero of the cells moved"));
 }
 
 TEST_CASE("a weight that does not agree with the others is named and weighed again",
@@ -161,7 +162,7 @@ TEST_CASE("a weight that does not agree with the others is named and weighed aga
   };
   const auto why = "50 g at 90 mm does not agree with the other weights: " + said;
   if (always) {
-    CHECK_THROWS_WITH(weigh(rig, bridges, asked, kGiveUp), Catch::StartsWith(why));
+    CHECK_THROWS_WITH(weigh(rig, bridges, asked, kGiveUp), Catch::Matchers::StartsWith(why));
   } else {
     const auto made = weigh(rig, bridges, asked, kGiveUp);
     REQUIRE(made.repeated.size() == 1);
@@ -170,7 +171,7 @@ TEST_CASE("a weight that does not agree with the others is named and weighed aga
     for (const auto& rest : made.residuals) CHECK(std::abs(rest.position_mm) < 1e-6);
   }
   REQUIRE(remarks.size() == 1);
-  CHECK_THAT(remarks[0], Catch::StartsWith(why));
+  CHECK_THAT(remarks[0], Catch::Matchers::StartsWith(why));
 }
 
 TEST_CASE("a forgotten string, a swinging weight and a shaken table are refused", "[maintenance][forces]") {
@@ -179,15 +180,16 @@ TEST_CASE("a forgotten string, a swinging weight and a shaken table are refused"
   ExactBridges bridges;
   bridges.room.cells.span_m = rig.surface.length_m;
   bridges.mistake = [](WeightStep& step, int) { step.pull_g = 0; };
-  CHECK_THROWS_WITH(weigh(rig, bridges, kReady, kGiveUp), Catch::Contains("string"));
+  CHECK_THROWS_WITH(weigh(rig, bridges, kReady, kGiveUp), Catch::Matchers::ContainsSubstring("string"));
   bridges.mistake = [](auto&, int) {};
   bridges.reads = 0;
   bridges.noise = [](int read) { return read == 7 ? 1.2e-4 : 1e-5; };
   CHECK_THROWS_WITH(weigh(rig, bridges, kReady, kGiveUp),
-                    Catch::Contains("cell a did not rest: it varied 12 times"));
+                    Catch::Matchers::ContainsSubstring("cell a did not rest: it varied 12 times"));
   bridges.reads = 0;
   bridges.noise = [](int) { return 2.5e-3 * 0.057; };
-  CHECK_THROWS_WITH(weigh(rig, bridges, kReady, kGiveUp), Catch::Contains("are not steady without a weight"));
+  CHECK_THROWS_WITH(weigh(rig, bridges, kReady, kGiveUp),
+                    Catch::Matchers::ContainsSubstring("are not steady without a weight"));
 }
 
 TEST_CASE("the stated uncertainty is that of the places, the masses and the pulley",

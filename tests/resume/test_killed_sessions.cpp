@@ -74,6 +74,7 @@ std::vector<Case> other_tasks() {
              "levels = [180.0, 183.0, 185.0, 188.0, 190.0]\ndraw = \"without-repetition\""}}},
           {"friction-boundary-2d.toml", {{"stop = { trials = 96 }", "stop = { trials = 12 }"}}},
           {"friction-yes-no.toml", {{"stop = { trials = 100 }", "stop = { trials = 12 }"}}},
+          {"friction-detection.toml", {{"repeats = 20", "repeats = 2"}}},
           {"friction-training.toml", {{"stop = { trials = 60 }", "stop = { trials = 8 }"}}, 2, 3},
           {"speed-accuracy.toml",
            {{"[protocol]", "[sessions]\ncount = 2\n\n[protocol]"}, {"repeats = 14", "repeats = 2"}},

@@ -174,13 +174,16 @@ TEST_CASE("invalid values in a rig file are refused, with what is allowed", "[ri
 TEST_CASE("spare channels carry a marker and masking noise", "[rig]") {
   const std::string both =
       "[marker]\nchannel = 1\nkind = \"tone\"\nfrequency_Hz = 5000\nduration_ms = 2\n"
-      "[noise]\nchannel = 3\nrms = 0.05\n\n[limits]";
+      "[noise]\nchannel = 3\nrms = 0.05\nsignal = { frequency_Hz = 1000, amplitude = 0.2 }\n\n[limits]";
   const auto rig = rig::parse(replaced(source(), "[limits]", both), "r.toml");
   REQUIRE(rig.marker);
   CHECK(rig.marker->kind == rig::Marker::Kind::tone);
   CHECK(rig.marker->duration_s == Approx(2e-3));
   REQUIRE(rig.noise);
   CHECK(rig.noise->high_Hz == 8000);
+  REQUIRE(rig.noise->signal);
+  CHECK(rig.noise->signal->frequency_Hz == 1000);
+  CHECK(rig.noise->signal->amplitude == 0.2);
   CHECK(rig::channels(rig) == 4);
   CHECK(rig::channels(rig::load(simulated)) == 2);
 }
@@ -306,6 +309,19 @@ TEST_CASE("a rig gives out trigger codes on the marker channel and on lines, and
   CHECK(contains(with(sync), "the rig captures nothing"));
   CHECK(contains(with("[sync]\nuri = \"gpio:in=A\"\n"), "does not name a line"));
   CHECK(contains(with("[trigger_lines]\nuri = \"gpio:bit1=A\"\n"), "has no line \"bit0\""));
+}
+
+TEST_CASE("a thermometer is of one of two subsystems of the kernel", "[rig]") {
+  const auto with = [](const std::string& plate) {
+    return problems("[limits]", "[temperature]\nplate = \"" + plate +
+                                    "\"\nframe = \"hwmon:lm75@1-0049/temp1\"\n[limits]");
+  };
+  for (const char* good :
+       {"hwmon:lm75/temp1", "iio:tmp117/temp", "iio:tmp117@1-0048/temp", "iio:mlx90614/temp_object"})
+    CHECK(with(good).empty());
+  for (const char* bad :
+       {"hwmon:lm75/temp", "hwmon:lm75", "iio:tmp117", "iio:tmp117/in_temp", "iio:/temp", "lm75/temp1"})
+    CHECK(contains(with(bad), "does not name a temperature sensor"));
 }
 
 TEST_CASE("a device may have more channels than the rig uses, not fewer", "[rig]") {

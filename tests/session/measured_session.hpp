@@ -73,16 +73,24 @@ struct How {
   std::function<void(plant::Setup&)> room = {};  ///< changes the simulated laboratory before the session
 };
 
+/// Asks for a simulated session of a protocol file on a rig with these capture channels.
+inline setup::RunRequest request_in(const TemporaryFolder& folder, const std::string& protocol,
+                                    const std::string& capture = kCells,
+                                    const std::string& observer = "sim") {
+  setup::RunRequest request;
+  request.protocol = protocol;
+  request.rig = with_capture(folder, capture);
+  request.participant = "P01";
+  request.database = folder / "a.sqlite";
+  request.observer = observer;
+  request.seed = 7;
+  return request;
+}
+
 /// Runs a session of a protocol file in a simulated room, in which `sabotage` causes faults.
 inline Ran run(const std::string& protocol, const Sabotage& sabotage, const How& how = {}) {
   TemporaryFolder folder;
-  setup::RunRequest request;
-  request.protocol = protocol;
-  request.rig = with_capture(folder, how.capture);
-  request.participant = "P01";
-  request.database = folder / "a.sqlite";
-  request.observer = how.observer;
-  request.seed = 7;
+  const auto request = request_in(folder, protocol, how.capture, how.observer);
   const auto setup = setup::prepare(request);
   auto room = std::make_unique<session::SimulatedRoom>(setup.rig, how.room);
   Saboteur saboteur;

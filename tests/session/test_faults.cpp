@@ -238,6 +238,19 @@ TEST_CASE("a stimulus that came too late causes a fault page", "[session][live][
   CHECK(mishap.faults.front().fault == FaultKind::stimulus_missed);
 }
 
+TEST_CASE("an answer to a stimulus that a stalled drive has not begun causes a fault page",
+          "[session][live][fault]") {
+  Mishap mishap;
+  mishap.strikes = [&] {
+    mishap.misfortunes.stalled = true;
+    mishap.room.press(0);
+  };
+  mishap.operator_repairs = [&] { mishap.misfortunes.stalled = false; };
+  const auto page = mishap.runs();
+  CHECK(page.fault == FaultKind::stimulus_missed);
+  CHECK(page.detail == "the trial was answered before the drive had begun the stimulus");
+}
+
 TEST_CASE("a limit of the rig is shown on a page; the session ends there, with the reason",
           "[session][live][fault]") {
   Mishap mishap;

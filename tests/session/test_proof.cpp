@@ -10,12 +10,8 @@ using terms::ProofCause;
 
 TEST_CASE("without a pick-up a session runs, and each trial is unproven", "[session][proof]") {
   TemporaryFolder folder;
-  setup::RunRequest request;
-  request.protocol = kSource + "/protocols/demo.toml";
+  auto request = request_in(folder, shipped("demo"));
   request.rig = kSource + "/tests/support/thin_plate.toml";
-  request.participant = "P01";
-  request.database = folder / "a.sqlite";
-  request.observer = "sim";
   session::Inputs inputs;
   const auto summary = session::run(setup::prepare(request), nullptr, inputs);
   for (const auto& block : store::read_session(request.database, summary.session_id).blocks)
@@ -57,6 +53,25 @@ TEST_CASE("a stimulus that the surface did not follow is void, named, and presen
     } else {
       CHECK(trial.outcome == terms::Outcome::answered);
     }
+  }
+  CHECK(ran.summary.answered == 10);
+}
+
+TEST_CASE("a surface that moves before the stimulus makes the trial void, and the cause is named",
+          "[session][proof]") {
+  const auto [um, verdict] =
+      GENERATE(std::pair{0.02, Proof::refused}, std::pair{0.001, Proof::flagged}, std::pair{0.0, Proof::ok});
+  CAPTURE(um);
+  const auto ran = run(shipped("demo"), [um = um](int trial, plant::Plant& plant) {
+    if (trial == 3) plant.add({plant::FaultKind::sounding, plant.frames() + 1, plant::kNever, um, 0});
+  });
+  REQUIRE(ran.trials.size() == (verdict == Proof::refused ? 11 : 10));
+  for (const auto& trial : ran.trials) {
+    const bool sounding = trial.trial_index == 3;
+    CHECK(trial.proof == (sounding ? verdict : Proof::ok));
+    if (sounding && verdict != Proof::ok) CHECK(trial.proof_cause == ProofCause::noisy);
+    CHECK(trial.outcome ==
+          (trial.proof == Proof::refused ? terms::Outcome::fault : terms::Outcome::answered));
   }
   CHECK(ran.summary.answered == 10);
 }

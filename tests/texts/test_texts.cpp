@@ -104,6 +104,18 @@ TEST_CASE(
   CHECK_THROWS_AS(texts::text("no_such_key", "en"), std::logic_error);
 }
 
+TEST_CASE("a phrase is said in a language that is chosen later", "[texts]") {
+  const auto range =
+      texts::Phrase{"check.range", "", {texts::plain("5 %1"), texts::plain("4"), texts::plain("6")}};
+  const texts::Phrase phrase{"check.minutes", "", {range}};
+  CHECK(texts::say(phrase, "en") == "5 %1 (4 to 6) min");
+  CHECK(texts::say(phrase, "de") == "5 %1 (4 bis 6) min");
+  CHECK(texts::say(texts::plain("50 %"), "ja") == "50 %");
+  CHECK(texts::say({"", "", {texts::plain("main: "), {"practice", "", {}}}}, "de") == "main: \u00dcbung");
+  CHECK(texts::say({"check.range", "", {texts::plain("1")}}, "en") == "1 (%2 to %3)");
+  CHECK_THROWS_AS(texts::say({"no_such_key", "", {}}, "en"), std::logic_error);
+}
+
 TEST_CASE("a language is known to be spoken or not, and to have been read by a native speaker or not",
           "[texts]") {
   CHECK(texts::translation("en-GB") == texts::Translation::read);

@@ -211,6 +211,7 @@ Page guided(Page page, bool frozen = false) {
   session::Guidance bars;
   bars.force = session::Guidance::Bar{0.5, 0.36, 0.67};
   bars.speed = session::Guidance::Bar{0.12, 0.22, 0.67};
+  bars.pace_mm_s = 80;
   bars.frozen = frozen;
   page.guidance = bars;
   return page;
@@ -329,6 +330,9 @@ void add_notices(std::vector<Exhibit>& all, const Words& words) {
   Page failed = base(words, PageKind::failed);
   failed.text = "lab.sqlite: database or disk is full";
   all.push_back({"failed", failed});
+  failed.text.clear();
+  failed.early = session::EarlySession{"P07", 2, "2026-11-26", 1, "2026-11-25", 1};
+  all.push_back({"failed-early", failed});
   Page end = base(words, PageKind::end);
   end.title = texts::text("thanks_early", words.language);
   end.resumable = true;
@@ -337,16 +341,13 @@ void add_notices(std::vector<Exhibit>& all, const Words& words) {
   end.title = texts::text("thanks", words.language);
   end.trials_done = end.trials_total = 88;
   all.push_back({"end", end});
-  end.summary = {{"Trials", "88"},
-                 {"Answered", "86"},
-                 {"Too late", "2"},
-                 {"Too early", "0"},
-                 {"Catch trials right", "5 of 5"},
-                 {"PSE", "-1.2 mm (SD 0.6)"},
-                 {"Spread", "6.4 mm (SD 0.9)"},
-                 {"Median response time", "1.31 s"},
-                 {"Underruns", "0"},
-                 {"Duration", "14 min 20 s"}};
+  const auto add = [&end](const char* key, const char* value) {
+    end.summary.push_back({{key, "", {}}, value});
+  };
+  add("operator.trials", "88");
+  add("report.too_late", "2");
+  add("report.right", "81.4 %");
+  end.summary.push_back({{"", "main, ", {{"report.threshold", "", {}}}}, "-1.2 mm (SD 0.6)"});
   all.push_back({"end-operator", end});
 }
 

@@ -1,6 +1,7 @@
 #include "tests/ui/scripted_session.hpp"
 
 #include <chrono>
+#include <cmath>
 
 #include "tests/ui/gallery.hpp"
 
@@ -50,6 +51,12 @@ void ScriptedSession::setKernelLead(double ms) {
   bridge_.set_kernel_time([lead_ns](double x, double y, std::int64_t seen_ns) -> std::optional<std::int64_t> {
     if (x < 0 || x > 1 || y < 0 || y > 1) return std::nullopt;
     return seen_ns - lead_ns;
+  });
+}
+
+void ScriptedSession::setKernelTouch(double x, double y) {
+  bridge_.set_kernel_time([=](double at_x, double at_y, std::int64_t seen_ns) {
+    return std::hypot(at_x - x, at_y - y) < 0.02 ? std::optional(seen_ns) : std::nullopt;
   });
 }
 

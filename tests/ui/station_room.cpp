@@ -14,8 +14,10 @@
 #include "station/calibration/apply.hpp"
 #include "station/maintenance/calibrate.hpp"
 #include "station/maintenance/panel_latency.hpp"
+#include "station/session/planned_session.hpp"
 #include "station/setup/prepare.hpp"
 #include "station/store/export.hpp"
+#include "station/store/session_log.hpp"
 #include "tests/support/child.hpp"
 
 namespace turnpoint::ui {
@@ -109,6 +111,18 @@ void StationRoom::plugIn() {
                         QFile::ReadOwner | QFile::WriteOwner | QFile::ExeOwner);
 }
 
+void StationRoom::planSessions() {
+  {
+    std::ofstream file(path("protocols/short.toml"), std::ios::app);
+    file << "\n[sessions]\ncount = 2\nmin_days = 1\n";
+  }
+  records::SessionStart start;
+  start.participant = "T1", start.protocol_id = "short", start.planned_session = 1;
+  start.run_mode = terms::RunMode::pilot;
+  start.station_id = session::station_id(), start.started_local = session::local_time();
+  store::SessionLog::begin(path("lab.sqlite"), start, {}).finish(records::SessionStatus::completed, "");
+}
+
 QString StationRoom::askedUdisks() const {
   QFile file(folder_->filePath("asked"));
   return file.open(QIODevice::ReadOnly) ? QString::fromUtf8(file.readAll()).trimmed() : QString();
@@ -175,6 +189,10 @@ void StationRoom::addCells() {
   file.write(
       "\n[capture]\nuri = \"sim:\"\nchannels = 8\npickups = [5, 6]\nreference = 0\nexcitation_channel = 3\n"
       "bridges = [1, 2, 3]\n");
+}
+
+void StationRoom::pretendPanel(CalibrationGuide* guide) {
+  guide->open_panel_with([](LatencyController&, const rig::Rig&) {});
 }
 
 void StationRoom::pressed(double ago_ms) {

@@ -48,6 +48,8 @@ class StationRoom : public QObject {
   Q_INVOKABLE void reopenLocked(const QString& code);
   /// Ends the program, deletes the protocol, and starts the program again.
   Q_INVOKABLE void reopenEmpty(const QString& code);
+  /// Lets the latency of the touch panel be measured without a panel and without button lines.
+  Q_INVOKABLE void pretendPanel(turnpoint::ui::CalibrationGuide* guide);
   Q_INVOKABLE void close();
   Q_INVOKABLE void addSecondScreen();
   /// Plugs in a USB stick "Test, 16 GB", which is simulated by folders. It is not mounted yet.
@@ -63,6 +65,10 @@ class StationRoom : public QObject {
   Q_INVOKABLE void releaseKey(int key);
   /// Writes a protocol file with two mistakes into the folder of protocols.
   Q_INVOKABLE void addMistaken();
+
+  /// Plans two sessions for each participant, with a day between them, and stores that T1 had the first one
+  /// today.
+  Q_INVOKABLE void planSessions();
 
   /// Adds simulated pick-ups and force cells to the rig.
   Q_INVOKABLE void addCells();

@@ -90,7 +90,7 @@ Item {
             liveView.visible = false
             operating.select(indexOf("demo"))
             tryCompare(operating, "checking", false, 20000)
-            verify(operating.facts.some(fact => fact.label === "Trials" && fact.value.startsWith("10")))
+            verify(operating.facts.some(fact => fact.label.key === "operator.trials" && fact.value.startsWith("10")))
             verify(operating.cues.length > 0)
             compare(operating.mayBegin, true)
             verify(says(page.item, "Unwanted cues"))
@@ -100,9 +100,10 @@ Item {
             tap(page.item, "live")
             // The simulated rig has no measured friction, so choosing a live session is refused at once, with
             // that reason.
-            tryVerify(() => operating.problems.length > 0, 20000)
+            tryVerify(() => operating.notLive.length > 0, 20000)
             verify(says(page.item, "Begin LIVE session"))
-            compare(operating.problems[0], "Live is not possible: the rig uses the illustrative friction curve, which was not measured")
+            compare(operating.notLive[0], "the rig uses the illustrative friction curve, which was not measured")
+            verify(says(page.item, "Live is not possible: " + operating.notLive[0]))
             compare(operating.mayBegin, false)
             tap(page.item, "begin")
             compare(desk.chosen, "")
@@ -110,7 +111,7 @@ Item {
             compare(operating.mayBegin, false)
             operating.enterParticipant("")
             tap(page.item, "pilot")
-            compare(operating.problems, [])
+            compare(operating.notLive, [])
             compare(operating.mayBegin, true)
 
             tap(page.item, "language1")

@@ -297,6 +297,49 @@ Item {
             compare(room.filesIn(".").filter(name => name.includes("boundaries-")), [])
         }
 
+        function test_while_a_tone_of_a_guided_calibration_plays_the_pick_ups_are_read() {
+            room.addCells()
+            goTo("rig")
+            const guide = find(room.screen, "rigPage").rig.guide
+            tap("guideTab")
+            tap("guide-response")
+            compare(guide.readings, [])
+            tap("guidePlay")
+            tryVerify(() => guide.readings.length === 2, 20000)
+            verify(guide.playing)
+            verify(shown("guideLive"))
+            verify(says("Pick-up on channel 5: ") && says("% of full scale"))
+            tap("guidePlay")                          // stops the tone
+            tryVerify(() => !guide.playing, 20000)
+            compare(guide.readings.length, 2)         // the last reading stays until the next point
+            tap("guideNext")
+            compare(guide.readings, [])
+        }
+        function test_a_rig_without_real_buttons_says_why_the_panel_cannot_be_measured() {
+            goTo("rig")
+            tap("guideTab")
+            for (const reference of ["panel_button", "panel_photodiode"]) {
+                tap("guide-" + reference)
+                tryVerify(() => says("they must be gpio:NAME=LINE"))
+            }
+        }
+        function test_the_latency_of_the_panel_is_measured_on_a_page_of_its_own() {
+            goTo("rig")
+            const guide = find(room.screen, "rigPage").rig.guide
+            room.pretendPanel(guide)
+            tap("guideTab")
+            tap("guide-panel_photodiode")
+            appears("latencyField")
+            verify(says("Fix the photodiode on the square at the left"))
+            tap("latencyLeave")
+            compare(guide.latency, null)
+            tryVerify(() => find(room.screen, "latencyField") === null)
+            tap("guide-panel_button")
+            appears("latencyField")
+            tap("bar-run")                            // leaving the page frees the button lines
+            tryCompare(guide, "latency", null)
+        }
+
         function test_weighing_can_be_stopped_and_writes_nothing_then() {
             room.addCells()
             goTo("rig")

@@ -31,6 +31,7 @@ Rectangle {
             color: root.foreground
         }
         PlainText {
+            readAloud: false
             width: parent.width
             text: root.text
             color: root.foreground

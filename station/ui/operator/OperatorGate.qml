@@ -33,7 +33,7 @@ Rectangle {
     }
 
     Texts { id: texts; language: OperatorScreen.language }
-    MouseArea { anchors.fill: parent }
+    Shield {}
     Column {
         anchors.centerIn: parent
         spacing: 0.9 * root.theme.unit
@@ -70,6 +70,7 @@ Rectangle {
                     primary: false
                     text: modelData === "⌫" ? "" : modelData
                     glyph: modelData === "⌫" ? "backspace" : ""
+                    label: modelData === "⌫" ? texts.text("erase") : modelData
                     onActivated: root.type(modelData)
                 }
             }

@@ -17,6 +17,7 @@ Rectangle {
         pixelsPerMm: root.pixelsPerMm
         dense: true
     }
+    Texts { id: texts; language: "en" }
 
     Row {
         id: tabs
@@ -76,6 +77,8 @@ Rectangle {
         }
         Item {
             id: track
+            Accessible.role: Accessible.Slider
+            Accessible.name: name.text
             anchors { left: name.right; right: parent.right; verticalCenter: parent.verticalCenter }
             height: parent.height
             Rectangle {
@@ -197,8 +200,8 @@ Rectangle {
                 id: sheet
                 width: scroll.width
                 spacing: look.unit
-                FactTable { width: parent.width; theme: look; heading: "Plan"; facts: root.controller.facts; labelWidth: 0.32 * width }
-                FactTable { width: parent.width; theme: look; heading: "Cues"; facts: root.controller.cues; labelWidth: 0.5 * width }
+                FactTable { width: parent.width; theme: look; texts: texts; heading: "Plan"; facts: root.controller.facts; labelShare: 0.32 }
+                FactTable { width: parent.width; theme: look; texts: texts; heading: "Cues"; facts: root.controller.cues; labelShare: 0.5 }
             }
         }
         ScrollCue { theme: look; place: scroll }

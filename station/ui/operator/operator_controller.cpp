@@ -9,6 +9,7 @@
 #include "station/setup/prepare.hpp"
 #include "station/setup/resume.hpp"
 #include "station/ui/operator/facts.hpp"
+#include "station/ui/shared/early_session.hpp"
 
 namespace turnpoint::ui {
 
@@ -25,7 +26,7 @@ OperatorController::~OperatorController() = default;
 void OperatorController::refresh() {
   armed_ = false;
   participant_.clear();
-  too_early_.clear();
+  too_early_.reset();
   protocols_ = desk::list_studies(request_.protocols, request_.database);
   try {
     participants_ = to_list(desk::known_participants(request_.database));
@@ -139,7 +140,6 @@ void OperatorController::check_live() {
 }
 
 void OperatorController::refuse_live(std::vector<std::string> reasons) {
-  for (auto& reason : reasons) reason.insert(0, "Live is not possible: ");
   not_live_ = std::move(reasons);
   stay();
 }
@@ -179,12 +179,12 @@ void OperatorController::begin() { prepare(""); }
 
 void OperatorController::beginEarly(const QString& reason) {
   const auto why = reason.trimmed().toStdString();
-  if (!too_early_.empty() && !why.empty()) prepare(why);
+  if (too_early_ && !why.empty()) prepare(why);
 }
 
 void OperatorController::forget_refusal() {
   refused_.clear();
-  too_early_.clear();
+  too_early_.reset();
 }
 
 void OperatorController::prepare(const std::string& early) {
@@ -208,8 +208,8 @@ void OperatorController::prepare(const std::string& early) {
             Q_EMIT chosen(session);
           };
         } catch (const setup::TooEarly& refused) {
-          return [this, why = refused.problems().front().what] {
-            too_early_ = why;
+          return [this, early = refused.early()] {
+            too_early_ = early;
             stay();
           };
         }
@@ -256,17 +256,16 @@ QVariantList OperatorController::protocols() const {
 }
 
 QVariantList OperatorController::facts() const { return to_list(words_.facts); }
-QStringList OperatorController::problems() const {
-  return to_list(words_.problems) + to_list(not_live_) + to_list(refused_);
-}
+QStringList OperatorController::problems() const { return to_list(words_.problems) + to_list(refused_); }
+QStringList OperatorController::not_live() const { return to_list(not_live_); }
 QStringList OperatorController::warnings() const { return to_list(words_.warnings); }
+
+QVariantMap OperatorController::too_early() const { return too_early_ ? to_map(*too_early_) : QVariantMap(); }
 
 QVariantList OperatorController::cues() const {
   QVariantList list;
   for (const auto& cue : words_.cues)
-    list += QVariantMap{{"name", QString::fromStdString(cue.name)},
-                        {"says", QString::fromStdString(cue.says)},
-                        {"leaks", cue.leaks}};
+    list += QVariantMap{{"name", to_variant(cue.name)}, {"says", to_variant(cue.says)}, {"leaks", cue.leaks}};
   return list;
 }
 
@@ -283,13 +282,12 @@ QVariantMap OperatorController::backup() const {
   return {{"state", state}, {"hours", backup_.hours}};
 }
 
-QString OperatorController::interrupted() const {
+QVariantMap OperatorController::interrupted() const {
   if (!interrupted_) return {};
-  return QStringLiteral("%1, %2: %3 trials stored, interrupted %4 ago")
-      .arg(QString::fromStdString(interrupted_->participant),
-           QString::fromStdString(interrupted_->protocol_id))
-      .arg(interrupted_->trials)
-      .arg(QString::fromStdString(desk::age_in_words(interrupted_->age_s)));
+  return {{"participant", QString::fromStdString(interrupted_->participant)},
+          {"protocol", QString::fromStdString(interrupted_->protocol_id)},
+          {"trials", interrupted_->trials},
+          {"ageS", interrupted_->age_s}};
 }
 
 }  // namespace turnpoint::ui

@@ -67,6 +67,7 @@ Item {
             color: down ? root.theme.raised : root.theme.action
             border { color: root.theme.action; width: 3 * root.theme.stroke }
             PlainText {
+                readAloud: false
                 anchors { left: parent.left; right: parent.right; top: parent.top; margins: root.theme.unit * (root.columns > 3 ? 0.6 : 1) }
                 height: root.labelHeight
                 text: root.answers[button.index] ?? ""
@@ -77,6 +78,7 @@ Item {
                 verticalAlignment: Text.AlignVCenter
             }
             PlainText {
+                readAloud: false
                 visible: root.captioned
                 anchors { left: parent.left; right: parent.right; bottom: parent.bottom; margins: 0.6 * root.theme.unit }
                 height: root.labelHeight

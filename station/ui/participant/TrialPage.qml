@@ -2,8 +2,8 @@ import QtQuick
 import Turnpoint
 
 // Everything that a trial shows, in a single layout: the surface at the top, the question in the middle, the
-// answers below. The phases of a trial fill or empty these three places. Nothing is animated, so nothing
-// moves while a stimulus runs.
+// answers below. The phases of a trial fill or empty these three places. Nothing moves while a stimulus runs, unless
+// the protocol asks for guidance during stimuli.
 Item {
     id: root
     required property Theme theme
@@ -30,7 +30,7 @@ Item {
         id: surface
         visible: !root.counted && !root.page.answerNow && height > 12 * root.theme.unit && (root.cue || root.stimulus || root.page.kind === PageModel.Response)
         anchors { left: parent.left; right: parent.right; top: parent.top }
-        height: Math.max(0, Math.min(0.46 * parent.height, parent.height - answers.height - bars.height - (bars.visible ? 5.5 : 10) * root.theme.unit))
+        height: Math.max(0, Math.min(0.46 * parent.height, parent.height - answers.height - bars.height - pacer.height - (pacer.visible ? 6.6 : bars.visible ? 5.5 : 10) * root.theme.unit))
         lengthMm: root.page.lengthMm
         wideHalfWidthMm: root.page.wideHalfWidthMm
         narrowHalfWidthMm: root.page.narrowHalfWidthMm
@@ -78,7 +78,7 @@ Item {
         id: bars
         objectName: "bars"
         visible: root.page.guided && !root.page.answerNow && !root.feedback && !root.confides
-        anchors { left: parent.left; right: parent.right; bottom: answers.top; bottomMargin: visible ? root.theme.unit : 0 }
+        anchors { left: parent.left; right: parent.right; bottom: pacer.top; bottomMargin: visible ? root.theme.unit : 0 }
         height: visible ? Math.max(force.implicitHeight, speed.implicitHeight) : 0
         spacing: 3 * root.theme.unit
         readonly property int count: (force.visible ? 1 : 0) + (speed.visible ? 1 : 0)
@@ -100,6 +100,20 @@ Item {
             bar: root.page.speedBar
             frozen: root.page.barsFrozen
         }
+    }
+
+    // The speed that is asked for. It does not move while an answer is awaited either, so that it disturbs nobody.
+    Pacer {
+        id: pacer
+        objectName: "pacer"
+        // On a small panel the question, the answers and the dots of the intervals come first.
+        readonly property bool fits: root.height - answers.height - bars.height - implicitHeight >= (root.counted ? 19.6 : 6.6) * root.theme.unit
+        visible: bars.visible && root.page.paceMmPerS > 0 && fits
+        anchors { left: parent.left; right: parent.right; bottom: answers.top; bottomMargin: visible ? root.theme.unit : 0 }
+        height: visible ? implicitHeight : 0
+        theme: root.theme
+        speedMmPerS: root.page.paceMmPerS
+        running: visible && !root.page.barsFrozen && !root.asks
     }
 
     // The response signal: a band over the whole width, dark and large enough to be noticed while looking elsewhere.

@@ -7,6 +7,7 @@
 #include "station/desk/report_pages.hpp"
 #include "station/setup/open_touch.hpp"
 #include "station/system/clocks.hpp"
+#include "station/texts/texts.hpp"
 
 namespace turnpoint::ui {
 
@@ -54,9 +55,10 @@ void SessionRunner::watch(QQuickWindow* window) {
   frames_.follow(window, window->screen() != nullptr ? window->screen()->refreshRate() : 0);
 }
 
-void SessionRunner::begin(session::Setup setup) {
+void SessionRunner::begin(session::Setup setup, const std::string& language) {
   if (thread_.joinable()) thread_.join();
   setup_ = std::move(setup);
+  language_ = language;
   inputs_.drain();
   summary_.reset();
   failure_ = nullptr;
@@ -69,8 +71,10 @@ void SessionRunner::begin(session::Setup setup) {
   empty.language = setup_.language;
   empty.run_mode = store::name(setup_.run_mode);
   bridge_.show(empty);
-  view_ = std::make_unique<desk::LiveView>(setup_.protocol, setup_.rig,
-                                           [this](desk::LiveState state) { live_.take(std::move(state)); });
+  live_.take(std::optional<desk::FingerGauges>{});
+  view_ = std::make_unique<desk::LiveView>(
+      setup_.protocol, setup_.rig, [this](desk::LiveState state) { live_.take(std::move(state)); }, language_,
+      [this](desk::FingerGauges gauges) { live_.take(std::optional(std::move(gauges))); });
   inputs_.page_alive(system::monotonic_ns());
   life_.start(kLife_ms);
   thread_ = std::jthread([this] { run(); });
@@ -87,11 +91,11 @@ void SessionRunner::run() {
   over_ = true;
   try {
     if (summary_ && summary_->trials > 0)
-      report_.take(desk::report_pages(summary_->database, summary_->session_id));
+      report_.take(desk::report_pages(summary_->database, summary_->session_id, language_));
   } catch (const std::exception& error) {
     // The session is complete and stored, even if its report cannot be made.
     desk::ReportPages pages;
-    pages.title = "No report";
+    pages.title = texts::text("report.none", language_);
     pages.statements = {error.what()};
     report_.take(pages);
   }
@@ -123,6 +127,8 @@ void SessionRunner::show_failure() {
   page.run_mode = store::name(setup_.run_mode);
   try {
     std::rethrow_exception(failure_);
+  } catch (const session::TooEarly& refused) {
+    page.early = refused.early();
   } catch (const std::exception& error) {
     page.text = error.what();
   }

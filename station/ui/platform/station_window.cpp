@@ -53,10 +53,11 @@ bool is_known(const std::string& database, const QString& code) {
 }
 
 /// Keeps the operator's choices of language, theme and text size in a file beside the database.
-void keep_screen_beside(QQmlEngine& engine, const std::string& database) {
+OperatorScreen* keep_screen_beside(QQmlEngine& engine, const std::string& database) {
   auto* screen = engine.singletonInstance<OperatorScreen*>(qmlTypeId("Turnpoint", 1, 0, "OperatorScreen"));
   if (screen == nullptr) throw std::logic_error("the module Turnpoint has no OperatorScreen");
   screen->keep_in(QString::fromStdString(std::filesystem::absolute(database).parent_path() / "screen.ini"));
+  return screen;
 }
 
 }  // namespace
@@ -90,9 +91,10 @@ StationWindow::StationWindow(const Place& place, const Operator& allowed, const 
                         {"operatorLock", QVariant::fromValue(&lock_)},
                         {"locked", allowed.locked},
                         {"pixelsPerMm", place.pixels_per_mm},
+                        {"turned", place.rotation_deg},
                         {"width", place.size.width()},
                         {"height", place.size.height()}});
-  keep_screen_beside(engine_, database);
+  look_ = keep_screen_beside(engine_, database);
   tell_first_page(*window_);
   runner_.watch(window_);
   if (place.bare_panel) window_->showFullScreen();
@@ -132,7 +134,7 @@ void StationWindow::begin() {
   setup_.participant = start_.participant().toStdString();
   if (!start_.language().isEmpty()) setup_.language = start_.language().toStdString();
   Q_EMIT beginning();
-  runner_.begin(setup_);
+  runner_.begin(setup_, look_->language().toStdString());
   if (arm_) runner_.bridge().arm();
 }
 
