@@ -8,7 +8,7 @@ Item {
     width: 1280
     height: 800
 
-    TestCase {
+    PageTest {
         name: "Design"
         when: windowShown
         property int taps: 0
@@ -19,23 +19,6 @@ Item {
         }
         function cleanup() { room.close() }
 
-        function find(parent, name) {
-            for (let i = 0; parent && i < parent.children.length; ++i) {
-                const child = parent.children[i]
-                if (!child.visible) continue
-                const found = child.objectName === name ? child : find(child, name)
-                if (found) return found
-            }
-            return null
-        }
-        function says(wanted, parent = room.screen) {
-            for (let i = 0; i < parent.children.length; ++i) {
-                const child = parent.children[i]
-                if (!child.visible) continue
-                if ((child.text ?? "").toString().includes(wanted) || says(wanted, child)) return true
-            }
-            return false
-        }
         function shown(name) { return find(room.screen, name) !== null }
         function ready(name) {
             const item = find(room.screen, name)
@@ -188,7 +171,7 @@ Item {
             room.releaseKey(Qt.Key_A)
             tap("side-check")
             tryVerify(() => designPage().design.verdict === "bad", 5000)
-            verify(says("not valid TOML"))
+            verify(says(room.screen, "not valid TOML"))
             tap("undo")
             tryVerify(() => designPage().design.verdict !== "bad", 5000)
         }
@@ -205,7 +188,7 @@ Item {
             tap("designRemark0")
             appears(field("deadline_s"))
             tryVerify(() => find(room.screen, field("deadline_s")).pointedAt, 5000)
-            verify(says("✗ ", find(room.screen, field("deadline_s"))))
+            verify(says(find(room.screen, field("deadline_s")), "✗ "))
             tapField("deadline_s")
             type("2.5")
             tryVerify(() => !shown("designRemark0") || designPage().design.verdict !== "bad", 20000)
@@ -217,7 +200,7 @@ Item {
             tapField("trials")
             keys(".5")
             tap("keepEntry")
-            verify(says("a whole number"))
+            verify(says(room.screen, "a whole number"))
             tap("cancelEntry")
             compare(valueOf("trials"), "6")
         }
@@ -227,7 +210,7 @@ Item {
             tap("newStudy")
             tap("goal-boundary")
             type("short")
-            verify(says("short exists already"))
+            verify(says(room.screen, "short exists already"))
             erase(5)
             type("a.b")
             verify(shown("keepEntry"))
@@ -299,15 +282,15 @@ Item {
             const view = appears("previewView")
             const pages = designPage().design.pages
             compare(pages.languages, ["en", "de"])
-            tryVerify(() => says("In which interval was it more slippery?", view))
+            tryVerify(() => says(view, "In which interval was it more slippery?"))
             tap("pageLanguage-de")
-            tryVerify(() => says("In welchem Durchgang war es glatter?", view))
-            verify(!says("In which interval", view))
+            tryVerify(() => says(view, "In welchem Durchgang war es glatter?"))
+            verify(!says(view, "In which interval"))
             tap("section-question")
             tapField("question.de")
             erase(1)
             type(" jetzt?")
-            tryVerify(() => says("In welchem Durchgang war es glatter jetzt?", view))
+            tryVerify(() => says(view, "In welchem Durchgang war es glatter jetzt?"))
             tap("page-next")
             tryVerify(() => view.page.kind === PageModel.Cue)
             compare([view.width, view.height], [1280, 800])
@@ -323,7 +306,7 @@ Item {
             tapField("deadline_s")
             erase(3)
             tap("keepEntry")
-            tryVerify(() => says("These pages are from before."))
+            tryVerify(() => says(room.screen, "These pages are from before."))
             verify(view.visible)
         }
 
@@ -364,7 +347,7 @@ Item {
             tap("section-scenes")
             const scene = designPage().design.groups[0].name
             tap("feel-" + scene)
-            tryVerify(() => says("there is nothing to feel: 1.5 s, "), 20000)
+            tryVerify(() => says(room.screen, "there is nothing to feel: 1.5 s, "), 20000)
             compare(designPage().design.feeling.playing, "")
             verify(designPage().design.feeling.tones > 0 && designPage().design.feeling.peakPercent > 0)
         }

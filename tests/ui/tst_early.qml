@@ -23,7 +23,7 @@ Item {
     }
     Texts { id: words; language: "en" }
 
-    TestCase {
+    PageTest {
         name: "Early"
         when: windowShown
 
@@ -37,16 +37,6 @@ Item {
             OperatorScreen.language = "en"
             OperatorScreen.textPercent = 100
         }
-        function find(parent, name) {
-            for (let i = 0; i < parent.children.length; ++i) {
-                const child = parent.children[i]
-                if (!child.visible) continue
-                if (child.objectName === name) return child
-                const found = find(child, name)
-                if (found) return found
-            }
-            return null
-        }
         function tap(name) {
             let button = null
             tryVerify(() => (button = find(page.item, name)) !== null, 5000, name)
@@ -57,16 +47,6 @@ Item {
             mousePress(button)
             tryVerify(() => find(page.item, "keepEntry") !== null, 3000)
             mouseRelease(find(page.item, "early"))
-        }
-        function shown(parent) {
-            let texts = []
-            for (let i = 0; i < parent.children.length; ++i) {
-                const child = parent.children[i]
-                if (!child.visible) continue
-                if (typeof child.text === "string") texts.push(child.text.replace(/\u2060/g, ""))
-                texts = texts.concat(shown(child))
-            }
-            return texts
         }
         function refuse(panel, language) {
             stage.width = panel.width
@@ -107,9 +87,9 @@ Item {
             words.language = row.tag
             const said = words.tooEarly({ participant: "P01", session: 2, from: desk.tomorrow(), last: 1, lastDay: desk.today(), minDays: 1 })
                 .replace(/\u2060/g, "")
-            verify(shown(page.item).includes(said), shown(page.item).join("\n"))
+            verify(texts(page.item).includes(said), texts(page.item).join("\n"))
             hold("beginEarly")
-            verify(shown(find(page.item, "early")).includes(said))
+            verify(texts(find(page.item, "early")).includes(said))
         }
 
         function test_the_refusal_and_its_dialog_fit_on_each_panel_data() {

@@ -27,7 +27,7 @@ Item {
 
     Texts { id: words; language: "en" }
 
-    TestCase {
+    PageTest {
         name: "Operator"
         when: windowShown
 
@@ -35,16 +35,6 @@ Item {
 
         function initTestCase() { script.bridge.watch(stage.Window.window) }
 
-        function find(parent, name) {
-            for (let i = 0; i < parent.children.length; ++i) {
-                const child = parent.children[i]
-                if (!child.visible) continue
-                if (child.objectName === name) return child
-                const found = find(child, name)
-                if (found) return found
-            }
-            return null
-        }
 
         function tap(parent, name) {
             let button = null
@@ -72,14 +62,6 @@ Item {
             verify(told({ state: "none", hours: 0 }) !== told({ state: "ahead", hours: 0 }))
         }
 
-        function says(parent, wanted) {
-            for (let i = 0; i < parent.children.length; ++i) {
-                const child = parent.children[i]
-                if (!child.visible) continue
-                if ((child.text ?? "").toString().includes(wanted) || says(child, wanted)) return true
-            }
-            return false
-        }
 
         function indexOf(id) {
             return operating.protocols.findIndex(protocol => protocol.id === id)

@@ -48,7 +48,7 @@ Item {
         LatencyPage { controller: desk.latency; pixelsPerMm: 5.9 }
     }
 
-    TestCase {
+    RoomTest {
         name: "ScreenReader"
         when: windowShown
 
@@ -59,21 +59,6 @@ Item {
             view.visible = false
             control.visible = false
             page.sourceComponent = undefined
-        }
-        function find(parent, name) {
-            for (let i = 0; parent && i < parent.children.length; ++i) {
-                const child = parent.children[i]
-                if (!child.visible) continue
-                const found = child.objectName === name ? child : find(child, name)
-                if (found) return found
-            }
-            return null
-        }
-        function tap(name) {
-            let button = null
-            tryVerify(() => (button = find(room.screen, name)) !== null && button.enabled && button.armed !== false, 20000, name)
-            wait(20)
-            mouseClick(button, button.width / 2, button.height / 2)
         }
         function complete(place) {
             wait(50)

@@ -17,7 +17,7 @@ Item {
         pixelsPerMm: 5.2
     }
 
-    TestCase {
+    RoomTest {
         name: "Station"
         when: windowShown
 
@@ -26,35 +26,6 @@ Item {
 
         function cleanup() { room.close() }
 
-        function find(parent, name) {
-            for (let i = 0; parent && i < parent.children.length; ++i) {
-                const child = parent.children[i]
-                if (!child.visible) continue
-                const found = child.objectName === name ? child : find(child, name)
-                if (found) return found
-            }
-            return null
-        }
-        function says(parent, wanted) {
-            for (let i = 0; i < parent.children.length; ++i) {
-                const child = parent.children[i]
-                if (!child.visible) continue
-                if ((child.text ?? "").toString().includes(wanted) || says(child, wanted)) return true
-            }
-            return false
-        }
-        function shown(name, parent = room.screen) { return find(parent, name) !== null }
-        function appears(name, parent = room.screen) {
-            tryVerify(() => shown(name, parent), 20000, name)
-            wait(60)
-            // Wait until the page accepts taps, which it does only after it has been shown for a while.
-            tryVerify(() => shown(name, parent) && find(parent, name).armed !== false, 5000, name + " reacts")
-            return find(parent, name)
-        }
-        function tap(name, parent = room.screen) {
-            const button = appears(name, parent)
-            mouseClick(button, button.width / 2, button.height / 2)
-        }
         function hold(name, ms, parent = room.screen) {
             const button = appears(name, parent)
             mousePress(button, button.width / 2, button.height / 2)

@@ -20,7 +20,7 @@ Item {
     }
     SignalSpy { id: told; target: script.bridge; signalName: "shown" }
 
-    TestCase {
+    RoomTest {
         name: "Words"
         when: windowShown
 
@@ -29,31 +29,6 @@ Item {
         function init() { room.open("1234") }
         function cleanup() { room.close() }
 
-        function find(parent, name) {
-            for (let i = 0; parent && i < parent.children.length; ++i) {
-                const child = parent.children[i]
-                if (!child.visible) continue
-                const found = child.objectName === name ? child : find(child, name)
-                if (found) return found
-            }
-            return null
-        }
-        function tap(name) {
-            let button = null
-            tryVerify(() => (button = find(room.screen, name)) !== null && button.enabled && button.armed !== false, 20000, name)
-            wait(20)
-            mouseClick(button, button.width / 2, button.height / 2)
-        }
-        function shown(parent = room.screen) {
-            let texts = []
-            for (let i = 0; i < parent.children.length; ++i) {
-                const child = parent.children[i]
-                if (!child.visible) continue
-                if (typeof child.text === "string") texts.push(child.text.replace(/\u2060/g, "").trim())
-                texts = texts.concat(shown(child))
-            }
-            return texts
-        }
         /// Parts of the pages that stay as they are: the program's name, names of languages, names from the files of
         /// the protocol and the rig, times in minutes, and words that other languages share with English.
         function isName(text, language) {
@@ -74,11 +49,11 @@ Item {
             tap("bar-" + place)
             tryVerify(ready, 20000)
             wait(50)
-            const english = shown()
+            const english = texts(room.screen)
             for (const language of languages) {
                 room.look.language = language
                 wait(50)
-                for (const text of untranslated(english, shown(), messages(), language)) faults.push(language + ": " + text)
+                for (const text of untranslated(english, texts(room.screen), messages(), language)) faults.push(language + ": " + text)
             }
             return faults.join("\n")
         }
@@ -87,8 +62,8 @@ Item {
             const problems = () => room.operating.warnings.concat(room.operating.problems)
             compare(englishOn("run", () => !room.operating.checking && room.operating.facts.length > 0, problems), "")
             room.look.language = "de"
-            verify(shown().includes("Dauer"), shown().join("\n"))
-            verify(shown().some(text => text.includes("richtig nur mit diesem Hinweisreiz")))
+            verify(texts(room.screen).includes("Dauer"), texts(room.screen).join("\n"))
+            verify(texts(room.screen).some(text => text.includes("richtig nur mit diesem Hinweisreiz")))
         }
         function test_a_check_is_described_in_the_language_of_the_operator_on_the_page_of_studies() {
             const studies = () => find(room.screen, "studiesPage").studies
@@ -100,7 +75,7 @@ Item {
             tap("live")
             tryVerify(() => !room.operating.preparing && !room.operating.mayBegin, 20000)
             room.look.language = "de"
-            tryVerify(() => shown().some(text => text.startsWith("Echte Sitzung nicht möglich: ")), 2000, shown().join("\n"))
+            tryVerify(() => texts(room.screen).some(text => text.startsWith("Echte Sitzung nicht möglich: ")), 2000, texts(room.screen).join("\n"))
         }
 
         function test_sessions_and_reports_are_in_the_language_of_the_operator() {
@@ -109,11 +84,11 @@ Item {
             const said = () => [sessions().chosen.protocol ?? "", sessions().chosen.reason ?? "", sessions().chosen.started ?? ""]
             compare(englishOn("sessions", () => find(room.screen, "session0") !== null, said), "")
             room.look.language = "de"
-            verify(shown().some(text => text.includes("Probelauf") && text.includes("nicht beendet")), shown().join("\n"))
+            verify(texts(room.screen).some(text => text.includes("Probelauf") && text.includes("nicht beendet")), texts(room.screen).join("\n"))
             tap("makeReport")
             tryVerify(() => find(room.screen, "saveFigure") !== null, 20000)
             wait(50)
-            const report = shown(find(room.screen, "storedReport"))
+            const report = texts(find(room.screen, "storedReport"))
             for (const word of ["Dargeboten", "Beantwortet", "Stufen", "Tempo und Genauigkeit"]) verify(report.includes(word), report.join("\n"))
             for (const word of ["Presented", "Levels", "Speed and accuracy", "Fit"]) verify(!report.includes(word), word)
         }
@@ -124,9 +99,9 @@ Item {
             script.show("end-operator", "en")
             tryCompare(told, "count", before + 1)
             ended.counting = true
-            const texts = shown(ended)
+            const shown = texts(ended)
             OperatorScreen.language = "en"
-            for (const word of words) verify(texts.includes(word), word + " in " + texts.join("; "))
+            for (const word of words) verify(shown.includes(word), word + " in " + shown.join("; "))
         }
 
         function test_a_participant_who_comes_too_early_is_told_so_in_the_language_of_the_session() {
@@ -140,11 +115,11 @@ Item {
             tap("accept")
             tap("mine")
             tryVerify(() => room.page.kind === PageModel.Failed, 20000)
-            tryVerify(() => shown().some(text => text.startsWith("Zu früh: Sitzung 2 von T1 beginnt frühestens am")), 2000, shown().join("\n"))
-            verify(shown().includes("Bitte rufen Sie die Versuchsleitung"))
-            verify(!shown().some(text => text.includes("participant T1")))
+            tryVerify(() => texts(room.screen).some(text => text.startsWith("Zu früh: Sitzung 2 von T1 beginnt frühestens am")), 2000, texts(room.screen).join("\n"))
+            verify(texts(room.screen).includes("Bitte rufen Sie die Versuchsleitung"))
+            verify(!texts(room.screen).some(text => text.includes("participant T1")))
             // Nothing was stored, so the page does not say that it is safe.
-            verify(!shown().some(text => text.includes("gespeichert")))
+            verify(!texts(room.screen).some(text => text.includes("gespeichert")))
         }
     }
 }
