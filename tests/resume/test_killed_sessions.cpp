@@ -110,7 +110,7 @@ std::string written(const Case& wanted, const TemporaryFolder& folder) {
   return path;
 }
 
-session::Setup setup_for(const std::string& protocol, const Case& wanted, const std::string& db) {
+session::Setup prepared(const std::string& protocol, const Case& wanted, const std::string& db) {
   setup::RunRequest request;
   request.protocol = protocol;
   request.rig = std::string(TURNPOINT_SOURCE_DIR) + "/tests/support/thin_plate.toml";
@@ -188,8 +188,9 @@ void check_killed(const Case& wanted) {
   const auto protocol = written(wanted, folder);
   INFO(wanted.file << (wanted.edits.empty() ? "" : ", " + wanted.edits.back().second));
   const auto whole = folder / "whole.sqlite";
+  auto setup = prepared(protocol, wanted, whole);
   const auto start = std::chrono::steady_clock::now();
-  run_to_end(setup_for(protocol, wanted, whole));
+  run_to_end(setup);
   const std::chrono::duration<double, std::micro> whole_us = std::chrono::steady_clock::now() - start;
   const auto expected = trials_of(whole, store::list_sessions(whole).front().session_id);
   REQUIRE(!expected.empty());
@@ -202,7 +203,7 @@ void check_killed(const Case& wanted) {
   // often.
   while (kills < kills_wanted(wanted) || finished == 0 || (resumed == 0 && finished < 100)) {
     const auto db = folder / ("broken" + std::to_string(finished) + ".sqlite");
-    const auto setup = setup_for(protocol, wanted, db);
+    setup.database = db;
     while (killed_on_the_way(setup, moment(random))) ++kills;
     ++finished;
     auto raw = sample::raw(db);
