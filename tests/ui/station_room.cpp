@@ -229,6 +229,27 @@ int StationRoom::stallsSeen() {
   return stalls_;
 }
 
+double StationRoom::pressUntilShown(QQuickItem* item) {
+  auto& window = station_->window();
+  const auto before = window.grabWindow();
+  const auto centre = item->mapToScene({item->width() / 2, item->height() / 2}).toPoint();
+  std::int64_t frame_ns = 0;
+  const auto frames = connect(&window, &QQuickWindow::frameSwapped, this, [&] { frame_ns = now_ns(); });
+  const auto start_ns = now_ns();
+  QTest::mousePress(&window, Qt::LeftButton, Qt::NoModifier, centre);
+  bool changed = false;
+  while (!changed && now_ns() - start_ns < 1'000'000'000) {
+    QCoreApplication::processEvents();
+    if (frame_ns != 0) changed = window.grabWindow() != before;
+    if (!changed) frame_ns = 0;
+  }
+  disconnect(frames);
+  const QPoint elsewhere{window.width() / 2, 1};
+  QTest::mouseMove(&window, elsewhere);
+  QTest::mouseRelease(&window, Qt::LeftButton, Qt::NoModifier, elsewhere);
+  return changed ? 1e-6 * static_cast<double>(frame_ns - start_ns) : -1;
+}
+
 void StationRoom::block(int ms) {
   const auto until = now_ns() + std::int64_t{1'000'000} * ms;
   while (now_ns() < until) {

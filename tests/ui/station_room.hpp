@@ -91,6 +91,10 @@ class StationRoom : public QObject {
   Q_INVOKABLE void lookOn();
   Q_INVOKABLE int stallsSeen();
 
+  /// Presses this item, and returns the time in ms until a frame was shown. Then lifts the finger elsewhere,
+  /// so that nothing is chosen. Returns -1 if the picture is the same as before.
+  Q_INVOKABLE double pressUntilShown(QQuickItem* item);
+
   /// Blocks the pages' thread for this time, as if it hung.
   Q_INVOKABLE void block(int ms);
 

@@ -1,5 +1,5 @@
-// Starts the station on an X server, and reads and uses the operator's pages over AT-SPI, as a screen reader does. Needs a
-// session bus, an X server and at-spi2-core (`dbus-run-session -- xvfb-run`).
+// Starts the station on an X server, and reads and uses the operator's pages over AT-SPI, as a screen reader
+// does. Needs a session bus, an X server and at-spi2-core (`dbus-run-session -- xvfb-run`).
 #include <QCoreApplication>
 #include <QDBusArgument>
 #include <QDBusConnection>

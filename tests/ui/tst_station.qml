@@ -21,9 +21,6 @@ Item {
         name: "Station"
         when: windowShown
 
-        readonly property PageModel page: room.page
-        readonly property OperatorController operating: room.operating
-
         function cleanup() { room.close() }
 
         function hold(name, ms, parent = room.screen) {
@@ -39,30 +36,6 @@ Item {
             // wait until another thread has compared the code
             tryCompare(lock, "checking", false, 20000)
         }
-        /// Touches an answer on the participant's screen with one finger.
-        function answer(choice) {
-            tryCompare(page, "answersOpen", true, 20000)
-            wait(150)
-            const button = find(room.screen, "answer" + choice)
-            const touch = touchEvent(button)
-            touch.press(1, button).commit()
-            touch.release(1, button).commit()
-            tryCompare(page, "answersOpen", false, 5000)
-        }
-        function begin(participant) {
-            tryVerify(() => operating.mayBegin, 20000)
-            tap("language0")
-            tap("enterCode")
-            for (const key of participant) tap("key" + key)
-            tap("accept")
-            tap("begin")
-        }
-        function rest() {
-            tryCompare(page, "kind", PageModel.Rest, 20000)
-            tryCompare(page, "remainingSeconds", 0, 5000)
-            tap("proceed")
-        }
-        function ends() { tryCompare(page, "kind", PageModel.End, 20000) }
         /// Arms the amplifier as an operator does at the participant's screen.
         function arm() {
             tryCompare(page, "awaitsArming", true, 20000)

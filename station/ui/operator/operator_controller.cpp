@@ -98,7 +98,10 @@ void OperatorController::select(int index) {
   if (!entry()->problems.empty()) return fail(entry()->problems);
   checking_ = true;
   Q_EMIT changed();
-  check_selected();
+  // Not at once: the first check would compete with the first page for the processor.
+  QTimer::singleShot(0, this, [this, index] {
+    if (selected_ == index && checking_ && !preparing_) check_selected();
+  });
 }
 
 void OperatorController::check_selected() {

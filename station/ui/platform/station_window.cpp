@@ -1,20 +1,15 @@
 #include "station/ui/platform/station_window.hpp"
 
-#include <time.h>
-#include <unistd.h>
 #include <QGuiApplication>
-#include <QLoggingCategory>
 #include <QScreen>
 
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
-#include <sstream>
 #include <stdexcept>
 #include <utility>
 
 #include "station/setup/places.hpp"
+#include "station/ui/platform/first_page.hpp"
 #include "station/ui/platform/load_page.hpp"
 #include "station/ui/platform/screen.hpp"
 #include "station/ui/shared/operator_screen.hpp"
@@ -22,30 +17,6 @@
 namespace turnpoint::ui {
 
 namespace {
-
-/// Logs how long the first page took to appear, if QT_LOGGING_RULES is `turnpoint.startup=true`.
-Q_LOGGING_CATEGORY(startup, "turnpoint.startup", QtWarningMsg)
-
-/// Milliseconds since the kernel started this process, with a resolution of 10 ms.
-double process_age_ms() {
-  std::ifstream stat("/proc/self/stat");
-  const std::string line{std::istreambuf_iterator<char>(stat), {}};
-  std::istringstream fields(line.substr(line.rfind(')') + 1));
-  std::string field;
-  for (int i = 3; i <= 22; ++i) fields >> field;  // field 22 is the start time in ticks since boot
-  timespec now{};
-  ::clock_gettime(CLOCK_BOOTTIME, &now);
-  const double started_s = std::stod(field) / static_cast<double>(::sysconf(_SC_CLK_TCK));
-  return 1e3 * (static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec) - started_s);
-}
-
-void tell_first_page(QQuickWindow& window) {
-  if (!startup().isInfoEnabled()) return;
-  QObject::connect(
-      &window, &QQuickWindow::frameSwapped, &window,
-      [] { qCInfo(startup) << "first page after" << process_age_ms() << "ms"; },
-      static_cast<Qt::ConnectionType>(Qt::DirectConnection | Qt::SingleShotConnection));
-}
 
 bool is_known(const std::string& database, const QString& code) {
   const auto known = desk::known_participants(database);
