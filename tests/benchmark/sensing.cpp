@@ -9,7 +9,6 @@
 #include <string>
 
 #include "station/drive/alsa_capture.hpp"
-#include "station/drive/ring.hpp"
 #include "station/drive/sine.hpp"
 #include "station/drive/synth.hpp"
 #include "station/sensing/carrier.hpp"
@@ -25,7 +24,8 @@ using namespace sensing;
 
 constexpr int kRepeats = 15;
 constexpr int kRate_Hz = 192000, kChannels = 6, kBlock = 384;
-constexpr std::int64_t kStart = 9600, kFrames = 2 * kRate_Hz;
+constexpr std::int64_t kStart = 9600, kFrames = 2 * kRate_Hz, kBuffer = kRate_Hz / 5;
+static_assert(kBuffer % kBlock == 0);
 
 drive::Burst eight_tones() {
   drive::Burst burst;
@@ -33,37 +33,38 @@ drive::Burst eight_tones() {
   burst.length_frames = kFrames - 2 * kStart;
   burst.tones.count = 8;
   for (int i = 0; i < 8; ++i)
-    burst.tones.tones[static_cast<std::size_t>(i)] = {22000.5 + 3000 * i, 0.05, 0.3 * i, 0};
+    burst.tones.tones[static_cast<std::size_t>(i)] = {22000.0 + 3000 * i, 0.05, 0.3 * i, 0};
   return burst;
 }
 
-/// Two seconds of capture: channels 4 and 5 (the pick-ups) contain the burst, all other channels a carrier.
-std::vector<std::int32_t> captured_frames() {
-  const drive::Format format{kRate_Hz, 1, 24};
-  drive::Synth synth(format);
-  if (!synth.start(drive::prepare(eight_tones(), format))) return {};
-  std::vector<std::int32_t> played(kFrames), samples(kFrames * kChannels);
-  synth.render(0, std::span(played));
+/// The capture device's buffer: 0.2 s, which are captured over and over. Channels 4 and 5 (the pick-ups)
+/// contain the eight tones, all other channels a carrier.
+std::vector<std::int32_t> device_buffer() {
+  std::vector<std::int32_t> samples(kBuffer * kChannels);
   std::mt19937 random(1);
   std::normal_distribution<double> noise(0, 1000);
-  for (std::size_t n = 0; n < played.size(); ++n)
-    for (std::size_t c = 0; c < kChannels; ++c) {
-      const double carrier =
-          1e9 * std::sin(2 * M_PI * turnpoint::terms::kForceCarrier_Hz / kRate_Hz * static_cast<double>(n));
-      const double value = c >= 4 ? played[n] : carrier;
-      samples[n * kChannels + c] = static_cast<std::int32_t>(value + noise(random));
-    }
+  const auto tones = eight_tones().tones;
+  for (std::int64_t n = 0; n < kBuffer; ++n) {
+    const double turn = 2 * M_PI * static_cast<double>(n) / kRate_Hz;
+    double moved = 0;
+    for (const auto& tone : std::span(tones.tones).first(static_cast<std::size_t>(tones.count)))
+      moved += 0x1p31 * tone.amplitude * std::sin(turn * tone.frequency_Hz + tone.phase_rad);
+    const double carrier = 1e9 * std::sin(turn * turnpoint::terms::kForceCarrier_Hz);
+    for (int c = 0; c < kChannels; ++c)
+      samples[static_cast<std::size_t>(n * kChannels + c)] =
+          static_cast<std::int32_t>((c >= 4 ? moved : carrier) + noise(random));
+  }
   return samples;
 }
 
 PickUp flat_pick_up(int channel) { return {channel, {{0, {20000, 34000, 48000}, {1, 1, 1}}}}; }
 
 template <class Take>
-void each_block(const std::vector<std::int32_t>& samples, const Take& take) {
+void each_block(const std::vector<std::int32_t>& buffer, const Take& take) {
   constexpr std::size_t size = kBlock * kChannels;
-  for (std::size_t at = 0; at + size <= samples.size(); at += size)
-    take(CaptureBlock{std::span(samples).subspan(at, size), kChannels,
-                      static_cast<std::int64_t>(at / kChannels), kRate_Hz});
+  for (std::int64_t at = 0; at + kBlock <= kFrames; at += kBlock)
+    take(CaptureBlock{std::span(buffer).subspan(static_cast<std::size_t>(at % kBuffer * kChannels), size),
+                      kChannels, at, kRate_Hz});
 }
 
 void synthesise() {
@@ -114,20 +115,20 @@ void measure_forces(const std::vector<std::int32_t>& samples) {
 
 /// What a session does with captured samples: the capture thread puts them into a ring, the sensing thread
 /// takes them from there, proves the interval and measures the forces.
-void capture_and_demodulate(const std::vector<std::int32_t>& samples) {
-  using Ring = drive::Ring<drive::CapturedBlock, 1024>;
-  const auto ring = std::make_unique<Ring>();
-  const auto in = std::make_unique<drive::CapturedBlock>(), out = std::make_unique<drive::CapturedBlock>();
+void capture_and_demodulate(const std::vector<std::int32_t>& samples, drive::CaptureRing& ring) {
   IntervalProof proof(interval_plan());
   BridgeDemodulator bridges(bridge_options());
   each_block(samples, [&](const CaptureBlock& block) {
     constexpr std::size_t most = drive::CapturedBlock::kSamples / kChannels * kChannels;
     for (std::size_t at = 0; at < block.samples.size(); at += most) {
       const auto part = block.samples.subspan(at, std::min(most, block.samples.size() - at));
-      in->first_frame = block.first_frame + static_cast<std::int64_t>(at / kChannels);
-      in->count = static_cast<std::int32_t>(part.size());
-      std::ranges::copy(part, in->samples.begin());
-      if (!ring->push(*in) || !ring->pop(*out)) return;
+      const bool pushed = ring.fill([&](drive::CapturedBlock& in) {
+        in.first_frame = block.first_frame + static_cast<std::int64_t>(at / kChannels);
+        in.count = static_cast<std::int32_t>(part.size());
+        std::copy_n(part.data(), part.size(), in.samples.data());
+      });
+      const auto* out = ring.take();
+      if (!pushed || out == nullptr) return;
       const CaptureBlock taken{out->used(), kChannels, out->first_frame, kRate_Hz};
       proof.push(taken);
       bridges.push(taken, [](const BridgePoint&) {});
@@ -139,10 +140,11 @@ void capture_and_demodulate(const std::vector<std::int32_t>& samples) {
 }  // namespace
 
 Report bench_sensing() {
-  const auto samples = captured_frames();
+  const auto samples = device_buffer();
+  const auto ring = std::make_unique<drive::CaptureRing>();
   const std::vector<Work> works{
       {"synthesis of eight tones", synthesise},
-      {"capture and demodulation of six channels", [&] { capture_and_demodulate(samples); }},
+      {"capture and demodulation of six channels", [&] { capture_and_demodulate(samples, *ring); }},
       {"proof of an interval, two pick-ups", [&] { prove(samples); }},
       {"force from three bridges and a reference", [&] { measure_forces(samples); }},
       {"lock-in of eight tones, one channel", [&] { lock_in(samples, {4}); }},
