@@ -14,7 +14,8 @@ struct Numbers {
   std::int64_t first = 0, last = 0;
 };
 
-bool put(BlockRing<Numbers, 4>& ring, std::int64_t number) {
+template <std::size_t capacity>
+bool put(BlockRing<Numbers, capacity>& ring, std::int64_t number) {
   return ring.fill([&](Numbers& slot) { slot = {number, number}; });
 }
 
@@ -49,8 +50,8 @@ TEST_CASE("a block ring whose values are taken at once uses two slots only", "[d
 }
 
 TEST_CASE("a block ring passes every value between two threads, whole and in order", "[drive]") {
-  constexpr std::int64_t count = 200'000;
-  const auto ring = std::make_unique<BlockRing<Numbers, 4>>();
+  constexpr std::int64_t count = 50'000;
+  const auto ring = std::make_unique<BlockRing<Numbers, 256>>();
   std::jthread producer([&] {
     for (std::int64_t n = 0; n < count;)
       if (put(*ring, n))
