@@ -24,8 +24,9 @@ using namespace sensing;
 
 constexpr int kRepeats = 15;
 constexpr int kRate_Hz = 192000, kChannels = 6, kBlock = 384;
-constexpr std::int64_t kStart = 9600, kFrames = 2 * kRate_Hz, kBuffer = kRate_Hz / 5;
-static_assert(kBuffer % kBlock == 0);
+constexpr std::int64_t kStart = 9600, kFrames = 2 * kRate_Hz, kBuffer = 4 * kBlock;
+// In the device's buffer, all tones and the carrier have whole numbers of cycles.
+constexpr double kStep_Hz = 1.0 * kRate_Hz / kBuffer, kCarrier_Hz = 84 * kStep_Hz;
 
 drive::Burst eight_tones() {
   drive::Burst burst;
@@ -33,12 +34,12 @@ drive::Burst eight_tones() {
   burst.length_frames = kFrames - 2 * kStart;
   burst.tones.count = 8;
   for (int i = 0; i < 8; ++i)
-    burst.tones.tones[static_cast<std::size_t>(i)] = {22000.0 + 3000 * i, 0.05, 0.3 * i, 0};
+    burst.tones.tones[static_cast<std::size_t>(i)] = {kStep_Hz * (176 + 24 * i), 0.05, 0.3 * i, 0};
   return burst;
 }
 
-/// The capture device's buffer: 0.2 s, which are captured over and over. Channels 4 and 5 (the pick-ups)
-/// contain the eight tones, all other channels a carrier.
+/// The buffer of a capture device with the default of four periods, which is captured over and over. Channels
+/// 4 and 5 (the pick-ups) contain the eight tones, all other channels a carrier.
 std::vector<std::int32_t> device_buffer() {
   std::vector<std::int32_t> samples(kBuffer * kChannels);
   std::mt19937 random(1);
@@ -49,7 +50,7 @@ std::vector<std::int32_t> device_buffer() {
     double moved = 0;
     for (const auto& tone : std::span(tones.tones).first(static_cast<std::size_t>(tones.count)))
       moved += 0x1p31 * tone.amplitude * std::sin(turn * tone.frequency_Hz + tone.phase_rad);
-    const double carrier = 1e9 * std::sin(turn * turnpoint::terms::kForceCarrier_Hz);
+    const double carrier = 1e9 * std::sin(turn * kCarrier_Hz);
     for (int c = 0; c < kChannels; ++c)
       samples[static_cast<std::size_t>(n * kChannels + c)] =
           static_cast<std::int32_t>((c >= 4 ? moved : carrier) + noise(random));
@@ -99,6 +100,7 @@ IntervalPlan interval_plan() {
 BridgeOptions bridge_options() {
   BridgeOptions options;
   options.channels = kChannels;
+  options.carrier_Hz = kCarrier_Hz;
   return options;
 }
 
@@ -115,9 +117,16 @@ void measure_forces(const std::vector<std::int32_t>& samples) {
 
 /// What a session does with captured samples: the capture thread puts them into a ring, the sensing thread
 /// takes them from there, proves the interval and measures the forces.
-void capture_and_demodulate(const std::vector<std::int32_t>& samples, drive::CaptureRing& ring) {
+struct SessionCapture {
+  drive::CaptureRing ring;
+  BridgeDemodulator bridges{bridge_options()};
+  std::int64_t frames = 0;  ///< number of frames that the bridges have received
+};
+
+/// One trial: takes all frames, and proves its interval.
+void capture_and_demodulate(const std::vector<std::int32_t>& samples, SessionCapture& session) {
+  auto& [ring, bridges, frames] = session;
   IntervalProof proof(interval_plan());
-  BridgeDemodulator bridges(bridge_options());
   each_block(samples, [&](const CaptureBlock& block) {
     constexpr std::size_t most = drive::CapturedBlock::kSamples / kChannels * kChannels;
     for (std::size_t at = 0; at < block.samples.size(); at += most) {
@@ -131,7 +140,8 @@ void capture_and_demodulate(const std::vector<std::int32_t>& samples, drive::Cap
       if (!pushed || out == nullptr) return;
       const CaptureBlock taken{out->used(), kChannels, out->first_frame, kRate_Hz};
       proof.push(taken);
-      bridges.push(taken, [](const BridgePoint&) {});
+      bridges.push({taken.samples, kChannels, frames, kRate_Hz}, [](const BridgePoint&) {});
+      frames += taken.frames();
     }
   });
   proof.result();
@@ -141,10 +151,10 @@ void capture_and_demodulate(const std::vector<std::int32_t>& samples, drive::Cap
 
 Report bench_sensing() {
   const auto samples = device_buffer();
-  const auto ring = std::make_unique<drive::CaptureRing>();
+  const auto session = std::make_unique<SessionCapture>();
   const std::vector<Work> works{
       {"synthesis of eight tones", synthesise},
-      {"capture and demodulation of six channels", [&] { capture_and_demodulate(samples, *ring); }},
+      {"capture and demodulation of six channels", [&] { capture_and_demodulate(samples, *session); }},
       {"proof of an interval, two pick-ups", [&] { prove(samples); }},
       {"force from three bridges and a reference", [&] { measure_forces(samples); }},
       {"lock-in of eight tones, one channel", [&] { lock_in(samples, {4}); }},
