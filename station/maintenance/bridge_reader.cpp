@@ -179,7 +179,7 @@ class CardBridges : public BridgeReader {
     auto& stream = *devices_.stream;
     const auto& uri = rig_.capture->uri;
     std::vector<std::int32_t> samples;
-    while (capture.take(*block_)) {
+    while (capture.take() != nullptr) {
     }
     const auto before = capture.counters();
     const auto underruns = stream.counters().underruns;
@@ -192,8 +192,8 @@ class CardBridges : public BridgeReader {
       while (stream.poll()) {
       }
       bool taken = false;
-      while (capture.take(*block_)) {
-        const auto used = block_->used();
+      while (const auto* block = capture.take()) {
+        const auto used = block->used();
         samples.insert(samples.end(), used.begin(), used.end());
         taken = true;
       }
@@ -210,7 +210,6 @@ class CardBridges : public BridgeReader {
   const rig::Rig rig_;
   BridgeDevices devices_;
   BridgeMean mean_;
-  std::unique_ptr<drive::CapturedBlock> block_ = std::make_unique<drive::CapturedBlock>();
 };
 
 }  // namespace

@@ -27,7 +27,7 @@ drive::CaptureCounters CaptureThread::end() {
 }
 
 void CaptureThread::take() {
-  while (capture_->take(*block_)) on_block_(*block_);
+  while (const auto* block = capture_->take()) on_block_(*block);
 }
 
 }  // namespace turnpoint::maintenance

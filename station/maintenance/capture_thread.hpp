@@ -25,7 +25,6 @@ class CaptureThread {
   const drive::OutputConfig device_;
   OnBlock on_block_;
   std::unique_ptr<drive::Capture> capture_;
-  std::unique_ptr<drive::CapturedBlock> block_ = std::make_unique<drive::CapturedBlock>();
   // The last member, so that the thread is joined before the objects that it uses are destroyed.
   std::jthread thread_;
 };

@@ -104,10 +104,9 @@ lines::Finding capture(const session::CardCapture& plan) {
       "that uses it";
   try {
     const auto opened = drive::open_capture(plan.device);
-    const auto block = std::make_unique<drive::CapturedBlock>();
     for (int k = 0; k < 50; ++k) {
       system::sleep_until_ns(system::monotonic_ns() + 10'000'000);
-      while (opened->take(*block)) {
+      while (opened->take() != nullptr) {
       }
     }
     const auto counters = opened->counters();

@@ -94,10 +94,9 @@ void CaptureFeed::listen(std::int64_t start_frame) {
 }
 
 void CaptureFeed::run(const std::stop_token& stop) {
-  const auto block = std::make_unique<drive::CapturedBlock>();
   while (!stop.stop_requested()) {
     const auto numbering = capture_->counters().numbering;
-    while (capture_->take(*block))
+    while (const auto* block = capture_->take())
       if (take(*block)) conclude();
     {
       const std::lock_guard lock(mutex_);

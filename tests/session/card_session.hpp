@@ -78,10 +78,10 @@ struct SteppedCapture : drive::DeviceCapture {
     }
     while (put - got > backlog_frames) std::this_thread::yield();
   }
-  bool take(drive::CapturedBlock& block) noexcept override {
-    if (!DeviceCapture::take(block)) return false;
-    got = block.first_frame + block.count / fake_pcm().capture_channels;
-    return true;
+  const drive::CapturedBlock* take() noexcept override {
+    const auto* block = DeviceCapture::take();
+    if (block != nullptr) got = block->first_frame + block->count / fake_pcm().capture_channels;
+    return block;
   }
 
   std::int64_t backlog_frames = 20'000;  ///< most frames that may wait for the sensing thread
