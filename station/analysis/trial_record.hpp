@@ -28,6 +28,8 @@ struct TrialRecord {
   std::optional<int> right_choice;  ///< index of the correct choice; empty if there is none
   std::optional<int> response;      ///< index of the chosen answer
   std::optional<bool> correct;
+  /// whether there was a signal, in a task in which people rate how sure they are of one; otherwise empty
+  std::optional<bool> present;
   /// final position of a slider in the unit of the level; `level` is its starting position
   std::optional<double> setting;
   std::optional<int> confidence;  ///< from 1 for the least sure; empty if the task does not ask

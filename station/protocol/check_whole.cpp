@@ -7,7 +7,6 @@
 #include "station/protocol/expression.hpp"
 #include "station/protocol/reading.hpp"
 #include "station/protocol/sources.hpp"
-#include "station/terms/limits.hpp"
 #include "station/text/number.hpp"
 
 namespace turnpoint::protocol {
@@ -49,6 +48,28 @@ void check_answers(const std::vector<Source>& sources, const Reading& reading) {
                                   "write comparisons that cannot both be true");
     }
   }
+}
+
+// Reports a rating of a signal that all trials have, or that none has: then there is no ROC. Trials whose
+// signal depends on other factors than the level are not counted here.
+void check_present(const std::vector<Source>& sources, const Reading& reading) {
+  const auto& present = reading.protocol.task.present;
+  if (!present) return;
+  bool with = false, without = false;
+  for (const auto& source : sources) {
+    if (source.block->practice) continue;
+    for (const auto* side : {&present->left, &present->right})
+      for (const auto& name : factors_in(*side))
+        if (name != source.level) return;
+    auto factors = any_factors(reading.protocol);
+    for (const double level : source.levels) {
+      factors[source.level] = level;
+      (holds(*present, factors) ? with : without) = true;
+    }
+  }
+  if (with != without)
+    reading.findings.add(present->left.place, with ? "every trial has a signal" : "no trial has a signal",
+                         "levels with a signal and levels without one, such as 0");
 }
 
 // Without correct answers, a procedure cannot follow right answers, and practice cannot be passed. Reports
@@ -226,40 +247,11 @@ void check_timing(text::TableReader& file, const Reading& reading) {
     }
 }
 
-/// A tone is part of the stimulus, so its time must be known before the stimulus begins, and it must end with
-/// it.
-void check_tone(const Reading& reading, text::Findings& findings) {
-  const auto& protocol = reading.protocol;
-  const auto& signal = protocol.timing.signal;
-  if (!signal || signal->by != ResponseSignal::By::tone) return;
-  if (!explored(protocol.task)) {
-    findings.add(signal->by_place,
-                 "a tone is part of the stimulus, but this task is answered after its intervals",
-                 "by = \"screen\", or a task with a single interval");
-    return;
-  }
-  const auto zero = protocol.timing.response_zero;
-  if (zero != ResponseZero::go_cue && zero != ResponseZero::change) {
-    findings.add(signal->by_place,
-                 std::string("a tone is part of the stimulus, but \"response_zero\" is \"") + name(zero) +
-                     "\", whose time is not known when the stimulus begins",
-                 "by = \"screen\", or a \"response_zero\" of \"go_cue\" or \"change\"");
-    return;
-  }
-  const auto end_s = stimulus_end_s(protocol);
-  const double latest_s = bounds(signal->after_s, protocol.factors).second + terms::kSignal_s;
-  if (end_s && latest_s > *end_s)
-    findings.add(reading.places.of("timing.response_signal.after_s"),
-                 "the tone can end " + text::number(latest_s) + " s after \"" + name(zero) +
-                     "\", but the stimulus can end " + text::number(*end_s) + " s after it",
-                 "a longer \"explore_s\", or at most " + text::number(*end_s - terms::kSignal_s) + " s");
-}
-
 }  // namespace
 
 void check_whole(text::TableReader& file, Reading& reading) {
   check_timing(file, reading);
-  check_tone(reading, reading.findings);
+  check_signal(reading);
   check_scored(file, reading);
   check_limits(reading);
   check_detection(reading);
@@ -268,6 +260,7 @@ void check_whole(text::TableReader& file, Reading& reading) {
   const auto needed = factors_used(reading.protocol);
   for (const auto& name : needed) check_values(sources, name, reading);
   check_answers(sources, reading);
+  check_present(sources, reading);
 }
 
 }  // namespace turnpoint::protocol

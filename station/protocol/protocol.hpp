@@ -152,6 +152,8 @@ struct Task {
   /// for a rating: texts at some of the choices, which are the points 1, 2, ...
   std::vector<Anchor> anchors;
   bool rating = false;  ///< true if the choices are the points of a scale, in ascending order
+  /// for a rating from the surest no to the surest yes: the trials that have a signal; the others are noise
+  std::optional<Comparison> present;
   std::optional<ValueAnswer> value;
   /// the number that stands for `standard`, the scene at the start of each trial
   std::optional<double> modulus;
@@ -172,12 +174,19 @@ using terms::ResponseZero;
 struct ResponseSignal {
   Linear after_s;  ///< time of the signal in s, counted from response_zero
   double window_s = 0;
-  /// The participant sees the signal on the screen, or hears a tone on the rig's headphones, which begins on
-  /// the very frame.
-  enum class By { screen, tone };
+  /// A band on the screen, a tone on the rig's headphones, or a buzz of the surface. Tone and buzz are part
+  /// of the stimulus and begin on the very frame.
+  enum class By { screen, tone, buzz };
   By by = By::screen;
   Place by_place;
+  std::string scene;    ///< buzz: the scene that the surface presents, in place of the last scene
+  double length_s = 0;  ///< buzz: how long it does so; then the last scene returns
 };
+
+/// True if the signal is part of the stimulus, so that it begins on the very frame.
+inline bool in_stimulus(const ResponseSignal& signal) {
+  return signal.by == ResponseSignal::By::tone || signal.by == ResponseSignal::By::buzz;
+}
 
 struct Timing {
   ResponseZero response_zero = ResponseZero::go_cue;

@@ -1,7 +1,11 @@
 #include <algorithm>
+#include <optional>
+#include <set>
+#include <utility>
 
 #include "station/protocol/advice_list.hpp"
 #include "station/protocol/answers.hpp"
+#include "station/protocol/combinations.hpp"
 #include "station/protocol/expression.hpp"
 #include "station/text/number.hpp"
 
@@ -20,9 +24,53 @@ void check_length(AdviceList& advice, const std::string& key, double seconds) {
                "times are in seconds: write 0.8 for 800 ms");
 }
 
+// A person may think about what was felt, but nobody remembers it for longer than this. Typing a number takes
+// longer, so it is not meant here.
+constexpr double longest_after_s = 30;
+
+/// The time from response zero to the end of the last interval, at the earliest and at the latest; empty if
+/// it is not known before the trial.
+std::optional<std::pair<double, double>> stimulus_end(const Protocol& protocol) {
+  const auto& task = protocol.task;
+  const auto whole = task.duration_s ? task.duration_s : protocol.timing.explore_s;
+  if (protocol.timing.response_zero == ResponseZero::interval_off) return std::pair(0.0, 0.0);
+  if (!whole) return std::nullopt;
+  const auto change = task.foreperiod_s;
+  switch (protocol.timing.response_zero) {
+    case ResponseZero::go_cue:
+      return std::pair(*whole, *whole);
+    case ResponseZero::change:
+      return change ? std::optional(std::pair(*whole - change->high, *whole - change->low)) : std::nullopt;
+    default:
+      return std::nullopt;
+  }
+}
+
+/// Warns of a deadline that nobody can meet, because answers are accepted only when the intervals have ended,
+/// and of one so long after the stimulus that it was probably meant otherwise.
+void check_reach(AdviceList& advice, const std::string& key, double shortest, double longest) {
+  const auto end = stimulus_end(advice.protocol);
+  if (!end) return;
+  const std::string zero = name(advice.protocol.timing.response_zero);
+  const double answers_from_s = explored(advice.protocol.task) ? 0 : end->second;
+  if (answers_from_s > 0 && shortest < answers_from_s + shortest_deadline_s)
+    advice.add(
+        key,
+        "the deadline of " + number(shortest) +
+            " s cannot be met: answers are accepted when the last "
+            "interval has ended, up to " +
+            number(answers_from_s) + " s after \"" + zero + "\"",
+        number(answers_from_s + shortest_deadline_s) + " s or more, or response_zero = \"interval_off\"");
+  else if (!advice.protocol.task.value && longest - end->second > longest_after_s && longest <= longest_s)
+    advice.add(key, "the deadline is " + number(longest - end->second) + " s after the stimulus has ended",
+               "nobody remembers for longer than " + number(longest_after_s) + " s what was felt: at most " +
+                   number(end->second + longest_after_s) + " s");
+}
+
 void check_deadline(AdviceList& advice, const std::string& key, const Linear& deadline) {
   const auto [seconds, longest] = bounds(deadline, advice.protocol.factors);
   check_length(advice, key, longest);
+  if (seconds >= shortest_deadline_s) check_reach(advice, key, seconds, longest);
   if (seconds < shortest_deadline_s)
     advice.add(key, "nobody can answer within " + number(seconds) + " s",
                number(shortest_deadline_s) + " s or more");
@@ -53,12 +101,25 @@ void check_lag(AdviceList& advice, const ResponseSignal& signal) {
   const double latest_s = bounds(signal.after_s, advice.protocol.factors).second;
   const auto end_s = stimulus_end_s(advice.protocol);
   const std::string key = "timing.response_signal.after_s";
-  if (end_s && signal.by == ResponseSignal::By::screen && latest_s > *end_s)
+  if (end_s && !in_stimulus(signal) && latest_s > *end_s)
     advice.add(key,
                "the signal can come " + number(latest_s) + " s after \"" +
                    name(advice.protocol.timing.response_zero) + "\", when the tones may have ended " +
                    number(latest_s - *end_s) + " s before",
                "at most " + number(*end_s) + " s, or longer tones");
+}
+
+/// A buzz must be the same in all trials. If it depends on the level, it is a second stimulus.
+void check_buzz(AdviceList& advice, const ResponseSignal& signal) {
+  const auto& scenes = advice.protocol.scenes;
+  std::set<std::string> depends;
+  for (auto at = scenes.find(signal.scene); at != scenes.end(); at = scenes.find(at->second.base))
+    for (const auto& name : factors_of(at->second)) depends.insert(name);
+  for (const auto& spec : advice.protocol.procedures)
+    if (depends.count(spec.level))
+      return advice.add("timing.response_signal.scene",
+                        "the buzz depends on \"" + spec.level + "\", so it tells something of the answer",
+                        "a scene that is the same in all trials");
 }
 
 }  // namespace
@@ -74,7 +135,7 @@ void advise_on_times(AdviceList& advice) {
     advice.add("timing.response_signal.window_s",
                "nobody can answer within " + number(timing.signal->window_s) + " s of a signal",
                number(shortest_deadline_s) + " s or more");
-  if (timing.signal) check_lag(advice, *timing.signal);
+  if (timing.signal) check_lag(advice, *timing.signal), check_buzz(advice, *timing.signal);
   check_length(advice, "timing.iti_s", timing.iti_s.high);
   check_length(advice, "timing.explore_s", timing.explore_s.value_or(0));
   check_length(advice, "task.duration_s", task.duration_s.value_or(0));

@@ -307,7 +307,7 @@ std::string to_html(const Summary& summary) {
   if (data.run_mode != "live") html += " <span class=\"mode\">" + escaped(data.run_mode) + "</span>";
   html += "</p>\n" + facts_table(data.facts);
   if (judges(data.design)) {
-    html += judgement_section(summary);
+    html += judgement_section(summary) + roc_section(summary);
   } else if (data.design != Design::adjustment) {
     if (!summary.fits.empty())
       html += "<h2>Psychometric function</h2>\n" + picture(psychometric_figure(summary));

@@ -186,6 +186,18 @@ Json confusion_json(const analysis::Confusion& confusion, const SessionData& dat
   return json;
 }
 
+Json rating_fit_json(const std::optional<analysis::RatingFit>& fit) {
+  if (!fit) return nullptr;
+  Json json{{"sensitivity", value(std::optional(fit->sensitivity))},  // d' or d_a
+            {"mean", value(fit->mean)},
+            {"sd", value(std::optional(fit->sd))},
+            {"area", value(std::optional(fit->area))},
+            {"log_likelihood", value(fit->log_likelihood)}};
+  json["criteria"] = Json::array();
+  for (const double criterion : fit->criteria) json["criteria"].push_back(value(criterion));
+  return json;
+}
+
 Json roc_json(const analysis::RatedDetection& entry) {
   Json json{{"condition", entry.condition}, {"level", value(entry.level)}};
   json["noise"] = entry.noise;  // numbers of trials, from the surest no to the surest yes
@@ -194,6 +206,8 @@ Json roc_json(const analysis::RatedDetection& entry) {
   for (const auto& point : entry.roc.points)
     json["points"].push_back({{"false_alarms", value(point.false_alarms)}, {"hits", value(point.hits)}});
   json["area"] = value(std::optional(entry.roc.area));
+  json["equal_variances"] = rating_fit_json(entry.equal);
+  json["unequal_variances"] = rating_fit_json(entry.unequal);
   return json;
 }
 

@@ -59,6 +59,7 @@ analysis::TrialRecord record_of(const records::TrialRow& row, const records::Blo
   record.right_choice = index_of(row.correct_response, protocol);
   record.response = index_of(row.response, protocol);
   record.correct = row.correct;
+  if (protocol.task.present) record.present = protocol::holds(*protocol.task.present, factors_of(row));
   if (row.response &&
       (protocol.task.kind == protocol::TaskKind::adjustment || protocol::judges(protocol.task)))
     record.setting = text::read_number(*row.response);

@@ -129,9 +129,15 @@ void add_measures(const Summary& summary, StudyPerson& person) {
       measures.add(detection.condition, "d'", "", detection.d_prime);
       measures.add(detection.condition, "criterion c", "", detection.criterion);
     }
-  for (const auto& entry : summary.rocs)
-    if (!entry.level)
-      measures.add(entry.condition, "area under the ROC", "", std::optional(entry.roc.area.value));
+  for (const auto& entry : summary.rocs) {
+    if (entry.level) continue;
+    measures.add(entry.condition, "area under the ROC", "", std::optional(entry.roc.area.value));
+    if (entry.equal)
+      measures.add(entry.condition, "d' of ratings", "", std::optional(entry.equal->sensitivity));
+    if (!entry.unequal) continue;
+    measures.add(entry.condition, "d_a of ratings", "", std::optional(entry.unequal->sensitivity));
+    measures.add(entry.condition, "SD with a signal", "SD without", std::optional(entry.unequal->sd));
+  }
   for (const auto& entry : summary.discriminations)
     if (!entry.level)
       for (const auto& [model, d_prime] : entry.d_primes)

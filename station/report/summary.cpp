@@ -200,7 +200,8 @@ bool shows(const SessionData& data, const std::string& part) {
   if (data.show) return std::find(data.show->begin(), data.show->end(), part) != data.show->end();
   if (part == "response-signal") return true;
   if (part == "ez") return data.choices.size() <= 2;
-  return part != "dprime" || data.design == Design::yes_no || !data.deciding.empty();
+  return part != "dprime" || data.design == Design::yes_no || data.design == Design::ratings ||
+         !data.deciding.empty();
 }
 
 analysis::TradeOptions trade_options(const SessionData& data) {
@@ -227,6 +228,9 @@ Summary summarise(const SessionData& data) {
   }
   if (judges(data.design)) {
     summary.judgements = judgements_of(data);
+    if (data.design == Design::ratings && shows(data, "dprime"))
+      summary.rocs =
+          analysis::rating_rocs(data.trials, data.conditions, static_cast<int>(data.choices.size()));
     return summary;
   }
   if (data.choices.size() <= 2) summary.bias = analysis::choice_bias(data.trials);

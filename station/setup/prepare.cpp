@@ -108,6 +108,10 @@ void check_buttons_only(const session::Setup& setup, std::vector<Problem>& probl
   if (task.device == protocol::Device::touch)
     problems.push_back({task.device_place, "--buttons-only: the task is answered by touch",
                         "set device to \"buttons\" or \"either\""});
+  if (const auto& signal = setup.protocol.timing.signal; signal && !protocol::in_stimulus(*signal))
+    problems.push_back({signal->by_place,
+                        "--buttons-only: the response signal is on the screen, which shows nothing",
+                        "by = \"tone\" or by = \"buzz\", or a session on the screen of turnpoint-ui"});
 }
 
 }  // namespace

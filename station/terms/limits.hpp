@@ -27,5 +27,10 @@ static_assert(kOneTouch_ns < kTouchToAnswer_ns && kTouchToAnswer_ns < kWatermark
 
 /// Length of the tone that asks for an answer (a response signal on headphones).
 inline constexpr double kSignal_s = 0.05;
+/// How long the surface takes to change to a buzz (a response signal on the surface), and back.
+inline constexpr double kBuzzRamp_s = 0.005;
+/// A part of a stimulus in which nothing changes is measured if it lasts this long; see
+/// sensing/interval_state.hpp.
+inline constexpr double kBetweenChanges_s = 0.02;
 
 }  // namespace turnpoint::terms

@@ -315,6 +315,10 @@ class Mistakes(Folder):
         self.refused_in_one_sentence(["field", "--tone", "30000", "--points", "3", "--rig", "simulatd"], "did you mean simulated?")
         self.assertEqual(self.before(), before, "a refused command left files behind")
 
+    def test_a_signal_on_the_screen_of_a_session_without_a_screen(self):
+        self.refused(["run", "response-signal", "--rig", "simulated", "--db", "x.sqlite", "--participant", "P01", "--buttons-only"],
+                     "response-signal.toml:51:", "--buttons-only: the response signal is on the screen")
+
     def test_every_protocol_and_rig_option_is_tried(self):
         self.assertEqual({n for n in self.names if re.search(r"^  protocol ", self.helps[n], re.MULTILINE)}, set(WITH_PROTOCOL))
         self.assertEqual({n for n in self.names if "--rig" in self.options(n)}, {*WITH_RIG, "station"})

@@ -256,8 +256,8 @@ class Measures(unittest.TestCase):
         for person in ("P01", "P02"):
             self.call("run", protocol, "--participant", person, "--db", database, "--headless", "--observer", "sim",
                       "--seed", person[1:])
-        self.call("report", "--study", "--db", database, "--out", "study.html", "--tables", protocol)
-        with open(os.path.join(self.folder, protocol, "measures.csv"), encoding="utf-8", newline="") as table:
+        self.call("report", "--study", "--db", database, "--out", "study.html", "--tables", protocol + ".tables")
+        with open(os.path.join(self.folder, protocol + ".tables", "measures.csv"), encoding="utf-8", newline="") as table:
             found = {row["measure"]: float(row["value"]) for row in csv.DictReader(table) if row["participant"] == "P02"}
         return found, json.loads(self.call("report", "--db", database, "--participant", "P02", "--json"))
 
@@ -300,6 +300,19 @@ class Measures(unittest.TestCase):
         self.assertEqual(len(report["roc"]), 4)
         self.equal(found["area under the ROC"], report["roc"][-1]["area"]["value"])
         self.assertGreater(report["catch"]["trials"], 0)
+
+    def test_ratings_of_a_signal_have_the_area_d_prime_and_d_a(self):
+        with open(os.path.join(SOURCE, "protocols/smoothness-points.toml"), encoding="utf-8") as file:
+            source = file.read().replace('device = "touch"', 'device = "touch"\npresent = "strength_um > 0.3"', 1)
+        with open(os.path.join(self.folder, "rated.toml"), "w", encoding="utf-8") as file:
+            file.write(source.replace("repeats = 8", "repeats = 20"))
+        found, report = self.both("rated.toml")
+        all_levels = report["roc"][-1]
+        self.assertIsNone(all_levels["level"])
+        self.equal(found["area under the ROC"], all_levels["area"]["value"])
+        self.equal(found["d' of ratings"], all_levels["equal_variances"]["sensitivity"]["value"])
+        self.equal(found["d_a of ratings"], all_levels["unequal_variances"]["sensitivity"]["value"])
+        self.equal(found["SD with a signal"], all_levels["unequal_variances"]["sd"]["value"])
 
     def test_the_scripts_quote_conditions_of_two_factors(self):
         with open(os.path.join(SOURCE, "protocols/demo.toml"), encoding="utf-8") as file:

@@ -131,6 +131,38 @@ TEST_CASE("yes/no with confidence has the ROC of these ratings, and its area fol
   CHECK(report_of(data_of(shipped("friction-confidence")))["roc"].empty());  // no trial without a signal
 }
 
+TEST_CASE("one rating of how sure a person is of a signal has a ROC, d' and d_a", "[report]") {
+  auto source = shipped("friction-detection");
+  const auto choices = source.find("choices = [");
+  const auto confidence = source.find("[task.confidence]"), timing = source.find("[timing]");
+  source.replace(confidence, timing - confidence,
+                 "[task.rating]\npoints = 6\nlabels = [{ at = 1, text = { en = \"surely not\", de = \"sicher "
+                 "nicht\" } }, { at = 6, text = { en = \"surely\", de = \"sicher\" } }]\n\n");
+  source.replace(choices, confidence - choices, "present = \"step > 0\"\n\n");
+  source = replaced(replaced(source, "feedback = \"trial\"\n", ""), "repeats = 20", "repeats = 200");
+  source = replaced(source, "\"psychometric\", ", "");
+  const auto data = data_of(source, "sim:threshold=0.08,lapse=0");
+  CHECK(data.design == report::Design::ratings);
+  const auto report = report_of(data);
+  REQUIRE(report["roc"].size() == 4);
+  const auto& curve = report["roc"][1];  // d' is 1.349 at the threshold
+  CHECK(curve["level"] == 0.08);
+  CHECK(curve["points"].size() == 7);
+  CHECK(curve["equal_variances"]["sensitivity"]["value"].get<double>() == Approx(1.349).margin(0.15));
+  CHECK(curve["equal_variances"]["criteria"].size() == 5);
+  CHECK(curve["unequal_variances"]["sensitivity"]["value"].get<double>() == Approx(1.349).margin(0.2));
+  CHECK(curve["unequal_variances"]["sd"]["value"].get<double>() == Approx(1).margin(0.2));
+  CHECK(curve["area"]["value"].get<double>() == Approx(0.82).margin(0.04));
+  CHECK(report["roc"][0]["area"]["value"].get<double>() < curve["area"]["value"].get<double>());
+  CHECK(report["judgements"].size() == 1);  // the mean ratings are still there
+  const auto html = report::to_html(report::summarise(data));
+  CHECK(html.find("Receiver operating characteristic") != std::string::npos);
+  CHECK(html.find("Ratings go from the surest no") != std::string::npos);
+  auto hidden = replaced(source, "show = [\"dprime\"]", "show = [\"trace\"]");
+  CHECK(report_of(data_of(hidden))["roc"].empty());
+  CHECK(report_of(data_of(shipped("smoothness-points")))["roc"].empty());  // no signal is declared
+}
+
 TEST_CASE("same-different counts pairs that are the same as false alarms", "[report]") {
   const auto data = data_of(shipped("friction-same-different"), "sim:threshold=-14,lapse=0");
   const auto report = report_of(data);

@@ -81,8 +81,10 @@ TEST_CASE("a tone as response signal begins at its lag after the change, within 
     const auto [first, end] = sounding(channel_of(burst, format, 2));
     const auto change = std::llround(spec.foreperiod_s * format.rate_Hz);
     CHECK(burst.changes[0].at_frame == change);
-    CHECK(std::abs(static_cast<double>(first - change) - *spec.signal_s * format.rate_Hz) <= 1.5);
-    CHECK(std::abs(static_cast<double>(end - first) - 0.05 * format.rate_Hz) <= 3);
+    // The ramps begin and end with a sample of 0, so the tone is seen from its second to its last but one
+    // frame.
+    CHECK(first - 1 == std::llround((spec.foreperiod_s + *spec.signal_s) * format.rate_Hz));
+    CHECK(end + 1 - (first - 1) == std::llround(0.05 * format.rate_Hz));
     // a stop during the tone ramps it down too, and a stop before it leaves it out
     CHECK(sounding(channel_of(burst, format, 2, first - 9600)).second <= 0);
     const auto cut = channel_of(burst, format, 2, first);
@@ -98,6 +100,6 @@ TEST_CASE("without by = \"tone\" the headphones are silent at the response signa
   trial::Director director(protocol, 0, 1);
   session::PlanAhead plans(rig, protocol, 1);
   const auto spec = *director.next();
-  CHECK(!trial::tone_signal_s(protocol, spec));
+  CHECK(!trial::signal_in_stimulus_s(protocol, spec));
   CHECK(plans.take(spec).bursts.back().signal.amplitude == 0);
 }

@@ -1,0 +1,75 @@
+#include "station/protocol/answers.hpp"
+#include "station/protocol/expression.hpp"
+#include "station/protocol/reading.hpp"
+#include "station/terms/limits.hpp"
+#include "station/text/number.hpp"
+
+namespace turnpoint::protocol {
+
+namespace {
+
+using By = ResponseSignal::By;
+using text::number;
+
+/// True if the time of a signal within the stimulus is known before the stimulus begins. Otherwise reports
+/// why it is not.
+bool time_is_known(const Protocol& protocol, const std::string& what, text::Findings& findings) {
+  const auto& signal = *protocol.timing.signal;
+  if (!explored(protocol.task)) {
+    findings.add(signal.by_place,
+                 what + " is part of the stimulus, but this task is answered after its intervals",
+                 "by = \"screen\", or a task with a single interval");
+    return false;
+  }
+  const auto zero = protocol.timing.response_zero;
+  if (zero == ResponseZero::go_cue || zero == ResponseZero::change) return true;
+  findings.add(signal.by_place,
+               what + " is part of the stimulus, but \"response_zero\" is \"" + name(zero) +
+                   "\", whose time is not known when the stimulus begins",
+               "by = \"screen\", or a \"response_zero\" of \"go_cue\" or \"change\"");
+  return false;
+}
+
+/// A buzz takes the place of the last scene, which must have been reached, and be long enough before to be
+/// measured.
+void check_buzz(const Reading& reading) {
+  const auto& protocol = reading.protocol;
+  const auto& task = protocol.task;
+  const bool changes = !task.intervals.empty() && task.intervals.back().size() > 1;
+  if (!changes) return;
+  const auto& signal = *protocol.timing.signal;
+  if (protocol.timing.response_zero != ResponseZero::change)
+    return reading.findings.add(
+        signal.by_place, "a buzz that is timed from \"go_cue\" could meet the change to the second scene",
+        "response_zero = \"change\", or an interval of one scene");
+  const double first_s = bounds(signal.after_s, protocol.factors).first;
+  const double changed_s = 1e-3 * task.transition_ms.value_or(0) + terms::kBetweenChanges_s;
+  if (first_s < changed_s)
+    reading.findings.add(reading.places.of("timing.response_signal.after_s"),
+                         "the buzz can begin " + number(first_s) +
+                             " s after the change begins, which takes " +
+                             number(task.transition_ms.value_or(0)) + " ms",
+                         "at least " + number(changed_s) + " s");
+}
+
+}  // namespace
+
+void check_signal(const Reading& reading) {
+  const auto& protocol = reading.protocol;
+  const auto& signal = protocol.timing.signal;
+  if (!signal || (signal->by != By::tone && signal->by != By::buzz)) return;
+  const bool tone = signal->by == By::tone;
+  if (!time_is_known(protocol, tone ? "a tone" : "a buzz", reading.findings)) return;
+  if (!tone) check_buzz(reading);
+  const auto end_s = stimulus_end_s(protocol);
+  const double length_s = tone ? terms::kSignal_s : signal->length_s + terms::kBuzzRamp_s;
+  const double latest_s = bounds(signal->after_s, protocol.factors).second + length_s;
+  if (end_s && latest_s > *end_s)
+    reading.findings.add(reading.places.of("timing.response_signal.after_s"),
+                         std::string("the ") + (tone ? "tone" : "buzz") + " can end " + number(latest_s) +
+                             " s after \"" + name(protocol.timing.response_zero) +
+                             "\", but the stimulus can end " + number(*end_s) + " s after it",
+                         "a longer \"explore_s\", or at most " + number(*end_s - length_s) + " s");
+}
+
+}  // namespace turnpoint::protocol
