@@ -95,6 +95,31 @@ Item {
             const remarks = () => studies().remarks.map(remark => remark.what).concat(studies().remarks.map(remark => remark.hint))
             compare(englishOn("studies", () => studies().facts.length > 0, remarks), "")
         }
+        function test_doctor_and_self_test_speak_the_language_of_the_operator() {
+            // What the system reports, such as why a file cannot be opened, stays as it is.
+            const reported = ["No such", "Permission denied", "not permitted"]
+            const rig = () => find(room.screen, "rigPage").rig
+            tap("bar-rig")
+            tap("examine")
+            tryVerify(() => rig().busy === "" && rig().findings.length > 5, 30000)
+            compare(englishOn("rig", () => find(room.screen, "finding5") !== null, () => reported), "")
+            room.look.language = "de"
+            wait(50)
+            verify(shown().includes("Echtzeitpriorität"), shown().join("\n"))
+            tap("selfTestTab")
+            rig().selfTest()
+            tryVerify(() => rig().busy === "" && rig().checks.length > 3, 60000)
+            const faults = []
+            room.look.language = "en"
+            wait(50)
+            const english = shown()
+            for (const language of languages) {
+                room.look.language = language
+                wait(50)
+                for (const text of untranslated(english, shown(), [], language)) faults.push(language + ": " + text)
+            }
+            compare(faults.join("\n"), "")
+        }
         function test_the_reason_against_a_live_session_is_introduced_in_the_language_of_the_operator() {
             tryVerify(() => room.operating.mayBegin, 20000)
             tap("live")
