@@ -71,7 +71,7 @@ std::string fit_table(const NamedFit& named, const SessionData& data) {
           row("Share of bootstrap replicates with a worse fit (proportion)", *found.deviance_p, std::nullopt);
     html += "</table>\n";
   }
-  if (const auto text = describe_intervals(named, data); !text.empty())
+  if (const auto text = texts::say(describe_intervals(named, data), "en"); !text.empty())
     html += "<p class=\"soft\">" + escaped(text) + "</p>\n";
   return html + notes(named.fit.statements) + notes(named.intervals.statements);
 }
@@ -229,7 +229,8 @@ std::string trade_section(const Summary& summary) {
   if (summary.data.design != Design::categories) html += difficulty_table(summary);
   for (const auto& entry : summary.trade.instructions) {
     for (auto statement : entry.statements) {
-      if (!entry.instruction.empty()) statement.text = entry.instruction + ": " + statement.text;
+      if (!entry.instruction.empty())
+        statement.text = {"", "", {texts::plain(entry.instruction + ": "), statement.text}};
       html += notes({statement});
     }
   }

@@ -53,7 +53,11 @@ QVariantList ReportModel::fit() const { return to_list(pages_.fit); }
 QVariantList ReportModel::trade() const { return to_list(pages_.speed_accuracy); }
 QVariantList ReportModel::forces() const { return to_list(pages_.forces); }
 QVariantList ReportModel::health() const { return to_list(pages_.health); }
-QStringList ReportModel::statements() const { return to_list(pages_.statements); }
+QVariantList ReportModel::statements() const {
+  QVariantList list;
+  for (const auto& statement : pages_.statements) list += to_variant(statement);
+  return list;
+}
 
 std::vector<std::pair<QString, desk::Drawing>> ReportModel::all_pictures() const {
   std::vector<std::pair<QString, desk::Drawing>> list;
