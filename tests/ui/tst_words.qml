@@ -120,12 +120,14 @@ Item {
             }
             compare(faults.join("\n"), "")
         }
-        function test_the_reason_against_a_live_session_is_introduced_in_the_language_of_the_operator() {
+        function test_the_reason_against_a_live_session_is_in_the_language_of_the_operator() {
             tryVerify(() => room.operating.mayBegin, 20000)
             tap("live")
             tryVerify(() => !room.operating.preparing && !room.operating.mayBegin, 20000)
             room.look.language = "de"
-            tryVerify(() => shown().some(text => text.startsWith("Echte Sitzung nicht möglich: ")), 2000, shown().join("\n"))
+            tryVerify(() => shown().includes("Echte Sitzung nicht möglich: der Aufbau verwendet die Beispielkurve der Reibung, die nicht gemessen wurde"),
+                      2000, shown().join("\n"))
+            compare(englishOn("run", () => !room.operating.checking, () => room.operating.warnings), "")
         }
 
         function test_sessions_and_reports_are_in_the_language_of_the_operator() {
@@ -141,6 +143,8 @@ Item {
             const report = shown(find(room.screen, "storedReport"))
             for (const word of ["Dargeboten", "Beantwortet", "Stufen", "Tempo und Genauigkeit"]) verify(report.includes(word), report.join("\n"))
             for (const word of ["Presented", "Levels", "Speed and accuracy", "Fit"]) verify(!report.includes(word), word)
+            verify(report.some(text => text.startsWith("• ")), report.join("\n"))
+            for (const text of report) verify(!/^• .*\b(the|is|are|of)\b/.test(text), text)
         }
         function test_the_end_of_a_session_in_numbers_is_in_the_language_of_the_operator() {
             const words = ["Durchgänge", "Zu spät", "Richtig", "main, Schwelle", "Die Sitzung in Zahlen", "Schließen"]

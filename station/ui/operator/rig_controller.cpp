@@ -22,7 +22,7 @@ namespace {
 /// The page warns that a calibration will expire, from this number of days before it does.
 constexpr int kSoon_days = 14;
 
-QVariantMap fact(const char* label, const QString& value, const char* text = "") {
+QVariantMap fact(const char* label, const QVariant& value, const char* text = "") {
   return {{"label", label}, {"text", text}, {"value", value}, {"parts", QStringList()}};
 }
 
@@ -123,7 +123,7 @@ void RigController::open() {
       calibration_ = facts_of(made, file, left_days);
       const auto problems = calibration::problems(made, rig.sha256, today);
       for (const auto& problem : problems)
-        calibration_ += fact("operator.fact_not_used", QString::fromStdString(problem));
+        calibration_ += fact("operator.fact_not_used", to_variant(problem));
       calibration_state_ = !problems.empty() ? "bad" : left_days <= kSoon_days ? "ageing" : "good";
     }
   } catch (const std::exception& error) {
