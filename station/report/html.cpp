@@ -325,7 +325,7 @@ std::string to_html(const Summary& summary) {
         "<h2>Vibration of the surface</h2>\n<p class=\"soft\">Open markers: void, because the vibration was "
         "too far from the plan.</p>\n" +
         picture(vibration_figure(summary));
-  if (!data.health.empty()) html += "<h2>The station</h2>\n" + facts_table(data.health);
+  if (!data.health.empty()) html += "<h2>The station</h2>\n" + facts_table(in_english(data.health));
   return html + "</body></html>\n";
 }
 

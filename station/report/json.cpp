@@ -231,7 +231,7 @@ std::string to_json(const Summary& summary) {
             {"run_mode", data.run_mode},     {"status", data.status},           {"level", data.level_label},
             {"level_unit", data.level_unit}, {"choices", data.choices}};
   json["facts"] = facts_json(data.facts);
-  json["station"] = facts_json(data.health);
+  json["station"] = facts_json(in_english(data.health));
   const auto& n = summary.outcomes;
   json["trials"] = {{"presented", n.presented},         {"answered", n.answered}, {"timeouts", n.timeouts},
                     {"anticipations", n.anticipations}, {"aborted", n.aborted},   {"faults", n.faults}};
