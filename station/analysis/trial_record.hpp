@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "station/terms/trial.hpp"
+#include "station/texts/texts.hpp"
 
 namespace turnpoint::analysis {
 
@@ -53,7 +54,7 @@ std::vector<std::string> conditions_of(const std::vector<TrialRecord>& trials,
 /// A remark that the report shows beside a number or instead of it: a stable code and a sentence for people.
 struct Statement {
   std::string code;
-  std::string text;
+  texts::Phrase text;
 };
 
 /// Both ends of an interval at a given confidence.

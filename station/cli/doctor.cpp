@@ -32,11 +32,12 @@ void doctor(const std::string& rig_path, const std::string& data_path, Context& 
   const auto checks = maintenance::examine(rig, data_path);
   Json list = Json::array();
   for (const auto& check : checks) {
-    list.push_back(
-        {{"name", check.name}, {"status", word(check.status)}, {"what", check.what}, {"mend", check.mend}});
+    const auto name = texts::say(check.name, "en"), what = texts::say(check.what, "en"),
+               mend = texts::say(check.mend, "en");
+    list.push_back({{"name", name}, {"status", word(check.status)}, {"what", what}, {"mend", mend}});
     if (context.json) continue;
-    fmt::print(context.out, "{:<20} {:<8} {}\n", check.name, word(check.status), check.what);
-    if (!check.mend.empty()) fmt::print(context.out, "{:<29} -> {}\n", "", check.mend);
+    fmt::print(context.out, "{:<20} {:<8} {}\n", name, word(check.status), what);
+    if (!mend.empty()) fmt::print(context.out, "{:<29} -> {}\n", "", mend);
   }
   const bool fit = maintenance::fit_for_use(checks);
   if (context.json) context.out << Json{{"rig", rig.name}, {"fit", fit}, {"checks", list}}.dump(2) << "\n";

@@ -110,7 +110,8 @@ void print_study(std::ostream& out, const std::string& file, const report::Study
       fmt::print(out, "  {}: threshold of the group {} {}\n", name,
                  interval_in_words(value, interval.low, interval.high), study.settings.level_unit);
     }
-    for (const auto& statement : group.result.statements) fmt::print(out, "  {}: {}\n", name, statement.text);
+    for (const auto& statement : group.result.statements)
+      fmt::print(out, "  {}: {}\n", name, texts::say(statement.text, "en"));
   }
   for (const auto& effect : study.effects) {
     if (!effect.difference) continue;

@@ -21,14 +21,12 @@ namespace fs = std::filesystem;
 namespace {
 
 using text::number;
-using texts::Phrase, texts::plain;
-
-Phrase label(const char* key) { return {key, "", {}}; }
+using texts::Phrase, texts::phrase, texts::plain;
 
 Phrase range(const simulation::Spread& spread, double unit) {
   const auto shown = [&](double value) { return plain(number(std::round(value / unit * 10) / 10, 4)); };
   const auto low = shown(spread.low), median = shown(spread.median), high = shown(spread.high);
-  return low == high ? median : Phrase{"check.range", "", {median, low, high}};
+  return low == high ? median : phrase("check.range", {median, low, high});
 }
 
 std::string joined(const std::set<std::string>& list) {
@@ -48,11 +46,10 @@ void add_tones(const simulation::Check& check, CheckWords& words) {
     friction = std::min(friction, sight.lowest_friction);
   }
   const auto kHz = [](double Hz) { return plain(number(1e-3 * Hz, 4)); };
-  words.facts.emplace_back(label("check.tones"), Phrase{"check.kilohertz", "", {kHz(low), kHz(high)}});
-  words.facts.emplace_back(label("check.moves"), plain(number(moved_um, 3) + " \u00b5m"));
-  words.facts.emplace_back(label("check.friction"),
-                           Phrase{"check.of_rest", "", {plain(number(friction, 3))}});
-  words.facts.emplace_back(label("check.models"), plain(joined(check.survey.models)));
+  words.facts.emplace_back(phrase("check.tones"), phrase("check.kilohertz", {kHz(low), kHz(high)}));
+  words.facts.emplace_back(phrase("check.moves"), plain(number(moved_um, 3) + " \u00b5m"));
+  words.facts.emplace_back(phrase("check.friction"), phrase("check.of_rest", {plain(number(friction, 3))}));
+  words.facts.emplace_back(phrase("check.models"), plain(joined(check.survey.models)));
 }
 
 /// The visit to which a block belongs, its name and instruction, and its number of trials.
@@ -151,12 +148,11 @@ CheckWords words_of(const simulation::Check& check) {
   add_remarks(check.warnings, Kind::warning, words);
   add_remarks(check.notes, Kind::note, words);
   if (!check.problems.empty()) return words;
-  words.facts.emplace_back(label("operator.rig"), plain(check.rig_name));
-  words.facts.emplace_back(label("operator.trials"), range(check.trials, 1));
-  words.facts.emplace_back(label("check.duration"),
-                           Phrase{"check.minutes", "", {range(check.duration_s, 60)}});
+  words.facts.emplace_back(phrase("operator.rig"), plain(check.rig_name));
+  words.facts.emplace_back(phrase("operator.trials"), range(check.trials, 1));
+  words.facts.emplace_back(phrase("check.duration"), phrase("check.minutes", {range(check.duration_s, 60)}));
   for (const auto& block : check.blocks)
-    words.facts.emplace_back(label(block.practice ? "practice" : "design.keys.block"), describe(block));
+    words.facts.emplace_back(phrase(block.practice ? "practice" : "design.keys.block"), describe(block));
   add_tones(check, words);
   for (const auto& cue : check.cues.reports) {
     const bool leaks = cue.above_chance();

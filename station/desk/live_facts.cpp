@@ -35,26 +35,15 @@ int count(const std::vector<LiveTrial>& trials, terms::Outcome outcome) {
                                         [&](const LiveTrial& trial) { return trial.outcome == outcome; }));
 }
 
-// In the order of terms::Proof and terms::ProofCause.
+// In the order of terms::Proof.
 constexpr const char* kProofs[] = {"proof.unproven", "proof.ok",      "proof.flagged",
                                    "proof.refused",  "proof.stopped", "proof.lost"};
-constexpr const char* kCauses[] = {"",
-                                   "proof_cause.gap",
-                                   "proof_cause.clipped",
-                                   "proof_cause.dead",
-                                   "proof_cause.frequency",
-                                   "proof_cause.half",
-                                   "proof_cause.late",
-                                   "proof_cause.phase",
-                                   "proof_cause.level",
-                                   "proof_cause.residual",
-                                   "proof_cause.noisy"};
-static_assert(std::size(kProofs) == terms::proofs.size() && std::size(kCauses) == terms::proof_causes.size());
+static_assert(std::size(kProofs) == terms::proofs.size());
 
 std::string vibration(const LiveTrial& trial, const Words& words) {
   std::string said = words(kProofs[static_cast<std::size_t>(trial.proof)]);
   if (trial.proof_cause != records::ProofCause::none)
-    said += std::string("; ") + words(kCauses[static_cast<std::size_t>(trial.proof_cause)]);
+    said += "; " + words(texts::phrase_of(trial.proof_cause));
   return said;
 }
 

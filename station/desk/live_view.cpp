@@ -167,7 +167,7 @@ void LiveView::show() {
     if (looks.size() > 1)
       state_.scene.emplace_back(words("design.keys.scene"),
                                 fmt::format("{} {}", state_.surfaces.size() + 1, look.scene));
-    state_.scene.insert(state_.scene.end(), look.facts.begin(), look.facts.end());
+    for (const auto& [label, value] : look.facts) state_.scene.emplace_back(words(label), words(value));
     state_.surfaces.push_back(drawing_of_surface(look, rig_, language_));
     peak_displacement_m_ = std::max(peak_displacement_m_.value_or(0), look.plan.peak_displacement_m);
   }

@@ -6,6 +6,7 @@
 #include "station/protocol/protocol.hpp"
 #include "station/rig/rig.hpp"
 #include "station/scene/planner.hpp"
+#include "station/texts/texts.hpp"
 
 namespace turnpoint::desk {
 
@@ -35,8 +36,8 @@ struct SceneLook {
   scene::Planner::Profile profile;
   scene::UnderFinger under;
   /// facts about the scene and its cues, as pairs of a label and a value, in the order in which they are
-  /// shown
-  std::vector<std::pair<std::string, std::string>> facts, cues;
+  /// shown. What the physics library says of its models and its warnings is in English.
+  std::vector<std::pair<texts::Phrase, texts::Phrase>> facts, cues;
 };
 
 constexpr int kProfilePoints = 401;

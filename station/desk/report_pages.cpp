@@ -47,6 +47,14 @@ std::string measure_name(const std::string& measure, const Words& words) {
   return found == known.end() ? measure : words(found->second);
 }
 
+/// Adds statements about one condition, whose name and a colon are in `prefix`.
+void add_statements(const std::vector<analysis::Statement>& statements, const std::string& prefix,
+                    ReportPages& pages) {
+  for (const auto& statement : statements)
+    pages.statements.push_back(
+        prefix.empty() ? statement.text : texts::Phrase{"", "", {texts::plain(prefix), statement.text}});
+}
+
 void add_outcomes(const report::Summary& summary, const Words& words, ReportPages& pages) {
   const auto& counts = summary.outcomes;
   pages.outcomes = {
@@ -83,8 +91,9 @@ void add_fits(const report::Summary& summary, const Words& words, ReportPages& p
                                                                  : words("report.slope"),
            p.slope, named.intervals.slope);
     line(words("report.lapse"), p.lapse, named.intervals.lapse);
-    pages.statements.push_back(prefix + report::describe_intervals(named, summary.data));
-    for (const auto& statement : named.fit.statements) pages.statements.push_back(prefix + statement.text);
+    if (auto intervals = report::describe_intervals(named, summary.data); intervals != texts::Phrase())
+      pages.statements.push_back({"", "", {texts::plain(prefix), std::move(intervals)}});
+    add_statements(named.fit.statements, prefix, pages);
   }
 }
 
@@ -110,7 +119,7 @@ void add_judgements(const report::Summary& summary, const Words& words, ReportPa
     for (const auto& level : judged.levels)
       pages.fit.emplace_back(prefix + number(level.level, 4) + (unit.empty() ? "" : " " + unit),
                              with(level.mean, "", words));
-    for (const auto& statement : judged.statements) pages.statements.push_back(prefix + statement.text);
+    add_statements(judged.statements, prefix, pages);
   }
 }
 
@@ -134,14 +143,14 @@ void add_trade(const report::Summary& summary, const Words& words, ReportPages& 
                                       with(result.proportion_correct, "", words));
     pages.speed_accuracy.emplace_back(prefix + words("report.median_time"),
                                       with(result.median_s, "s", words));
-    for (const auto& statement : result.statements) pages.statements.push_back(prefix + statement.text);
+    add_statements(result.statements, prefix, pages);
   }
   for (const auto& difference : trade.differences)
     if (difference.estimate)
       pages.speed_accuracy.emplace_back(
           difference.second + " \u2212 " + difference.first + ": " + measure_name(difference.measure, words),
           with(difference.estimate, difference.unit, words));
-  for (const auto& statement : trade.statements) pages.statements.push_back(statement.text);
+  add_statements(trade.statements, "", pages);
 }
 
 void add_finger(const report::Summary& summary, const Words& words, ReportPages& pages) {
@@ -157,7 +166,7 @@ void add_finger(const report::Summary& summary, const Words& words, ReportPages&
     line("report.friction_rough", entry.mu_high, "");
     line("report.felt", entry.shift_mm, "mm");
   }
-  for (const auto& statement : summary.finger->statements) pages.statements.push_back(statement.text);
+  add_statements(summary.finger->statements, "", pages);
 }
 
 }  // namespace
@@ -175,9 +184,8 @@ ReportPages report_pages(const report::Summary& summary) {
   add_trade(summary, words, pages);
   add_finger(summary, words, pages);
   pages.health = summary.data.health;
-  if (summary.bias)
-    for (const auto& statement : summary.bias->statements) pages.statements.push_back(statement.text);
-  for (const auto& statement : summary.fatigue.statements) pages.statements.push_back(statement.text);
+  if (summary.bias) add_statements(summary.bias->statements, "", pages);
+  add_statements(summary.fatigue.statements, "", pages);
   pages.trade = drawing(report::trade_figure(summary));
   pages.fits =
       drawing(report::judges(summary.data.design)                 ? report::judgement_figure(summary)

@@ -241,7 +241,8 @@ plot::Figure profile_figure(const std::vector<SceneLook>& looks, const std::stri
   return figure;
 }
 
-plot::Figure spectrum_figure(const SceneLook& look) {
+plot::Figure spectrum_figure(const SceneLook& look, const std::string& language) {
+  const Words words(language);
   require_plan(look);
   plot::Points points;
   double most = 0;
@@ -253,14 +254,14 @@ plot::Figure spectrum_figure(const SceneLook& look) {
     most = std::max(most, 1e6 * tone.amplitude_m);
   }
   plot::Chart panel;
-  panel.title = "Drive";
-  panel.x = plot::fitted("Frequency (kHz)", points.x, 0.3);
-  panel.y = {"Drive edge (\u00b5m)", 0, most > 0 ? 1.2 * most : 1};
+  panel.title = words("figure.drive");
+  panel.x = plot::fitted(words("figure.frequency"), points.x, 0.3);
+  panel.y = {words("figure.drive_edge"), 0, most > 0 ? 1.2 * most : 1};
   for (const auto& tone : look.plan.tones)
     if (tone.nearest_resonance_Hz && 1e-3 * *tone.nearest_resonance_Hz > panel.x.low &&
         1e-3 * *tone.nearest_resonance_Hz < panel.x.high && look.plan.tones.size() == 1)
-      panel.layers.push_back(
-          plot::Rule{plot::Rule::Direction::vertical, 1e-3 * *tone.nearest_resonance_Hz, "resonance"});
+      panel.layers.push_back(plot::Rule{plot::Rule::Direction::vertical, 1e-3 * *tone.nearest_resonance_Hz,
+                                        words("figure.resonance")});
   panel.layers.push_back(points);
   plot::Figure figure;
   figure.title = "Tones, scene " + look.scene;

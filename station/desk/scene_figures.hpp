@@ -29,6 +29,6 @@ std::string surface_svg(const SceneLook& look, const rig::Rig& rig, double width
 plot::Figure profile_figure(const std::vector<SceneLook>& looks, const std::string& language = "en");
 
 /// Plots the drive's tones: displacement of the drive edge against frequency.
-plot::Figure spectrum_figure(const SceneLook& look);
+plot::Figure spectrum_figure(const SceneLook& look, const std::string& language = "en");
 
 }  // namespace turnpoint::desk

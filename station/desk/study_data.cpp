@@ -181,8 +181,8 @@ report::Study head_of(const StudyChoice& choice, const std::vector<Found>& all, 
                  {"Recorded by version", fmt::format("{}", fmt::join(versions, ", "))}};
   if (copies > 0)
     study.statements.push_back(
-        {"copies", fmt::format("{} session{} in more than one file and count{} once.", copies,
-                               copies == 1 ? " is" : "s are", copies == 1 ? "s" : "")});
+        {"copies", texts::phrase(copies == 1 ? "statement.one_copy" : "statement.copies",
+                                 {texts::plain(std::to_string(copies))})});
   return study;
 }
 
@@ -203,8 +203,8 @@ report::Study study_data(const StudyChoice& choice, const StudySink& sink, const
   for (const auto& [person, sessions] : people) {
     if (!progress(done, static_cast<int>(people.size()))) {
       study.statements.push_back(
-          {"stopped",
-           fmt::format("Stopped after {} of {} participants; the others are missing.", done, people.size())});
+          {"stopped", texts::phrase("statement.stopped", {texts::plain(std::to_string(done)),
+                                                          texts::plain(std::to_string(people.size()))})});
       break;
     }
     ++done;

@@ -61,9 +61,8 @@ class ConverterBridges : public BridgeReader {
     if (clock.counters().lost + clock.counters().disorder > 0)
       throw std::runtime_error(fmt::format("{}: {} samples were lost", rig_.uri, clock.counters().lost));
     if (const auto rate_Hz = clock.rate_Hz())
-      if (const auto problem = session::wrong_rate(rig_.uri.substr(4), *rate_Hz, rig_.rate_Hz);
-          !problem.empty())
-        throw std::runtime_error(problem);
+      if (const auto wrong = session::wrong_rate(rig_.uri.substr(4), *rate_Hz, rig_.rate_Hz))
+        throw std::runtime_error(texts::say(*wrong, "en"));
     for (const auto& sample : samples)
       for (std::size_t cell = 0; cell < cells.size(); ++cell)
         reading.sd[cell] += std::pow(sample.value[cell] - reading.ratio[cell], 2) / count;

@@ -71,7 +71,7 @@ std::string fit_table(const NamedFit& named, const SessionData& data) {
           row("Share of bootstrap replicates with a worse fit (proportion)", *found.deviance_p, std::nullopt);
     html += "</table>\n";
   }
-  if (const auto text = describe_intervals(named, data); !text.empty())
+  if (const auto text = texts::say(describe_intervals(named, data), "en"); !text.empty())
     html += "<p class=\"soft\">" + escaped(text) + "</p>\n";
   return html + notes(named.fit.statements) + notes(named.intervals.statements);
 }
@@ -229,7 +229,8 @@ std::string trade_section(const Summary& summary) {
   if (summary.data.design != Design::categories) html += difficulty_table(summary);
   for (const auto& entry : summary.trade.instructions) {
     for (auto statement : entry.statements) {
-      if (!entry.instruction.empty()) statement.text = entry.instruction + ": " + statement.text;
+      if (!entry.instruction.empty())
+        statement.text = {"", "", {texts::plain(entry.instruction + ": "), statement.text}};
       html += notes({statement});
     }
   }
@@ -324,7 +325,7 @@ std::string to_html(const Summary& summary) {
         "<h2>Vibration of the surface</h2>\n<p class=\"soft\">Open markers: void, because the vibration was "
         "too far from the plan.</p>\n" +
         picture(vibration_figure(summary));
-  if (!data.health.empty()) html += "<h2>The station</h2>\n" + facts_table(data.health);
+  if (!data.health.empty()) html += "<h2>The station</h2>\n" + facts_table(in_english(data.health));
   return html + "</body></html>\n";
 }
 

@@ -47,7 +47,7 @@ Json fit_json(const NamedFit& named, const SessionData& data) {
   json["deviance"] = p && !posterior ? value(named.fit.deviance) : Json(nullptr);
   json["deviance_p"] = value(named.intervals.deviance_p);
   json["replicates"] = named.intervals.replicates;
-  json["intervals"] = describe_intervals(named, data);
+  json["intervals"] = texts::say(describe_intervals(named, data), "en");
   json["prior"] = prior_json(named);
   json["levels"] = Json::array();  // a noise trial has no level, so its level is null
   for (const auto& point : named.fit.data)
@@ -245,7 +245,7 @@ std::string to_json(const Summary& summary) {
             {"run_mode", data.run_mode},     {"status", data.status},           {"level", data.level_label},
             {"level_unit", data.level_unit}, {"choices", data.choices}};
   json["facts"] = facts_json(data.facts);
-  json["station"] = facts_json(data.health);
+  json["station"] = facts_json(in_english(data.health));
   const auto& n = summary.outcomes;
   json["trials"] = {{"presented", n.presented},         {"answered", n.answered}, {"timeouts", n.timeouts},
                     {"anticipations", n.anticipations}, {"aborted", n.aborted},   {"faults", n.faults}};

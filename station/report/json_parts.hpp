@@ -45,7 +45,7 @@ inline Json value(const ProcedureEstimate& estimate) {
 inline Json value(const std::vector<analysis::Statement>& statements) {
   Json list = Json::array();
   for (const auto& statement : statements)
-    list.push_back({{"code", statement.code}, {"text", statement.text}});
+    list.push_back({{"code", statement.code}, {"text", texts::say(statement.text, "en")}});
   return list;
 }
 

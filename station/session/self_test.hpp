@@ -1,25 +1,50 @@
 #pragma once
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "station/records/records.hpp"
 #include "station/system/condition.hpp"
 #include "station/terms/proof.hpp"
+#include "station/texts/texts.hpp"
 
 namespace turnpoint::session {
 
 using records::CheckRow;
 using records::Verdict;
 
+/// One check of the self-test: what was measured, and how it was judged.
+struct Check {
+  texts::Phrase name;
+  Verdict verdict = Verdict::passed;
+  std::optional<double> value,
+      limit;           ///< measured value and its limit; empty if the check measures no number
+  std::string unit;    ///< unit of value and limit; "" if there is no number
+  texts::Phrase what;  ///< what was found, as a sentence for the operator
+};
+
+/// Returns the row that is stored for a check. It is in English.
+CheckRow row_of(const Check& check);
+
+/// A part of the rig does not work. Says so in the language of the screen; what() is in English.
+class PartFailed : public std::runtime_error {
+ public:
+  explicit PartFailed(texts::Phrase why);
+  const texts::Phrase& why() const { return why_; }
+
+ private:
+  texts::Phrase why_;
+};
+
 /// The following structs are readings of the self-test. In each, `missing` says why nothing could be
-/// measured; it is "" after a measurement.
+/// measured; it is empty after a measurement.
 
 /// The external monitor (a circuit, see deploy/README.md) must shut the gate of the amplifier if the
 /// station's heartbeat signal stops. This reading was taken after the heartbeat was stopped while the enable
 /// line was high.
 struct GateReading {
-  std::string missing;
+  std::optional<texts::Phrase> missing;
   bool opened = false;  ///< the gate was open while the heartbeat ran
   std::optional<double>
       dropped_s;  ///< time from the stop of the heartbeat until the gate was shut; empty: never
@@ -27,14 +52,14 @@ struct GateReading {
 
 /// The result of asking somebody to press and release the stop button or a response button.
 struct PressReading {
-  std::string missing;
+  std::optional<texts::Phrase> missing;
   std::string button;  ///< name of the button; "" for the stop button
   bool pressed = false, released = false;
 };
 
 /// A quiet tone on one transducer, as the pick-ups measured it.
 struct ToneReading {
-  std::string missing;
+  std::optional<texts::Phrase> missing;
   std::string transducer;
   double frequency_Hz = 0;
   double ratio_dB = 0;  ///< measured level of the tone relative to its calibration
@@ -44,10 +69,10 @@ struct ToneReading {
 
 /// The reading of one force cell while no finger is on the surface.
 struct CellReading {
-  std::string missing;
-  std::string cell;                 ///< name of the cell: "a", "b" or "lateral"
-  std::string fault;                ///< why the cell could not be read; "" if it was read
-  double zero_N = 0, noise_mN = 0;  ///< mean force, and the standard deviation of the force signal
+  std::optional<texts::Phrase> missing;
+  texts::Phrase cell;                  ///< name of the cell: "a", "b" or "lateral"
+  std::optional<texts::Phrase> fault;  ///< why the cell could not be read; empty if it was read
+  double zero_N = 0, noise_mN = 0;     ///< mean force, and the standard deviation of the force signal
 };
 
 /// The wall clock, and by how much it was set (by a person or a time service) during the self-test.
@@ -67,17 +92,17 @@ inline constexpr double kLeastDisk_MiB = 200;  ///< free disk space that a sessi
 inline constexpr double kLongestPress_s = 20;  ///< how long the self-test waits for a press or a release
 
 /// Each of these functions judges one reading; they use no device.
-CheckRow judged(const GateReading& reading);
-CheckRow judged(const PressReading& reading);
-CheckRow judged(const ToneReading& reading);
+Check judged(const GateReading& reading);
+Check judged(const PressReading& reading);
+Check judged(const ToneReading& reading);
 /// Returns two checks: one of the cell's zero and one of its noise.
-std::vector<CheckRow> judged(const CellReading& reading);
-CheckRow judged_temperature(std::optional<double> hottest_C);
-CheckRow judged(const ClockReading& reading);
-CheckRow judged(const system::Disk& disk);
+std::vector<Check> judged(const CellReading& reading);
+Check judged_temperature(std::optional<double> hottest_C);
+Check judged(const ClockReading& reading);
+Check judged(const system::Disk& disk);
 
 /// The rig under test. Each function measures one part and may take seconds. If the part does not work at
-/// all, the function throws std::exception.
+/// all, the function throws PartFailed, or another std::exception with what the system says.
 class SelfTestRig {
  public:
   virtual ~SelfTestRig() = default;
@@ -94,9 +119,9 @@ class SelfTestRig {
 };
 
 /// Runs all checks. A part that throws has failed; the other parts are still checked.
-std::vector<CheckRow> self_test(SelfTestRig& rig);
+std::vector<Check> self_test(SelfTestRig& rig);
 
 /// True if no check failed. Checks that were not possible count as not failed.
-bool passed(const std::vector<CheckRow>& checks);
+bool passed(const std::vector<Check>& checks);
 
 }  // namespace turnpoint::session

@@ -21,8 +21,11 @@ constexpr double kAmplitude = 0.1, kShareOfLimit = 0.25;
 // Below this frequency people with good hearing may hear the tone.
 constexpr double kInaudible_Hz = 22'400;
 
+using texts::phrase;
+
+/// Throws if the amplifier has refused. `what` is the key of the text that says what it was to do.
 void require(const std::optional<Fault>& refusal, const char* what) {
-  if (refusal) throw std::runtime_error(std::string(what) + ": " + terms::describe(*refusal));
+  if (refusal) throw PartFailed(phrase(what, {texts::phrase_of(*refusal)}));
 }
 
 /// Enables the amplifier. The destructor starts the heartbeat again and switches the amplifier off, even
@@ -30,7 +33,7 @@ void require(const std::optional<Fault>& refusal, const char* what) {
 class GateOpened {
  public:
   explicit GateOpened(drive::Amplifier& amplifier) : amplifier_(amplifier) {
-    require(amplifier.enable(), "the amplifier cannot be enabled");
+    require(amplifier.enable(), "self_test.cannot_enable");
   }
   ~GateOpened() {
     amplifier_.disable();
@@ -100,15 +103,15 @@ class StageRig : public SelfTestRig {
   GateReading drop_heartbeat() override {
     GateReading reading;
     if (parts_.amplifier == nullptr) {
-      reading.missing = "the session is simulated";
+      reading.missing = phrase("self_test.session_simulated");
       return reading;
     }
     auto& amplifier = *parts_.amplifier;
     if (!amplifier.gate()) {
-      reading.missing = "no line reads the gate; add gate=LINE to the rig's [amplifier] if it is wired";
+      reading.missing = phrase("self_test.gate_missing");
       return reading;
     }
-    require(parts_.stage->arm(), "the amplifier cannot be armed");
+    require(parts_.stage->arm(), "self_test.cannot_arm");
     // Measure up to three times and keep the shortest time, because a busy machine can only lengthen it.
     for (int attempt = 0; attempt < 3 && reading.dropped_s.value_or(1) > kGateLimit_s; ++attempt) {
       const GateOpened opened(amplifier);
@@ -120,8 +123,7 @@ class StageRig : public SelfTestRig {
       // Make sure that the external monitor has shut the gate. If the guard shut it after a fault, the
       // reading would say nothing about the monitor.
       if (amplifier.state() == drive::AmplifierState::faulted)
-        throw std::runtime_error("the amplifier was switched off for another reason: " +
-                                 terms::describe(amplifier.fault()));
+        throw PartFailed(phrase("self_test.gate_other", {texts::phrase_of(amplifier.fault())}));
       const auto dropped_s = 1e-9 * static_cast<double>(system::monotonic_ns() - held_ns);
       reading.dropped_s = std::min(dropped_s, reading.dropped_s.value_or(dropped_s));
     }
@@ -131,12 +133,12 @@ class StageRig : public SelfTestRig {
   PressReading press_stop() override {
     PressReading reading;
     if (!has_stop_line(parts_.rig->amplifier_uri))
-      reading.missing = "the rig has no stop line";
+      reading.missing = phrase("self_test.stop_missing");
     else if (!parts_.ask)
-      reading.missing = "nobody was asked to press it";
-    if (!reading.missing.empty()) return reading;
+      reading.missing = phrase("self_test.nobody_asked");
+    if (reading.missing) return reading;
     auto& amplifier = *parts_.amplifier;
-    require(parts_.stage->arm(), "the amplifier cannot be armed");
+    require(parts_.stage->arm(), "self_test.cannot_arm");
     parts_.ask({Request::Kind::press_stop, 0, ""});
     reading.pressed = until(
         [&] {
@@ -147,7 +149,7 @@ class StageRig : public SelfTestRig {
     if (!reading.pressed) return reading;
     parts_.ask({Request::Kind::release_stop, 0, ""});
     reading.released = until([&] { return !parts_.stage->clear(); }, press_ns_);
-    if (reading.released) require(parts_.stage->arm(), "the amplifier cannot be armed");
+    if (reading.released) require(parts_.stage->arm(), "self_test.cannot_arm");
     return reading;
   }
 
@@ -160,7 +162,7 @@ class StageRig : public SelfTestRig {
       if (parts_.ask)
         reading.pressed = reading.released = pressed(static_cast<int>(k), names[k]);
       else
-        reading.missing = "nobody was asked to press it";
+        reading.missing = phrase("self_test.nobody_asked");
     }
     return readings;
   }
@@ -168,7 +170,7 @@ class StageRig : public SelfTestRig {
   std::vector<ToneReading> play_tones() override {
     if (parts_.room == nullptr || !parts_.capture || parts_.capture->pick_ups.empty()) {
       ToneReading none;
-      none.missing = "the rig has no pick-up";
+      none.missing = phrase("self_test.pick_up_missing");
       return {none};
     }
     std::vector<ToneReading> readings;
@@ -184,20 +186,19 @@ class StageRig : public SelfTestRig {
   std::vector<CellReading> read_cells() override {
     CellReading reading;
     if (!parts_.capture || !parts_.capture->finger) {
-      reading.missing = rig::has_force_cells(*parts_.rig) ? "the force cells are not calibrated"
-                                                          : "the rig has no force cells";
+      reading.missing = phrase(rig::has_force_cells(*parts_.rig) ? "self_test.cells_not_calibrated"
+                                                                 : "self_test.cells_missing");
       return {reading};
     }
     std::vector<CellReading> readings;
     for (std::size_t k = 0; k < sensing::bridge_count; ++k) {
-      reading.cell = k == 0 ? "a" : k == 1 ? "b" : "lateral";
+      reading.cell = k == 2 ? phrase("self_test.lateral") : texts::plain(k == 0 ? "a" : "b");
       if (forces_ && forces_->zero && forces_->noise) {
         reading.zero_N = kRated_N * (*forces_->zero)[k];
         reading.noise_mN = 1e3 * kRated_N * (*forces_->noise)[k];
       } else {
-        reading.fault = forces_ && forces_->state == sensing::ForcesState::wire
-                            ? "a wire of the bridges or of the reference is off"
-                            : "samples of the cells were missing";
+        const bool wire = forces_ && forces_->state == sensing::ForcesState::wire;
+        reading.fault = phrase(wire ? "self_test.wire_off" : "self_test.samples_missing");
       }
       readings.push_back(reading);
     }
@@ -236,8 +237,8 @@ class StageRig : public SelfTestRig {
   void play(const rig::Transducer& transducer, ToneReading& reading) {
     auto& stage = *parts_.room;
     for (auto& input : stage.drain()) pass_on(std::move(input));
-    require(stage.arm(), "the amplifier cannot be armed");
-    require(stage.open_amplifier(), "the amplifier cannot be enabled");
+    require(stage.arm(), "self_test.cannot_arm");
+    require(stage.open_amplifier(), "self_test.cannot_enable");
     const auto settled_ns = stage.now_ns() + kQuiet_ns;
     while (auto input = stage.wait_until(settled_ns)) pass_on(std::move(*input));
     const auto burst = quiet_tone(*parts_.rig, transducer, reading.frequency_Hz);
@@ -249,7 +250,7 @@ class StageRig : public SelfTestRig {
         stage.close_amplifier();
         const Fault fault{input->fault, input->text};
         pass_on(std::move(*input));
-        throw std::runtime_error(terms::describe(fault));
+        throw PartFailed(texts::phrase_of(fault));
       }
       if (input->kind == InputKind::heard) break;
       if (input->kind != InputKind::measured) {
@@ -277,7 +278,7 @@ std::unique_ptr<SelfTestRig> self_test_rig(SelfTestParts parts) {
   return std::make_unique<StageRig>(std::move(parts));
 }
 
-std::vector<CheckRow> self_test(const rig::Rig& rig, const AskOperator& ask, const std::string& data_folder) {
+std::vector<Check> self_test(const rig::Rig& rig, const AskOperator& ask, const std::string& data_folder) {
   if (rig.amplifier_uri == "sim:") return simulated_self_test(rig, data_folder);
   Inputs inputs;
   auto devices = open_devices(rig, inputs);
@@ -291,8 +292,8 @@ std::vector<CheckRow> self_test(const rig::Rig& rig, const AskOperator& ask, con
   return checks;
 }
 
-std::vector<CheckRow> simulated_self_test(const rig::Rig& rig, const std::string& data_folder,
-                                          const SimulatedFaults& faults) {
+std::vector<Check> simulated_self_test(const rig::Rig& rig, const std::string& data_folder,
+                                       const SimulatedFaults& faults) {
   Inputs inputs, room_inputs;
   const auto lines = std::make_shared<lines::SimulatedAmplifierLines>();
   if (faults.lines) faults.lines(*lines);

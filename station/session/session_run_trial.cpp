@@ -113,9 +113,8 @@ void SessionRun::check_plans(const trial::TrialSpec& spec) {
       account_.check(plan.peak_displacement_m, times[i].length_s);
       if (setup_.run_mode != terms::RunMode::live) continue;
       for (const auto& tone : plan.tones)
-        if (const auto problem = limits::sound_problem(tone.frequency_Hz, tone.full_scale, setup_.sound);
-            !problem.empty())
-          throw limits::LimitExceeded(problem);
+        if (const auto problem = limits::sound_problem(tone.frequency_Hz, tone.full_scale, setup_.sound))
+          throw limits::LimitExceeded(texts::say(*problem, "en"));
     }
 }
 

@@ -9,6 +9,7 @@
 #include "station/session/planned_session.hpp"
 #include "station/session/session.hpp"
 #include "station/text/problem.hpp"
+#include "station/texts/texts.hpp"
 
 namespace turnpoint::setup {
 
@@ -58,7 +59,7 @@ session::Setup prepare(const RunRequest& request, const std::stop_token& stop = 
 
 /// Returns the reasons why the live session of this request cannot run; empty if it can. The reasons name no
 /// option of the command line, so a page can show them. Throws like prepare(), except text::BadInput.
-std::vector<std::string> live_problems(const RunRequest& request, const std::stop_token& stop = {});
+std::vector<texts::Phrase> live_problems(const RunRequest& request, const std::stop_token& stop = {});
 
 /// Applies the text of a calibration file to the rig, to the sound levels, and to the values that are stored
 /// with the session. Throws text::BadInput or terms::UsageError.

@@ -95,4 +95,12 @@ FaultText fault_text(terms::FaultKind kind, const std::string& language) {
           text(key + ".to_do", language)};
 }
 
+Phrase phrase_of(const terms::Fault& fault) {
+  auto called = phrase(std::string("fault.") + terms::name(fault.kind) + ".called");
+  if (fault.detail.empty()) return called;
+  return {"", "", {std::move(called), plain(": " + fault.detail)}};
+}
+
+Phrase phrase_of(terms::ProofCause cause) { return phrase(std::string("proof_cause.") + terms::name(cause)); }
+
 }  // namespace turnpoint::texts

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "station/terms/fault.hpp"
+#include "station/terms/proof.hpp"
 
 namespace turnpoint::texts {
 
@@ -36,6 +37,10 @@ struct Phrase {
 };
 /// A phrase that is the same in every language.
 inline Phrase plain(std::string words) { return {"", std::move(words), {}}; }
+/// The text with this key, with `values` in its places.
+inline Phrase phrase(std::string key, std::vector<Phrase> values = {}) {
+  return {std::move(key), "", std::move(values)};
+}
 /// Returns the phrase in the given language. Throws std::logic_error for a key that no catalogue has.
 std::string say(const Phrase& phrase, std::string_view language);
 
@@ -44,5 +49,10 @@ struct FaultText {
   std::string happened, safe, to_do;
 };
 FaultText fault_text(terms::FaultKind kind, const std::string& language);
+
+/// Says what a fault or a cause is. In English, these are the words of terms::describe(); the detail of a
+/// fault is the same in every language.
+Phrase phrase_of(const terms::Fault& fault);
+Phrase phrase_of(terms::ProofCause cause);
 
 }  // namespace turnpoint::texts

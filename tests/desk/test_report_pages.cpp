@@ -39,6 +39,21 @@ TEST_CASE("tables and figures of the report on the screen are in the language of
   CHECK(svg_of(english.levels).find("Trial (number in the session)") != std::string::npos);
 }
 
+TEST_CASE("remarks and facts about the station in a report are said in the language of the screen",
+          "[operator]") {
+  const TemporaryFolder folder;
+  session::Inputs inputs;
+  const auto summary = session::run(setup::prepare(demo_in(folder)), nullptr, inputs);
+  const auto pages = desk::report_pages(summary.database, summary.session_id, "de");
+  CHECK_FALSE(pages.statements.empty());
+  for (const auto& statement : pages.statements) {
+    INFO(texts::say(statement, "en"));
+    CHECK(texts::say(statement, "de") != texts::say(statement, "en"));
+  }
+  CHECK(pages.health.size() > 15);
+  for (const auto& [name, text] : pages.health) CHECK(texts::say(name, "de") != texts::say(name, "en"));
+}
+
 TEST_CASE("the report on the screen has the finger's forces and friction, if force cells recorded",
           "[operator]") {
   report::Summary summary;

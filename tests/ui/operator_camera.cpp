@@ -57,12 +57,14 @@ void OperatorCamera::shoot(const QString& page, const QString& name, QVariantMap
   delete item;
 }
 
-void OperatorCamera::shoot_live(const desk::LiveState& state, const QString& name) {
+void OperatorCamera::shoot_live(const desk::LiveState& state, const QString& name,
+                                const std::optional<desk::FingerGauges>& gauges) {
   session::Page page;
   page.kind = session::PageKind::interval;
   page.run_mode = "pilot";
   bridge_.show(page);
   live_.take(state);
+  live_.take(gauges);
   QGuiApplication::processEvents();
   shoot("LiveView.qml", name,
         {{"live", QVariant::fromValue(&live_)}, {"bridge", QVariant::fromValue(&bridge_)}});

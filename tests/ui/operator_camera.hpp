@@ -48,7 +48,9 @@ class OperatorCamera {
       const QString& page, const QString& name, QVariantMap properties,
       const std::function<bool()>& ready = [] { return true; },
       const std::function<void(QQuickWindow&)>& operate = [](QQuickWindow&) {});
-  void shoot_live(const desk::LiveState& state, const QString& name);
+  /// With gauges of the finger, if there are any.
+  void shoot_live(const desk::LiveState& state, const QString& name,
+                  const std::optional<desk::FingerGauges>& gauges = std::nullopt);
   /// `picture` is the number of the figure to show.
   void shoot_report(const desk::ReportPages& pages, const QString& name, int picture = 0);
 

@@ -223,6 +223,8 @@ int shoot_places(const QString& out, const QStringList& sizes, const QStringList
     wait_for([&] { return weighed.busy().isEmpty() || weighed.asked() == "weight"; });
     weighed.answer("read");
   }
+  weighed.selfTest();
+  wait_for([&] { return weighed.busy().isEmpty(); });
   weighing.weigh();
   wait_for([&] { return weighing.asked() == "weight"; });
   return shoot_each(out, sizes, looks_of(languages), [&](OperatorCamera& camera) {
@@ -251,6 +253,7 @@ int shoot_places(const QString& out, const QStringList& sizes, const QStringList
                    {{"rig", QVariant::fromValue(&weighed)}, {"tab", "guide"}});
       weighed.guide()->leave();
     }
+    camera.shoot("RigPage.qml", "self-test", {{"rig", QVariant::fromValue(&weighed)}, {"tab", "selfTest"}});
     camera.shoot("RigPage.qml", "residuals", {{"rig", QVariant::fromValue(&weighed)}, {"tab", "weights"}});
     const auto shoot_design = [&](const QString& picture, const QString& beside = "") {
       camera.shoot("DesignPage.qml", picture, {{"design", QVariant::fromValue(&design)}, {"beside", beside}},
@@ -293,19 +296,24 @@ int shoot_sessions(const QString& out, const QStringList& sizes, const QString& 
   const auto report = ui::report_exhibit("speed-accuracy", language),
              report2 = ui::report_exhibit("boundary-constant", language),
              report3 = ui::forces_exhibit("speed-accuracy", language);
+  const desk::FingerGauges gauges{
+      {0.45, 0.3, 0.6, "0.68 N"}, {0.4, 0.25, 0.55, "82 mm/s"}, {0.62, 0, 0, "186 mm"}};
   ui::LatencyController latency(calibration::LatencyReference::photodiode);
   return shoot_each(out, sizes, {{shown, {shown}}}, [&](OperatorCamera& camera) {
     camera.shoot("OperatorPage.qml", "participant",
                  {{"operating", QVariant::fromValue(&operating)}, {"typing", true}});
     camera.shoot_live(live, "live");
+    camera.shoot_live(live, "live-gauges", gauges);
     camera.shoot_live(live2, "live-2ifc");
     camera.shoot_live(live3, "live-oddity");
     camera.shoot_report(report, "report-trade");
     camera.shoot_report(report2, "report-boundary");
     camera.shoot_report(report3, "report-forces", 3);
     camera.shoot_report(report3, "report-friction", 4);
-    camera.shoot("PreviewPage.qml", "preview", {{"controller", QVariant::fromValue(&preview)}});
-    camera.shoot("PreviewPage.qml", "preview-zone", {{"controller", QVariant::fromValue(&zones)}});
+    camera.shoot("PreviewPage.qml", "preview", {{"controller", QVariant::fromValue(&preview)}},
+                 [&] { return !preview.busy(); });
+    camera.shoot("PreviewPage.qml", "preview-zone", {{"controller", QVariant::fromValue(&zones)}},
+                 [&] { return !zones.busy(); });
     camera.shoot("LatencyPage.qml", "panel-latency", {{"controller", QVariant::fromValue(&latency)}});
   });
 }

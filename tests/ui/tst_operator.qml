@@ -84,8 +84,8 @@ Item {
             // that reason.
             tryVerify(() => operating.notLive.length > 0, 20000)
             verify(says(page.item, "Begin LIVE session"))
-            compare(operating.notLive[0], "the rig uses the illustrative friction curve, which was not measured")
-            verify(says(page.item, "Live is not possible: " + operating.notLive[0]))
+            compare(operating.notLive[0].key, "refusal.friction")
+            verify(says(page.item, "Live is not possible: the rig uses the illustrative friction curve, which was not measured"))
             compare(operating.mayBegin, false)
             tap(page.item, "begin")
             compare(desk.chosen, "")

@@ -34,7 +34,7 @@ Item {
         function isName(text, language) {
             const names = ["Turnpoint", "English", "Deutsch", "Español", "short", "short.toml", "Four quick trials",
                            "Aluminium tapered plate, simulated", "edge"]
-            const shared = { de: ["Block", "Fit", "Station", "PSE", "Finger", "Status", "Protocol"] }
+            const shared = { de: ["Text 100 %", "Block", "Fit", "Station", "PSE", "Finger", "Status", "Protocol"] }
             return names.includes(text) || (shared[language] ?? []).includes(text) || text.includes("/") || /^[0-9.]+ min$/.test(text) || /^[0-9a-f-]{36}$/.test(text)
         }
         /// Texts with an English word that are also on the page in English.
@@ -70,12 +70,39 @@ Item {
             const remarks = () => studies().remarks.map(remark => remark.what).concat(studies().remarks.map(remark => remark.hint))
             compare(englishOn("studies", () => studies().facts.length > 0, remarks), "")
         }
-        function test_the_reason_against_a_live_session_is_introduced_in_the_language_of_the_operator() {
+        function test_doctor_and_self_test_speak_the_language_of_the_operator() {
+            // What the system reports, such as why a file cannot be opened, stays as it is.
+            const reported = ["No such", "Permission denied", "not permitted"]
+            const rig = () => find(room.screen, "rigPage").rig
+            tap("bar-rig")
+            tap("examine")
+            tryVerify(() => rig().busy === "" && rig().findings.length > 5, 30000)
+            compare(englishOn("rig", () => find(room.screen, "finding5") !== null, () => reported), "")
+            room.look.language = "de"
+            wait(50)
+            verify(texts(room.screen).includes("Echtzeitpriorität"), texts(room.screen).join("\n"))
+            tap("selfTestTab")
+            rig().selfTest()
+            tryVerify(() => rig().busy === "" && rig().checks.length > 3, 60000)
+            const faults = []
+            room.look.language = "en"
+            wait(50)
+            const english = texts(room.screen)
+            for (const language of languages) {
+                room.look.language = language
+                wait(50)
+                for (const text of untranslated(english, texts(room.screen), [], language)) faults.push(language + ": " + text)
+            }
+            compare(faults.join("\n"), "")
+        }
+        function test_the_reason_against_a_live_session_is_in_the_language_of_the_operator() {
             tryVerify(() => room.operating.mayBegin, 20000)
             tap("live")
             tryVerify(() => !room.operating.preparing && !room.operating.mayBegin, 20000)
             room.look.language = "de"
-            tryVerify(() => texts(room.screen).some(text => text.startsWith("Echte Sitzung nicht möglich: ")), 2000, texts(room.screen).join("\n"))
+            tryVerify(() => texts(room.screen).includes("Echte Sitzung nicht möglich: der Aufbau verwendet die Beispielkurve der Reibung, die nicht gemessen wurde"),
+                      2000, texts(room.screen).join("\n"))
+            compare(englishOn("run", () => !room.operating.checking, () => room.operating.warnings), "")
         }
 
         function test_sessions_and_reports_are_in_the_language_of_the_operator() {
@@ -91,6 +118,8 @@ Item {
             const report = texts(find(room.screen, "storedReport"))
             for (const word of ["Dargeboten", "Beantwortet", "Stufen", "Tempo und Genauigkeit"]) verify(report.includes(word), report.join("\n"))
             for (const word of ["Presented", "Levels", "Speed and accuracy", "Fit"]) verify(!report.includes(word), word)
+            verify(report.some(text => text.startsWith("• ")), report.join("\n"))
+            for (const text of report) verify(!/^• .*\b(the|is|are|of)\b/.test(text), text)
         }
         function test_the_end_of_a_session_in_numbers_is_in_the_language_of_the_operator() {
             const words = ["Durchgänge", "Zu spät", "Richtig", "main, Schwelle", "Die Sitzung in Zahlen", "Schließen"]

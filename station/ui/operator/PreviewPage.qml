@@ -2,8 +2,7 @@ import QtQuick
 import Turnpoint
 
 // Shows any scene of a protocol without a session: sliders for the scene's factors; figures of surface,
-// profile, friction and spectrum; and, in words, the model, its error and the cues. The texts are in English,
-// like those of the command line.
+// profile, friction and spectrum; and, in words, the model, its error and the cues.
 Rectangle {
     id: root
     required property PreviewController controller
@@ -17,7 +16,14 @@ Rectangle {
         pixelsPerMm: root.pixelsPerMm
         dense: true
     }
-    Texts { id: texts; language: "en" }
+    LayoutMirroring.enabled: texts.mirrored
+    LayoutMirroring.childrenInherit: true
+    Texts { id: texts; language: OperatorScreen.language }
+    Binding {
+        target: root.controller
+        property: "language"
+        value: OperatorScreen.language
+    }
 
     Row {
         id: tabs
@@ -75,11 +81,16 @@ Rectangle {
             font { pixelSize: look.textBody; weight: Font.DemiBold }
             elide: Text.ElideRight
         }
+        // The track runs from left to right in every language, as the figures do.
         Item {
             id: track
+            LayoutMirroring.enabled: false
+            LayoutMirroring.childrenInherit: true
             Accessible.role: Accessible.Slider
             Accessible.name: name.text
-            anchors { left: name.right; right: parent.right; verticalCenter: parent.verticalCenter }
+            x: texts.mirrored ? 0 : name.width
+            width: parent.width - name.width
+            anchors.verticalCenter: parent.verticalCenter
             height: parent.height
             Rectangle {
                 anchors { left: parent.left; right: parent.right; verticalCenter: parent.verticalCenter }
@@ -129,7 +140,7 @@ Rectangle {
     PlainText {
         visible: root.controller.knobs.length === 0
         anchors { left: parent.left; top: tabs.bottom; margins: look.margin; topMargin: 0.8 * look.unit }
-        text: "This scene does not depend on any factor."
+        text: texts.text("preview.no_factor")
         color: look.quiet
         font.pixelSize: look.textSmall
     }
@@ -200,8 +211,8 @@ Rectangle {
                 id: sheet
                 width: scroll.width
                 spacing: look.unit
-                FactTable { width: parent.width; theme: look; texts: texts; heading: "Plan"; facts: root.controller.facts; labelShare: 0.32 }
-                FactTable { width: parent.width; theme: look; texts: texts; heading: "Cues"; facts: root.controller.cues; labelShare: 0.5 }
+                FactTable { width: parent.width; theme: look; texts: texts; heading: texts.text("preview.plan"); facts: root.controller.facts; labelShare: 0.32 }
+                FactTable { width: parent.width; theme: look; texts: texts; heading: texts.text("preview.cues"); facts: root.controller.cues; labelShare: 0.5 }
             }
         }
         ScrollCue { theme: look; place: scroll }

@@ -120,9 +120,9 @@ Rectangle {
                 Repeater {
                     model: root.report.statements
                     PlainText {
-                        required property string modelData
+                        required property var modelData
                         width: sheet.width
-                        text: "• " + modelData
+                        text: "• " + texts.say(modelData)
                         color: look.ink
                         font.pixelSize: look.textSmall
                         wrapMode: Text.Wrap

@@ -198,10 +198,6 @@ Rectangle {
                 required property int index
                 readonly property string state: modelData.status ?? modelData.verdict
                 objectName: "finding" + index
-                // The findings are in English, so they are not mirrored on a page that is read from right to
-                // left.
-                LayoutMirroring.enabled: false
-                LayoutMirroring.childrenInherit: true
                 width: results.inner
                 spacing: 0.2 * look.unit
                 Item {
@@ -210,7 +206,8 @@ Rectangle {
                     PlainText {
                         id: named
                         anchors { left: parent.left; right: judged.left; rightMargin: look.unit }
-                        text: finding.modelData.name
+                        text: texts.say(finding.modelData.name)
+                        horizontalAlignment: Text.AlignLeft
                         color: look.ink
                         font { pixelSize: look.textBody; weight: Font.DemiBold }
                         wrapMode: Text.Wrap
@@ -242,15 +239,18 @@ Rectangle {
                 }
                 PlainText {
                     width: parent.width
-                    text: finding.modelData.what
+                    text: texts.say(finding.modelData.what)
+                    horizontalAlignment: Text.AlignLeft
                     color: look.quiet
                     font.pixelSize: look.textSmall
                     wrapMode: Text.Wrap
                 }
                 PlainText {
-                    visible: text !== "→ "
+                    readonly property string mend: texts.say(finding.modelData.mend)
+                    visible: mend !== ""
                     width: parent.width
-                    text: "→ " + (finding.modelData.mend ?? "")
+                    text: texts.arrow + mend
+                    horizontalAlignment: Text.AlignLeft
                     color: look.ink
                     font.pixelSize: look.textSmall
                     wrapMode: Text.Wrap

@@ -16,7 +16,7 @@ Rectangle {
     function reasons() {
         const all = []
         for (const problem of operating.problems) all.push(problem)
-        for (const reason of operating.notLive) all.push(texts.text("operator.not_live").arg(reason))
+        for (const reason of operating.notLive) all.push(texts.text("operator.not_live").arg(texts.say(reason)))
         return all
     }
 

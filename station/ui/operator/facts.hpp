@@ -27,6 +27,12 @@ inline QVariantList to_list(const std::vector<std::pair<std::string, std::string
   return list;
 }
 
+inline QVariantList to_list(const std::vector<texts::Phrase>& phrases) {
+  QVariantList list;
+  for (const auto& phrase : phrases) list += to_variant(phrase);
+  return list;
+}
+
 inline QStringList to_list(const std::vector<std::string>& texts) {
   QStringList list;
   for (const auto& text : texts) list += QString::fromStdString(text);

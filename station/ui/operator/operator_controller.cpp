@@ -142,9 +142,16 @@ void OperatorController::check_live() {
       &OperatorController::refuse_live);
 }
 
-void OperatorController::refuse_live(std::vector<std::string> reasons) {
+void OperatorController::refuse_live(std::vector<texts::Phrase> reasons) {
   not_live_ = std::move(reasons);
   stay();
+}
+
+/// The check itself has failed.
+void OperatorController::refuse_live(std::vector<std::string> messages) {
+  std::vector<texts::Phrase> reasons;
+  for (auto& message : messages) reasons.push_back(texts::plain(std::move(message)));
+  refuse_live(std::move(reasons));
 }
 
 void OperatorController::chooseLanguage(int index) {
@@ -260,7 +267,7 @@ QVariantList OperatorController::protocols() const {
 
 QVariantList OperatorController::facts() const { return to_list(words_.facts); }
 QStringList OperatorController::problems() const { return to_list(words_.problems) + to_list(refused_); }
-QStringList OperatorController::not_live() const { return to_list(not_live_); }
+QVariantList OperatorController::not_live() const { return to_list(not_live_); }
 QStringList OperatorController::warnings() const { return to_list(words_.warnings); }
 
 QVariantMap OperatorController::too_early() const { return too_early_ ? to_map(*too_early_) : QVariantMap(); }

@@ -42,7 +42,7 @@ class OperatorController : public QObject {
   Q_PROPERTY(QVariantList cues READ cues NOTIFY changed)
   Q_PROPERTY(QStringList problems READ problems NOTIFY changed)
   /// why the chosen protocol cannot run live
-  Q_PROPERTY(QStringList notLive READ not_live NOTIFY changed)
+  Q_PROPERTY(QVariantList notLive READ not_live NOTIFY changed)
   /// set if the chosen session would begin too early, which a reason of the operator can overrule (see
   /// to_map() in early_session.hpp)
   Q_PROPERTY(QVariantMap tooEarly READ too_early NOTIFY changed)
@@ -79,7 +79,7 @@ class OperatorController : public QObject {
   QVariantList facts() const;
   QVariantList cues() const;
   QStringList problems() const;
-  QStringList not_live() const;
+  QVariantList not_live() const;
   QVariantMap too_early() const;
   QStringList warnings() const;
   QStringList languages() const;
@@ -127,6 +127,7 @@ class OperatorController : public QObject {
   void check_selected();
   void check_live();
   void refuse_live(std::vector<std::string> reasons);
+  void refuse_live(std::vector<texts::Phrase> reasons);
   void look_at_backup();
   void stay();
   void fail(std::vector<std::string> problems);
@@ -143,7 +144,7 @@ class OperatorController : public QObject {
   desk::CheckWords words_;
   std::vector<std::string> refused_;  ///< why the last chosen session did not begin
   std::optional<session::EarlySession> too_early_;
-  std::vector<std::string> not_live_;  ///< why the chosen protocol cannot run live
+  std::vector<texts::Phrase> not_live_;  ///< why the chosen protocol cannot run live
   int selected_ = -1, language_ = -1;
   QString participant_;
   bool live_ = false, armed_ = false, checking_ = false, preparing_ = false;

@@ -53,7 +53,7 @@ QVariantList ReportModel::fit() const { return to_list(pages_.fit); }
 QVariantList ReportModel::trade() const { return to_list(pages_.speed_accuracy); }
 QVariantList ReportModel::forces() const { return to_list(pages_.forces); }
 QVariantList ReportModel::health() const { return to_list(pages_.health); }
-QStringList ReportModel::statements() const { return to_list(pages_.statements); }
+QVariantList ReportModel::statements() const { return to_list(pages_.statements); }
 
 std::vector<std::pair<QString, desk::Drawing>> ReportModel::all_pictures() const {
   std::vector<std::pair<QString, desk::Drawing>> list;

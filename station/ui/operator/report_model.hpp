@@ -21,7 +21,7 @@ class ReportModel : public QObject {
   Q_PROPERTY(QVariantList trade READ trade NOTIFY changed)
   Q_PROPERTY(QVariantList forces READ forces NOTIFY changed)
   Q_PROPERTY(QVariantList health READ health NOTIFY changed)
-  Q_PROPERTY(QStringList statements READ statements NOTIFY changed)
+  Q_PROPERTY(QVariantList statements READ statements NOTIFY changed)
   /// Keys of the names and drawings of the existing figures, beginning with the speed-accuracy trade-off.
   Q_PROPERTY(QStringList pictureNames READ picture_names NOTIFY changed)
   Q_PROPERTY(QVariantList pictures READ pictures NOTIFY changed)
@@ -52,7 +52,7 @@ class ReportModel : public QObject {
   QVariantList trade() const;
   QVariantList forces() const;
   QVariantList health() const;
-  QStringList statements() const;
+  QVariantList statements() const;
   QStringList picture_names() const;
   QVariantList pictures() const;
 

@@ -94,7 +94,7 @@ class RigController : public QObject {
   QString calibration_state_ = "none";
   QString busy_, asked_, asked_button_;
   std::vector<lines::Finding> findings_;
-  std::vector<session::CheckRow> checks_;
+  std::vector<session::Check> checks_;
   QStringList errors_;
   bool has_cells_ = false;
   QVariantList weights_;

@@ -96,7 +96,7 @@ void SessionRunner::run() {
     // The session is complete and stored, even if its report cannot be made.
     desk::ReportPages pages;
     pages.title = texts::text("report.none", language_);
-    pages.statements = {error.what()};
+    pages.statements = {texts::plain(error.what())};
     report_.take(pages);
   }
   Q_EMIT over();

@@ -35,12 +35,14 @@ QtObject {
     }
 
     // Says a phrase that C++ gives: a string, or {key, values}, whose values are phrases as well. Without a key, the
-    // values follow one another.
+    // values follow one another. In a text that is read from right to left, each value is isolated (U+2068, U+2069), so
+    // that numbers, names and file names keep their order.
     function say(phrase) : string {
         if (phrase === undefined || typeof phrase === "string") return phrase ?? ""
         const values = phrase.values.map(value => say(value))
         if (phrase.key === "") return values.join("")
-        return text(phrase.key).replace(/%([1-9])/g, (place, number) => values[number - 1] ?? place)
+        return text(phrase.key).replace(/%([1-9])/g, (place, number) => values[number - 1] === undefined ? place
+            : mirrored ? "\u2068" + values[number - 1] + "\u2069" : values[number - 1])
     }
 
     // What the run mode or the status of a session is called; a word that is not known stays as it is.
