@@ -1,6 +1,8 @@
 #include <algorithm>
 #include <cmath>
+#include <set>
 #include <stdexcept>
+#include <string>
 
 #include "station/desk/preview.hpp"
 #include "station/desk/scene_figures.hpp"
@@ -111,10 +113,13 @@ TEST_CASE("the plan and the cues of a scene are said in the language of the scre
   CHECK(said(look.facts, "de").find("Modellfehler: h\u00f6chstens ") != std::string::npos);
   CHECK(said(look.facts, "de").find("\nOberfl\u00e4che: h\u00f6chstens ") != std::string::npos);
   CHECK(said(look.cues, "en").find("Stripes at the wide end: ") != std::string::npos);
-  for (const auto& language : {"de", "es", "ja", "zh", "ar"})
+  // These are the same in both languages.
+  const std::set<std::string> same{"de preview.mm_sd", "es preview.inaudible"};
+  for (const std::string language : {"de", "es", "ja", "zh", "ar"})
     for (const auto* facts : {&look.facts, &look.cues})
       for (const auto& [label, value] : *facts)
-        if (!value.key.empty()) CHECK(texts::say(value, language) != texts::say(value, "en"));
+        if (!value.key.empty() && same.count(language + " " + value.key) == 0)
+          CHECK(texts::say(value, language) != texts::say(value, "en"));
   CHECK(desk::spectrum_figure(look, "de").charts.front().title == "Ansteuerung");
 }
 
