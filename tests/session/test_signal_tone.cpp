@@ -81,10 +81,9 @@ TEST_CASE("a tone as response signal begins at its lag after the change, within 
     const auto [first, end] = sounding(channel_of(burst, format, 2));
     const auto change = std::llround(spec.foreperiod_s * format.rate_Hz);
     CHECK(burst.changes[0].at_frame == change);
-    // The ramps begin and end with a sample of 0, so the tone is seen from its second to its last but one
-    // frame.
+    // The sine begins with a sample of 0, so the tone is seen from its second frame on.
     CHECK(first - 1 == std::llround((spec.foreperiod_s + *spec.signal_s) * format.rate_Hz));
-    CHECK(end + 1 - (first - 1) == std::llround(0.05 * format.rate_Hz));
+    CHECK(end - (first - 1) == std::llround(0.05 * format.rate_Hz));
     // a stop during the tone ramps it down too, and a stop before it leaves it out
     CHECK(sounding(channel_of(burst, format, 2, first - 9600)).second <= 0);
     const auto cut = channel_of(burst, format, 2, first);
