@@ -91,7 +91,10 @@ maintenance::DiskSources StationRoom::disks() const {
 OperatorScreen* StationRoom::look() const {
   if (!station_) return nullptr;
   auto* engine = qmlEngine(&station_->window());
-  return engine->singletonInstance<OperatorScreen*>(qmlTypeId("Turnpoint", 1, 0, "OperatorScreen"));
+  auto* screen = engine->singletonInstance<OperatorScreen*>(qmlTypeId("Turnpoint", 1, 0, "OperatorScreen"));
+  // Otherwise the tests' own engine, which did not make it, collects it as garbage.
+  QQmlEngine::setObjectOwnership(screen, QQmlEngine::CppOwnership);
+  return screen;
 }
 
 void StationRoom::plugIn() {
