@@ -76,6 +76,8 @@ std::optional<trial::Event> event_of(const Input& input);
 class Inputs {
  public:
   void push(Input input);
+  void push(InputKind kind, std::int64_t time_ns, std::string text, int value = 0);
+  void push_fault(std::int64_t time_ns, FaultKind kind, std::string detail);
   /// Waits for an input and returns the one with the oldest time stamp. Returns nothing once `deadline_ns`
   /// (CLOCK_MONOTONIC) has passed.
   std::optional<Input> wait_until(std::int64_t deadline_ns);
