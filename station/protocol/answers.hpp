@@ -33,9 +33,12 @@ AnswerRule answer_rule(const Protocol& protocol, const std::string& level);
 /// True if the participant may answer while the surface moves.
 bool explored(const Task& task);
 
-/// Returns when, at the earliest, the stimulus of an explored task ends, in s after response_zero; empty if
-/// that is not known before the stimulus.
-std::optional<double> stimulus_end_s(const Protocol& protocol);
+/// The earliest and the latest time from response_zero to the end of the last interval, in s; empty if they
+/// are not known before the trial.
+struct StimulusEnd {
+  double earliest_s = 0, latest_s = 0;
+};
+std::optional<StimulusEnd> stimulus_end(const Protocol& protocol);
 
 /// True if answers are ratings or numbers, none of which is right or wrong.
 inline bool judges(const Task& task) { return task.rating || task.value; }

@@ -61,15 +61,15 @@ void check_signal(const Reading& reading) {
   const bool tone = signal->by == By::tone;
   if (!time_is_known(protocol, tone ? "a tone" : "a buzz", reading.findings)) return;
   if (!tone) check_buzz(reading);
-  const auto end_s = stimulus_end_s(protocol);
+  const auto end = stimulus_end(protocol);
   const double length_s = tone ? terms::kSignal_s : signal->length_s + terms::kBuzzRamp_s;
   const double latest_s = bounds(signal->after_s, protocol.factors).second + length_s;
-  if (end_s && latest_s > *end_s)
+  if (end && latest_s > end->earliest_s)
     reading.findings.add(reading.places.of("timing.response_signal.after_s"),
                          std::string("the ") + (tone ? "tone" : "buzz") + " can end " + number(latest_s) +
                              " s after \"" + name(protocol.timing.response_zero) +
-                             "\", but the stimulus can end " + number(*end_s) + " s after it",
-                         "a longer \"explore_s\", or at most " + number(*end_s - length_s) + " s");
+                             "\", but the stimulus can end " + number(end->earliest_s) + " s after it",
+                         "a longer \"explore_s\", or at most " + number(end->earliest_s - length_s) + " s");
 }
 
 }  // namespace turnpoint::protocol

@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <optional>
 #include <set>
-#include <utility>
 
 #include "station/protocol/advice_list.hpp"
 #include "station/protocol/answers.hpp"
@@ -28,31 +27,13 @@ void check_length(AdviceList& advice, const std::string& key, double seconds) {
 // longer, so it is not meant here.
 constexpr double longest_after_s = 30;
 
-/// The time from response zero to the end of the last interval, at the earliest and at the latest; empty if
-/// it is not known before the trial.
-std::optional<std::pair<double, double>> stimulus_end(const Protocol& protocol) {
-  const auto& task = protocol.task;
-  const auto whole = task.duration_s ? task.duration_s : protocol.timing.explore_s;
-  if (protocol.timing.response_zero == ResponseZero::interval_off) return std::pair(0.0, 0.0);
-  if (!whole) return std::nullopt;
-  const auto change = task.foreperiod_s;
-  switch (protocol.timing.response_zero) {
-    case ResponseZero::go_cue:
-      return std::pair(*whole, *whole);
-    case ResponseZero::change:
-      return change ? std::optional(std::pair(*whole - change->high, *whole - change->low)) : std::nullopt;
-    default:
-      return std::nullopt;
-  }
-}
-
 /// Warns of a deadline that nobody can meet, because answers are accepted only when the intervals have ended,
 /// and of one so long after the stimulus that it was probably meant otherwise.
 void check_reach(AdviceList& advice, const std::string& key, double shortest, double longest) {
   const auto end = stimulus_end(advice.protocol);
   if (!end) return;
   const std::string zero = name(advice.protocol.timing.response_zero);
-  const double answers_from_s = explored(advice.protocol.task) ? 0 : end->second;
+  const double answers_from_s = explored(advice.protocol.task) ? 0 : end->latest_s;
   if (answers_from_s > 0 && shortest < answers_from_s + shortest_deadline_s)
     advice.add(
         key,
@@ -61,10 +42,10 @@ void check_reach(AdviceList& advice, const std::string& key, double shortest, do
             "interval has ended, up to " +
             number(answers_from_s) + " s after \"" + zero + "\"",
         number(answers_from_s + shortest_deadline_s) + " s or more, or response_zero = \"interval_off\"");
-  else if (!advice.protocol.task.value && longest - end->second > longest_after_s && longest <= longest_s)
-    advice.add(key, "the deadline is " + number(longest - end->second) + " s after the stimulus has ended",
+  else if (!advice.protocol.task.value && longest - end->latest_s > longest_after_s && longest <= longest_s)
+    advice.add(key, "the deadline is " + number(longest - end->latest_s) + " s after the stimulus has ended",
                "nobody remembers for longer than " + number(longest_after_s) + " s what was felt: at most " +
-                   number(end->second + longest_after_s) + " s");
+                   number(end->latest_s + longest_after_s) + " s");
 }
 
 void check_deadline(AdviceList& advice, const std::string& key, const Linear& deadline) {
@@ -99,14 +80,16 @@ void check_change(AdviceList& advice) {
 // feel.
 void check_lag(AdviceList& advice, const ResponseSignal& signal) {
   const double latest_s = bounds(signal.after_s, advice.protocol.factors).second;
-  const auto end_s = stimulus_end_s(advice.protocol);
+  const auto end = stimulus_end(advice.protocol);
   const std::string key = "timing.response_signal.after_s";
-  if (end_s && !in_stimulus(signal) && latest_s > *end_s)
+  const bool is_felt =
+      explored(advice.protocol.task) && advice.protocol.timing.response_zero != ResponseZero::interval_off;
+  if (end && is_felt && !in_stimulus(signal) && latest_s > end->earliest_s)
     advice.add(key,
                "the signal can come " + number(latest_s) + " s after \"" +
                    name(advice.protocol.timing.response_zero) + "\", when the tones may have ended " +
-                   number(latest_s - *end_s) + " s before",
-               "at most " + number(*end_s) + " s, or longer tones");
+                   number(latest_s - end->earliest_s) + " s before",
+               "at most " + number(end->earliest_s) + " s, or longer tones");
 }
 
 /// A buzz must be the same in all trials. If it depends on the level, it is a second stimulus.
