@@ -149,7 +149,7 @@ void add_trade(const report::Summary& summary, const Words& words, ReportPages& 
     if (difference.estimate)
       pages.speed_accuracy.emplace_back(
           difference.second + " \u2212 " + difference.first + ": " + measure_name(difference.measure, words),
-          with(difference.estimate, difference.unit, words));
+          with(difference.estimate, difference.unit == "proportion" ? "" : difference.unit, words));
   add_statements(trade.statements, "", pages);
 }
 

@@ -15,6 +15,12 @@ namespace {
 
 using texts::Phrase, texts::phrase, texts::plain;
 
+/// Rounds to this number of decimals; a value that becomes 0 has no minus sign.
+double rounded(double value, int decimals) {
+  const double scale = std::pow(10, decimals);
+  return std::round(scale * value) / scale + 0.0;
+}
+
 Check not_possible(Phrase name, Phrase why) {
   return {std::move(name), Verdict::not_possible, {}, {}, "", std::move(why)};
 }
@@ -75,7 +81,7 @@ Check judged(const ToneReading& reading) {
   if (reading.proof == terms::Proof::unproven) return not_possible(name, phrase("self_test.tone_unproven"));
   const bool good = reading.proof == terms::Proof::ok || reading.proof == terms::Proof::flagged;
   auto what = phrase("self_test.tone_measured", {plain(fmt::format("{:.1f}", 1e-3 * reading.frequency_Hz)),
-                                                 plain(fmt::format("{:+.2f}", reading.ratio_dB))});
+                                                 plain(fmt::format("{:+.2f}", rounded(reading.ratio_dB, 2)))});
   if (reading.cause != terms::ProofCause::none)
     what = {"", "", {what, plain(": "), texts::phrase_of(reading.cause)}};
   return {name, verdict(good), reading.ratio_dB, kToneLimit_dB, "dB", what};
@@ -89,7 +95,7 @@ std::vector<Check> judged(const CellReading& reading) {
   const bool near = std::abs(reading.zero_N) <= kZeroLimit_N, quiet = reading.noise_mN <= kNoiseLimit_mN;
   return {{zero, verdict(near), reading.zero_N, kZeroLimit_N, "N",
            phrase(near ? "self_test.zero_good" : "self_test.zero_bad",
-                  {plain(fmt::format("{:+.3f}", reading.zero_N))})},
+                  {plain(fmt::format("{:+.3f}", rounded(reading.zero_N, 3)))})},
           {noise, verdict(quiet), reading.noise_mN, kNoiseLimit_mN, "mN",
            phrase(quiet ? "self_test.noise_good" : "self_test.noise_bad",
                   {plain(fmt::format("{:.2f}", reading.noise_mN))})}};

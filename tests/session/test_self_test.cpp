@@ -119,6 +119,16 @@ TEST_CASE("a check of the self-test is said in the language of the screen, and s
   CHECK(german(5) == "Nullpunkt der Zelle a: die Zelle zeigt unbelastet +0.100 N");
 }
 
+TEST_CASE("a reading that rounds to zero has no minus sign", "[session][self-test]") {
+  GoodRig rig;
+  rig.tones.front().ratio_dB = -0.004;
+  rig.cells.front().zero_N = -0.0004;
+  std::string all;
+  for (const auto& check : self_test(rig)) all += row_of(check).what + "\n";
+  CHECK(all.find("at +0.00 dB") != std::string::npos);
+  CHECK(all.find("reads +0.000 N") != std::string::npos);
+}
+
 TEST_CASE("what a rig does not have is not possible to check, and does not fail", "[session][self-test]") {
   GoodRig rig;
   rig.gate.missing = rig.stop.missing = rig.buttons[0].missing = rig.tones[0].missing = rig.cells[0].missing =

@@ -38,6 +38,7 @@ Item {
 
         function test_the_bar_leads_to_each_page_and_back() {
             for (const place of ["studies", "sessions", "rig"]) {
+                verify(room.pressUntilShown(appears("bar-" + place)) >= 0, "a press shows")
                 goTo(place)
                 verify(!shown("operatorPage"))
             }

@@ -88,8 +88,8 @@ Rectangle {
             LayoutMirroring.childrenInherit: true
             Accessible.role: Accessible.Slider
             Accessible.name: name.text
-            x: texts.mirrored ? 0 : name.width
-            width: parent.width - name.width
+            x: texts.mirrored ? 0 : name.width + look.unit
+            width: parent.width - name.width - look.unit
             anchors.verticalCenter: parent.verticalCenter
             height: parent.height
             Rectangle {

@@ -22,6 +22,8 @@ Rectangle {
         pixelsPerMm: root.pixelsPerMm
         dense: true
     }
+    LayoutMirroring.enabled: texts.mirrored
+    LayoutMirroring.childrenInherit: true
     Texts { id: texts; language: OperatorScreen.language }
     RunModeFrame {
         id: frame
