@@ -35,6 +35,12 @@ Phrase in_mm(const std::optional<double>& value_m, int digits = 5) {
 
 Phrase um(double value_m) { return plain(number(1e6 * value_m, 3) + " \u00b5m"); }
 
+Phrase phrase_of(const physics::Warning& warning) {
+  std::vector<Phrase> values;
+  for (const auto& value : warning.values) values.push_back(plain(value));
+  return phrase("physics_warning." + warning.code, std::move(values));
+}
+
 std::optional<Knob> knob_of(const protocol::Factor& factor) {
   Knob knob;
   knob.name = factor.name;
@@ -62,9 +68,13 @@ void describe_plan(SceneLook& look) {
   };
   add("preview.boundary",
       {"", "", {in_mm(plan.boundary_m), plain(" (" + physics::format(plan.scene.edge) + ")")}});
-  add("preview.model", plain(plan.reason.empty() ? std::string(physics::name(plan.model)) : plan.reason));
+  add("preview.model", plain(std::string(physics::name(plan.model))));
   add("preview.error", phrase(plan.inside_tolerance ? "preview.at_most_mm" : "preview.beyond_tolerance",
                               {shown(1e3 * plan.error_bound_m, 3)}));
+  if (plan.cheaper)
+    add("preview.cheaper",
+        phrase("preview.cheaper_error", {plain(std::string(physics::name(plan.cheaper->model))),
+                                         shown(1e3 * plan.cheaper->boundary_bound_m, 3)}));
   add("preview.uncertain", phrase("preview.mm_sd", {shown(1e3 * plan.uncertainty_m, 3)}));
   for (const auto& tone : plan.tones)
     add("preview.tone",
@@ -79,7 +89,7 @@ void describe_plan(SceneLook& look) {
   for (const auto& product : plan.audible_products)
     add("preview.product", phrase("preview.product_order",
                                   {shown(product.frequency_Hz, 5), plain(std::to_string(product.order))}));
-  for (const auto& warning : plan.warnings) add("preview.warning", plain(warning.text));
+  for (const auto& warning : plan.warnings) add("preview.warning", phrase_of(warning));
 }
 
 void describe_cues(SceneLook& look) {

@@ -36,7 +36,7 @@ struct SceneLook {
   scene::Planner::Profile profile;
   scene::UnderFinger under;
   /// facts about the scene and its cues, as pairs of a label and a value, in the order in which they are
-  /// shown. What the physics library says of its models and its warnings is in English.
+  /// shown
   std::vector<std::pair<texts::Phrase, texts::Phrase>> facts, cues;
 };
 

@@ -19,8 +19,8 @@ std::vector<std::string> languages();
 const std::map<std::string, std::string, std::less<>>& catalogue(std::string_view language);
 
 /// Says whether the station speaks a language ("de", "de-CH"), and whether a native speaker has read its
-/// texts.
-enum class Translation { none, unread, read };
+/// texts: none of them, those on the participant's pages, or all of them.
+enum class Translation { none, unread, participant_read, read };
 Translation translation(const std::string& language);
 
 /// Returns one text in the given language ("de", "de-CH"), or in English if the station does not speak that

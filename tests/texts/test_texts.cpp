@@ -1,9 +1,13 @@
 // Tests the catalogues of the station's texts, which have one file per language.
 #include <filesystem>
+#include <map>
 #include <regex>
 #include <set>
 #include <stdexcept>
 
+#include "physics/centre_line.hpp"
+#include "physics/field.hpp"
+#include "physics/warning.hpp"
 #include "station/system/read_file.hpp"
 #include "station/terms/fault.hpp"
 #include "station/texts/texts.hpp"
@@ -123,6 +127,7 @@ TEST_CASE("every text is used, and every text that the program requests exists",
       of_faults.insert(std::string("fault.") + terms::name(kind) + part);
   for (const auto cause : terms::proof_causes)
     of_faults.insert(std::string("proof_cause.") + terms::name(cause));
+  for (const char* code : physics::warning_codes) of_faults.insert(std::string("physics_warning.") + code);
   const auto schema =
       system::read_file(std::string(TURNPOINT_SOURCE_DIR) + "/protocols/protocol.schema.json");
   const auto goals = system::read_file(std::string(TURNPOINT_SOURCE_DIR) + "/station/design/goals.cpp");
@@ -182,9 +187,52 @@ TEST_CASE("a fault and a cause are named in each language, in English as in mess
   CHECK(texts::say(texts::phrase_of(gone), "de") == "GPIO-Leitungen getrennt: No such device");
 }
 
+TEST_CASE("the physics library's warnings are said in each language, in English as the library says them",
+          "[texts]") {
+  using namespace physics;
+  std::map<std::string, Warning> warnings;
+  const auto gather = [&](const Surface& surface, double frequency_Hz) {
+    const Tone tone{frequency_Hz, 1e-6, 0};
+    for (const auto& one : surface_warnings(surface)) warnings[one.code] = one;
+    for (const auto& one : tone_warnings(surface, {&tone, 1})) warnings[one.code] = one;
+  };
+  auto brass = seed_brass();
+  for (const double frequency_Hz : {1e3, 20e3, 45e3, 200e3}) gather(brass, frequency_Hz);
+  auto cut = brass;
+  cut.length_m /= 4;
+  gather(cut, 45e3);
+  const Tone resonant{nearest_resonance_Hz(brass, 19600).value() * (1 + 1e-7), 1, 0};
+  const double x_m = 0.1;
+  const auto field = evaluate(brass, {&resonant, 1}, {&x_m, 1}, Model::mode, Normalise::drive);
+  for (const auto& one : describe(brass, {&resonant, 1}, field).warnings) warnings[one.code] = one;
+  brass.tension_Pa = 100e6;
+  brass.modulus_Pa = 100e9;
+  brass.poisson = 0.34;
+  brass.bending = Bending::off;
+  brass.yield_strength_Pa = 90e6;
+  gather(brass, 45e3);
+  auto plate = aluminium_plate();
+  plate.theory = PlateTheory::kirchhoff;
+  gather(plate, 45e3);
+  plate.quality_factor = 1e6;
+  for (double frequency_Hz = 23e3; frequency_Hz < 24e3; frequency_Hz += 10) gather(plate, frequency_Hz);
+
+  for (const char* code : warning_codes) {
+    INFO(code);
+    REQUIRE(warnings.count(code) == 1);
+    texts::Phrase phrase{std::string("physics_warning.") + code, "", {}};
+    for (const auto& value : warnings[code].values) phrase.values.push_back(texts::plain(value));
+    CHECK(texts::say(phrase, "en") == warnings[code].text);
+    for (const auto& language : texts::languages())
+      for (const auto& value : warnings[code].values)
+        CHECK(texts::say(phrase, language).find(value) != std::string::npos);
+  }
+}
+
 TEST_CASE("a language is known to be spoken or not, and to have been read by a native speaker or not",
           "[texts]") {
   CHECK(texts::translation("en-GB") == texts::Translation::read);
+  CHECK(texts::translation("de-CH") == texts::Translation::participant_read);
   CHECK(texts::translation("ar") == texts::Translation::unread);
   CHECK(texts::translation("fi") == texts::Translation::none);
 }
