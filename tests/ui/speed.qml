@@ -36,30 +36,46 @@ Item {
             room.close()
         }
 
-        function test_presses_and_late_frames_in_a_session() {
+        /// Answers the four trials of a session, and returns how long each press took to show.
+        function session(participant, paced) {
             const waits = []
+            begin(participant)
+            tap("proceed")
+            compare(shown("pacerBlock"), paced)
+            room.lookOn()
+            for (let k = 0; k < 4; ++k) {
+                tryCompare(page, "answersOpen", true, 20000)
+                wait(150)
+                const ms = room.pressUntilShown(appears("answer0"))
+                verify(ms >= 0, "the answer shows nothing")
+                waits.push(ms)
+                tryCompare(page, "answersOpen", false, 5000)
+                if (k === 1) rest()
+            }
+            ends()
+            return waits
+        }
+
+        function test_presses_and_late_frames_data() {
+            return [{tag: "answers", paced: false}, {tag: "answers, with bars and the pacer", paced: true}]
+        }
+        function test_presses_and_late_frames(row) {
+            let waits = []
             let lost = 0, seen = 0, trials = 0
             for (const participant of ["T2", "T3", "T4", "T5"]) {
                 room.open("7391")
-                begin(participant)
-                tap("proceed")
-                room.lookOn()
-                for (let k = 0; k < 4; ++k) {
-                    tryCompare(page, "answersOpen", true, 20000)
-                    wait(150)
-                    const ms = room.pressUntilShown(appears("answer0"))
-                    verify(ms >= 0, "the answer shows nothing")
-                    waits.push(ms)
-                    tryCompare(page, "answersOpen", false, 5000)
-                    if (k === 1) rest()
+                if (row.paced) {
+                    room.addCells()
+                    room.addGuidance()
+                    room.reopen("7391")
                 }
-                ends()
+                waits = waits.concat(session(participant, row.paced))
                 seen += room.stallsSeen()
                 for (const frames of room.column("events.csv", "value", "kind", "frames_lost")) lost += Number(frames)
                 trials += room.column("trials.csv", "trial_index").length
                 room.close()
             }
-            report("press to picture, answers", waits)
+            report("press to picture, " + row.tag, waits)
             console.info("measured: late frames: " + lost + " in " + trials + " trials; this machine itself was late " + seen + " times")
         }
     }

@@ -194,6 +194,12 @@ void StationRoom::addCells() {
       "bridges = [1, 2, 3]\n");
 }
 
+void StationRoom::addGuidance() {
+  std::ofstream file(path("protocols/short.toml"), std::ios::app);
+  file << "\n[sensing]\nnormal_N = [0.3, 0.8]\nspeed_mm_s = [40, 120]\nstrokes = 1\nguidance = true\n"
+          "live_guidance = true\n";
+}
+
 void StationRoom::pretendPanel(CalibrationGuide* guide) {
   guide->open_panel_with([](LatencyController&, const rig::Rig&) {});
 }

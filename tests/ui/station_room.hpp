@@ -72,6 +72,8 @@ class StationRoom : public QObject {
 
   /// Adds simulated pick-ups and force cells to the rig.
   Q_INVOKABLE void addCells();
+  /// Makes the protocol guide the finger with bars and the pacer, during stimuli too. Needs cells.
+  Q_INVOKABLE void addGuidance();
   /// Writes a calibration of the rig (response, friction, sound level), as `turnpoint calibrate` does.
   Q_INVOKABLE void calibrate();
   /// Simulates a press of the reference button this many milliseconds ago. If the operator accepts a latency,
