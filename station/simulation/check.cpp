@@ -173,7 +173,7 @@ std::vector<text::Problem> language_notes(const Protocol& protocol) {
   std::vector<text::Problem> notes;
   for (const auto& language : protocol.languages) {
     const auto translation = texts::translation(language);
-    if (translation == texts::Translation::read) continue;
+    if (translation >= texts::Translation::participant_read) continue;
     notes.push_back({{protocol.path, 0, 0},
                      translation == texts::Translation::none
                          ? "the station does not speak \"" + language +
