@@ -33,7 +33,7 @@ Window {
     property string wish
     function ask(what: string) {
         wish = what
-        gate.visible = true
+        gate.wanted = true
     }
     function grant() {
         if (wish === "arm") participant.armable = true
@@ -50,14 +50,12 @@ Window {
     /// Leaves the participant's pages, which needs the operator's code. If there is no operator's page, this
     /// closes the window.
     function leave() { ask("leave") }
-    /// Goes back to the previous question to the participant. On the first question, leaves these pages.
-    function back() { if (!start.back()) leave() }
 
     /// The session's pages are created only after the first page is on the screen, so that the first page
     /// appears early.
     property bool begun: false
     readonly property ParticipantView participant: session.item as ParticipantView
-    onFrameSwapped: begun = true
+    onFrameSwapped: Qt.callLater(() => begun = true)
     Component.onCompleted: if (locked) ask("unlock")
 
     width: 1280
@@ -66,90 +64,36 @@ Window {
     title: "Turnpoint"
     color: theme.paper
 
-    // Ignore taps for a short time after a page change: they were meant for the previous page.
-    Timer {
-        id: arming
-        interval: 350
-    }
-    Connections {
-        target: root.start
-        function onChanged() {
-            arming.restart()
-            if (root.start.stage === StartController.Operator) root.leftHanded = false
-        }
-    }
     Theme {
         id: theme
         width: panel.width
         height: panel.height
         pixelsPerMm: root.pixelsPerMm
     }
-    Texts {
-        id: texts
-        language: root.start.language
-    }
-
-    Binding {
-        target: Catalogue
-        property: "shown"
-        value: root.start.language
-        when: root.asking
+    Connections {
+        target: root.start
+        function onChanged() { if (root.start.stage === StartController.Operator) root.leftHanded = false }
     }
     TurnedPanel {
         id: panel
         degrees: root.turned
+        across: root.width
+        down: root.height
 
-        RunModeFrame {
-            id: frame
+        // The pages of this window are created when they are first needed, so that the station's first page does not
+        // wait for them.
+        Loader {
+            property bool asked: false
             anchors.fill: parent
-            LayoutMirroring.enabled: texts.mirrored
-            LayoutMirroring.childrenInherit: true
-            visible: root.asking && shown
-            theme: theme
-            texts: texts
-            runMode: root.asking ? root.start.runMode : ""
-        }
-        Item {
-            LayoutMirroring.enabled: texts.mirrored
-            LayoutMirroring.childrenInherit: true
-            anchors { fill: parent; margins: theme.margin; topMargin: frame.band + (frame.shown ? theme.unit : theme.margin) }
-            LanguagePage {
-                objectName: "languagePage"
-                anchors.fill: parent
-                visible: root.start.stage === StartController.Language
-                theme: theme
-                texts: texts
-                armed: !arming.running
-                names: root.start.languageNames
-                onBack: root.back()
-                onChosen: index => root.start.chooseLanguage(index)
-            }
-            ConsentPage {
-                objectName: "consentPage"
-                anchors.fill: parent
-                visible: root.start.stage === StartController.Consent
-                theme: theme
-                texts: texts
-                version: root.start.consentVersion
-                armed: !arming.running
-                onBack: root.back()
-                onAgreed: root.start.consent()
-                onDeclined: root.leave()
-            }
-            CodePage {
-                id: codePage
-                objectName: "codePage"
-                anchors.fill: parent
-                visible: root.start.stage === StartController.Code
-                theme: theme
-                texts: texts
+            active: asked || root.asking
+            onLoaded: asked = true
+            sourceComponent: SessionQuestions {
+                start: root.start
+                pixelsPerMm: root.pixelsPerMm
                 leftHanded: root.leftHanded
-                asksHand: true
-                armed: !arming.running
-                onBack: root.back()
                 onHandChosen: left => root.leftHanded = left
-                onEdited: code => codePage.known = root.start.isKnown(code)
-                onAccepted: code => root.start.enterCode(code)
+                onDeclined: root.leave()
+                onAbandoned: root.leave()
             }
         }
         Loader {
@@ -169,23 +113,26 @@ Window {
                 onArmingWanted: root.ask("arm")
             }
         }
-        OperatorGate {
+        Loader {
             id: gate
-            objectName: "gate"
+            property bool wanted: false
+            property bool made: false
             anchors.fill: parent
-            visible: false
-            theme: theme
-            lock: root.operatorLock
-            last: root.locked
-            onAbandoned: visible = false
-            onPassed: {
-                visible = false
-                root.grant()
+            active: made || wanted
+            onLoaded: made = true
+            sourceComponent: OperatorGate {
+                objectName: "gate"
+                visible: gate.wanted
+                pixelsPerMm: root.pixelsPerMm
+                lock: root.operatorLock
+                last: root.locked
+                onAbandoned: gate.wanted = false
+                onPassed: {
+                    gate.wanted = false
+                    root.grant()
+                }
             }
         }
-
-        // Each of these pages is created when it is first needed, so that the station's first page does not wait
-        // for it.
         Loader {
             id: liveView
             property bool wanted: false

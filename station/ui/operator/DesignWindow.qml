@@ -20,6 +20,8 @@ Window {
     }
     TurnedPanel {
         degrees: root.turned
+        across: root.width
+        down: root.height
         DesignPage {
             anchors.fill: parent
             design: root.controller

@@ -15,6 +15,8 @@ Window {
 
     TurnedPanel {
         degrees: root.turned
+        across: root.width
+        down: root.height
         LatencyPage {
             anchors.fill: parent
             controller: root.controller

@@ -5,7 +5,12 @@ import Turnpoint
 // station this is the first page.
 Rectangle {
     id: root
-    required property Theme theme
+    required property real pixelsPerMm
+    readonly property Theme theme: Theme {
+        width: root.width
+        height: root.height
+        pixelsPerMm: root.pixelsPerMm
+    }
     required property OperatorLock lock
     /// True if there is no page to go back to.
     property bool last: false

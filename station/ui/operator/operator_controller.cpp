@@ -13,8 +13,13 @@
 
 namespace turnpoint::ui {
 
-OperatorController::OperatorController(setup::StationRequest request, Checker checker, QObject* parent)
-    : QObject(parent), request_(std::move(request)), checker_(std::move(checker)), worker_(*this) {
+OperatorController::OperatorController(setup::StationRequest request, Checker checker, Checks checks,
+                                       QObject* parent)
+    : QObject(parent),
+      request_(std::move(request)),
+      checker_(std::move(checker)),
+      may_check_(checks == Checks::at_once),
+      worker_(*this) {
   std::filesystem::create_directories(std::filesystem::absolute(request_.database).parent_path());
   connect(&minutes_, &QTimer::timeout, this, &OperatorController::look_at_backup);
   minutes_.start(std::chrono::minutes(1));
@@ -98,14 +103,16 @@ void OperatorController::select(int index) {
   if (!entry()->problems.empty()) return fail(entry()->problems);
   checking_ = true;
   Q_EMIT changed();
-  // Not at once: the first check would compete with the first page for the processor.
-  QTimer::singleShot(0, this, [this, index] {
-    if (selected_ == index && checking_ && !preparing_) check_selected();
-  });
+  check_selected();
+}
+
+void OperatorController::allow_checks() {
+  may_check_ = true;
+  if (checking_) check_selected();
 }
 
 void OperatorController::check_selected() {
-  if (entry() == nullptr) return;
+  if (entry() == nullptr || !may_check_) return;
   work(
       [this, path = entry()->path, rig = request_.rig](const std::stop_token& stop) -> Then {
         auto words = desk::words_of(checker_(path, rig, stop));

@@ -67,10 +67,15 @@ class OperatorController : public QObject {
   Q_PROPERTY(QString database READ database CONSTANT)
 
  public:
+  /// When protocols are checked: from the beginning, or only after allow_checks(), so that the first check
+  /// does not compete with the first page for the processor.
+  enum class Checks { at_once, when_allowed };
   /// `checker` runs on the worker thread.
   explicit OperatorController(setup::StationRequest request, Checker checker = check_protocol,
-                              QObject* parent = nullptr);
+                              Checks checks = Checks::at_once, QObject* parent = nullptr);
   ~OperatorController() override;
+
+  void allow_checks();
 
   const setup::StationRequest& request() const { return request_; }
   QVariantList protocols() const;
@@ -148,6 +153,7 @@ class OperatorController : public QObject {
   int selected_ = -1, language_ = -1;
   QString participant_;
   bool live_ = false, armed_ = false, checking_ = false, preparing_ = false;
+  bool may_check_;
   // The last member, so that its thread ends before the objects that it uses are destroyed.
   NewestJob worker_;
 };

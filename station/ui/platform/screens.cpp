@@ -81,9 +81,12 @@ session::Summary run_on_screen(setup::RunRequest request, std::optional<session:
 
 void run_station(const setup::StationRequest& request) {
   const Application application;
-  OperatorController operating(request);
+  OperatorController operating(request, check_protocol, OperatorController::Checks::when_allowed);
   StationWindow window(place_on(application, request.fullscreen),
                        {&operating, desk::operator_code(), request.locked}, request.database);
+  QObject::connect(&window.window(), &QQuickWindow::frameSwapped, &operating,
+                   &OperatorController::allow_checks,
+                   static_cast<Qt::ConnectionType>(Qt::QueuedConnection | Qt::SingleShotConnection));
   use_second_screen(application, window);
   stop_in_order(application, window);
   try {
