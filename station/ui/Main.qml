@@ -26,6 +26,7 @@ Window {
     property bool leftHanded: false
     readonly property bool asking: start.stage === StartController.Language || start.stage === StartController.Consent
                                    || start.stage === StartController.Code
+    onAskingChanged: if (asking) questions.active = true
 
     /// What to do once the code has been typed: open the "view" of the running session, let the operator
     /// "arm" the amplifier, show the "report", "leave" the participant's pages for the operator's page, or
@@ -33,7 +34,7 @@ Window {
     property string wish
     function ask(what: string) {
         wish = what
-        gate.wanted = true
+        gate.active = gate.wanted = true
     }
     function grant() {
         if (wish === "arm") participant.armable = true
@@ -83,10 +84,9 @@ Window {
         // The pages of this window are created when they are first needed, so that the station's first page does not
         // wait for them.
         Loader {
-            property bool asked: false
+            id: questions
             anchors.fill: parent
-            active: asked || root.asking
-            onLoaded: asked = true
+            active: false
             sourceComponent: SessionQuestions {
                 start: root.start
                 pixelsPerMm: root.pixelsPerMm
@@ -116,10 +116,8 @@ Window {
         Loader {
             id: gate
             property bool wanted: false
-            property bool made: false
             anchors.fill: parent
-            active: made || wanted
-            onLoaded: made = true
+            active: false
             sourceComponent: OperatorGate {
                 objectName: "gate"
                 visible: gate.wanted

@@ -91,13 +91,13 @@ class Camera {
   /// Renders the keypad for the operator's code: once at the start of a locked station, and once over a
   /// participant's page.
   void shoot_gate() {
+    QMetaObject::invokeMethod(window_, "ask", Q_ARG(QString, "view"));
     auto* gate = window_->findChild<QQuickItem*>("gate");
-    gate->setVisible(true);
     window_->setProperty("locked", true);
     shoot("gate-locked");
     window_->setProperty("locked", false);
     shoot("gate");
-    gate->setVisible(false);
+    QMetaObject::invokeMethod(gate, "abandoned");
   }
 
   int count() const { return count_; }
