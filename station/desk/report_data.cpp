@@ -15,6 +15,7 @@
 #include "station/session/planned_session.hpp"
 #include "station/store/open.hpp"
 #include "station/store/stored_signals.hpp"
+#include "station/terms/limits.hpp"
 #include "station/text/number.hpp"
 
 namespace turnpoint::desk {
@@ -39,6 +40,30 @@ Phrase late_frames(const std::vector<records::EventRow>& events) {
   for (const auto& event : events)
     if (event.kind == "frames_lost") frames += std::stoi(event.value), ++trials;
   return frames == 0 ? phrase("station.none") : phrase("station.in_trials", {whole(frames), whole(trials)});
+}
+
+/// Says how many flashes were shown, and how long after their time; empty if there were none.
+std::optional<Phrase> flashes(const std::vector<records::EventRow>& events) {
+  std::vector<double> delays_s;
+  std::optional<double> light_s;
+  int late = 0;
+  for (const auto& event : events) {
+    const auto seconds = text::read_number(event.value);
+    if (event.kind == records::kDisplayLatencyEvent) light_s = seconds;
+    if (event.kind != records::kSignalShownEvent && event.kind != records::kSignalLateEvent) continue;
+    late += event.kind == records::kSignalLateEvent ? 1 : 0;
+    delays_s.push_back(seconds.value_or(0));
+  }
+  if (delays_s.empty()) return std::nullopt;
+  std::sort(delays_s.begin(), delays_s.end());
+  const auto ms = [](double s) { return plain(text::number(1e3 * s, 3)); };
+  Phrase list;
+  append(list, phrase("station.flashes_shown", {whole(delays_s.size()), ms(delays_s[delays_s.size() / 2]),
+                                                ms(delays_s.back()), whole(late), ms(terms::kSignalLate_s)}));
+  append(list,
+         light_s ? phrase("station.flash_light", {ms(*light_s)}) : phrase("station.flash_light_unknown"),
+         "; ");
+  return list;
 }
 
 /// Describes the largest model error and the largest uncertainty of the boundaries of the tones that were
@@ -182,6 +207,7 @@ void add_health(const store::StoredSession& stored, report::SessionData& data) {
   add("station.xruns", whole(xruns));
   add("live.other_touches", whole(extra));
   add("station.late_frames", late_frames(stored.events));
+  if (auto shown = flashes(stored.events)) add("station.flashes", std::move(*shown));
   add("station.resumed", whole(stored.session.segments - 1));
   add("station.restarted", whole(attempts));
   add("station.stamped", or_none(std::move(qualities)));

@@ -1,3 +1,6 @@
+#include <optional>
+#include <set>
+
 #include "station/protocol/answers.hpp"
 #include "station/protocol/expression.hpp"
 #include "station/protocol/reading.hpp"
@@ -18,7 +21,7 @@ bool time_is_known(const Protocol& protocol, const std::string& what, text::Find
   if (!explored(protocol.task)) {
     findings.add(signal.by_place,
                  what + " is part of the stimulus, but this task is answered after its intervals",
-                 "by = \"screen\", or a task with a single interval");
+                 "by = \"screen\" or \"flash\", or a task with a single interval");
     return false;
   }
   const auto zero = protocol.timing.response_zero;
@@ -26,7 +29,7 @@ bool time_is_known(const Protocol& protocol, const std::string& what, text::Find
   findings.add(signal.by_place,
                what + " is part of the stimulus, but \"response_zero\" is \"" + name(zero) +
                    "\", whose time is not known when the stimulus begins",
-               "by = \"screen\", or a \"response_zero\" of \"go_cue\" or \"change\"");
+               "by = \"screen\" or \"flash\", or a \"response_zero\" of \"go_cue\" or \"change\"");
   return false;
 }
 
@@ -52,12 +55,59 @@ void check_buzz(const Reading& reading) {
                          "at least " + number(changed_s) + " s");
 }
 
+/// All lags of a signal, if they are a list; empty if a factor varies over a range.
+std::set<double> lags_of(const Linear& after_s, const std::vector<Factor>& factors) {
+  std::vector<Factors> combinations{{}};
+  for (const auto& name : factors_in(after_s)) {
+    const auto* factor = find_factor(factors, name);
+    if (factor == nullptr || !span(*factor) || factor->levels.empty()) return {};
+    std::vector<Factors> next;
+    for (const auto& level : factor->levels)
+      for (auto combination : combinations) {
+        combination[name] = level;
+        next.push_back(std::move(combination));
+      }
+    combinations = std::move(next);
+  }
+  std::set<double> lags;
+  for (const auto& combination : combinations) lags.insert(evaluate(after_s, combination));
+  return lags;
+}
+
+/// A screen shows a flash with its next frame or the one after. A lag that is not longer than that, or that
+/// differs from another one by less than a frame, is not the lag that people get.
+void check_flash(const Reading& reading) {
+  const auto& after_s = reading.protocol.timing.signal->after_s;
+  const auto place = reading.places.of("timing.response_signal.after_s");
+  const auto& factors = reading.protocol.factors;
+  const double first_s = bounds(after_s, factors).first;
+  if (first_s < terms::kSignalLate_s - 1e-9)
+    reading.findings.add(place,
+                         "the flash can be due " + number(first_s) + " s after \"" +
+                             name(reading.protocol.timing.response_zero) +
+                             "\", but a screen may need three frames to show it",
+                         "at least " + number(terms::kSignalLate_s) + " s, or by = \"tone\"");
+  std::optional<double> before_s;
+  for (const double lag_s : lags_of(after_s, factors)) {
+    const double apart_s = lag_s - before_s.value_or(-1);
+    if (apart_s > 1e-9 && apart_s < terms::kFrame_s - 1e-9)
+      return reading.findings.add(
+          place,
+          "the lags " + number(*before_s) + " and " + number(lag_s) +
+              " s differ by less than a frame of the screen, so a flash cannot present both",
+          "lags that differ by at least " + number(terms::kFrame_s, 3) + " s, or by = \"tone\"");
+    before_s = lag_s;
+  }
+}
+
 }  // namespace
 
 void check_signal(const Reading& reading) {
   const auto& protocol = reading.protocol;
   const auto& signal = protocol.timing.signal;
-  if (!signal || (signal->by != By::tone && signal->by != By::buzz)) return;
+  if (!signal) return;
+  if (signal->by == By::screen) return;
+  if (signal->by == By::flash) return check_flash(reading);
   const bool tone = signal->by == By::tone;
   if (!time_is_known(protocol, tone ? "a tone" : "a buzz", reading.findings)) return;
   if (!tone) check_buzz(reading);

@@ -106,9 +106,9 @@ using terms::ResponseZero;
 struct ResponseSignal {
   Linear after_s;  ///< time of the signal in s, counted from response_zero
   double window_s = 0;
-  /// A band on the screen, a tone on the rig's headphones, or a buzz of the surface. Tone and buzz are part
-  /// of the stimulus and begin on the very frame.
-  enum class By { screen, tone, buzz };
+  /// A band on the screen, a flash of the whole screen, a tone on the rig's headphones, or a buzz of the
+  /// surface. Tone and buzz are part of the stimulus and begin on the very frame.
+  enum class By { screen, flash, tone, buzz };
   By by = By::screen;
   Place by_place;
   std::string scene;    ///< buzz: the scene that the surface presents, in place of the last scene

@@ -49,8 +49,8 @@ void read_signal(TableReader& timing, Reading& reading) {
   signal.window_s = reader.number("window_s", {0.05, 10, Range::Ends::closed, "s"});
   using By = ResponseSignal::By;
   static const std::map<std::string, By> kinds{
-      {"screen", By::screen}, {"tone", By::tone}, {"buzz", By::buzz}};
-  if (const auto by = reader.maybe_word("by", {"screen", "tone", "buzz"}); by && kinds.count(*by))
+      {"screen", By::screen}, {"flash", By::flash}, {"tone", By::tone}, {"buzz", By::buzz}};
+  if (const auto by = reader.maybe_word("by", {"screen", "flash", "tone", "buzz"}); by && kinds.count(*by))
     signal.by = kinds.at(*by);
   signal.by_place = reader.place("by");
   read_buzz(reader, signal, reading);

@@ -261,6 +261,13 @@ struct EventRow {
 inline constexpr const char* kProgramEvent = "program";
 inline constexpr const char* kEstimatesEvent = "estimates";
 
+/// Kinds of events of a flash (a response signal): when its frame was handed to the screen, and how many
+/// seconds after the flash was due. The second kind is for flashes that were too late (terms::kSignalLate_s).
+inline constexpr const char* kSignalShownEvent = "signal_shown";
+inline constexpr const char* kSignalLateEvent = "signal_late";
+/// The delay in seconds from a touch to the light on the screen, as measured with a photodiode.
+inline constexpr const char* kDisplayLatencyEvent = "display_latency";
+
 /// Kinds of events around the trials: an answer; the withdrawal of an answer by the Back button, whose value
 /// names questionnaire and occasion; and the end of a questionnaire, consent, explanation or screening.
 inline constexpr const char* kAnswerEvent = "questionnaire";

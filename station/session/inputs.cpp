@@ -54,6 +54,7 @@ std::optional<trial::Event> event_of(const Input& input) {
     case InputKind::arm:
     case InputKind::note:
     case InputKind::frames_lost:
+    case InputKind::signal_shown:
       break;
   }
   return std::nullopt;

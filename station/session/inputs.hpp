@@ -50,6 +50,9 @@ enum class InputKind {
   repeat,       ///< the operator declares the current trial void; it is presented again
   note,         ///< the operator writes an annotation of the session; `text` is stored
   frames_lost,  ///< value = how many frames the screen was late in the previous trial
+  /// the frame with a flash (a response signal) was handed to the screen at time_ns; number = how many
+  /// seconds after the time at which the flash was due
+  signal_shown,
 };
 
 /// Where the time stamp comes from: the kernel, a toolkit, or a simulated observer.

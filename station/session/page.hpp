@@ -84,10 +84,12 @@ struct Page {
   std::string text;   ///< the question, instruction or message, in the session's language
   std::vector<AnswerButton> answers;
   bool answers_open = false;
-  bool back = false;            ///< the participant can return to the previous question or page
-  bool playing = false;         ///< true while an example is being presented
-  std::string picture;          ///< path of an explanation's picture; "" if there is none
-  bool answer_now = false;      ///< true once the response signal has been given
+  bool back = false;        ///< the participant can return to the previous question or page
+  bool playing = false;     ///< true while an example is being presented
+  std::string picture;      ///< path of an explanation's picture; "" if there is none
+  bool answer_now = false;  ///< true once the response signal has been given
+  /// when the response signal was due, if it begins with a flash of the whole page
+  std::optional<std::int64_t> flash_ns;
   std::optional<bool> correct;  ///< whether the answer was right; used only for feedback
   /// "", "speed", "accuracy", ...: determines the block's style, which never differs by colour alone
   std::string instruction;

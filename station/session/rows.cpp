@@ -8,14 +8,15 @@
 
 #include "station/sensing/felt_step.hpp"
 #include "station/store/signal_code.hpp"
+#include "station/terms/limits.hpp"
 #include "station/text/number.hpp"
 
 namespace turnpoint::session {
 
 namespace {
 
-const char* kind_of(InputKind kind) {
-  switch (kind) {
+const char* kind_of(const Input& input) {
+  switch (input.kind) {
     case InputKind::answer:
       return "answer";
     case InputKind::value:
@@ -38,6 +39,8 @@ const char* kind_of(InputKind kind) {
       return "pause";
     case InputKind::frames_lost:
       return "frames_lost";
+    case InputKind::signal_shown:
+      return input.number > terms::kSignalLate_s ? records::kSignalLateEvent : records::kSignalShownEvent;
     case InputKind::xrun:
       return "xrun";
     case InputKind::heard:
@@ -81,6 +84,7 @@ std::string value_of(const Input& input) {
     return fmt::format("{} {} {}{}", input.value, name(input.measured->verdict), name(input.measured->cause),
                        silence_before(*input.measured));
   if (!input.text.empty()) return input.text;
+  if (input.kind == InputKind::signal_shown) return text::number(input.number, 4);
   if (input.kind == InputKind::slider || input.kind == InputKind::value) return text::exact(input.number);
   if (input.kind == InputKind::contact && input.number >= 0)
     return fmt::format("{} {}", input.value, text::number(input.number, 4));
@@ -254,7 +258,7 @@ std::string describe_proof(const records::TrialRow& row) {
 records::EventRow event_row(const Input& input, int trial_index) {
   records::EventRow row;
   row.time_ns = input.time_ns;
-  row.kind = kind_of(input.kind);
+  row.kind = kind_of(input);
   row.trial_index = trial_index;
   row.value = value_of(input);
   return row;

@@ -136,6 +136,8 @@ void take_calibration(const std::string& source, const std::string& path, sessio
     setup.response_offset_s = calibration.panel->touch->median_s;
     setup.response_offset_quality = calibration.panel->quality;
   }
+  if (calibration.panel && calibration.panel->flash)
+    setup.display_latency_s = calibration.panel->flash->median_s;
   for (const auto& point : calibration.sound) setup.sound.push_back({point.frequency_Hz, point.level_dB});
 }
 

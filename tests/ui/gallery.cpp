@@ -139,6 +139,8 @@ void add_trials(std::vector<Exhibit>& all, const Words& words) {
   Page now = boundary(words, PageKind::stimulus);
   now.answer_now = true;
   all.push_back({"explore-signal", now});
+  now.flash_ns = 0;
+  all.push_back({"explore-flash", now});
   all.push_back({"explore-speed", instructed(boundary(words, PageKind::stimulus), words, "speed")});
   all.push_back({"explore-accuracy", instructed(boundary(words, PageKind::stimulus), words, "accuracy")});
   all.push_back({"abx-cue", abx(words, PageKind::cue)});

@@ -105,6 +105,9 @@ void ScriptedSession::take(const session::Input& input) {
     case InputKind::frames_lost:
       inputs_ += QStringLiteral("frames_lost %1").arg(input.value);
       break;
+    case InputKind::signal_shown:
+      inputs_ += "signal_shown";
+      break;
     case InputKind::contact:
     case InputKind::xrun:
     case InputKind::heard:

@@ -17,6 +17,27 @@ Item {
     readonly property bool asks: page.answersOpen && page.answers.length > 0
     readonly property bool counted: page.intervals > 1
 
+    // A flash lasts for a moment from the frame that shows it, however late this frame is. There is one flash in a trial,
+    // and each trial begins with a cue of 0.8 s, so no second has three flashes, which could cause a seizure.
+    readonly property bool signalledByFlash: page.flash
+    readonly property bool flashing: signalledByFlash && !flash.over
+    onSignalledByFlashChanged: {
+        flash.stop()
+        flash.over = false
+    }
+    Connections {
+        target: root.Window.window
+        enabled: root.flashing
+        function onFrameSwapped() { flash.start() }
+    }
+    Timer {
+        id: flash
+        objectName: "flash"
+        property bool over: false
+        interval: 100
+        onTriggered: over = true
+    }
+
     // Tapping an answer twice by accident must not also count as a confidence rating: the page ignores taps for a
     // moment.
     readonly property bool confides: page.kind === PageModel.Confidence
@@ -116,17 +137,24 @@ Item {
         running: visible && !root.page.barsFrozen && !root.asks
     }
 
-    // The response signal: a band over the whole width, dark and large enough to be noticed while looking elsewhere.
+    // The response signal: a band over the whole width, dark and large enough to be noticed while looking elsewhere. A
+    // flash makes the whole page dark for a moment, and then light again. Both say what to do, so that they do not depend
+    // on brightness alone.
     Rectangle {
         objectName: "signal"
         visible: root.page.answerNow && !root.feedback
-        anchors { left: parent.left; right: parent.right; top: parent.top; bottom: answers.top; bottomMargin: root.theme.targetGap }
+        anchors {
+            left: parent.left; right: parent.right; top: parent.top
+            bottom: root.flashing ? parent.bottom : answers.top
+            bottomMargin: root.flashing ? 0 : root.theme.targetGap
+        }
+        readonly property bool dark: root.flashing || !root.signalledByFlash
         radius: root.theme.radius
-        color: root.theme.ink
+        color: dark ? root.theme.ink : "transparent"
         PlainText {
             anchors { fill: parent; margins: root.theme.unit }
             text: root.texts.answerNow
-            color: root.theme.actionText
+            color: parent.dark ? root.theme.actionText : root.theme.ink
             font { pixelSize: root.theme.textHuge; weight: Font.Bold }
             fontSizeMode: Text.Fit
             minimumPixelSize: root.theme.textSmall
@@ -154,7 +182,7 @@ Item {
 
     AnswerRow {
         id: answers
-        visible: root.asks
+        visible: root.asks && !root.flashing
         anchors { left: parent.left; right: parent.right; bottom: parent.bottom }
         height: Math.max(leastHeight, 0.36 * parent.height)
         theme: root.theme

@@ -32,6 +32,7 @@ class PageModel : public QObject {
   Q_PROPERTY(bool playing READ playing NOTIFY changed)
   Q_PROPERTY(QString picture READ picture NOTIFY changed)
   Q_PROPERTY(bool answerNow READ answer_now NOTIFY changed)
+  Q_PROPERTY(bool flash READ flash NOTIFY changed)
   Q_PROPERTY(Verdict verdict READ verdict NOTIFY changed)
   Q_PROPERTY(QString instruction READ instruction NOTIFY changed)
   Q_PROPERTY(bool hasMark READ has_mark NOTIFY changed)
@@ -127,6 +128,7 @@ class PageModel : public QObject {
   bool playing() const { return page_.playing; }
   QString picture() const;
   bool answer_now() const { return page_.answer_now; }
+  bool flash() const { return page_.flash_ns.has_value(); }
   Verdict verdict() const;
   QString instruction() const { return QString::fromStdString(page_.instruction); }
   bool has_mark() const { return page_.mark_mm.has_value(); }

@@ -35,12 +35,17 @@ SessionRunner::SessionRunner(QObject* parent)
   connect(this, &SessionRunner::over, &life_, &QTimer::stop);
   connect(&bridge_, &SessionBridge::shown, this, [this] {
     const auto kind = bridge_.page()->kind();
+    // The page changes again while it shows the signal, but only its first frame is the flash.
+    const auto flash_ns = bridge_.page()->page().flash_ns;
+    if (flash_ns && flash_ns != std::exchange(flash_ns_, flash_ns)) return frames_.timed();
     if (is_trial(kind)) return frames_.asked();
     const int lost = frames_.end();
     // Late frames are reported on the page between trials. If a fault or a pause interrupts a trial, another
     // page follows and the frames are not reported, because the trial is repeated.
     if (kind == PageModel::Kind::Interval) bridge_.frames_lost(lost);
   });
+  connect(&frames_, &FrameWatch::presented, this,
+          [this](qint64 time_ns) { bridge_.signal_shown(time_ns, *flash_ns_); });
   connect(&bridge_, &SessionBridge::acknowledged, this, [this] {
     if (is_trial(bridge_.page()->kind())) frames_.asked();
   });

@@ -64,7 +64,8 @@ class SessionRunner : public QObject {
   LiveModel live_;
   ReportModel report_;
   FrameWatch frames_;
-  QTimer life_;  ///< reports to the session that the pages' event loop is running
+  std::optional<std::int64_t> flash_ns_;  ///< when the last flash was due
+  QTimer life_;                           ///< reports to the session that the pages' event loop is running
   std::unique_ptr<touch::TouchReader> touch_;
   std::unique_ptr<desk::LiveView> view_;
   std::optional<session::Summary> summary_;
