@@ -151,6 +151,9 @@ constexpr Recorded kSessions[] = {
     {"friction-abx", "c95786baf94d2faf", "81a6d1b7adaa8862"},
     {"limits-boundary", "f095f41207962b6a", "8d35ed030edf1940"},
     {"response-signal", "ef371dbbfaebe6ce", "5d99f9739e94ada6"},
+    {"response-signal-buzz", "ef371dbbfaebe6ce", "ea2cd51dacda0434"},
+    {"response-signal-flash", "ef371dbbfaebe6ce", "5d99f9739e94ada6"},
+    {"friction-rating", "293a46da12ce06a1", "4932411790c12386"},
     {"two-spots-oddity", "d84ae5fc63983e76", "b2d2fee42b03d1aa"},
 };
 

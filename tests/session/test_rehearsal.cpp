@@ -14,7 +14,8 @@ TEST_CASE("a rehearsed session has the same trials, answers and times as a sessi
   const auto* protocol =
       GENERATE("demo", "boundary-adjustment", "smoothness-points", "smoothness-line", "magnitude-standard",
                "friction-confidence", "friction-detection", "friction-identification", "friction-3ifc",
-               "friction-4ifc", "friction-time-limit", "friction-abx", "limits-boundary", "response-signal");
+               "friction-4ifc", "friction-time-limit", "friction-abx", "limits-boundary", "response-signal",
+               "response-signal-buzz", "friction-rating");
   const TemporaryFolder folder;
   session::Setup setup;
   setup.rig = rig::load(std::string(TURNPOINT_SOURCE_DIR) + "/tests/support/thin_plate.toml");
