@@ -92,6 +92,13 @@ void add_judgements(std::vector<Exhibit>& all, const Words& words) {
   all.push_back({"choices-9", many});
   many.answers.resize(4);
   all.push_back({"choices-4", many});
+  // the longest labels about which `check` says nothing
+  const auto label = words.pick("Unpredictable vibrations, intermediate roughness ",
+                                "Ungleichmäßig raue Schwingungen, Wahrnehmungen ",
+                                "全体に不規則な振動があり端のほうは少しざらざら");
+  many.answers.clear();
+  for (int i = 1; i <= 9; ++i) many.answers.push_back({std::to_string(i), label + std::to_string(i)});
+  all.push_back({"choices-9-long", many});
 }
 
 /// Adds the bars that guide the finger, for a finger that presses well but moves too slowly.

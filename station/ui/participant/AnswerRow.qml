@@ -43,7 +43,7 @@ Item {
             text: root.answers[index] ?? ""
             font { pixelSize: root.theme.textTitle; weight: Font.DemiBold }
             fontSizeMode: Text.Fit
-            minimumPixelSize: root.theme.textSmall
+            minimumPixelSize: root.theme.textLeast
             wrapMode: Text.WordWrap
         }
     }
@@ -86,7 +86,7 @@ Item {
                 color: button.down ? root.theme.action : root.theme.actionText
                 font { pixelSize: root.theme.textBody; weight: Font.Medium }
                 fontSizeMode: Text.Fit
-                minimumPixelSize: 2.4 * root.theme.pixelsPerMm
+                minimumPixelSize: root.theme.textLeast
                 wrapMode: Text.WordWrap
                 horizontalAlignment: Text.AlignHCenter
                 verticalAlignment: Text.AlignVCenter
