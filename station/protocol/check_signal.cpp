@@ -2,6 +2,7 @@
 #include <set>
 
 #include "station/protocol/answers.hpp"
+#include "station/protocol/combinations.hpp"
 #include "station/protocol/expression.hpp"
 #include "station/protocol/reading.hpp"
 #include "station/terms/limits.hpp"
@@ -33,9 +34,38 @@ bool time_is_known(const Protocol& protocol, const std::string& what, text::Find
   return false;
 }
 
+/// A buzz is the same in all trials. The search for cues does not look at it, so it must not depend on
+/// anything that could tell the answer.
+void check_same_buzz(const Reading& reading) {
+  const auto& scenes = reading.protocol.scenes;
+  // A zone is designed for the friction of its base scene, so the factors of the base scenes count, too.
+  for (auto at = scenes.find(reading.protocol.timing.signal->scene); at != scenes.end();
+       at = scenes.find(at->second.base))
+    for (const auto& name : factors_of(at->second))
+      return reading.findings.add(
+          reading.places.of("timing.response_signal.scene"),
+          "the buzz depends on \"" + name + "\", so it could tell something of the answer",
+          "a scene that is the same in all trials");
+}
+
+/// A lag that depends on what makes an answer right would tell something of the answer.
+void check_telling_lag(const Reading& reading) {
+  std::set<std::string> deciding;
+  for (const auto& [id, comparison] : reading.protocol.task.correct_answer)
+    for (const auto* side : {&comparison.left, &comparison.right})
+      for (const auto& name : factors_in(*side)) deciding.insert(name);
+  for (const auto& name : factors_in(reading.protocol.timing.signal->after_s))
+    if (deciding.count(name))
+      return reading.findings.add(
+          reading.places.of("timing.response_signal.after_s"),
+          "the time of the signal depends on \"" + name + "\", which decides the right answer",
+          "other factors");
+}
+
 /// A buzz takes the place of the last scene, which must have been reached, and be long enough before to be
 /// measured.
 void check_buzz(const Reading& reading) {
+  check_same_buzz(reading);
   const auto& protocol = reading.protocol;
   const auto& task = protocol.task;
   const bool changes = !task.intervals.empty() && task.intervals.back().size() > 1;
@@ -106,6 +136,7 @@ void check_signal(const Reading& reading) {
   const auto& protocol = reading.protocol;
   const auto& signal = protocol.timing.signal;
   if (!signal) return;
+  check_telling_lag(reading);
   if (signal->by == By::screen) return;
   if (signal->by == By::flash) return check_flash(reading);
   const bool tone = signal->by == By::tone;

@@ -1,10 +1,8 @@
 #include <algorithm>
 #include <optional>
-#include <set>
 
 #include "station/protocol/advice_list.hpp"
 #include "station/protocol/answers.hpp"
-#include "station/protocol/combinations.hpp"
 #include "station/protocol/expression.hpp"
 #include "station/text/number.hpp"
 
@@ -92,19 +90,6 @@ void check_lag(AdviceList& advice, const ResponseSignal& signal) {
                "at most " + number(end->earliest_s) + " s, or longer tones");
 }
 
-/// A buzz must be the same in all trials. If it depends on the level, it is a second stimulus.
-void check_buzz(AdviceList& advice, const ResponseSignal& signal) {
-  const auto& scenes = advice.protocol.scenes;
-  std::set<std::string> depends;
-  for (auto at = scenes.find(signal.scene); at != scenes.end(); at = scenes.find(at->second.base))
-    for (const auto& name : factors_of(at->second)) depends.insert(name);
-  for (const auto& spec : advice.protocol.procedures)
-    if (depends.count(spec.level))
-      return advice.add("timing.response_signal.scene",
-                        "the buzz depends on \"" + spec.level + "\", so it tells something of the answer",
-                        "a scene that is the same in all trials");
-}
-
 }  // namespace
 
 void advise_on_times(AdviceList& advice) {
@@ -118,7 +103,7 @@ void advise_on_times(AdviceList& advice) {
     advice.add("timing.response_signal.window_s",
                "nobody can answer within " + number(timing.signal->window_s) + " s of a signal",
                number(shortest_deadline_s) + " s or more");
-  if (timing.signal) check_lag(advice, *timing.signal), check_buzz(advice, *timing.signal);
+  if (timing.signal) check_lag(advice, *timing.signal);
   check_length(advice, "timing.iti_s", timing.iti_s.high);
   check_length(advice, "timing.explore_s", timing.explore_s.value_or(0));
   check_length(advice, "task.duration_s", task.duration_s.value_or(0));

@@ -121,8 +121,14 @@ PlanAhead::Planned PlanAhead::plan(const trial::TrialSpec& trial, double drift) 
   const auto presented = trial::presented_scenes(protocol_, trial);
   for (std::size_t i = 0; i < presented.size(); ++i) {
     auto& scenes = planned.plans.emplace_back();
-    for (const auto& name : presented[i])
-      scenes.push_back(planner_.plan(protocol::resolve(protocol_, name, trial.factors, trial.rove_dB[i])));
+    const auto of_the_task = trial.intervals[i].size();
+    for (const auto& name : presented[i]) {
+      // A buzz, which follows the task's scenes, is the same in all trials: compared with it, a strength that
+      // was roved could be recognised.
+      const bool is_buzz = presented[i].size() > of_the_task && scenes.size() == of_the_task;
+      const double rove_dB = is_buzz ? 0 : trial.rove_dB[i];
+      scenes.push_back(planner_.plan(protocol::resolve(protocol_, name, trial.factors, rove_dB)));
+    }
     for (auto& made : scenes)
       for (auto& tone : made.tones) tone.frequency_Hz *= 1 + drift;
   }

@@ -178,8 +178,45 @@ TEST_CASE("the limits of the rig hold for a buzz as for each scene", "[session][
              "[scene.buzz]\ntones = [{ frequency_Hz = 30000, displacement_um = 40 }]\n\n[task]"),
       "p.toml");
   CHECK(problems(protocol::survey(strong, rig)).find("scene \"buzz\"") != std::string::npos);
-  const auto telling = protocol::parse(source("by = \"buzz\", scene = \"buzz\", length_ms = 60",
-                                              "[scene.buzz]\nbase = \"after\"\nrove_dB = 1\n\n[task]"),
-                                       "p.toml");
-  CHECK(problems(protocol::survey(telling, rig)).find("the buzz depends on \"change\"") != std::string::npos);
+}
+
+TEST_CASE("a buzz that could tell the answer is refused", "[session][buzz][cues]") {
+  // The factor decides the answer, and the buzz depends on it: directly, or by the scene on which it is
+  // based.
+  for (const std::string buzz :
+       {"base = \"after\"\nrove_dB = 1", "base = \"after\"\nzone = { friction = 0.3 }",
+        "tones = [{ frequency_Hz = \"30000 + 1000 * change\", displacement_um = 0.4 }]"}) {
+    CAPTURE(buzz);
+    try {
+      protocol::parse(
+          source("by = \"buzz\", scene = \"buzz\", length_ms = 60", "[scene.buzz]\n" + buzz + "\n\n[task]"),
+          "p.toml");
+      FAIL_CHECK("the protocol is accepted");
+    } catch (const text::BadInput& error) {
+      REQUIRE(error.problems().size() == 1);
+      CHECK(text::format(error.problems().front()).find("the buzz depends on \"change\"") !=
+            std::string::npos);
+    }
+  }
+}
+
+TEST_CASE("a buzz has the same strength in each trial, even if the stimulus is roved",
+          "[session][buzz][cues]") {
+  const auto rig = thin_plate();
+  const auto roving =
+      protocol::parse(replaced(source(), "[scene.before]", "[scene.before]\nrove_dB = 3"), "p.toml");
+  std::set<double> buzzes, stimuli;
+  for (std::uint64_t seed = 0; seed < 4; ++seed) {
+    trial::Director director(roving, 0, seed);
+    session::PlanAhead plans(rig, roving, seed);
+    const auto& plan = plans.take(*director.next()).plans.back();
+    REQUIRE(plan.size() == 4);
+    REQUIRE(plan[2].scene.name == "buzz");
+    buzzes.insert(plan[2].peak_displacement_m);
+    stimuli.insert(plan[0].peak_displacement_m);
+    // the last scene returns as it was
+    CHECK(plan[3].peak_displacement_m == plan[1].peak_displacement_m);
+  }
+  CHECK(buzzes.size() == 1);
+  CHECK(stimuli.size() == 4);
 }
