@@ -31,13 +31,6 @@ struct BrokenLines : SharedLines {
   std::atomic<bool>& broken;
 };
 
-/// Says whether a machine that is too busy causes this fault by itself: it left one of the station's threads
-/// without processor time for 0.1 s or more.
-bool machine_was_busy(FaultKind kind) {
-  return kind == FaultKind::audio_silent || kind == FaultKind::session_silent ||
-         kind == FaultKind::stimulus_missed;
-}
-
 /// Runs a session in which one fault happens during the first stimulus.
 struct Mishap {
   TemporaryFolder folder;
