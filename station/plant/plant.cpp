@@ -272,7 +272,8 @@ void Plant::write(std::span<double> out) {
           wires_.bridge(static_cast<int>(c), truth_.reading_N[c], world_, !now_.bridge_open[c]);
   for (std::size_t k = 0; k < setup_.pickups.size(); ++k) {
     const Pickup& pickup = setup_.pickups[k];
-    put(pickup.channel) = converted(pickup.full_scale_per_um * filters_[filter_].second.output(k) +
+    const double signal = pickup.full_scale_per_um * filters_[filter_].second.output(k);
+    put(pickup.channel) = converted(signal + pickup.cubic * signal * signal * signal +
                                         pickup.noise_full_scale * pickup_noise_[k].at(world_),
                                     setup_.wires.bits);
   }

@@ -27,6 +27,10 @@ Check not_possible(Phrase name, Phrase why) {
 
 Verdict verdict(bool good) { return good ? Verdict::passed : Verdict::failed; }
 
+bool is_good(terms::Proof proof) { return proof == terms::Proof::ok || proof == terms::Proof::flagged; }
+
+Phrase decibels(double value_dB) { return plain(fmt::format("{:.2f}", value_dB)); }
+
 /// Runs one part of the self-test. If the part throws, adds a failed check with its message.
 void run(const Phrase& name, std::vector<Check>& checks, const std::function<void()>& part) {
   try {
@@ -79,12 +83,29 @@ Check judged(const ToneReading& reading) {
                                                : phrase("self_test.tone_of", {plain(reading.transducer)});
   if (reading.missing) return not_possible(name, *reading.missing);
   if (reading.proof == terms::Proof::unproven) return not_possible(name, phrase("self_test.tone_unproven"));
-  const bool good = reading.proof == terms::Proof::ok || reading.proof == terms::Proof::flagged;
-  auto what = phrase("self_test.tone_measured", {plain(fmt::format("{:.1f}", 1e-3 * reading.frequency_Hz)),
-                                                 plain(fmt::format("{:+.2f}", rounded(reading.ratio_dB, 2)))});
+  const bool good = is_good(reading.proof);
+  auto what =
+      phrase("self_test.tone_measured", {plain(fmt::format("{:.1f}", 1e-3 * reading.frequency_Hz)),
+                                         plain(fmt::format("{:+.2f}", rounded(reading.ratio_dB, 2)))});
   if (reading.cause != terms::ProofCause::none)
     what = {"", "", {what, plain(": "), texts::phrase_of(reading.cause)}};
   return {name, verdict(good), reading.ratio_dB, kToneLimit_dB, "dB", what};
+}
+
+std::optional<Check> judged_linearity(const ToneReading& reading) {
+  // without a vibration there are no levels to compare
+  const bool vibrates = is_good(reading.proof) || reading.proof == terms::Proof::refused;
+  if (!reading.nonlinearity_dB || !vibrates) return std::nullopt;
+  const double off_dB = *reading.nonlinearity_dB;
+  const auto what = off_dB >= kLinearityLimit_dB  ? phrase("self_test.linearity_bad", {decibels(off_dB)})
+                    : off_dB >= kLinearityFlag_dB ? phrase("self_test.linearity_flagged", {decibels(off_dB)})
+                                                  : phrase("self_test.linearity_good", {decibels(off_dB)});
+  return Check{phrase("self_test.linearity_of", {plain(reading.transducer)}),
+               verdict(off_dB < kLinearityLimit_dB),
+               off_dB,
+               kLinearityLimit_dB,
+               "dB",
+               what};
 }
 
 std::vector<Check> judged(const CellReading& reading) {
@@ -155,7 +176,10 @@ std::vector<Check> self_test(SelfTestRig& rig) {
     for (const auto& reading : rig.press_buttons()) add(reading);
   });
   run(phrase("self_test.tone"), checks, [&] {
-    for (const auto& reading : rig.play_tones()) add(reading);
+    for (const auto& reading : rig.play_tones()) {
+      add(reading);
+      if (auto linearity = judged_linearity(reading)) checks.push_back(std::move(*linearity));
+    }
   });
   run(phrase("self_test.cells"), checks, [&] {
     for (const auto& reading : rig.read_cells())

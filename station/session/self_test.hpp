@@ -57,12 +57,14 @@ struct PressReading {
   bool pressed = false, released = false;
 };
 
-/// A quiet tone on one transducer, as the pick-ups measured it.
+/// A quiet tone on one transducer at several levels, as the pick-ups measured it.
 struct ToneReading {
   std::optional<texts::Phrase> missing;
   std::string transducer;
   double frequency_Hz = 0;
   double ratio_dB = 0;  ///< measured level of the tone relative to its calibration
+  /// largest difference between the levels relative to the calibration; empty if a level was not measured
+  std::optional<double> nonlinearity_dB = {};
   terms::Proof proof = terms::Proof::unproven;
   terms::ProofCause cause = terms::ProofCause::none;
 };
@@ -87,7 +89,10 @@ inline constexpr double kGateLimit_s = 0.25;
 inline constexpr double kZeroLimit_N = 1;    ///< a tenth of a cell's rated load
 inline constexpr double kNoiseLimit_mN = 2;  ///< the same limit as for the tare before a trial
 inline constexpr double kToneLimit_dB = 1;   ///< a stimulus with a larger deviation is refused
-inline constexpr double kHottest_C = 80;     ///< above this temperature, boards reduce their clock frequency
+/// The response of the pick-ups may differ by this much between three levels. From the first limit on, the
+/// check says so, but passes.
+inline constexpr double kLinearityFlag_dB = 0.1, kLinearityLimit_dB = 0.5;
+inline constexpr double kHottest_C = 80;  ///< above this temperature, boards reduce their clock frequency
 inline constexpr double kLeastDisk_MiB = 200;  ///< free disk space that a session needs
 inline constexpr double kLongestPress_s = 20;  ///< how long the self-test waits for a press or a release
 
@@ -95,6 +100,8 @@ inline constexpr double kLongestPress_s = 20;  ///< how long the self-test waits
 Check judged(const GateReading& reading);
 Check judged(const PressReading& reading);
 Check judged(const ToneReading& reading);
+/// Judges whether the response to a tone is the same at all its levels; empty if they were not measured.
+std::optional<Check> judged_linearity(const ToneReading& reading);
 /// Returns two checks: one of the cell's zero and one of its noise.
 std::vector<Check> judged(const CellReading& reading);
 Check judged_temperature(std::optional<double> hottest_C);
@@ -109,7 +116,7 @@ class SelfTestRig {
   virtual GateReading drop_heartbeat() = 0;
   virtual PressReading press_stop() = 0;
   virtual std::vector<PressReading> press_buttons() = 0;
-  /// Returns one reading for each transducer.
+  /// Returns one reading for each transducer, of a tone at three levels.
   virtual std::vector<ToneReading> play_tones() = 0;
   /// Must be called after play_tones(), during which the cells are captured.
   virtual std::vector<CellReading> read_cells() = 0;

@@ -1,6 +1,7 @@
 #include "station/session/self_test_rig.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <stdexcept>
 #include <utility>
@@ -16,7 +17,9 @@ namespace {
 constexpr std::int64_t kGate_ns = 500'000'000;
 constexpr std::int64_t kQuiet_ns = 700'000'000;  // The cells are read for the last 0.4 s of this silence.
 constexpr std::int64_t kResult_ns = 5'000'000'000;
-constexpr double kTone_s = 0.6, kRamp_s = 0.05;
+// A tone is played at full level for kTone_s, and then kLower_s at each of its lower levels.
+constexpr double kTone_s = 0.6, kLower_s = 0.3, kRamp_s = 0.05;
+constexpr std::array kLower{0.5, 0.25};
 constexpr double kAmplitude = 0.1, kShareOfLimit = 0.25;
 // Below this frequency people with good hearing may hear the tone.
 constexpr double kInaudible_Hz = 22'400;
@@ -77,16 +80,35 @@ double quiet_amplitude(const rig::Rig& rig, const rig::Transducer& transducer) {
   return std::min(kAmplitude, kShareOfLimit * rig.limits.displacement_m / m_per_full_scale);
 }
 
+/// A quiet tone that goes down in two steps, each of 6 dB.
 drive::PreparedBurst quiet_tone(const rig::Rig& rig, const rig::Transducer& transducer, double frequency_Hz) {
   const auto frames = [&](double s) {
     return static_cast<std::int64_t>(std::llround(s * rig.output.rate_Hz));
   };
+  const double amplitude = quiet_amplitude(rig, transducer);
   drive::Burst burst;
-  burst.length_frames = frames(kTone_s);
   burst.ramp.frames = frames(kRamp_s);
   burst.tones.count = 1;
-  burst.tones.tones[0] = {frequency_Hz, quiet_amplitude(rig, transducer), 0, transducer.channel};
+  burst.tones.tones[0] = {frequency_Hz, amplitude, 0, transducer.channel};
+  burst.length_frames = frames(kTone_s);
+  for (const double level : kLower) {
+    auto& change = burst.changes[static_cast<std::size_t>(burst.change_count++)];
+    change = {burst.length_frames, burst.ramp.frames, burst.tones};
+    change.to.tones[0].amplitude = level * amplitude;
+    burst.length_frames += frames(kLower_s);
+  }
   return drive::prepare(burst, {rig.output.rate_Hz, rig::channels(rig), rig.output.bits});
+}
+
+/// The largest difference between the measured levels of a tone, each relative to the plan. Empty unless all
+/// levels were measured.
+std::optional<double> nonlinearity_dB(const sensing::IntervalResult& measured) {
+  std::vector<double> ratios_dB;
+  for (const auto& tone : measured.tones)
+    if (tone.seen) ratios_dB.push_back(tone.ratio_dB);
+  if (ratios_dB.size() != kLower.size() + 1) return std::nullopt;
+  const auto [least, most] = std::minmax_element(ratios_dB.begin(), ratios_dB.end());
+  return *most - *least;
 }
 
 bool has_stop_line(const std::string& amplifier_uri) {
@@ -262,6 +284,7 @@ class StageRig : public SelfTestRig {
       reading.proof = input->measured->verdict;
       reading.cause = input->measured->cause;
       reading.ratio_dB = input->measured->ratio_dB;
+      reading.nonlinearity_dB = nonlinearity_dB(*input->measured);
     }
     stage.close_amplifier();
   }

@@ -16,7 +16,7 @@ struct GoodRig : SelfTestRig {
   GateReading gate{{}, true, 0.11};
   PressReading stop{{}, "", true, true};
   std::vector<PressReading> buttons{{{}, "left", true, true}, {{}, "right", true, true}};
-  std::vector<ToneReading> tones{{{}, "main", 30'000, -0.1, terms::Proof::ok, terms::ProofCause::none}};
+  std::vector<ToneReading> tones{{{}, "main", 30'000, -0.1, 0.02, terms::Proof::ok, terms::ProofCause::none}};
   std::vector<CellReading> cells{{{}, texts::plain("a"), {}, 0.1, 0.3}};
   std::optional<double> temperature_C = 50;
   ClockReading wall{{"tsc", true, true}, std::nullopt};
@@ -62,7 +62,7 @@ rig::Rig simulated(const TemporaryFolder& folder, const std::string& capture = m
 TEST_CASE("a rig in order passes every check of the self-test", "[session][self-test]") {
   GoodRig rig;
   const auto checks = self_test(rig);
-  CHECK(checks.size() == 10);
+  CHECK(checks.size() == 11);
   CHECK(failed(checks).empty());
   CHECK(with(Verdict::not_possible, checks).empty());
   CHECK(passed(checks));
@@ -83,6 +83,7 @@ TEST_CASE("each fault fails its check of the self-test and no other", "[session]
   SECTION("button without a wire") { rig.buttons[1].pressed = false, expect("button right"); }
   SECTION("pick-up without a signal") { rig.tones[0].proof = terms::Proof::refused, expect("tone main"); }
   SECTION("tone that was not captured") { rig.tones[0].proof = terms::Proof::lost, expect("tone main"); }
+  SECTION("overdriven preamplifier") { rig.tones[0].nonlinearity_dB = 0.5, expect("linearity main"); }
   SECTION("load on a cell") { rig.cells[0].zero_N = -1.01, expect("zero of cell a"); }
   SECTION("loose wire of a cell") { rig.cells[0].noise_mN = 2.1, expect("noise of cell a"); }
   SECTION("cell that cannot be read") {
@@ -116,7 +117,23 @@ TEST_CASE("a check of the self-test is said in the language of the screen, and s
   CHECK(german(4) ==
         "Ton main: ein leiser Ton von 30.0 kHz hatte -0.10 dB gegenüber seiner Kalibrierung: die Oberfläche "
         "bewegt sich stärker oder schwächer als geplant");
-  CHECK(german(5) == "Nullpunkt der Zelle a: die Zelle zeigt unbelastet +0.100 N");
+  CHECK(german(5) == "Linearität main: die Antwort ist bei drei Pegeln auf 0.02 dB gleich");
+  CHECK(german(6) == "Nullpunkt der Zelle a: die Zelle zeigt unbelastet +0.100 N");
+}
+
+TEST_CASE("a response that differs a little between levels is reported and passes", "[session][self-test]") {
+  GoodRig rig;
+  const auto linearity = [&](double off_dB) {
+    rig.tones[0].nonlinearity_dB = off_dB;
+    return find(self_test(rig), "linearity main");
+  };
+  CHECK(linearity(0.09).what == "the response is the same at three levels, to 0.09 dB");
+  for (const double off_dB : {0.1, 0.49}) {
+    CHECK(linearity(off_dB).verdict == Verdict::passed);
+    CHECK(linearity(off_dB).what.find("is near its limit") != std::string::npos);
+  }
+  CHECK(linearity(0.5).verdict == Verdict::failed);
+  CHECK(linearity(0.5).limit == 0.5);
 }
 
 TEST_CASE("a reading that rounds to zero has no minus sign", "[session][self-test]") {
@@ -133,7 +150,8 @@ TEST_CASE("what a rig does not have is not possible to check, and does not fail"
   GoodRig rig;
   rig.gate.missing = rig.stop.missing = rig.buttons[0].missing = rig.tones[0].missing = rig.cells[0].missing =
       texts::plain("the rig has none");
-  rig.tones.push_back({{}, "second", 30'000, 0, terms::Proof::unproven, terms::ProofCause::none});
+  rig.tones[0].nonlinearity_dB.reset();
+  rig.tones.push_back({{}, "second", 30'000, 0, {}, terms::Proof::unproven, terms::ProofCause::none});
   rig.temperature_C.reset();
   const auto checks = self_test(rig);
   CHECK(with(Verdict::not_possible, checks) ==
@@ -166,6 +184,7 @@ TEST_CASE("the self-test measures the simulated rig and finds nothing wrong",
   CHECK(with(Verdict::not_possible, checks) == "temperature");
   // The monostable of the simulated gate lasts 110 ms, and the heartbeat may have toggled 10 ms before.
   CHECK(find(checks, "gate").value.value() > 90);
+  CHECK(find(checks, "linearity main").value.value() < 0.01);
   CHECK(find(checks, "zero of cell lateral").value.value() == Approx(0).margin(0.05));
   CHECK(find(checks, "noise of cell a").value.value() > 0.05);
 }
@@ -191,6 +210,12 @@ TEST_CASE("the self-test finds each fault of the simulated rig", "[session][self
   SECTION("the surface does not move") {
     faults.room = [](auto& room) { room.plant().add({plant::FaultKind::transducer_dead, 0, plant::kNever}); };
     wrong = "tone main";
+  }
+  SECTION("the preamplifier of the pick-ups is overdriven") {
+    faults.laboratory = [](auto& room) {
+      for (auto& pickup : room.pickups) pickup.cubic = -65;
+    };
+    wrong = "tone main, linearity main";
   }
   SECTION("a cell is bent") {
     faults.laboratory = [](auto& room) { room.cells.zero_N[1] = 1.5; };
