@@ -37,6 +37,7 @@ class CaptureFeed {
 
   VibrationWatch& watch() { return watch_; }
   TriggerCapture& triggers() { return triggers_; }
+  const VibrationWatch& watch() const { return watch_; }
 
   bool aligned() const;
   /// Call this after the playback was restarted: the delay from playback to capture is then unknown until the

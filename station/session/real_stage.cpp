@@ -172,6 +172,9 @@ class RealStage : public Stage {
     return capture_ ? capture_->feed().watch().finger_now() : std::nullopt;
   }
   std::optional<ClockFit> clock_fit() override { return fit_of(*stream_); }
+  std::optional<sensing::RawCapture> raw_capture() const override {
+    return capture_ ? std::optional(capture_->feed().watch().raw()) : std::nullopt;
+  }
   std::string realtime_rights() const override {
     const auto playback = describe(stream_->rights());
     return capture_ ? playback + "; capture: " + describe(capture_->feed().rights()) : playback;

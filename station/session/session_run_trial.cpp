@@ -54,6 +54,7 @@ Flow SessionRun::run_trial(const trial::TrialSpec& spec) {
   leave_surface();
   log_triggers();
   finish_row(trial);
+  keep_raw(trial);
   gate_.keep([&] { log_.append(trial.row); });
   count(spec, trial.row);
   correct_drift();
@@ -123,13 +124,12 @@ Flow SessionRun::after_trial(const Running& trial) {
   const auto& row = trial.row;
   const bool repeated = trial.outside && row.outcome == terms::Outcome::fault;
   repeats_in_a_row_ = repeated ? repeats_in_a_row_ + 1 : 0;
-  const bool is_void = row.outcome == terms::Outcome::fault && !repeated;
   // A single refused stimulus can be a coincidence, so it is presented again. Two in a row stop the session.
   const bool refused = row.proof == terms::Proof::refused || row.proof == terms::Proof::stopped;
   refused_in_a_row_ = refused ? refused_in_a_row_ + 1 : 0;
   if ((row.proof == terms::Proof::stopped || refused_in_a_row_ >= kRefusedBeforePage) && !gate_.fault())
     gate_.set_fault(Fault{FaultKind::vibration, describe_proof(row)});
-  voids_in_a_row_ = is_void ? voids_in_a_row_ + 1 : 0;
+  voids_in_a_row_ = trial.is_void() ? voids_in_a_row_ + 1 : 0;
   if (voids_in_a_row_ >= kVoidsBeforeStop) {
     gate_.stop("three trials in a row were void" +
                (gate_.fault() ? "; the last: " + terms::describe(*gate_.fault()) : ""));

@@ -118,6 +118,10 @@ class Stage {
   /// Returns the force and movement of the finger at this moment; empty unless force cells measure them.
   virtual std::optional<sensing::FingerNow> finger_now() { return std::nullopt; }
 
+  /// Returns the newest captured frames of all channels; empty if the stage captures nothing. Their numbers
+  /// are those of the playback, less the fraction of the loop's delay.
+  virtual std::optional<sensing::RawCapture> raw_capture() const { return std::nullopt; }
+
   virtual std::optional<ClockFit> clock_fit() = 0;
   virtual std::string realtime_rights() const = 0;
   /// Disarms the amplifier. If the output is a file, completes the file. Throws std::system_error.

@@ -15,6 +15,7 @@ namespace {
 // Before each trial, a silence of this length is measured; the page with the cue is shown for longer. If the
 // stimulus comes sooner, as in the self-test, at least 50 ms must remain after the ringing: see kExpected_ns.
 constexpr double kSilence_s = 0.08;
+constexpr double kRaw_s = 4;          // how much of the capture is kept as it came from the converter
 constexpr double kRinging_s = 0.005;  // how long the plate goes on moving: 7 time constants at Q 60
 
 /// The part of a captured block from frame `begin` to before frame `end`; without frames if there is none.
@@ -90,7 +91,8 @@ std::optional<sensing::FingerSetup> calibrated_finger(const rig::Rig& rig) {
   return finger;
 }
 
-VibrationWatch::VibrationWatch(CaptureSetup setup) : setup_(std::move(setup)), calibrated_(setup_.pick_ups) {
+VibrationWatch::VibrationWatch(CaptureSetup setup)
+    : setup_(std::move(setup)), calibrated_(setup_.pick_ups), raw_(setup_.rate_Hz, setup_.channels, kRaw_s) {
   if (setup_.finger) finger_.emplace(*setup_.finger);
 }
 
@@ -158,6 +160,7 @@ void VibrationWatch::push(const sensing::CaptureBlock& block) {
     if (const auto part = part_of(block, silence_begin_, silence_end_); part.frames() > 0)
       silence_->push(part);
   if (finger_ && !setup_.finger->own_clock) finger_->push(block);
+  raw_.push(block);
 }
 
 void VibrationWatch::push(const sensing::BridgePoint& point) {
@@ -181,6 +184,11 @@ std::shared_ptr<const sensing::IntervalResult> VibrationWatch::result(std::size_
   auto result = std::make_shared<sensing::IntervalResult>(proofs_[interval]->result(contact));
   if (interval == 0) add_silence(silence_->result(), *result);
   return result;
+}
+
+sensing::RawCapture VibrationWatch::raw() const {
+  const std::lock_guard lock(mutex_);
+  return raw_.newest();
 }
 
 std::optional<sensing::FingerNow> VibrationWatch::finger_now() {

@@ -8,6 +8,7 @@
 #include "station/drive/prepared_burst.hpp"
 #include "station/rig/rig.hpp"
 #include "station/sensing/interval_proof.hpp"
+#include "station/sensing/raw_ring.hpp"
 #include "station/sensing/silence_proof.hpp"
 #include "station/sensing/trial_finger.hpp"
 
@@ -78,6 +79,9 @@ class VibrationWatch {
   /// the silence were captured, the interval is flagged with the cause `gap`. Frames that were not captured
   /// by now count as lost. Null if the interval is not expected.
   std::shared_ptr<const sensing::IntervalResult> result(std::size_t interval);
+  /// Returns the captured frames of the last 4 s, numbered by playback frames, in which the delay from
+  /// playback to capture is already compensated except for the fraction of a frame.
+  sensing::RawCapture raw() const;
   /// Returns force and movement of the finger at this moment. Empty if they are not known, and without force
   /// cells.
   std::optional<sensing::FingerNow> finger_now();
@@ -93,6 +97,7 @@ class VibrationWatch {
   std::optional<sensing::SilenceProof> silence_;      ///< empty if no interval is expected
   std::int64_t silence_begin_ = 0, silence_end_ = 0;  ///< captured frames of the silence
   std::optional<sensing::TrialFinger> finger_;
+  sensing::RawRing raw_;
 };
 
 }  // namespace turnpoint::session

@@ -198,6 +198,9 @@ class VirtualStage : public Stage {
   std::optional<sensing::FingerNow> finger_now() override {
     return watch_ ? watch_->finger_now() : std::nullopt;
   }
+  std::optional<sensing::RawCapture> raw_capture() const override {
+    return watch_ ? std::optional(watch_->raw()) : std::nullopt;
+  }
   std::optional<ClockFit> clock_fit() override { return fit_of(*stream_); }
   std::string realtime_rights() const override { return describe(stream_->rights()); }
   void finish() override {

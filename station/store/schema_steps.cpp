@@ -286,11 +286,17 @@ CREATE TRIGGER estimate_is_never_deleted BEFORE DELETE ON estimate
   BEGIN SELECT RAISE(ABORT, 'estimate is append-only'); END;
 )sql";
 
+// Version 9 stores what the pick-up captured in the silence before a trial's first stimulus.
+const char* const kStep9 = R"sql(
+ALTER TABLE trial ADD COLUMN silence_dB REAL;
+ALTER TABLE trial ADD COLUMN silence_tone_dB REAL;
+)sql";
+
 }  // namespace
 
 const std::vector<std::string>& schema_steps() {
   static const std::vector<std::string> steps = {
-      schema_version_1(), kStep2, kStep3, kStep4, kStep5, kStep6, kStep7, kStep8};
+      schema_version_1(), kStep2, kStep3, kStep4, kStep5, kStep6, kStep7, kStep8, kStep9};
   return steps;
 }
 
