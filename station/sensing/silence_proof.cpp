@@ -1,15 +1,12 @@
 #include "station/sensing/silence_proof.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
-#include <complex>
-#include <numbers>
 #include <stdexcept>
-#include <unsupported/Eigen/FFT>
 
 #include "station/sensing/lock_in.hpp"
 #include "station/sensing/planned_lines.hpp"
+#include "station/sensing/strongest_tone.hpp"
 
 namespace turnpoint::sensing {
 
@@ -33,15 +30,11 @@ Compared compared_with(const IntervalPlan& plan) {
   return {plan.pick_ups[main].channel, planned_power(lines, main)};
 }
 
-// A tone in noise is a line that is this many times stronger than the mean of all lines. The strongest of the
-// 5000 lines of white noise is 5 times as strong as their mean, rarely 10 times; the high-pass filter raises
-// the noise at 48 kHz to 2.7 times the mean.
-constexpr double kStandsOut = 30;
-
 }  // namespace
 
 SilenceProof::SilenceProof(const IntervalPlan& plan)
-    : tone_limits_(plan.limits.silence_dB),
+    : rate_Hz_(plan.rate_Hz),
+      tone_limits_(plan.limits.silence_dB),
       rms_limits_(plan.limits.residual_dB),
       planned_(compared_with(plan).power),
       blocks_(plan.rate_Hz, plan.capture_channels, {compared_with(plan).channel},
@@ -73,37 +66,6 @@ void SilenceProof::take(const AlignedBlock& block) noexcept {
   energy_ = 0;
 }
 
-/// The mean square of the strongest tone in the loudest window; 0 if no tone stands out of the noise.
-double SilenceProof::strongest_tone() const {
-  const std::size_t count = loudest_.size();
-  std::vector<double> windowed(std::bit_ceil(count));
-  double weights = 0;
-  for (std::size_t n = 0; n < count; ++n) {
-    const double hann =
-        1 - std::cos(2 * std::numbers::pi * (static_cast<double>(n) + 0.5) / static_cast<double>(count));
-    windowed[n] = hann * loudest_[n];
-    weights += hann * hann;
-  }
-  Eigen::FFT<double> fourier;
-  std::vector<std::complex<double>> spectrum;
-  fourier.fwd(spectrum, windowed);
-  // A line is the energy within the main lobe of the window: two bins of the unpadded transform on each side.
-  const std::size_t half = spectrum.size() / 2, reach = 2 * spectrum.size() / count;
-  double lobe = 0, total = 0, strongest = 0;
-  std::size_t lines = 0;
-  const auto energy = [&](std::size_t k) { return std::norm(spectrum[k]); };
-  for (std::size_t k = 0; k < 2 * reach; ++k) lobe += energy(k);
-  for (std::size_t k = reach; k + reach < half; ++k, ++lines) {
-    lobe += energy(k + reach);
-    strongest = std::max(strongest, lobe);
-    total += lobe;
-    lobe -= energy(k - reach);
-  }
-  const double noise = (total - strongest) / static_cast<double>(lines);
-  if (strongest < kStandsOut * noise) return 0;
-  return 2 * strongest / (static_cast<double>(spectrum.size()) * weights);
-}
-
 SilenceResult SilenceProof::result() const {
   SilenceResult result;
   if (!(planned_ > 0)) return result;
@@ -113,7 +75,8 @@ SilenceResult SilenceProof::result() const {
     return result;
   }
   result.rms_dB = in_dB(std::sqrt(largest_ / planned_));
-  result.level_dB = in_dB(std::sqrt(strongest_tone() / planned_));
+  const auto tone = strongest_tone(loudest_, rate_Hz_);
+  result.level_dB = in_dB(std::sqrt((tone ? tone->power : 0) / planned_));
   const auto cause = terms::ProofCause::noisy;
   const Finding all = concluded({{cause, terms::Proof::ok},
                                  {cause, judged(result.level_dB, tone_limits_)},

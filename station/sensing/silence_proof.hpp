@@ -24,8 +24,8 @@ class SilenceProof {
 
  private:
   void take(const AlignedBlock& block) noexcept;
-  double strongest_tone() const;
 
+  int rate_Hz_;
   Limits tone_limits_, rms_limits_;
   double planned_ = 0;  ///< planned mean square of the burst's samples
   AlignedBlocks blocks_;

@@ -12,6 +12,7 @@ namespace turnpoint::session {
 namespace {
 
 constexpr std::int64_t kBefore_frames = 80;
+constexpr double kOff_s = 0.15;  // from switching the amplifier off until the surface must be still
 
 sensing::Pilot pilot_of(const rig::Rig& rig) {
   sensing::Pilot pilot;
@@ -73,6 +74,22 @@ std::int64_t CaptureFeed::end_frame() const {
   return end_frame_;
 }
 
+void CaptureFeed::amplifier_is_off() {
+  const std::lock_guard lock(mutex_);
+  stillness_.emplace(plan_.setup.rate_Hz, plan_.setup.channels, plan_.setup.pick_ups);
+  still_from_ = capture_->counters().frames + static_cast<std::int64_t>(kOff_s * plan_.setup.rate_Hz);
+}
+
+void CaptureFeed::amplifier_goes_on() {
+  const std::lock_guard lock(mutex_);
+  stillness_.reset();
+}
+
+std::optional<sensing::Disturbance> CaptureFeed::disturbance() {
+  const std::lock_guard lock(mutex_);
+  return stillness_ ? stillness_->take() : std::nullopt;
+}
+
 CaptureFeed::Pilot CaptureFeed::pilot() const {
   const std::lock_guard lock(mutex_);
   return pilot_;
@@ -110,8 +127,10 @@ void CaptureFeed::run(const std::stop_token& stop) {
 // the vibration watch. Returns true once enough has been captured to contain the whole pilot.
 bool CaptureFeed::take(const drive::CapturedBlock& captured) {
   const std::lock_guard lock(mutex_);
-  const sensing::CaptureBlock block{captured.used(), plan_.device.channels, captured.first_frame + shift_,
-                                    plan_.device.rate_Hz};
+  sensing::CaptureBlock block{captured.used(), plan_.device.channels, captured.first_frame,
+                              plan_.device.rate_Hz};
+  if (stillness_ && block.first_frame >= still_from_) stillness_->push(block);
+  block.first_frame += shift_;
   if (captured.numbering != numbering_) aligned_ = false;
   if (listener_) {
     // The listener notices by itself if frames of the pilot are missing.

@@ -146,6 +146,7 @@ class RealStage : public Stage {
     if (const auto refusal = await_cells()) return refusal;
     closing_ = false;
     if (amplifier() == drive::AmplifierState::enabled) return std::nullopt;
+    if (capture_ && std::exchange(off_, false)) capture_->feed().amplifier_goes_on();
     opened_ns_ = now_ns();
     show_life();
     return amplifier_().enable();
@@ -171,10 +172,10 @@ class RealStage : public Stage {
   std::optional<sensing::FingerNow> finger_now() override {
     return capture_ ? capture_->feed().watch().finger_now() : std::nullopt;
   }
-  std::optional<ClockFit> clock_fit() override { return fit_of(*stream_); }
   std::optional<sensing::RawCapture> raw_capture() const override {
     return capture_ ? std::optional(capture_->feed().watch().raw()) : std::nullopt;
   }
+  std::optional<ClockFit> clock_fit() override { return fit_of(*stream_); }
   std::string realtime_rights() const override {
     const auto playback = describe(stream_->rights());
     return capture_ ? playback + "; capture: " + describe(capture_->feed().rights()) : playback;
@@ -224,6 +225,7 @@ class RealStage : public Stage {
     if (capture_) {
       capture_->attend(now);
       take_captured();
+      listen_while_off();
     }
     look_at_samples();
     if (unheard_ > 0 && now > quiet_ns_ + kHeard_ns) {
@@ -262,6 +264,19 @@ class RealStage : public Stage {
       fault.detail = fmt::format("the amplifier was switched off after {:.0f} us",
                                  1e-3 * static_cast<double>(reaction_ns));
     inputs_.push_fault(fault.time_ns, fault.kind, fault.detail);
+  }
+
+  /// Trips the guard if the pick-up hears a vibration while the amplifier is off: the amplifier does not
+  /// obey, or something else drives the surface.
+  void listen_while_off() {
+    auto& feed = capture_->feed();
+    const bool off = amplifier() != drive::AmplifierState::enabled;
+    if (off && !off_) feed.amplifier_is_off();
+    if (!off && off_) feed.amplifier_goes_on();
+    off_ = off;
+    if (const auto found = feed.disturbance())
+      amplifier_().trip(FaultKind::sounding, fmt::format("a tone of {:.1f} kHz at {:.0f} dB of full drive",
+                                                         1e-3 * found->frequency_Hz, found->level_dB));
   }
 
   void look_at_samples() {
@@ -349,6 +364,7 @@ class RealStage : public Stage {
   std::int64_t quiet_ns_ = 0;   ///< time from which the surface no longer vibrates
   std::int64_t opened_ns_ = 0;  ///< time at which the amplifier was enabled
   bool closing_ = false, fault_told_ = false;
+  bool off_ = false;            ///< the capture knows that the amplifier is off
   std::int64_t saturated_ = 0;  ///< number of samples clipped so far
   /// set if the converter runs at the wrong rate, until the device has been reopened
   Refusal wrong_rate_;
