@@ -191,6 +191,7 @@ void add_faults(std::vector<Exhibit>& all, const Words& words) {
       {FaultKind::stimulus_missed, "384 frames lost"},
       {FaultKind::capture, "the pilot on output channel 2 is not heard on captured channel 0"},
       {FaultKind::vibration, "the surface does not move; level -62.1 dB; residual -21 dB"},
+      {FaultKind::sounding, "a tone of 29.6 kHz at -46 dB of full drive"},
       {FaultKind::self_test, "gate: the gate stays open although the heartbeat has stopped"},
       {FaultKind::program,
        "program /home/lab/one_up_two_down.py: ended with status 1: \"KeyError: 'start'\""},
