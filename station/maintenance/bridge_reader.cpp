@@ -22,6 +22,8 @@ namespace turnpoint::maintenance {
 namespace {
 
 constexpr double kSettle_s = 1, kRead_s = 1, kGlance_s = 0.12, kPatience_s = 5;
+constexpr double kTap_s = 3.5;                  // time in which the operator taps, and the plate rings
+constexpr double kBlow_N = 1, kBlow_s = 0.005;  // a tap in the simulated laboratory
 constexpr double kLeastReference = 0.02;  // smallest accepted amplitude of the reference; 1 is full scale
 
 sensing::BridgeOptions bridge_options(const rig::Rig& rig, double reference_amplitude) {
@@ -43,19 +45,9 @@ class BridgeMean {
   explicit BridgeMean(const rig::Rig& rig) : rig_(rig) {}
 
   BridgeReading of(const std::vector<std::int32_t>& samples) {
-    const auto options = bridge_options(rig_, reference_ > 0 ? reference_ : found_reference(samples));
-    sensing::BridgeDemodulator demodulator(options);
     BridgeReading reading;
-    std::vector<sensing::BridgePoint> points;
-    demodulator.push({samples, options.channels, 0, options.rate_Hz}, [&](const sensing::BridgePoint& point) {
-      // skip the first 17 ms, in which the filter is still settling
-      if (point.index >= 20) points.push_back(point);
-    });
-    if (points.empty()) throw std::runtime_error("force cells: nothing was captured");
-    for (const auto& point : points) {
-      check(point);
-      add(point, reading, 1.0 / static_cast<double>(points.size()));
-    }
+    const auto points = points_of(samples);
+    for (const auto& point : points) add(point, reading, 1.0 / static_cast<double>(points.size()));
     for (const auto& point : points)
       for (std::size_t cell = 0; cell < 3; ++cell)
         reading.sd[cell] +=
@@ -65,7 +57,29 @@ class BridgeMean {
     return reading;
   }
 
+  /// Returns the frequency with which the plate rings after a tap; empty if it does not.
+  std::optional<double> ringing_Hz(const std::vector<std::int32_t>& samples) {
+    const auto points = points_of(samples);
+    std::array<std::vector<double>, 3> cells;
+    for (const auto& point : points)
+      for (std::size_t cell = 0; cell < 3; ++cell) cells[cell].push_back(point.ratio[cell]);
+    return ringing_of(cells, sensing::points_per_second(sensing::Band::force));
+  }
+
  private:
+  std::vector<sensing::BridgePoint> points_of(const std::vector<std::int32_t>& samples) const {
+    const auto options = bridge_options(rig_, reference_ > 0 ? reference_ : found_reference(samples));
+    sensing::BridgeDemodulator demodulator(options);
+    std::vector<sensing::BridgePoint> points;
+    demodulator.push({samples, options.channels, 0, options.rate_Hz}, [&](const sensing::BridgePoint& point) {
+      // skip the first 17 ms, in which the filter is still settling
+      if (point.index >= 20) points.push_back(point);
+    });
+    if (points.empty()) throw std::runtime_error("force cells: nothing was captured");
+    for (const auto& point : points) check(point);
+    return points;
+  }
+
   double found_reference(const std::vector<std::int32_t>& samples) const {
     const auto options = bridge_options(rig_, 1);
     sensing::BridgeDemodulator demodulator(options);
@@ -137,6 +151,23 @@ class SimulatedBridges : public BridgeReader {
     return kept(kRead_s);
   }
   BridgeReading glance() override { return kept(kGlance_s); }
+  bool notices_taps() const override { return true; }
+  std::optional<double> tapped_Hz(Tap where) override {
+    const double middle_m = 0.5 * rig_.surface.length_m;
+    auto& plant = room_.plant();
+    plant.set_load({});
+    pass(kSettle_s);
+    samples_.clear();
+    keep_ = true;
+    pass(0.5 * kTap_s);
+    plant.set_load(where == Tap::along ? plant::Load{0, kBlow_N, middle_m}
+                                       : plant::Load{kBlow_N, 0, middle_m});
+    pass(kBlow_s);
+    plant.set_load({});
+    pass(0.5 * kTap_s);
+    keep_ = false;
+    return mean_.ringing_Hz(samples_);
+  }
 
  private:
   BridgeReading kept(double seconds) {
@@ -172,6 +203,8 @@ class CardBridges : public BridgeReader {
     return mean_.of(collect(kRead_s));
   }
   BridgeReading glance() override { return mean_.of(collect(kGlance_s)); }
+  bool notices_taps() const override { return true; }
+  std::optional<double> tapped_Hz(Tap) override { return mean_.ringing_Hz(collect(kTap_s)); }
 
  private:
   std::vector<std::int32_t> collect(double seconds) {

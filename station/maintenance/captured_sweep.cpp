@@ -84,8 +84,9 @@ std::vector<double> rendered(const rig::Rig& rig, const drive::Burst& burst, int
 }
 
 Captured capture_simulated(const rig::Rig& rig, const std::vector<drive::Burst>& bursts,
-                           const std::function<void(plant::Setup&)>& laboratory) {
+                           const std::function<void(plant::Setup&)>& laboratory, const plant::Load& load) {
   session::SimulatedRoom room(rig, laboratory);
+  room.plant().set_load(load);
   const auto stream = drive::open_synchronous(silent_stream(rig));
   Captured made;
   made.channels.resize(static_cast<std::size_t>(rig.capture.value().channels));

@@ -17,7 +17,8 @@ namespace turnpoint::maintenance {
 
 namespace {
 
-constexpr double kConverterSettle_s = 1, kConverterRead_s = 1, kConverterGlance_s = 0.12;
+constexpr double kConverterSettle_s = 1, kConverterRead_s = 1, kConverterGlance_s = 0.12,
+                 kConverterTap_s = 3.5;
 
 /// Means of the samples of a converter with a clock of its own. The samples count the time.
 class ConverterBridges : public BridgeReader {
@@ -29,6 +30,13 @@ class ConverterBridges : public BridgeReader {
     return mean_of(collect(kConverterSettle_s, kConverterRead_s));
   }
   BridgeReading glance() override { return mean_of(collect(0, kConverterGlance_s)); }
+  bool notices_taps() const override { return true; }
+  std::optional<double> tapped_Hz(Tap) override {
+    std::array<std::vector<double>, 3> cells;
+    for (const auto& sample : collect(0, kConverterTap_s))
+      for (std::size_t cell = 0; cell < cells.size(); ++cell) cells[cell].push_back(sample.value[cell]);
+    return ringing_of(cells, rig_.rate_Hz);
+  }
 
  private:
   /// Returns the samples of this length of time, which begins `settle_s` from now. Older samples may still

@@ -141,6 +141,9 @@ struct ForceCells {
   std::array<double, 3> rotation_rad{};  ///< phase of each bridge signal against the reference signal
   /// ratio of bridge to reference signal at the rated load of each cell
   std::array<double, 3> rated_ratio{};
+  /// Forces are right up to this frequency: a third of the lowest resonance of the plate on its cells. Empty
+  /// if nobody tapped the plate.
+  std::optional<double> usable_Hz = {};
 };
 
 /// Force cells on a converter with a clock of its own, which the kernel offers as a device of its subsystem

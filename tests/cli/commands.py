@@ -467,9 +467,12 @@ class Sensors(Folder):
         return document, err
 
     def test_dead_weights(self):
-        document, asked = self.calibrated("--forces", "\n" * 39)
+        document, asked = self.calibrated("--forces", "\n" * 41)
         self.assertEqual(len(document["weights"]), 32)
         self.assertEqual(document["repeated"], [])
+        # the simulated plate rings at 60 Hz on its cells, and at 180 Hz along them
+        self.assertAlmostEqual(document["resonance_Hz"], 60, delta=1.2)
+        self.assertAlmostEqual(document["usable_Hz"], document["resonance_Hz"] / 3, places=6)
         self.assertEqual(asked.count("Take everything off the surface."), 7)
         self.assertEqual(asked.count("hang 100 g on the string that pulls towards the wide edge."), 2)
         self.assertLess(max(abs(weight["residual_position_mm"]) for weight in document["weights"]), 0.2)
@@ -482,7 +485,17 @@ class Sensors(Folder):
         document, _ = self.calibrated("--pickup")
         self.assertEqual([pick_up["channel"] for pick_up in document["pick_ups"]], [5, 6])
         with open(os.path.join(self.folder, "made.toml"), encoding="utf-8") as made:
-            self.assertIn("\n[forces] ", made.read())
+            self.assertRegex(made.read(), r"(?s)\n\[forces\] .*\nusable_Hz = (19|20)\.")
+
+    def test_the_doctor_weighs_under_drive(self):
+        self.calibrated("--forces", "\n" * 41)
+        os.rename(os.path.join(self.folder, "made.toml"), os.path.join(self.folder, "plate.calibration-" + TODAY + ".toml"))
+        command = ["doctor", "--rig", "plate.toml", "--weight", "--data", "."]
+        _, out, err = run([*command, "--json"], self.folder, "\n")
+        self.assertIn("Rest 50 g on the middle of the plate", err)
+        check = json.loads(out)["checks"][0]
+        self.assertEqual((check["name"], check["status"]), ("force under main", "ok"))
+        self.assertEqual(run(command, self.folder, "")[0], 2)
 
     def test_dead_weights_with_mistakes(self):
         forces = ["calibrate", "--rig", "plate.toml", "--forces"]

@@ -92,6 +92,31 @@ TEST_CASE("dead weights in the simulated room calibrate forces to 0.1 % and posi
   CHECK(again.matrix == result.cells.matrix);
   CHECK(again.changes == result.cells.changes);
   CHECK(again.rated_ratio == result.cells.rated_ratio);
+  CHECK(again.usable_Hz == result.cells.usable_Hz);
+}
+
+TEST_CASE("taps on the plate show up to which frequency forces are right", "[maintenance][forces][tap]") {
+  const TemporaryFolder folder;
+  const auto rig = rig::load(measured::with_capture(folder, measured::kCells));
+  const auto with = [&](double normal_Hz, double lateral_Hz, double damping) {
+    const auto laboratory = [&](plant::Setup& room) {
+      room.cells.normal_Hz = normal_Hz, room.cells.lateral_Hz = lateral_Hz, room.cells.damping = damping;
+    };
+    return weigh(rig, *open_bridges(rig, laboratory), kReady, [](const std::string&) { return true; });
+  };
+  const auto usual = with(56, 180, 0.05);
+  CHECK(usual.resonance_Hz.value() == Approx(56).epsilon(0.02));
+  CHECK(usual.cells.usable_Hz.value() == Approx(usual.resonance_Hz.value() / 3));
+  CHECK(with(150, 90, 0.02).cells.usable_Hz.value() == Approx(30).epsilon(0.02));
+  CHECK_FALSE(with(56, 180, 2).cells.usable_Hz);
+
+  int asked = 0;
+  const auto without_taps = [&](const WeightStep& step) {
+    asked += step.tap == maintenance::Tap::none ? 0 : 1;
+    return step.tap == maintenance::Tap::none;
+  };
+  CHECK_FALSE(weigh(rig, *open_bridges(rig), without_taps, kGiveUp).cells.usable_Hz);
+  CHECK(asked == 2);
 }
 
 TEST_CASE("what is wrong with the cells or their wires is named", "[maintenance][forces]") {
