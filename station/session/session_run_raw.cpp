@@ -24,8 +24,8 @@ records::SignalRow raw_signal(const sensing::RawCapture& raw) {
 
 }  // namespace
 
-/// Adds what was captured last, on all channels, to the row of a void trial. Compressing and storing it takes a
-/// while. Until it is compressed and the amplifier is off, the stage attends to its devices.
+/// Adds what was captured last, on all channels, to the row of a void trial. Compressing and storing it takes
+/// a while. Until it is compressed and the amplifier is off, the stage attends to its devices.
 void SessionRun::keep_raw(Running& trial) {
   if (!trial.is_void() || trial.onsets.empty()) return;
   auto raw = stage_->raw_capture();
