@@ -56,7 +56,7 @@ Window {
     /// appears early.
     property bool begun: false
     readonly property ParticipantView participant: session.item as ParticipantView
-    onFrameSwapped: Qt.callLater(() => begun = true)
+    onFrameSwapped: if (!begun) soon.start()
     Component.onCompleted: if (locked) ask("unlock")
 
     width: 1280
@@ -65,6 +65,11 @@ Window {
     title: "Turnpoint"
     color: theme.paper
 
+    Timer {
+        id: soon
+        interval: 0
+        onTriggered: root.begun = true
+    }
     Theme {
         id: theme
         width: panel.width
