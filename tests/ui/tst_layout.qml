@@ -68,7 +68,7 @@ Item {
                                        { width: 600, height: 1024, mm: 6.7 }, { width: 800, height: 1280, mm: 5.9 }]
 
         // On a panel of 5 inches, these pages have no room for answers of 20 mm beside everything else.
-        readonly property var needSevenInches: ["rating-9", "line-labels", "number", "number-standard", "choices-9",
+        readonly property var needSevenInches: ["rating-9", "line-labels", "number", "number-standard", "choices-9", "choices-9-long",
                                                     "question-number"]
         // On these pages the text scrolls, and a symbol shows that.
         readonly property var scrolling: ["consent-form-long"]
