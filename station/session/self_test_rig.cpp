@@ -10,6 +10,7 @@
 #include "station/observer/observer.hpp"
 #include "station/sensing/pick_up.hpp"
 #include "station/system/clock_watch.hpp"
+#include "station/terms/limits.hpp"
 
 namespace turnpoint::session {
 namespace {
@@ -19,10 +20,8 @@ constexpr std::int64_t kQuiet_ns = 700'000'000;  // The cells are read for the l
 constexpr std::int64_t kResult_ns = 5'000'000'000;
 // A tone is played at full level for kTone_s, and then kLower_s at each of its lower levels.
 constexpr double kTone_s = 0.6, kLower_s = 0.3, kRamp_s = 0.05;
-constexpr std::array kLower{0.5, 0.25};
+constexpr std::array kLower{0.71, 0.5};
 constexpr double kAmplitude = 0.1, kShareOfLimit = 0.25;
-// Below this frequency people with good hearing may hear the tone.
-constexpr double kInaudible_Hz = 22'400;
 
 using texts::phrase;
 
@@ -59,7 +58,7 @@ struct Choice {
 /// transducer.
 Choice best_tone(const rig::Transducer& transducer, const std::vector<sensing::PickUp>& pick_ups) {
   Choice best;
-  const auto low_Hz = std::min(std::max(transducer.low_Hz, kInaudible_Hz), transducer.high_Hz);
+  const auto low_Hz = std::min(std::max(transducer.low_Hz, terms::kAudible_Hz), transducer.high_Hz);
   for (const auto& pick_up : pick_ups)
     for (const auto& transfer : pick_up.transfers) {
       if (transfer.drive_channel != transducer.channel) continue;
@@ -80,7 +79,8 @@ double quiet_amplitude(const rig::Rig& rig, const rig::Transducer& transducer) {
   return std::min(kAmplitude, kShareOfLimit * rig.limits.displacement_m / m_per_full_scale);
 }
 
-/// A quiet tone that goes down in two steps, each of 6 dB.
+/// A quiet tone that goes down in two steps, each of 3 dB. At lower levels, the noise of the pick-up would
+/// stand out.
 drive::PreparedBurst quiet_tone(const rig::Rig& rig, const rig::Transducer& transducer, double frequency_Hz) {
   const auto frames = [&](double s) {
     return static_cast<std::int64_t>(std::llround(s * rig.output.rate_Hz));
