@@ -144,9 +144,8 @@ class SimulatedBridges : public BridgeReader {
   }
 
   BridgeReading read(const WeightStep& step) override {
-    constexpr double gravity_m_s2 = 9.81;
     room_.plant().set_load(
-        {1e-3 * step.mass_g * gravity_m_s2, 1e-3 * step.pull_g * gravity_m_s2, 1e-3 * step.position_mm});
+        {1e-3 * step.mass_g * kGravity_m_s2, 1e-3 * step.pull_g * kGravity_m_s2, 1e-3 * step.position_mm});
     pass(kSettle_s);
     return kept(kRead_s);
   }

@@ -10,10 +10,12 @@
 #include <stdexcept>
 
 #include "station/maintenance/captured_sweep.hpp"
-#include "station/sensing/force_calibration.hpp"
+#include "station/maintenance/force_weights.hpp"
+#include "station/session/self_test.hpp"
 #include "station/session/stage.hpp"
 #include "station/session/vibration_watch.hpp"
 #include "station/terms/force_carrier.hpp"
+#include "station/terms/limits.hpp"
 #include "station/terms/usage_error.hpp"
 
 namespace turnpoint::maintenance {
@@ -27,9 +29,6 @@ using texts::phrase, texts::plain;
 constexpr double kDriveState_s = 1.5, kDriveSettle_s = 0.4, kDriveRamp_s = 0.05, kDriveFirst_s = 2;
 constexpr std::size_t kDriveStates = 5;
 constexpr double kDriveShare = 0.5, kMostDrive = 0.9;
-constexpr double kLowestDrive_Hz = 22'400;
-constexpr double kRestlessWeight_mN = 2;  // the same limit as for the tare before a trial
-constexpr double kWeightGravity_m_s2 = 9.81;
 
 void require_cells(const rig::Rig& rig) {
   if (!rig::has_force_cells(rig) || rig.capture->converter)
@@ -42,7 +41,7 @@ void require_cells(const rig::Rig& rig) {
 }
 
 drive::Tone drive_tone(const rig::Rig& rig, const rig::Transducer& transducer) {
-  const double low_Hz = std::clamp(kLowestDrive_Hz, transducer.low_Hz, transducer.high_Hz);
+  const double low_Hz = std::clamp(terms::kAudible_Hz, transducer.low_Hz, transducer.high_Hz);
   double m_per_full_scale = transducer.m_per_full_scale.value_or(0);
   for (const auto& point : transducer.response)
     m_per_full_scale = std::max(m_per_full_scale, point.m_per_full_scale);
@@ -70,14 +69,13 @@ drive::Burst toggled_drive(const rig::Rig& rig, const drive::Tone& tone) {
   return burst;
 }
 
-/// The reference and the three bridges of everything that was captured.
-std::vector<std::int32_t> bridge_samples(const rig::Capture& capture, const Captured& captured) {
-  const std::array channels{capture.reference, capture.bridges[0], capture.bridges[1], capture.bridges[2]};
+/// All captured channels, interleaved as the sound card captures them.
+std::vector<std::int32_t> interleaved(const Captured& captured) {
   std::vector<std::int32_t> samples;
   for (std::size_t k = 0; k < captured.channels.front().size(); ++k)
-    for (const int channel : channels)
-      samples.push_back(static_cast<std::int32_t>(std::lrint(
-          std::clamp(captured.channels[static_cast<std::size_t>(channel)][k], -1.0, 1.0) * 0x1.fffffep30)));
+    for (const auto& channel : captured.channels)
+      samples.push_back(
+          static_cast<std::int32_t>(std::lrint(std::clamp(channel[k], -1.0, 1.0) * 0x1.fffffep30)));
   return samples;
 }
 
@@ -98,20 +96,14 @@ struct DriveState {
 
 std::array<DriveState, kDriveStates> drive_states(const rig::Rig& rig, const Captured& captured,
                                                   const drive::Burst& burst) {
-  const auto& cells = *rig.capture->forces;
-  sensing::BridgeOptions options;
-  options.rate_Hz = rig.output.rate_Hz;
-  options.carrier_Hz = cells.carrier_Hz;
-  options.reference_amplitude = cells.reference_amplitude;
-  options.full_scale = cells.rated_ratio;
-  options.rotation_rad = cells.rotation_rad;
-  const sensing::ForceCalibration calibration(cells.matrix, cells.changes);
-  sensing::BridgeDemodulator demodulator(options);
+  const auto finger = session::calibrated_finger(rig).value();
+  sensing::BridgeDemodulator demodulator(finger.bridges);
   std::array<DriveState, kDriveStates> states;
-  const auto samples = bridge_samples(*rig.capture, captured);
+  const auto samples = interleaved(captured);
   const double rate_Hz = rig.output.rate_Hz;
   demodulator.push(
-      {samples, options.channels, captured.first_frame, options.rate_Hz}, [&](const auto& point) {
+      {samples, finger.bridges.channels, captured.first_frame, finger.bridges.rate_Hz},
+      [&](const auto& point) {
         const double at_s =
             static_cast<double>(point.index * demodulator.frames_per_point() - burst.start_frame) / rate_Hz;
         if (at_s < 0 || at_s >= kDriveStates * kDriveState_s) return;
@@ -119,7 +111,7 @@ std::array<DriveState, kDriveStates> drive_states(const rig::Rig& rig, const Cap
         if (since_s < kDriveSettle_s || since_s > kDriveState_s - kDriveRamp_s) return;
         if (point.fault != sensing::WireFault::none)
           throw std::runtime_error("force cells: a wire of the bridges or of the reference is off");
-        states[static_cast<std::size_t>(at_s / kDriveState_s)].add(calibration.force(point.ratio));
+        states[static_cast<std::size_t>(at_s / kDriveState_s)].add(finger.calibration.force(point.ratio));
       });
   for (const auto& state : states)
     if (!(state.points > 0)) throw std::runtime_error("force cells: nothing was captured");
@@ -135,7 +127,7 @@ std::vector<DriveCrosstalk> measure_drive_crosstalk(const rig::Rig& rig,
   for (const auto& transducer : rig.transducers) {
     const auto tone = drive_tone(rig, transducer);
     const auto burst = toggled_drive(rig, tone);
-    const plant::Load weight{1e-3 * kRestingMass_g * kWeightGravity_m_s2, 0, 0.5 * rig.surface.length_m};
+    const plant::Load weight{1e-3 * kRestingMass_g * kGravity_m_s2, 0, 0.5 * rig.surface.length_m};
     const auto captured = session::simulates_capture(rig)
                               ? capture_simulated(rig, {burst}, laboratory, weight)
                               : capture_armed(rig, {burst});
@@ -158,7 +150,7 @@ std::vector<DriveCrosstalk> measure_drive_crosstalk(const rig::Rig& rig,
 lines::Finding judged(const DriveCrosstalk& reading) {
   using Status = lines::Finding::Status;
   const auto name = phrase("doctor.drive_force", {plain(reading.transducer)});
-  if (reading.restless_mN > kRestlessWeight_mN)
+  if (reading.restless_mN > session::kNoiseLimit_mN)
     return {name, Status::failed,
             phrase("doctor.drive_restless", {plain(fmt::format("{:.1f}", reading.restless_mN))}),
             phrase("doctor.drive_restless_mend")};

@@ -19,7 +19,7 @@ namespace turnpoint::maintenance {
 
 namespace {
 
-constexpr double kGravity_m_s2 = 9.81, kRatedLoad_N = 10;
+constexpr double kRatedLoad_N = 10;
 // largest allowed change and SD of the zero reading; sessions use the same limits before a trial
 constexpr double kMoved_N = 20e-3, kRestless_N = 2e-3;
 // refuse a reading whose SD is this many times that of the first reading

@@ -16,6 +16,8 @@
 
 namespace turnpoint::maintenance {
 
+inline constexpr double kGravity_m_s2 = 9.81;  ///< converts the masses of weights to forces
+
 /// Where the operator taps the plate, to show its resonances.
 enum class Tap { none, from_above, along };
 

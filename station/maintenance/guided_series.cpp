@@ -15,6 +15,7 @@
 #include "station/maintenance/panel_latency.hpp"
 #include "station/scene/transducer.hpp"
 #include "station/system/write_file.hpp"
+#include "station/terms/limits.hpp"
 #include "station/terms/usage_error.hpp"
 
 namespace turnpoint::maintenance {
@@ -22,10 +23,11 @@ namespace turnpoint::maintenance {
 namespace {
 
 constexpr double kTone_s = 4, kRamp_s = 0.05, kToneRest_s = 0.5;
-constexpr double kQuiet = 0.1;                               // amplitude of a response or sound measurement
-constexpr double kLowest_Hz = 22'400, kHighest_Hz = 46'000;  // inaudible, and what a station can sample
-constexpr double kSand_um = 1;                               // enough to move sand at these frequencies
-constexpr double kSand_sd_mm = 1.5;                          // of the edge of sand, read by eye on a scale
+constexpr double kQuiet = 0.1;  // amplitude of a response or sound measurement
+constexpr double kLowest_Hz = terms::kAudible_Hz,
+                 kHighest_Hz = 46'000;  // inaudible, and what a station can sample
+constexpr double kSand_um = 1;          // enough to move sand at these frequencies
+constexpr double kSand_sd_mm = 1.5;     // of the edge of sand, read by eye on a scale
 constexpr int kResponsePoints = 9, kBoundaryPoints = 6, kSoundPoints = 5;
 constexpr int kValidDays = 90;
 

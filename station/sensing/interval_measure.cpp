@@ -80,7 +80,7 @@ void IntervalProof::State::measure_tone(std::size_t stretch, const PlannedLine& 
 }
 
 void IntervalProof::State::measure_residual() {
-  result_.residual_dB = -200;
+  result_.residual_dB = kNothing_dB;
   for (const Window& window : windows_) {
     const double planned = planned_power(stretches_[window.stretch].lines, main_);
     if (!window.valid || !(planned > 0)) continue;
@@ -231,7 +231,7 @@ void IntervalProof::State::judge_glides(const Limits& level) {
 
 void IntervalProof::State::judge_rest() {
   const ProofLimits& limits = plan_.limits;
-  const double product = result_.product ? result_.product->level_dB : -200;
+  const double product = result_.product ? result_.product->level_dB : kNothing_dB;
   const Proof residual = judged(std::max(result_.residual_dB, product), limits.residual_dB);
   findings_.push_back({ProofCause::residual, residual});
   if (result_.largest_sample >= limits.clipped) findings_.push_back({ProofCause::clipped, Proof::refused});

@@ -60,6 +60,9 @@ struct GlideToneProof {
   double phase_error_deg = 0;
 };
 
+/// The level that stands for nothing at all; measured levels are above it.
+inline constexpr double kNothing_dB = -200;
+
 /// Vibration between intervals, as measured by a pick-up.
 struct SilenceResult {
   /// `unproven` if the burst has no steady tones to compare with, `lost` if fewer than 50 ms were captured
@@ -67,7 +70,7 @@ struct SilenceResult {
   terms::ProofCause cause = terms::ProofCause::none;
   /// The strongest tone of any frequency in the loudest 50 ms, and the rms of everything in them. Both are
   /// relative to the burst, after the high-pass filter. The pick-up's own noise counts only for the rms.
-  double level_dB = -200, rms_dB = -200;
+  double level_dB = kNothing_dB, rms_dB = kNothing_dB;
 };
 
 /// What the pick-ups measured of one interval.
@@ -81,7 +84,7 @@ struct IntervalResult {
   double ratio_dB = 0;   ///< measured level of all judged tones together, relative to the planned level
   /// rms of everything that the tones do not explain, relative to the plan, in the worst window of 0.2 s. A
   /// high-pass filter (high_pass_gain()) comes first, so hum and friction noise hardly count.
-  double residual_dB = -200;
+  double residual_dB = kNothing_dB;
   /// the strongest distortion product, in the window with the largest residual
   std::optional<Product> product;
   /// time at which the envelope reaches half its level, measured minus planned

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "station/sensing/interval_result.hpp"
 #include "station/sensing/lock_in.hpp"
 #include "station/sensing/planned_lines.hpp"
 #include "station/sensing/strongest_tone.hpp"
@@ -51,7 +52,7 @@ void StillnessWatch::look(const AlignedBlock& block) {
   ++blocks_taken_;
   if (filled + static_cast<std::size_t>(frames) == window_.size()) {
     const auto tone = strongest_tone(window_, rate_Hz_, low_Hz_, high_Hz_);
-    const double level_dB = tone ? in_dB(std::sqrt(2 * tone->power) / full_scale_) : -200;
+    const double level_dB = tone ? in_dB(std::sqrt(2 * tone->power) / full_scale_) : kNothing_dB;
     const bool loud = level_dB >= loudest_dB;
     if (loud && heard_) found_ = Disturbance{tone->frequency_Hz, level_dB};
     heard_ = loud;

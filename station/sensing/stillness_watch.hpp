@@ -20,8 +20,7 @@ struct Disturbance {
 /// noises of the room are outside of it. For an ordinary thread; not thread-safe.
 class StillnessWatch {
  public:
-  /// A louder tone is a disturbance. In a stimulus of a few micrometres, a tone of this level would stay
-  /// unnoticed; but it shows that the amplifier is on.
+  /// A louder tone is a disturbance: 0.3 % of full drive.
   static constexpr double loudest_dB = -50;
 
   /// Without a calibrated pick-up, nothing is ever found.

@@ -69,9 +69,6 @@ const char* kind_of(const Input& input) {
   return "";
 }
 
-/// Measured levels are never below this one; it means that nothing was measured.
-constexpr double kNotMeasured_dB = -200;
-
 /// What is known of the silence before an interval.
 std::string silence_before(const sensing::IntervalResult& measured) {
   if (!measured.silence || measured.silence->verdict == terms::Proof::unproven) return "";
@@ -181,9 +178,9 @@ void add_measured(records::TrialRow& row, const sensing::IntervalResult& measure
   if (measured.onset_error_us) further(row.onset_error_us, *measured.onset_error_us);
   if (!measured.tones.empty())
     row.drive_residual_dB = std::max(row.drive_residual_dB.value_or(-1e9), measured.residual_dB);
-  if (const auto& silence = measured.silence; silence && silence->rms_dB > kNotMeasured_dB) {
+  if (const auto& silence = measured.silence; silence && silence->rms_dB > sensing::kNothing_dB) {
     row.silence_dB = silence->rms_dB;
-    if (silence->level_dB > kNotMeasured_dB) row.silence_tone_dB = silence->level_dB;
+    if (silence->level_dB > sensing::kNothing_dB) row.silence_tone_dB = silence->level_dB;
   }
   const sensing::Finding now{measured.cause, measured.verdict};
   const auto all = first ? now : sensing::concluded({{row.proof_cause, row.proof}, now});
