@@ -227,10 +227,10 @@ FieldNotes describe(const Surface& surface, std::span<const Tone> tones, const F
   double conditioning = 1;
   for (const ToneField& one : field.tones) conditioning = std::max(conditioning, one.info.conditioning);
   if (conditioning > 100) {
-    std::ostringstream text;
-    text << "a tone is close to a resonance, where v(0) = 0: dividing by v(0) amplifies errors "
-         << conditioning << " times";
-    notes.warnings.push_back({"ill-conditioned", text.str()});
+    notes.warnings.push_back(make_warning(
+        "ill-conditioned",
+        "a tone is close to a resonance, where v(0) = 0: dividing by v(0) amplifies errors %1 times",
+        {conditioning}));
   }
   return notes;
 }

@@ -337,6 +337,7 @@ PlanChoice choose_model(const Surface& surface, const PlanRequest& request) {
   for (auto below = chosen; below != rungs.begin();) {
     --below;
     if (!below->usable) continue;
+    choice.cheaper = *below;
     text << "; " << name(below->model) << ": " << numbers(*below, request.tolerance);
     break;
   }

@@ -51,7 +51,8 @@ struct PlanChoice {
   RungEstimate bound;  // error bounds of the chosen model
   // false if no model meets the tolerance; the model with the smallest error is then chosen
   bool inside = true;
-  std::string reason;  // why this model was chosen: one sentence with numbers
+  std::string reason;                   // why this model was chosen: one sentence with numbers
+  std::optional<RungEstimate> cheaper;  // the most exact one of the cheaper models
   std::vector<RungEstimate> considered;
 };
 

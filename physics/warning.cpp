@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <sstream>
+#include <utility>
 
 #include "physics/centre_line.hpp"
 #include "physics/dispersion.hpp"
@@ -15,79 +16,80 @@ constexpr double finger_width_m = 14e-3;
 constexpr double high_gain = 10;
 constexpr double noticeable_shift_m = 1e-3;
 
-void add(std::vector<Warning>& list, const char* code, const std::ostringstream& text) {
+// Adds the warning, unless the list has one with the same code.
+void add(std::vector<Warning>& list, Warning&& warning) {
   for (const Warning& one : list) {
-    if (one.code == code) return;
+    if (one.code == warning.code) return;
   }
-  list.push_back({code, text.str()});
+  list.push_back(std::move(warning));
 }
 
 }  // namespace
 
+Warning make_warning(std::string code, const std::string& sentence, std::initializer_list<double> values,
+                     int digits) {
+  Warning made{std::move(code), sentence, {}};
+  for (const double value : values) {
+    std::ostringstream text;
+    text.precision(digits);
+    text << value;
+    made.values.push_back(text.str());
+    const std::string place = "%" + std::to_string(made.values.size());
+    made.text.replace(made.text.find(place), place.size(), made.values.back());
+  }
+  return made;
+}
+
 std::vector<Warning> surface_warnings(const Surface& s) {
   std::vector<Warning> list;
-  if (s.yield_strength_Pa && s.tension_Pa > *s.yield_strength_Pa) {
-    std::ostringstream text;
-    text << "tension " << s.tension_Pa / 1e6 << " MPa exceeds the material's yield strength, "
-         << *s.yield_strength_Pa / 1e6 << " MPa";
-    add(list, "yield", text);
-  }
+  if (s.yield_strength_Pa && s.tension_Pa > *s.yield_strength_Pa)
+    add(list, make_warning("yield", "tension %1 MPa exceeds the material's yield strength, %2 MPa",
+                           {s.tension_Pa / 1e6, *s.yield_strength_Pa / 1e6}));
   return list;
 }
 
 std::vector<Warning> tone_warnings(const Surface& s, std::span<const Tone> tones) {
   std::vector<Warning> list;
+  const auto warn = [&list](const char* code, const char* sentence, std::initializer_list<double> values,
+                            int digits = 6) { add(list, make_warning(code, sentence, values, digits)); };
   for (const Tone& tone : tones) {
-    const double f = tone.frequency_Hz;
-    std::ostringstream text;
-    text << f / 1e3 << " kHz";
-    if (f < audible_limit_Hz) {
-      text << ": below 22.4 kHz, so it may be audible, and the stricter limit of airborne sound applies";
-      add(list, "audible", text);
-      text.str("");
-      text << f / 1e3 << " kHz";
-    }
+    const double f = tone.frequency_Hz, kHz = f / 1e3;
+    if (f < audible_limit_Hz)
+      warn("audible",
+           "%1 kHz: below 22.4 kHz, so it may be audible, and the stricter limit of airborne sound applies",
+           {kHz});
     const auto stiffness = bending_stiffness_N_m(s);
     if (stiffness && !bending_modelled(s)) {
       const double k = wavenumber_per_m(s, f);
       const double ratio = *stiffness * k * k / line_tension_N_per_m(s);
-      if (ratio > 0.01) {
-        std::ostringstream bend;
-        bend << f / 1e3 << " kHz: bending adds " << 100 * ratio
-             << " % to the restoring force, but is not modelled";
-        add(list, "bending-off", bend);
-      }
+      if (ratio > 0.01)
+        warn("bending-off", "%1 kHz: bending adds %2 % to the restoring force, but is not modelled",
+             {kHz, 100 * ratio});
     }
     const double shift = s.theory == PlateTheory::kirchhoff ? shear_shift_m(s, f).value_or(0) : 0;
-    if (std::abs(shift) > noticeable_shift_m) {
-      std::ostringstream thick;
-      thick.precision(3);
-      thick << f / 1e3
-            << " kHz: the plate is thick: shear, which plate theory kirchhoff leaves out, would move "
-            << "the boundary by " << shift * 1e3 << " mm";
-      add(list, "thick-plate", thick);
-    }
+    if (std::abs(shift) > noticeable_shift_m)
+      warn("thick-plate",
+           "%1 kHz: the plate is thick: shear, which plate theory kirchhoff leaves out, would move the "
+           "boundary "
+           "by %2 mm",
+           {kHz, shift * 1e3}, 3);
     if (f <= cut_off_frequency_Hz(s, half_width_m(s, 0))) {
-      text << ": no smooth zone, below the drive edge's cut-off";
-      add(list, "no-smooth-zone", text);
+      warn("no-smooth-zone", "%1 kHz: no smooth zone, below the drive edge's cut-off", {kHz});
     } else if (!turning_point_m(s, f)) {
-      text << ": turning point beyond the surface";
-      add(list, "outside-surface", text);
+      warn("outside-surface", "%1 kHz: turning point beyond the surface", {kHz});
     } else if (2 * cut_off_half_width_m(s, f) < finger_width_m) {
-      text << ": the strip is " << 2e3 * cut_off_half_width_m(s, f)
-           << " mm wide at the turning point, narrower than a finger (14 mm)";
-      add(list, "narrow-strip", text);
+      warn("narrow-strip",
+           "%1 kHz: the strip is %2 mm wide at the turning point, narrower than a finger (14 mm)",
+           {kHz, 2e3 * cut_off_half_width_m(s, f)});
     }
     const bool linear = std::holds_alternative<LinearTaper>(s.taper);
     const auto line = make_centre_line(linear ? s : moving_part(s, f), f, Model::mode);
     const auto peak = line->last_peak_m();
     if (!peak) continue;
     const double ln_gain = line->value(*peak).ln_magnitude() - line->value(0).ln_magnitude();
-    if (ln_gain > std::log(high_gain)) {
-      std::ostringstream gain;
-      gain << f / 1e3 << " kHz: resonance gain above 10 (" << std::exp(std::min(ln_gain, 700.0)) << ")";
-      add(list, "resonance-gain", gain);
-    }
+    if (ln_gain > std::log(high_gain))
+      warn("resonance-gain", "%1 kHz: resonance gain above 10 (%2)",
+           {kHz, std::exp(std::min(ln_gain, 700.0))});
   }
   return list;
 }

@@ -1,5 +1,7 @@
 #pragma once
 // Warnings to show with a plan, a map or a field. Each kind is shown only once.
+#include <array>
+#include <initializer_list>
 #include <span>
 #include <string>
 #include <vector>
@@ -9,13 +11,23 @@
 
 namespace turnpoint::physics {
 
-// A warning: a stable code for programs ("yield", "bending-off", "audible", "resonance-gain",
-// "outside-surface", "no-smooth-zone", "narrow-strip", "thick-plate", "ill-conditioned", "beat") and a
-// sentence for people.
+// The codes of all warnings, for programs.
+inline constexpr std::array warning_codes{"yield",        "audible",        "bending-off",
+                                          "thick-plate",  "no-smooth-zone", "outside-surface",
+                                          "narrow-strip", "resonance-gain", "ill-conditioned"};
+
+// A warning: one of these codes, and a sentence for people.
 struct Warning {
   std::string code;
   std::string text;
+  std::vector<std::string>
+      values;  // the numbers of the sentence, for a program that says it in another language
 };
+
+// Makes a warning with this sentence, in which %1, %2 and so on stand for the values. `digits` is the number
+// of significant digits of each value.
+Warning make_warning(std::string code, const std::string& sentence, std::initializer_list<double> values,
+                     int digits = 6);
 
 // Warns if the tension is above the material's yield strength, or if bending is switched off although it
 // matters.

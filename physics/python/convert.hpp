@@ -1,6 +1,6 @@
 #pragma once
-// Conversions between Python and the physics library: texts for enumerations and edges, arrays of numbers, and records
-// whose fields are given by name.
+// Conversions between Python and the physics library: texts for enumerations and edges, arrays of numbers,
+// and records whose fields are given by name.
 #include <pybind11/complex.h>
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
@@ -23,7 +23,8 @@
 
 namespace turnpoint::physics::python {
 
-// Numbers of the type double in one contiguous block. An array of this kind is used as it is; other numbers are copied.
+// Numbers of the type double in one contiguous block. An array of this kind is used as it is; other numbers
+// are copied.
 using Numbers = py::array_t<double, py::array::c_style | py::array::forcecast>;
 
 inline std::span<const double> values(const Numbers& numbers) {
@@ -94,7 +95,8 @@ struct Text<Parameter> {
   static std::string write(Parameter value) { return std::string(name(value)); }
   static Parameter read(const std::string& text) {
     if (const auto found = find_parameter(text)) return *found;
-    throw std::invalid_argument("\"" + text + "\" is not the name of a parameter, such as \"modulus\" or \"clamp line\"");
+    throw std::invalid_argument("\"" + text +
+                                "\" is not the name of a parameter, such as \"modulus\" or \"clamp line\"");
   }
 };
 template <>
@@ -124,7 +126,8 @@ py::class_<Record> record(py::module_& module, const char* type_name, const char
       .def(py::init([type](const py::kwargs& fields) {
         auto made = py::cast(Record{});
         for (const auto& [field, value] : fields) {
-          if (!py::hasattr(made, field)) throw py::type_error(type + " has no field " + std::string(py::repr(field)));
+          if (!py::hasattr(made, field))
+            throw py::type_error(type + " has no field " + std::string(py::repr(field)));
           py::setattr(made, field, value);
         }
         return made.template cast<Record>();
@@ -142,9 +145,11 @@ void add_design(py::module_& module);
 
 namespace pybind11::detail {
 template <>
-struct type_caster<turnpoint::physics::Edges> : turnpoint::physics::python::TextCaster<turnpoint::physics::Edges> {};
+struct type_caster<turnpoint::physics::Edges>
+    : turnpoint::physics::python::TextCaster<turnpoint::physics::Edges> {};
 template <>
-struct type_caster<turnpoint::physics::Bending> : turnpoint::physics::python::TextCaster<turnpoint::physics::Bending> {};
+struct type_caster<turnpoint::physics::Bending>
+    : turnpoint::physics::python::TextCaster<turnpoint::physics::Bending> {};
 template <>
 struct type_caster<turnpoint::physics::DriveShape>
     : turnpoint::physics::python::TextCaster<turnpoint::physics::DriveShape> {};
@@ -152,7 +157,8 @@ template <>
 struct type_caster<turnpoint::physics::PlateTheory>
     : turnpoint::physics::python::TextCaster<turnpoint::physics::PlateTheory> {};
 template <>
-struct type_caster<turnpoint::physics::Model> : turnpoint::physics::python::TextCaster<turnpoint::physics::Model> {};
+struct type_caster<turnpoint::physics::Model>
+    : turnpoint::physics::python::TextCaster<turnpoint::physics::Model> {};
 template <>
 struct type_caster<turnpoint::physics::Normalise>
     : turnpoint::physics::python::TextCaster<turnpoint::physics::Normalise> {};
@@ -160,5 +166,6 @@ template <>
 struct type_caster<turnpoint::physics::Parameter>
     : turnpoint::physics::python::TextCaster<turnpoint::physics::Parameter> {};
 template <>
-struct type_caster<turnpoint::physics::Edge> : turnpoint::physics::python::TextCaster<turnpoint::physics::Edge> {};
+struct type_caster<turnpoint::physics::Edge>
+    : turnpoint::physics::python::TextCaster<turnpoint::physics::Edge> {};
 }  // namespace pybind11::detail

@@ -16,7 +16,8 @@ py::array_t<double> frictions(const FrictionMap& map, const Numbers& displacemen
 }
 
 void add_friction(py::module_& module) {
-  py::class_<FrictionMap>(module, "FrictionMap", "Vibration amplitude to friction, relative to the surface at rest.")
+  py::class_<FrictionMap>(module, "FrictionMap",
+                          "Vibration amplitude to friction, relative to the surface at rest.")
       .def(py::init<>(), "The illustrative load-sharing model; live sessions need a measured table.")
       .def(py::init([](const Numbers& displacement_m, const Numbers& relative_friction) {
              if (displacement_m.size() != relative_friction.size())
@@ -28,7 +29,8 @@ void add_friction(py::module_& module) {
            }),
            py::arg("displacement_m"), py::arg("relative_friction"),
            "A measured table that starts at (0, 1) and falls strictly.")
-      .def("relative_friction", &frictions, py::arg("displacement_m"), "Relative friction for peak displacements in m.")
+      .def("relative_friction", &frictions, py::arg("displacement_m"),
+           "Relative friction for peak displacements in m.")
       .def("displacement_m", &FrictionMap::displacement_m, py::arg("relative_friction"),
            "The displacement that gives this friction, m; None below the lowest friction.")
       .def_property_readonly("lowest_friction", &FrictionMap::lowest_friction)
@@ -75,12 +77,14 @@ void add_zones(py::module_& module) {
   module.def(
       "design_profile",
       [](const Surface& surface, const Numbers& x_m, const Numbers& amplitude_m, const ToneBand& band) {
-        if (x_m.size() != amplitude_m.size()) throw std::invalid_argument("x_m and amplitude_m differ in length");
+        if (x_m.size() != amplitude_m.size())
+          throw std::invalid_argument("x_m and amplitude_m differ in length");
         std::vector<ProfilePoint> target;
         for (py::ssize_t i = 0; i < x_m.size(); ++i) target.push_back({x_m.data()[i], amplitude_m.data()[i]});
         return design_profile(surface, target, band);
       },
-      py::arg("surface"), py::arg("x_m"), py::arg("amplitude_m"), py::arg("band") = ToneBand{}, "Finds tones that come closest to amplitudes in m at the positions x_m.");
+      py::arg("surface"), py::arg("x_m"), py::arg("amplitude_m"), py::arg("band") = ToneBand{},
+      "Finds tones that come closest to amplitudes in m at the positions x_m.");
 }
 
 }  // namespace

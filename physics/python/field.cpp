@@ -54,9 +54,11 @@ py::dict load(const Surface& surface, double frequency_Hz, const Numbers& x_m, c
 }
 
 void add_results(py::module_& module) {
-  py::class_<ToneInfo>(module, "ToneInfo", "What a model predicts for one tone. A position is None if it does not exist.")
+  py::class_<ToneInfo>(module, "ToneInfo",
+                       "What a model predicts for one tone. A position is None if it does not exist.")
       .def_readonly("frequency_Hz", &ToneInfo::frequency_Hz)
-      .def_readonly("turning_point_m", &ToneInfo::turning_point_m, "where the local cut-off equals the frequency, m")
+      .def_readonly("turning_point_m", &ToneInfo::turning_point_m,
+                    "where the local cut-off equals the frequency, m")
       .def_readonly("last_peak_m", &ToneInfo::last_peak_m, "outermost maximum of |v|, m")
       .def_readonly("gain", &ToneInfo::gain, "|v| at the last maximum divided by |v(0)|")
       .def_readonly("conditioning", &ToneInfo::conditioning,
@@ -66,8 +68,7 @@ void add_results(py::module_& module) {
   py::class_<ToneField>(module, "ToneField", "The field of one tone at the points x_m of the call.")
       .def_readonly("info", &ToneField::info)
       .def_property_readonly(
-          "v",
-          [](const py::object& self) { return view(self.cast<const ToneField&>().v, self); },
+          "v", [](const py::object& self) { return view(self.cast<const ToneField&>().v, self); },
           "complex displacement; the time factor is exp(+i omega t)")
       .def_property_readonly(
           "ln_amplitude",
@@ -76,16 +77,16 @@ void add_results(py::module_& module) {
   py::class_<Field>(module, "Field", "The fields of all tones, and their sum.")
       .def_readonly("model", &Field::model)
       .def_readonly("normalise", &Field::normalise)
-      .def_property_readonly("tones",
-                             [](const py::object& self) {
-                               py::list tones;
-                               for (const auto& tone : self.cast<const Field&>().tones)
-                                 tones.append(py::cast(&tone, py::return_value_policy::reference_internal, self));
-                               return tones;
-                             })
       .def_property_readonly(
-          "amplitude",
-          [](const py::object& self) { return view(self.cast<const Field&>().amplitude, self); },
+          "tones",
+          [](const py::object& self) {
+            py::list tones;
+            for (const auto& tone : self.cast<const Field&>().tones)
+              tones.append(py::cast(&tone, py::return_value_policy::reference_internal, self));
+            return tones;
+          })
+      .def_property_readonly(
+          "amplitude", [](const py::object& self) { return view(self.cast<const Field&>().amplitude, self); },
           "root of the summed squares of |v| over tones")
       .def_property_readonly("ln_amplitude", [](const py::object& self) {
         return view(self.cast<const Field&>().ln_amplitude, self);
@@ -97,7 +98,8 @@ void add_results(py::module_& module) {
 }
 
 void add_planner(py::module_& module) {
-  py::class_<RungEstimate>(module, "RungEstimate", "The error bounds of a model, estimated before it is evaluated.")
+  py::class_<RungEstimate>(module, "RungEstimate",
+                           "The error bounds of a model, estimated before it is evaluated.")
       .def_readonly("model", &RungEstimate::model)
       .def_readonly("usable", &RungEstimate::usable)
       .def_readonly("boundary_bound_m", &RungEstimate::boundary_bound_m)
@@ -117,10 +119,11 @@ void add_planner(py::module_& module) {
          std::optional<double> boundary_m, std::optional<double> amplitude, std::optional<double> level_dB) {
         return choose_model(surface, {tones, points, edge, normalise, {boundary_m, amplitude, level_dB}});
       },
-      py::arg("surface"), py::arg("tones"), py::kw_only(), py::arg("points") = 0, py::arg("edge") = Edge::turning(),
-      py::arg("normalise") = Normalise::peak, py::arg("boundary_m") = py::none(), py::arg("amplitude") = py::none(),
-      py::arg("level_dB") = py::none(),
-      "Chooses the cheapest model whose error bounds are within the tolerances: the error of the boundary (m), of |v|\n"
+      py::arg("surface"), py::arg("tones"), py::kw_only(), py::arg("points") = 0,
+      py::arg("edge") = Edge::turning(), py::arg("normalise") = Normalise::peak,
+      py::arg("boundary_m") = py::none(), py::arg("amplitude") = py::none(), py::arg("level_dB") = py::none(),
+      "Chooses the cheapest model whose error bounds are within the tolerances: the error of the boundary "
+      "(m), of |v|\n"
       "relative to its largest value, and of the level at the last maximum (dB). None tolerates any error.");
 }
 
@@ -134,22 +137,28 @@ void add_field(py::module_& module) {
              "The centre-line displacement at the points x_m, in any order. See Field.");
   module.def(
       "describe",
-      [](const Surface& surface, const Tones& tones, const Field& field) { return describe(surface, tones, field); },
+      [](const Surface& surface, const Tones& tones, const Field& field) {
+        return describe(surface, tones, field);
+      },
       py::arg("surface"), py::arg("tones"), py::arg("field"), py::call_guard<py::gil_scoped_release>(),
       "Error bound, validity and warnings of a field.");
   module.def("amplitude_profile", &profile, py::arg("surface"), py::arg("tones"), py::arg("x_m"),
-             py::arg("model") = Model::mode, "Amplitude in m at each point: the root of the sum of |v|^2 over the tones.");
-  module.def("tone_info", &tone_info, py::arg("surface"), py::arg("frequency_Hz"), py::arg("model") = Model::mode,
-             "Positions and gain for one frequency, without a profile.");
+             py::arg("model") = Model::mode,
+             "Amplitude in m at each point: the root of the sum of |v|^2 over the tones.");
+  module.def("tone_info", &tone_info, py::arg("surface"), py::arg("frequency_Hz"),
+             py::arg("model") = Model::mode, "Positions and gain for one frequency, without a profile.");
   module.def("drive_amplitude_m", &drive_amplitude_m, py::arg("surface"), py::arg("frequency_Hz"),
              py::arg("displacement_m"), py::arg("model") = Model::mode,
              "The amplitude at the drive edge that gives this displacement at the last maximum, m.");
   record<Finger>(module, "Finger", "A fingertip as a mechanical impedance that presses evenly on a disc.")
-      .def_readwrite("impedance_Ns_per_m", &Finger::impedance_Ns_per_m, "force divided by velocity, N s/m, complex")
+      .def_readwrite("impedance_Ns_per_m", &Finger::impedance_Ns_per_m,
+                     "force divided by velocity, N s/m, complex")
       .def_readwrite("contact_radius_m", &Finger::contact_radius_m, "m")
       .def_readwrite("beside_m", &Finger::beside_m, "distance of the disc's centre from the centre line, m");
-  module.def("finger_load", &load, py::arg("surface"), py::arg("frequency_Hz"), py::arg("x_m"), py::arg("finger"),
-             "Means over the disc under the finger, as arrays: unloaded, loaded (v(0) = 1), mobility_m_per_Ns, and share,\n"
+  module.def("finger_load", &load, py::arg("surface"), py::arg("frequency_Hz"), py::arg("x_m"),
+             py::arg("finger"),
+             "Means over the disc under the finger, as arrays: unloaded, loaded (v(0) = 1), "
+             "mobility_m_per_Ns, and share,\n"
              "the fraction of the amplitude that remains under the finger.");
 }
 

@@ -48,8 +48,8 @@ std::optional<Bias> choice_bias(const std::vector<TrialRecord>& trials) {
   const double fair = known > 0 ? static_cast<double>(second_right) / known : 0.5;
   if (fair < bias.interval.low || fair > bias.interval.high)
     bias.statements.push_back(
-        {"bias", "The second choice was made in " + text::number(100 * bias.share_second, 3) +
-                     " % of the trials; it was right in " + text::number(100 * fair, 3) + " %."});
+        {"bias", texts::phrase("statement.bias", {texts::plain(text::number(100 * bias.share_second, 3)),
+                                                  texts::plain(text::number(100 * fair, 3))})});
   return bias;
 }
 
@@ -125,9 +125,9 @@ Fatigue fatigue(const std::vector<TrialRecord>& trials) {
   }
   Fatigue result{within_groups(times), within_groups(scores), {}};
   if (result.proportion_correct && result.proportion_correct->interval.high < 0)
-    result.statements.push_back({"fatigue", "Accuracy falls over the session."});
+    result.statements.push_back({"fatigue", texts::phrase("statement.fatigue")});
   if (result.response_time_s && result.response_time_s->interval.low > 0)
-    result.statements.push_back({"slowing", "Responses become slower over the session."});
+    result.statements.push_back({"slowing", texts::phrase("statement.slowing")});
   return result;
 }
 

@@ -35,17 +35,17 @@ double corrected(const EzMoments& moments) {
 std::optional<Statement> refusal(const EzMoments& moments) {
   const double p = corrected(moments);
   if (!(p > 0 && p < 1) || moments.proportion_correct > 1)
-    return Statement{"ez-proportion", "EZ-diffusion not identifiable: proportion correct " +
-                                          text::number(moments.proportion_correct) + " is outside (0, 1)."};
+    return Statement{
+        "ez-proportion",
+        texts::phrase("statement.ez_proportion", {texts::plain(text::number(moments.proportion_correct))})};
   if (!(moments.variance_s2 > 0) || !std::isfinite(moments.variance_s2) || !std::isfinite(moments.mean_s))
-    return Statement{"ez-variance", "EZ-diffusion not identifiable: the response times do not vary."};
+    return Statement{"ez-variance", texts::phrase("statement.ez_variance")};
   return std::nullopt;
 }
 
 Statement negative_nondecision(double nondecision_s) {
-  return {"ez-nondecision", "EZ-diffusion not identifiable: the time outside the decision comes out as " +
-                                text::number(nondecision_s, 3) +
-                                " s; the spread of response times is too large for the model."};
+  return {"ez-nondecision",
+          texts::phrase("statement.ez_nondecision", {texts::plain(text::number(nondecision_s, 3))})};
 }
 
 double logit(double p) { return std::log(p / (1 - p)); }
@@ -94,9 +94,7 @@ SharedEzResult shared_ez_diffusion(const std::vector<EzMoments>& conditions) {
     sum_power += weight.back() * moments.variance_s2 / h(l);
   }
   if (sum_weight == 0) {
-    result.statements.push_back({"ez-too-few",
-                                 "EZ-diffusion not identifiable: no difficulty has 10 correct "
-                                 "answers with a response time that varies."});
+    result.statements.push_back({"ez-too-few", texts::phrase("statement.ez_too_few")});
     return result;
   }
   SharedEz shared;

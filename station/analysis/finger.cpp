@@ -104,10 +104,7 @@ std::optional<Finger> finger(const std::vector<FingerTrial>& trials, const std::
   }
   result.boundaries = boundaries_of(trials);
   if (result.boundaries.shift_mm.empty())
-    result.statements.push_back(
-        {"no-felt-boundary",
-         "In no trial did the finger cross a clear step of friction often enough to tell where it is. That "
-         "takes three strokes along the surface, in both directions, in the scene presented last."});
+    result.statements.push_back({"no-felt-boundary", texts::phrase("statement.no_felt_boundary")});
   return result;
 }
 

@@ -49,8 +49,9 @@ struct FeltBoundaries {
 /// Friction in one direction of movement, by distance from the planned boundary: means and standard errors
 /// over strokes, where there are 3 or more.
 struct FrictionCurve {
-  std::string direction;
+  std::string direction;  ///< "towards the narrow end" or "towards the wide end"
   std::vector<double> from_boundary_mm, friction, se;
+  bool narrow = true;  ///< true if the direction is that towards the narrow end
 };
 
 /// How many of the trials presented at a level were presented again because of the finger's movement.

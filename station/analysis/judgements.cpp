@@ -32,14 +32,12 @@ void add_exponent(Judgements& judgements, bool decibel) {
     }
   }
   if (!sizes) {
-    judgements.statements.push_back(
-        {"no-logarithm", "Levels of 0 or below have no logarithm, so no exponent can be computed."});
+    judgements.statements.push_back({"no-logarithm", texts::phrase("statement.no_logarithm")});
     return;
   }
   judgements.exponent = student_slope(x, y);
   if (!judgements.exponent)
-    judgements.statements.push_back(
-        {"few-magnitudes", "An exponent needs at least 3 numbers at 2 or more levels."});
+    judgements.statements.push_back({"few-magnitudes", texts::phrase("statement.few_magnitudes")});
 }
 
 }  // namespace
@@ -71,8 +69,8 @@ std::vector<Judgements> judgements(const std::vector<TrialRecord>& trials,
       one.levels.push_back(std::move(found));
     }
     if (zeros > 0)
-      one.statements.push_back(
-          {"zero-magnitudes", std::to_string(zeros) + " answers of 0 are left out: 0 has no logarithm."});
+      one.statements.push_back({"zero-magnitudes", texts::phrase("statement.zero_magnitudes",
+                                                                 {texts::plain(std::to_string(zeros))})});
     if (judged != Judged::ratings) add_exponent(one, judged == Judged::magnitudes_dB);
     all.push_back(std::move(one));
   }

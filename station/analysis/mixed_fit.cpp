@@ -182,8 +182,7 @@ void describe_group(const Scaled& data, const MixedMinimum& found, const Eigen::
       boost::math::quantile(boost::math::students_t(static_cast<double>(data.people.size()) - 1), 0.975);
   fit.threshold = threshold_of(b, errors, t, fit.options);
   if (!fit.threshold) {
-    fit.statements.push_back({"group-does-not-rise",
-                              "The group's function does not rise with the level, so it has no threshold."});
+    fit.statements.push_back({"group-does-not-rise", texts::phrase("statement.group_falls")});
     return;
   }
   fit.slope = slope_of(b[1], fit.rate_se, t, fit.options.function);
@@ -194,11 +193,7 @@ void describe_group(const Scaled& data, const MixedMinimum& found, const Eigen::
   fit.threshold_sd = (level(u + sd) - level(u - sd)) / 2;
   const Eigen::Matrix2d scaled_random = random_factor(found.theta) * random_factor(found.theta).transpose();
   if (scaled_random.determinant() < kNoVariance * kNoVariance * scaled_random.trace())
-    fit.statements.push_back(
-        {"singular",
-         "The participants differ in less than two ways: intercepts or slopes do not vary beyond chance, or "
-         "they vary together. Estimates and intervals are valid, but say nothing about how the two vary "
-         "separately."});
+    fit.statements.push_back({"singular", texts::phrase("statement.singular")});
 }
 
 }  // namespace
@@ -207,9 +202,8 @@ MixedResult fit_mixed(const std::vector<PersonCounts>& data, const MixedOptions&
   auto people = scaled(data, options);
   if (people.people.size() < kFewestPeople)
     return {std::nullopt,
-            {{"few-participants", std::to_string(people.people.size()) +
-                                      " participants with answers are too few for a group; at least 3 are "
-                                      "needed."}}};
+            {{"few-participants", texts::phrase("statement.few_participants",
+                                                {texts::plain(std::to_string(people.people.size()))})}}};
   const auto pooled = together(people, options);
   if (!pooled.parameters) return {std::nullopt, pooled.statements};
   const double rate = rate_from_slope(options.function, pooled.parameters->slope) * people.width;
@@ -224,10 +218,7 @@ MixedResult fit_mixed(const std::vector<PersonCounts>& data, const MixedOptions&
   fit.lapse = lapse, fit.log_likelihood = -found.negative_log;
   const auto covariance = covariance_of(found);
   if (!covariance || !std::isfinite(found.negative_log))
-    return {std::nullopt,
-            {{"not-determined",
-              "The answers do not determine the group's function: the likelihood has no "
-              "clear maximum."}}};
+    return {std::nullopt, {{"not-determined", texts::phrase("statement.group_undetermined")}}};
   describe_group(people, found, *covariance, fit);
   add_people(people, found, *covariance, fit);
   return {std::move(fit), {}};

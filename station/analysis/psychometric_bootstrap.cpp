@@ -198,7 +198,7 @@ PsychometricIntervals bootstrap(const PsychometricFit& fit, const BootstrapOptio
   PsychometricIntervals result;
   result.confidence = options.confidence;
   if (!fit.parameters) {
-    result.statements.push_back({"no-fit", "There is no fit, so there is no interval."});
+    result.statements.push_back({"no-fit", texts::phrase("statement.no_fit")});
     return result;
   }
   const auto function = fit.options.function;

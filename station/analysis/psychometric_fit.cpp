@@ -10,6 +10,8 @@
 
 namespace turnpoint::analysis {
 
+using texts::phrase, texts::plain;
+
 namespace {
 
 void check(const std::vector<LevelCount>& data, const FitOptions& options) {
@@ -80,21 +82,14 @@ std::optional<Statement> refusal(const std::vector<LevelCount>& data, const FitO
   }
   const auto levels = static_cast<int>(data.size());
   if (levels > 0 && levels < options.minimum_levels)
-    return Statement{"too-few-levels", std::to_string(levels) + (levels == 1 ? " level" : " levels") +
-                                           " with answers: a psychometric function needs at least " +
-                                           std::to_string(options.minimum_levels) + "."};
+    return Statement{"too-few-levels",
+                     phrase(levels == 1 ? "statement.one_level" : "statement.too_few_levels",
+                            {plain(std::to_string(levels)), plain(std::to_string(options.minimum_levels))})};
   if (auto reason = unusable(data, options)) return reason;
-  if (positive == trials)
-    return Statement{
-        "all-positive",
-        "Every answer was right (or was the tracked answer) at every level: the threshold lies below the "
-        "levels shown, and cannot be estimated."};
-  if (positive == 0)
-    return Statement{"none-positive",
-                     "No answer was right (or was the tracked answer) at any level: the threshold lies above "
-                     "the levels shown, and cannot be estimated."};
+  if (positive == trials) return Statement{"all-positive", phrase("statement.all_positive")};
+  if (positive == 0) return Statement{"none-positive", phrase("statement.none_positive")};
   if (trend(axis_counts(data, options.function, options.scale)) <= 0)
-    return Statement{"flat", "The answers do not change with the level: no threshold can be estimated."};
+    return Statement{"flat", phrase("statement.flat")};
   return std::nullopt;
 }
 
@@ -123,19 +118,11 @@ void note_bounds(PsychometricFit& fit, const Theta& theta, const ThetaBounds& bo
   }
   fit.at_bound.guess = fit.options.guess == Guess::fitted && bounds.low[3] < bounds.high[3] &&
                        (at(theta[3], bounds.low[3]) || at(theta[3], bounds.high[3]));
-  if (rate_high)
-    fit.statements.push_back({"step",
-                              "The answers change between two neighbouring levels: the function is a "
-                              "step. The data set a limit to its slope, but do not determine it."});
-  if (rate_low)
-    fit.statements.push_back(
-        {"slope-bound",
-         "The function is so shallow that the data set a limit to its slope, but do not determine it."});
+  if (rate_high) fit.statements.push_back({"step", phrase("statement.step")});
+  if (rate_low) fit.statements.push_back({"slope-bound", phrase("statement.shallow")});
   if (fit.at_bound.lapse_high)
     fit.statements.push_back(
-        {"lapse-bound",
-         "The lapse rate is at its upper bound, " + text::number(bounds.high[2]) +
-             ". The participant may have been inattentive, or may have confused the answers."});
+        {"lapse-bound", phrase("statement.lapse_bound", {plain(text::number(bounds.high[2]))})});
 }
 
 }  // namespace
@@ -148,31 +135,28 @@ std::vector<LevelCount> checked(const std::vector<LevelCount>& data, const FitOp
 std::optional<Statement> unusable(const std::vector<LevelCount>& data, const FitOptions& options) {
   int trials = 0;
   for (const auto& point : data) trials += point.trials;
-  if (trials == 0) return Statement{"no-trials", "No trial was answered, so there is nothing to fit."};
+  if (trials == 0) return Statement{"no-trials", phrase("statement.no_trials")};
   if (trials < options.minimum_trials)
-    return Statement{"too-few-trials", std::to_string(trials) + " answered trials: a fit needs at least " +
-                                           std::to_string(options.minimum_trials) + "."};
+    return Statement{"too-few-trials",
+                     phrase("statement.too_few_trials",
+                            {plain(std::to_string(trials)), plain(std::to_string(options.minimum_trials))})};
   const double z = trend(axis_counts(data, options.function, options.scale));
-  if (z < -1.645)
-    return Statement{
-        "reversed", "Data are reversed: the answer becomes rarer as the level rises (trend z = " +
-                        text::number(z, 3) + "). Check the sign of the level and the labels of the answers."};
+  if (z < -1.645) return Statement{"reversed", phrase("statement.reversed", {plain(text::number(z, 3))})};
   return std::nullopt;
 }
 
 void say_what_touches(PsychometricIntervals& intervals) {
-  const auto say = [&intervals](const std::optional<ParameterInterval>& of, const char* what) {
+  const auto say = [&intervals](const std::optional<ParameterInterval>& of, const char* code,
+                                const char* what) {
     if (!of || !(of->touches_low || of->touches_high)) return;
-    const char* end = of->touches_low && of->touches_high ? "both ends"
-                      : of->touches_low                   ? "its lower end"
-                                                          : "its upper end";
-    intervals.statements.push_back({std::string("interval-") + what,
-                                    std::string("The interval of the ") + what + " touches a bound at " +
-                                        end + ": there the data do not limit it."});
+    const char* end = of->touches_low && of->touches_high ? "statement.both_ends"
+                      : of->touches_low                   ? "statement.lower_end"
+                                                          : "statement.upper_end";
+    intervals.statements.push_back({code, phrase("statement.touches", {phrase(what), phrase(end)})});
   };
-  say(intervals.threshold, "threshold");
-  say(intervals.slope, "slope");
-  say(intervals.interval_75, "75 % point");
+  say(intervals.threshold, "interval-threshold", "report.threshold");
+  say(intervals.slope, "interval-slope", "report.slope");
+  say(intervals.interval_75, "interval-75 % point", "statement.point_of_three_quarters");
 }
 
 AxisCounts axis_counts(const std::vector<LevelCount>& data, Function function, Scale scale) {
@@ -218,9 +202,7 @@ PsychometricFit fit_psychometric(const std::vector<LevelCount>& data, const FitO
   const auto best = likelihood.search();
   const double range = bounds.high[0] - bounds.low[0];
   if (best.theta[0] < bounds.low[0] + 1e-6 * range || best.theta[0] > bounds.high[0] - 1e-6 * range) {
-    fit.statements.push_back({"threshold-outside",
-                              "The threshold lies far outside the levels shown: it "
-                              "cannot be estimated from them."});
+    fit.statements.push_back({"threshold-outside", phrase("statement.threshold_outside")});
     return fit;
   }
   fit.parameters = from_theta(best.theta, options);
@@ -231,8 +213,7 @@ PsychometricFit fit_psychometric(const std::vector<LevelCount>& data, const FitO
       ++fit.free_parameters;
   note_bounds(fit, best.theta, bounds);
   if (best.theta[0] < counts.lowest() || best.theta[0] > counts.u.back())
-    fit.statements.push_back(
-        {"extrapolated", "The threshold lies outside the levels shown: it is extrapolated."});
+    fit.statements.push_back({"extrapolated", phrase("statement.extrapolated")});
   return fit;
 }
 

@@ -67,26 +67,27 @@ class Reading {
                             median(at_lapse)};
     if (options_.guess == Guess::tied_to_lapse) parameters.guess = parameters.lapse;
     if (grid_.undetermined(at_threshold)) {
-      say_undetermined("threshold", prior_.threshold_low, prior_.threshold_high);
+      say_undetermined("threshold", "report.threshold", prior_.threshold_low, prior_.threshold_high);
       return;
     }
     result_.fit.parameters = parameters;
     const double u = axis_position(options_.function, options_.scale, parameters.threshold);
     if (u < counts_.lowest() || u > counts_.u.back())
-      result_.fit.statements.push_back(
-          {"extrapolated", "The threshold lies outside the levels shown: it is extrapolated."});
+      result_.fit.statements.push_back({"extrapolated", texts::phrase("statement.extrapolated")});
   }
 
   void read_intervals() {
     auto& intervals = result_.intervals;
-    if (off_centre(at_threshold)) say_off_centre("threshold");
+    if (off_centre(at_threshold)) say_off_centre("threshold", "report.threshold");
     intervals.threshold = interval(at_threshold, [this](double u) { return to_level(u); });
-    if (grid_.undetermined(at_rate))
-      say_undetermined(options_.function == Function::normal ? "spread" : "slope", prior_.slope_low,
-                       prior_.slope_high);
-    else {
+    const bool normal = options_.function == Function::normal;
+    const char *const rate = normal ? "spread" : "slope", *const name =
+                                                              normal ? "report.spread" : "report.slope";
+    if (grid_.undetermined(at_rate)) {
+      say_undetermined(rate, name, prior_.slope_low, prior_.slope_high);
+    } else {
       intervals.slope = interval(at_rate, [this](double r) { return to_slope(r); });
-      if (off_centre(at_rate)) say_off_centre(options_.function == Function::normal ? "spread" : "slope");
+      if (off_centre(at_rate)) say_off_centre(rate, name);
     }
     const auto itself = [](double share) { return share; };
     if (options_.lapse_low < options_.lapse_high) intervals.lapse = interval(at_lapse, itself);
@@ -114,11 +115,13 @@ class Reading {
   double to_level(double u) const { return level_from_axis(options_.function, options_.scale, u); }
   double to_slope(double log_rate) const { return slope_from_rate(options_.function, std::exp(log_rate)); }
 
-  void say_undetermined(const std::string& what, double low, double high) {
+  /// `name` is the key of the parameter's name.
+  void say_undetermined(const std::string& code, const char* name, double low, double high) {
+    using texts::phrase, texts::plain;
     result_.fit.statements.push_back(
-        {what + "-undetermined", std::to_string(trials_) + " answered trials do not determine the " + what +
-                                     ": they exclude neither " + text::number(low, 3) + " nor " +
-                                     text::number(high, 3) + "."});
+        {code + "-undetermined",
+         phrase("statement.undetermined", {plain(std::to_string(trials_)), phrase(name),
+                                           plain(text::number(low, 3)), plain(text::number(high, 3))})});
   }
 
   bool off_centre(Parameter parameter) const {
@@ -127,11 +130,9 @@ class Reading {
     return median < box_[parameter].low + outer || median > box_[parameter].high - outer;
   }
 
-  void say_off_centre(const std::string& what) {
+  void say_off_centre(const std::string& code, const char* name) {
     result_.fit.statements.push_back(
-        {what + "-off-centre", "The " + what +
-                                   " lies outside the middle half of the prior's range. There, fewer than "
-                                   "95 % of such intervals may contain the true value."});
+        {code + "-off-centre", texts::phrase("statement.off_centre", {texts::phrase(name)})});
   }
 
   template <class Map>

@@ -117,18 +117,22 @@ SpeedAccuracyCurve curve_of(const std::string& condition,
     curve.points.push_back(point);
   }
   if (curve.points.size() < 3) {
-    curve.statements.push_back({"lags-too-few", "A curve needs answers at three lags or more."});
+    curve.statements.push_back({"lags-too-few", texts::phrase("statement.lags_too_few")});
     return curve;
   }
   fit(curve, detecting == Detecting::forced_choice ? std::numbers::sqrt2 : 1);
-  std::string missing;
-  const auto name = [&](const auto& estimate, const char* what) {
-    if (!estimate) missing += (missing.empty() ? "" : ", ") + std::string(what);
+  texts::Phrase missing;
+  const auto name = [&missing](const auto& estimate, const char* what) {
+    if (estimate) return;
+    if (!missing.values.empty()) missing.values.push_back(texts::plain(", "));
+    missing.values.push_back(texts::phrase(what));
   };
-  name(curve.asymptote, "asymptote"), name(curve.rate_per_s, "rate"), name(curve.intercept_s, "intercept");
-  if (!missing.empty())
+  name(curve.asymptote, "statement.asymptote");
+  name(curve.rate_per_s, "statement.rate");
+  name(curve.intercept_s, "statement.intercept");
+  if (!missing.values.empty())
     curve.statements.push_back(
-        {"curve-undetermined", "The answers hardly say anything about: " + missing + "."});
+        {"curve-undetermined", texts::phrase("statement.curve_undetermined", {missing})});
   return curve;
 }
 

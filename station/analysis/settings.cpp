@@ -52,21 +52,18 @@ void estimate(Settings& s, const std::vector<double>& below, const std::vector<d
   s.from_below = side_of(below), s.from_above = side_of(above);
   s.side_difference = student_difference(below, above);
   if (s.values.size() < kFewest) {
-    s.statements.push_back({"few-settings", std::to_string(s.values.size()) +
-                                                " settings are too few for a mean with an interval; at "
-                                                "least 3 are needed."});
+    s.statements.push_back({"few-settings", texts::phrase("statement.few_settings",
+                                                          {texts::plain(std::to_string(s.values.size()))})});
     return;
   }
   s.mean = student_mean(s.values);
   s.sd = scatter_of(s.values);
-  if (!s.sd)
-    s.statements.push_back({"equal-settings", "All settings are equal: their scatter cannot be estimated."});
+  if (!s.sd) s.statements.push_back({"equal-settings", texts::phrase("statement.equal_settings")});
   s.start_slope = slope_on_starts(s);
   if (s.start_slope && s.start_slope->interval.low > 0)
     s.statements.push_back(
-        {"follows-start", "Settings follow where the slider started (by " +
-                              text::number(100 * s.start_slope->value, 2) +
-                              " % of the way), so their mean depends on the starting positions."});
+        {"follows-start", texts::phrase("statement.follows_start",
+                                        {texts::plain(text::number(100 * s.start_slope->value, 2))})});
 }
 
 }  // namespace

@@ -46,8 +46,6 @@ std::optional<YesNo> yes_no(const YesNoCounts& counts) {
 
 namespace {
 
-constexpr double kZ95 = 1.959963984540054;
-
 YesNoCounts operator+(const YesNoCounts& a, const YesNoCounts& b) {
   return {a.hits + b.hits, a.misses + b.misses, a.false_alarms + b.false_alarms,
           a.correct_rejections + b.correct_rejections};
@@ -138,6 +136,75 @@ std::optional<Roc> roc(const std::vector<int>& noise, const std::vector<int>& si
   const double half = kZ95 * std::sqrt(std::max(0.0, variance));
   result.area = {area, {std::max(0.0, area - half), std::min(1.0, area + half), 0.95}};
   return result;
+}
+
+namespace {
+
+/// A trial with a rating: its number from the surest "no", and whether there was a signal.
+struct Rated {
+  int rating = 0;
+  bool signal = false;
+};
+
+/// Computes the curves of the trials for which `rated` returns a rating below `ratings`.
+template <typename Function>
+std::vector<RatedDetection> curves_of(const std::vector<TrialRecord>& trials,
+                                      const std::vector<std::string>& order, int ratings,
+                                      std::size_t most_levels, const Function& rated) {
+  const std::vector<int> none(static_cast<std::size_t>(ratings));
+  std::vector<RatedDetection> result;
+  const auto add = [&](RatedDetection entry) {
+    const auto curve = ratings < 2 ? std::nullopt : roc(entry.noise, entry.signal);
+    if (!curve) return;
+    entry.roc = *curve;
+    entry.equal = fit_ratings(entry.noise, entry.signal, Variances::equal);
+    entry.unequal = fit_ratings(entry.noise, entry.signal, Variances::unequal);
+    result.push_back(std::move(entry));
+  };
+  for (const auto& condition : conditions_of(trials, order)) {
+    RatedDetection all{condition, std::nullopt, none, none, {}, {}, {}};
+    std::map<double, std::vector<int>> levels;
+    for (const auto& trial : trials) {
+      if (trial.type != TrialType::experimental || trial.outcome != Outcome::answered || !trial.response ||
+          trial.instruction != condition)
+        continue;
+      const std::optional<Rated> found = rated(trial);
+      if (!found) continue;
+      const auto at = static_cast<std::size_t>(found->rating);
+      ++(found->signal ? all.signal : all.noise)[at];
+      if (found->signal) ++levels.try_emplace(std::fabs(trial.level.value_or(0)), none).first->second[at];
+    }
+    if (levels.size() <= most_levels)
+      for (const auto& [level, signal] : levels) add({condition, level, all.noise, signal, {}, {}, {}});
+    add(all);
+  }
+  return result;
+}
+
+}  // namespace
+
+std::vector<RatedDetection> rocs(const std::vector<TrialRecord>& trials,
+                                 const std::vector<std::string>& order, int positive,
+                                 std::size_t most_levels) {
+  int degrees = 0;
+  for (const auto& trial : trials)
+    if (trial.type == TrialType::experimental && trial.outcome == Outcome::answered && trial.right_choice)
+      degrees = std::max(degrees, trial.confidence.value_or(0));
+  return curves_of(trials, order, 2 * degrees, most_levels, [&](const TrialRecord& trial) {
+    if (!trial.right_choice || !trial.confidence) return std::optional<Rated>();
+    const int rating =
+        *trial.response == positive ? degrees + *trial.confidence - 1 : degrees - *trial.confidence;
+    return std::optional(Rated{rating, *trial.right_choice == positive});
+  });
+}
+
+std::vector<RatedDetection> rating_rocs(const std::vector<TrialRecord>& trials,
+                                        const std::vector<std::string>& order, int points,
+                                        std::size_t most_levels) {
+  return curves_of(trials, order, points, most_levels, [&](const TrialRecord& trial) {
+    const bool known = trial.present && *trial.response < points;
+    return known ? std::optional(Rated{*trial.response, *trial.present}) : std::nullopt;
+  });
 }
 
 }  // namespace turnpoint::analysis

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "station/analysis/estimate.hpp"
+#include "station/analysis/rating_fit.hpp"
 #include "station/analysis/trial_record.hpp"
 
 namespace turnpoint::analysis {
@@ -73,6 +74,31 @@ struct Roc {
 /// surest "yes". Empty if there are no noise trials or no signal trials. Throws std::invalid_argument for
 /// fewer than 2 ratings, lists of different length, or negative counts.
 std::optional<Roc> roc(const std::vector<int>& noise, const std::vector<int>& signal);
+
+/// The ROC of ratings, at one level or over all levels. A rating is a point of a scale, or an answer "yes" or
+/// "no" together with its confidence.
+struct RatedDetection {
+  std::string condition;
+  std::optional<double> level;     ///< absolute value of the level; empty for all levels together
+  std::vector<int> noise, signal;  ///< numbers of trials, from the surest "no" to the surest "yes"
+  Roc roc;
+  /// the normal model with equal variances, and with a variance of its own for the signal; empty if the
+  /// answers do not determine it
+  std::optional<RatingFit> equal, unequal;
+};
+
+/// Computes the curves of answered experimental trials that have a right answer and a confidence. Conditions,
+/// levels, `positive` and `most_levels` are as for detect() with Detecting::presence: all levels share the
+/// noise. Levels without noise trials or without signal trials are left out.
+std::vector<RatedDetection> rocs(const std::vector<TrialRecord>& trials,
+                                 const std::vector<std::string>& order, int positive,
+                                 std::size_t most_levels = 8);
+
+/// Like rocs(), for ratings from the surest "no" (response 0) to the surest "yes" (response points - 1), of
+/// trials of which it is known whether they had a signal (TrialRecord::present).
+std::vector<RatedDetection> rating_rocs(const std::vector<TrialRecord>& trials,
+                                        const std::vector<std::string>& order, int points,
+                                        std::size_t most_levels = 8);
 
 /// Returns the proportion correct with the log-linear correction, (k + 0.5) / (n + 1); empty for n = 0.
 std::optional<double> log_linear_proportion(int successes, int trials);

@@ -196,12 +196,11 @@ void fill_cells(const Group& group, InstructionResult& result, double confidence
         Estimate{static_cast<double>(result.correct) / n, wilson(result.correct, n, confidence)};
   if (result.timeouts > 0.05 * result.presented)
     result.statements.push_back(
-        {"timeouts", text::number(100.0 * result.timeouts / result.presented, 3) +
-                         " % of the trials timed out: the slow end of the response times is cut off, and the "
-                         "diffusion's boundary comes out too small."});
+        {"timeouts",
+         texts::phrase("statement.timeouts",
+                       {texts::plain(text::number(100.0 * result.timeouts / result.presented, 3))})});
   if (result.caf.empty())
-    result.statements.push_back(
-        {"caf-too-few", "Too few scored trials for a conditional accuracy function."});
+    result.statements.push_back({"caf-too-few", texts::phrase("statement.caf_too_few")});
 }
 
 void set_estimates(InstructionResult& result, const Group& group, const Measures& values,
@@ -220,8 +219,7 @@ void set_estimates(InstructionResult& result, const Group& group, const Measures
   result.balanced = of(balanced);
   if (values[boundary] && !result.boundary) {
     for (auto& cell : result.cells) cell.drift.reset();
-    result.statements.push_back(
-        {"ez-unstable", "EZ-diffusion not identifiable: too many resampled sessions cannot be fitted."});
+    result.statements.push_back({"ez-unstable", texts::phrase("statement.ez_unstable")});
   }
 }
 

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "station/terms/trial.hpp"
+#include "station/texts/texts.hpp"
 
 namespace turnpoint::analysis {
 
@@ -28,6 +29,8 @@ struct TrialRecord {
   std::optional<int> right_choice;  ///< index of the correct choice; empty if there is none
   std::optional<int> response;      ///< index of the chosen answer
   std::optional<bool> correct;
+  /// whether there was a signal, in a task in which people rate how sure they are of one; otherwise empty
+  std::optional<bool> present;
   /// final position of a slider in the unit of the level; `level` is its starting position
   std::optional<double> setting;
   std::optional<int> confidence;  ///< from 1 for the least sure; empty if the task does not ask
@@ -51,7 +54,7 @@ std::vector<std::string> conditions_of(const std::vector<TrialRecord>& trials,
 /// A remark that the report shows beside a number or instead of it: a stable code and a sentence for people.
 struct Statement {
   std::string code;
-  std::string text;
+  texts::Phrase text;
 };
 
 /// Both ends of an interval at a given confidence.

@@ -77,22 +77,19 @@ int days_left(const Calibration& calibration, const std::string& today) {
   return calibration.valid_days - static_cast<int>((*now - *made).count());
 }
 
-std::vector<std::string> problems(const Calibration& calibration, const std::string& rig_sha256,
-                                  const std::string& today) {
-  std::vector<std::string> found;
+std::vector<texts::Phrase> problems(const Calibration& calibration, const std::string& rig_sha256,
+                                    const std::string& today) {
+  using texts::phrase, texts::plain;
+  std::vector<texts::Phrase> found;
   if (calibration.rig_sha256 != rig_sha256)
-    found.push_back(fmt::format("the calibration was made for another version of the rig file '{}'",
-                                calibration.rig_name));
+    found.push_back(phrase("refusal.other_rig", {plain(calibration.rig_name)}));
   const int left = days_left(calibration, today);
   if (left < 0)
-    found.push_back(fmt::format("the calibration of {} expired {} days ago", calibration.made_on, -left));
-  if (left > calibration.valid_days)
-    found.push_back(
-        fmt::format("the date of the calibration, {}, is in the future according to this computer's clock",
-                    calibration.made_on));
+    found.push_back(phrase("refusal.expired", {plain(calibration.made_on), plain(std::to_string(-left))}));
+  if (left > calibration.valid_days) found.push_back(phrase("refusal.future", {plain(calibration.made_on)}));
   if (calibration.transducers.empty() && !calibration.panel && !calibration.boundary &&
       calibration.pick_ups.empty() && !calibration.forces)
-    found.push_back("the calibration contains neither boundaries nor the response of any transducer");
+    found.push_back(phrase("refusal.empty"));
   return found;
 }
 

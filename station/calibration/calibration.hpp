@@ -7,6 +7,7 @@
 #include "station/calibration/fits.hpp"
 #include "station/calibration/panel_latency.hpp"
 #include "station/calibration/pick_up_fit.hpp"
+#include "station/texts/texts.hpp"
 
 namespace turnpoint::calibration {
 
@@ -71,7 +72,7 @@ int days_left(const Calibration& calibration, const std::string& today);
 
 /// Returns the reasons why sessions must not use the calibration: it was made for another rig file, it is not
 /// valid on the day `today`, or nothing was measured. Empty if sessions may use it.
-std::vector<std::string> problems(const Calibration& calibration, const std::string& rig_sha256,
-                                  const std::string& today);
+std::vector<texts::Phrase> problems(const Calibration& calibration, const std::string& rig_sha256,
+                                    const std::string& today);
 
 }  // namespace turnpoint::calibration

@@ -131,6 +131,9 @@ std::string forces_toml(const rig::ForceCells& forces) {
                        exact(forces.reference_amplitude));
   out += numbers("rotation_deg", forces.rotation_rad, [](double rad) { return rad / kDegree_rad; });
   out += numbers("rated_ratio", forces.rated_ratio, same);
+  if (forces.usable_Hz)
+    out += fmt::format("usable_Hz = {}   # a third of the lowest resonance that a tap showed\n",
+                       exact(*forces.usable_Hz));
   out += numbers("matrix", flat(forces.matrix), same);
   std::vector<double> changes;
   for (const auto& change : forces.changes) {
@@ -152,6 +155,8 @@ rig::ForceCells read_forces(const text::Value& table, text::Findings& findings) 
   }
   const auto rotation = reader.numbers("rotation_deg", {-360, 360});
   const auto rated = reader.numbers("rated_ratio", {0, 1e3, SensorEnds::open_low});
+  if (reader.has("usable_Hz"))
+    forces.usable_Hz = reader.number("usable_Hz", {0, 1e3, SensorEnds::open_low, "Hz"});
   const auto matrix = reader.numbers("matrix", {-1e12, 1e12});
   const auto changes = reader.maybe_numbers("changes", {-1e12, 1e12});
   if (rotation.size() != 3) reader.problem("rotation_deg", "needs one value for each of three cells");

@@ -20,7 +20,8 @@ using text::number;
 /// leave this step out. Returns false for "s".
 bool stands(std::istream& in, std::ostream& out, const maintenance::WeightStep& step) {
   if (!step.remark.empty() && step.tare) fmt::print(out, "{}\n", step.remark);
-  fmt::print(out, "{} Then press Enter (s: leave this step out) ", step.text());
+  fmt::print(out, "{} {} (s: leave this step out) ", step.text(),
+             step.tap == maintenance::Tap::none ? "Then press Enter" : "Enter begins the reading");
   out.flush();
   std::string line;
   if (!std::getline(in, line))
@@ -56,6 +57,13 @@ void print(std::ostream& out, const ForceResult& result) {
           ? "; that is much: the weights or their places are not known well, and the uncertainty is larger"
           : "");
   fmt::print(out, "largest change of the zero reading: {} mN\n", number(result.zero_moved_mN, 2));
+  if (result.resonance_Hz)
+    fmt::print(out,
+               "lowest resonance of the plate on its cells: {} Hz; usable_Hz = {}: faster changes of force "
+               "are not measured correctly\n",
+               number(*result.resonance_Hz, 3), number(result.cells.usable_Hz.value(), 3));
+  else
+    fmt::print(out, "usable_Hz is not known, because a tap was left out or the plate did not ring\n");
   fmt::print(out,
              "uncertainty (one standard deviation, for a finger in the middle with 0.5 N normal and 0.25 N "
              "lateral force): "
@@ -68,6 +76,8 @@ void print(std::ostream& out, const ForceResult& result) {
 Json to_json(const ForceResult& result, const std::string& out) {
   Json json{{"file", out},
             {"zero_moved_mN", json_number(result.zero_moved_mN)},
+            {"resonance_Hz", result.resonance_Hz ? Json(json_number(*result.resonance_Hz)) : Json()},
+            {"usable_Hz", result.cells.usable_Hz ? Json(json_number(*result.cells.usable_Hz)) : Json()},
             {"misfit", {result.misfit[0], result.misfit[1], result.misfit[2]}},
             {"uncertainty",
              {{"normal_N", json_number(result.sd.normal_N)},

@@ -54,7 +54,8 @@ void preview_to_files(const Options& options, Context& context) {
     }
     fmt::print(context.out, "Scene {}\n", scene);
     for (const auto* list : {&look.facts, &look.cues})
-      for (const auto& [label, value] : *list) fmt::print(context.out, "  {}: {}\n", label, value);
+      for (const auto& [label, value] : *list)
+        fmt::print(context.out, "  {}: {}\n", texts::say(label, "en"), texts::say(value, "en"));
     write(folder / (scene + "-surface.svg"), desk::surface_svg(look, preview.rig()), context.out);
     write(folder / (scene + "-profile.svg"), plot::render(desk::profile_figure({look})), context.out);
     write(folder / (scene + "-spectrum.svg"), plot::render(desk::spectrum_figure(look)), context.out);

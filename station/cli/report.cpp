@@ -16,7 +16,7 @@
 #include "station/programs/program_estimator.hpp"
 #include "station/protocol/protocol.hpp"
 #include "station/report/html.hpp"
-#include "station/report/stored_trials.hpp"
+#include "station/report/stored_estimates.hpp"
 #include "station/store/read.hpp"
 #include "station/system/write_file.hpp"
 #include "station/terms/usage_error.hpp"
@@ -39,9 +39,9 @@ void add_estimates(const std::string& estimator, const std::string& database, co
                    report::SessionData& data) {
   const auto stored = store::read_session(database, session);
   const auto& start = stored.session.start;
-  const auto found = programs::estimated_by(
-      estimator, protocol::parse(start.protocol_text, start.protocol_path), stored.blocks);
-  report::add_estimator(found.program.name, found.estimates, data);
+  const auto protocol = protocol::parse(start.protocol_text, start.protocol_path);
+  const auto found = programs::estimated_by(estimator, protocol, stored.blocks);
+  report::add_estimator(found.program.name, found.estimates, protocol, data);
   data.facts.emplace_back("Estimator", fmt::format("{} {}, SHA-256 {}", found.program.name,
                                                    found.program.version, found.program.sha256));
 }
@@ -110,7 +110,8 @@ void print_study(std::ostream& out, const std::string& file, const report::Study
       fmt::print(out, "  {}: threshold of the group {} {}\n", name,
                  interval_in_words(value, interval.low, interval.high), study.settings.level_unit);
     }
-    for (const auto& statement : group.result.statements) fmt::print(out, "  {}: {}\n", name, statement.text);
+    for (const auto& statement : group.result.statements)
+      fmt::print(out, "  {}: {}\n", name, texts::say(statement.text, "en"));
   }
   for (const auto& effect : study.effects) {
     if (!effect.difference) continue;

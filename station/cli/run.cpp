@@ -67,8 +67,8 @@ void print_summary(std::ostream& out, const session::Summary& s) {
   using text::number;
   fmt::print(out, "Session {} ({}, {}): {}{}\n", s.session_id, s.protocol_id, s.run_mode,
              records::name(s.status), s.reason.empty() ? "" : ": " + s.reason);
-  fmt::print(out, "  participant {}, seed {}, {} blocks, {} trials in {} min\n", s.participant, s.seed,
-             s.blocks, s.trials, number(s.duration_s / 60, 3));
+  fmt::print(out, "  participant {}, seed {}, {} {}, {} trials in {} min\n", s.participant, s.seed, s.blocks,
+             s.blocks == 1 ? "block" : "blocks", s.trials, number(s.duration_s / 60, 3));
   fmt::print(out, "  {} answered, {} too late, {} too early, {} void\n", s.answered, s.timeouts,
              s.anticipations, s.voided);
   if (s.accuracy) fmt::print(out, "  {} % of the scored answers right\n", number(100 * *s.accuracy, 3));

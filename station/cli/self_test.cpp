@@ -49,8 +49,10 @@ void self_test(const Options& options, Context& context) {
                                          context.err);
   session::AskOperator asks;
   if (!options.unattended) asks = [&context](const session::Request& request) { ask(request, context.err); };
-  const auto checks = session::self_test(rig, asks, options.data);
-  const bool good = session::passed(checks);
+  const auto found = session::self_test(rig, asks, options.data);
+  const bool good = session::passed(found);
+  std::vector<records::CheckRow> checks;
+  for (const auto& check : found) checks.push_back(session::row_of(check));
   context.exit_code = good ? 0 : 1;
   if (context.json) {
     context.out << Json{{"rig", rig.name}, {"passed", good}, {"checks", to_json(checks)}}.dump(2) << "\n";

@@ -136,13 +136,13 @@ std::vector<CollectedTable> read_tables() {
 
 }  // namespace
 
-const Column& CollectedTable::column(const std::string& wanted) const {
+const Column& CollectedTable::column(std::string_view wanted) const {
   for (const auto& column : columns)
     if (column.name == wanted) return column;
-  throw std::logic_error("table " + name + " has no column " + wanted);
+  throw std::logic_error("table " + name + " has no column " + std::string(wanted));
 }
 
-bool CollectedTable::has(const std::string& wanted) const {
+bool CollectedTable::has(std::string_view wanted) const {
   return std::any_of(columns.begin(), columns.end(),
                      [&](const auto& column) { return column.name == wanted; });
 }
@@ -152,10 +152,10 @@ const std::vector<CollectedTable>& collected_tables() {
   return tables;
 }
 
-const CollectedTable& collected_table(const std::string& name) {
+const CollectedTable& collected_table(std::string_view name) {
   for (const auto& table : collected_tables())
     if (table.name == name) return table;
-  throw std::logic_error("table " + name + " is not collected");
+  throw std::logic_error("table " + std::string(name) + " is not collected");
 }
 
 std::string quoted(const std::string& name) { return '"' + name + '"'; }

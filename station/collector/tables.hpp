@@ -1,6 +1,7 @@
 #pragma once
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace turnpoint::collector {
@@ -47,8 +48,8 @@ struct CollectedTable {
   std::optional<ChainPart> chain;
   std::vector<Covered> provenance;  ///< columns that the first link of a session's checksum chain covers
 
-  const Column& column(const std::string& name) const;
-  bool has(const std::string& name) const;
+  const Column& column(std::string_view name) const;
+  bool has(std::string_view name) const;
 };
 
 /// Returns the collected tables. Each comes after those to which it refers. The list is made from the schema
@@ -56,7 +57,7 @@ struct CollectedTable {
 /// differ from the station's.
 const std::vector<CollectedTable>& collected_tables();
 
-const CollectedTable& collected_table(const std::string& name);
+const CollectedTable& collected_table(std::string_view name);
 
 /// Each returns names in double quotes, as PostgreSQL and SQLite both accept them; lists are separated by
 /// commas.

@@ -29,8 +29,8 @@ class Document {
   std::string written(const Path& path) const;
   /// Returns the value of a scalar, array or inline table.
   text::Value value(const Part& part) const;
-  /// Returns the path of the innermost part at this place. Lines and columns (characters) count from 1; without a
-  /// column, the beginning of the line counts. Empty if no key is there.
+  /// Returns the path of the innermost part at this place. Lines and columns (characters) count from 1;
+  /// without a column, the beginning of the line counts. Empty if no key is there.
   Path at(int line, int column = 0) const;
 
   /// Sets the value of a key; `value` is written as TOML. A key that does not exist yet is added after the

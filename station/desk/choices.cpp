@@ -1,6 +1,5 @@
 #include "station/desk/choices.hpp"
 
-#include <fmt/format.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -22,11 +21,12 @@ namespace fs = std::filesystem;
 namespace {
 
 using text::number;
+using texts::Phrase, texts::phrase, texts::plain;
 
-std::string range(const simulation::Spread& spread, double unit) {
-  const auto shown = [&](double value) { return number(std::round(value / unit * 10) / 10, 4); };
+Phrase range(const simulation::Spread& spread, double unit) {
+  const auto shown = [&](double value) { return plain(number(std::round(value / unit * 10) / 10, 4)); };
   const auto low = shown(spread.low), median = shown(spread.median), high = shown(spread.high);
-  return low == high ? median : median + " (" + low + " to " + high + ")";
+  return low == high ? median : phrase("check.range", {median, low, high});
 }
 
 std::string joined(const std::set<std::string>& list) {
@@ -45,10 +45,27 @@ void add_tones(const simulation::Check& check, CheckWords& words) {
     moved_um = std::max(moved_um, sight.displacement_um);
     friction = std::min(friction, sight.lowest_friction);
   }
-  words.facts.emplace_back("Tones", number(1e-3 * low, 4) + " to " + number(1e-3 * high, 4) + " kHz");
-  words.facts.emplace_back("Surface moves at most", number(moved_um, 3) + " \u00b5m");
-  words.facts.emplace_back("Lowest friction", number(friction, 3) + " of the surface at rest");
-  words.facts.emplace_back("Models", joined(check.survey.models));
+  const auto kHz = [](double Hz) { return plain(number(1e-3 * Hz, 4)); };
+  words.facts.emplace_back(phrase("check.tones"), phrase("check.kilohertz", {kHz(low), kHz(high)}));
+  words.facts.emplace_back(phrase("check.moves"), plain(number(moved_um, 3) + " \u00b5m"));
+  words.facts.emplace_back(phrase("check.friction"), phrase("check.of_rest", {plain(number(friction, 3))}));
+  words.facts.emplace_back(phrase("check.models"), plain(joined(check.survey.models)));
+}
+
+/// The visit to which a block belongs, its name and instruction, and its number of trials.
+Phrase describe(const simulation::CheckedBlock& block) {
+  Phrase title;
+  if (block.session > 0)
+    title.values.push_back({"check.session", "", {plain(std::to_string(block.session))}});
+  if (!block.group.empty()) {
+    if (!title.values.empty()) title.values.push_back(plain(", "));
+    title.values.push_back({"check.group", "", {plain(block.group)}});
+  }
+  if (!title.values.empty()) title.values.push_back(plain(": "));
+  title.values.push_back(plain(block.name));
+  if (!block.instruction.empty() && block.instruction != block.name)
+    title.values.push_back(plain(" (" + block.instruction + ")"));
+  return {"check.block_trials", "", {title, range(block.trials, 1)}};
 }
 
 void add_remarks(const std::vector<text::Problem>& problems, CheckWords::Remark::Kind kind,
@@ -131,23 +148,20 @@ CheckWords words_of(const simulation::Check& check) {
   add_remarks(check.warnings, Kind::warning, words);
   add_remarks(check.notes, Kind::note, words);
   if (!check.problems.empty()) return words;
-  words.facts.emplace_back("Rig", check.rig_name);
-  words.facts.emplace_back("Trials", range(check.trials, 1));
-  words.facts.emplace_back("Duration", range(check.duration_s, 60) + " min");
+  words.facts.emplace_back(phrase("operator.rig"), plain(check.rig_name));
+  words.facts.emplace_back(phrase("operator.trials"), range(check.trials, 1));
+  words.facts.emplace_back(phrase("check.duration"), phrase("check.minutes", {range(check.duration_s, 60)}));
   for (const auto& block : check.blocks)
-    words.facts.emplace_back(
-        block.practice ? "Practice" : "Block",
-        (block.visit.empty() ? "" : block.visit + ": ") + block.name +
-            (block.instruction.empty() || block.instruction == block.name ? ""
-                                                                          : " (" + block.instruction + ")") +
-            ", " + range(block.trials, 1) + " trials");
+    words.facts.emplace_back(phrase(block.practice ? "practice" : "design.keys.block"), describe(block));
   add_tones(check, words);
   for (const auto& cue : check.cues.reports) {
     const bool leaks = cue.above_chance();
-    words.cues.push_back({cue.cue,
-                          fmt::format("{} % right with this cue alone (chance {} %)",
-                                      std::lround(100 * cue.accuracy), std::lround(100 * cue.chance)),
-                          leaks, leaks ? cue_advice(cue.cue) : ""});
+    const auto percent = [](double share) { return plain(std::to_string(std::lround(100 * share))); };
+    const auto [name, advice] = cue_advice(cue.cue);
+    words.cues.push_back({name,
+                          {"check.alone", "", {percent(cue.accuracy), percent(cue.chance)}},
+                          leaks,
+                          leaks ? advice : Phrase()});
   }
   std::stable_sort(words.cues.begin(), words.cues.end(),
                    [](const auto& a, const auto& b) { return a.leaks > b.leaks; });

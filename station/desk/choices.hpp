@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "station/simulation/check.hpp"
+#include "station/texts/texts.hpp"
 
 namespace turnpoint::desk {
 
@@ -51,18 +52,18 @@ struct InterruptedNote {
 std::optional<InterruptedNote> interrupted_note(const std::string& database);
 
 /// The result of a check as texts for a page: what the session consists of, and which cues could give answers
-/// away.
+/// away. Problems, warnings and remarks are about places of a file, and in English.
 struct CheckWords {
   std::vector<std::string> problems, warnings;
   /// what the session consists of, as pairs of a label and a value
-  std::vector<std::pair<std::string, std::string>> facts;
+  std::vector<std::pair<texts::Phrase, texts::Phrase>> facts;
   /// An unwanted cue: `says` is the proportion correct of an observer who uses nothing but this cue, and
   /// `leaks` is true if that proportion is clearly above chance.
   struct Cue {
-    std::string name, says;
+    texts::Phrase name, says;
     bool leaks = false;
-    /// what the researcher can do about the cue; "" if the cue does not give answers away
-    std::string advice;
+    /// what the researcher can do about the cue; says nothing if the cue does not give answers away
+    texts::Phrase advice;
   };
   std::vector<Cue> cues;
   /// What the check says about one place of the protocol or of the rig. Problems come first, notes last.

@@ -1,10 +1,17 @@
 #pragma once
 #include <string>
 
+#include "station/texts/texts.hpp"
+
 namespace turnpoint::desk {
 
-/// Returns advice for the researcher about a cue that gives answers away. `cue` is the name of a
-/// simulation::CueReport. Throws std::logic_error for any other name.
-std::string cue_advice(const std::string& cue);
+/// What a page says about a cue that could give answers away: its name, and what the researcher can do about
+/// it.
+struct CueAdvice {
+  texts::Phrase name, advice;
+};
+/// Returns what a page says about a cue. `cue` is the name of a simulation::CueReport. Throws
+/// std::logic_error for any other name.
+CueAdvice cue_advice(const std::string& cue);
 
 }  // namespace turnpoint::desk

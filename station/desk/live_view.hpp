@@ -11,6 +11,8 @@
 #include <utility>
 #include <vector>
 
+#include "station/desk/finger_gauges.hpp"
+#include "station/desk/live_facts.hpp"
 #include "station/desk/preview.hpp"
 #include "station/desk/scene_figures.hpp"
 #include "station/plot/chart.hpp"
@@ -34,53 +36,25 @@ struct LiveState {
   Drawing profile, trace, times, strip;
 };
 
-/// What the live view keeps about a finished trial.
-struct LiveTrial {
-  std::string procedure;
-  std::optional<double> level;
-  std::optional<bool> correct;
-  std::optional<double> response_time_s, threshold_est, threshold_sd;
-  terms::Outcome outcome = terms::Outcome::answered;
-  terms::TrialType type = terms::TrialType::experimental;
-  double onset_s = 0, ended_s = 0;  ///< s from the start of the session
-  double stimulus_s = 0;            ///< duration for which the stimulus was presented
-  int xruns = 0, extra_touches = 0;
-  records::Proof proof = records::Proof::unproven;
-  std::string measured;  ///< what the pick-up measured, in words
-};
-
-/// Describes the progress of the session in words: accuracy, response times, lost frames. Pure.
-std::vector<std::pair<std::string, std::string>> course_of(const std::vector<LiveTrial>& trials);
-
-/// Describes how much of the rig's limits is used up. It considers the stimuli of the last 60 s and the
-/// largest displacement of the current trial (m).
-std::vector<std::pair<std::string, std::string>> limits_used(const std::vector<LiveTrial>& trials,
-                                                             std::optional<double> peak_displacement_m,
-                                                             const rig::Rig& rig);
-
-/// Describes what the sensors measured in a trial, next to the ranges that the protocol asks for. Pure.
-std::vector<std::pair<std::string, std::string>> sensors_of(const records::TrialRow& row,
-                                                            const std::optional<protocol::Sensing>& asked);
-
-/// live_trace() plots the levels in the order of the trials, one series per procedure. Open markers are wrong
-/// answers; a line shows the running estimate. live_times() plots the response times. Both are empty if there
-/// are no data.
-std::optional<plot::Figure> live_trace(const std::vector<LiveTrial>& trials, const std::string& label);
-std::optional<plot::Figure> live_times(const std::vector<LiveTrial>& trials);
-
 /// Describes and draws a running session for the operator, on its own thread. It reports a new state whenever
 /// something changes. While the participant moves a slider, it shows the newest setting five times a second.
 class LiveView : public session::Monitor {
  public:
   /// Receives each new state. Called on LiveView's own thread.
   using OnState = std::function<void(LiveState)>;
-  LiveView(const protocol::Protocol& protocol, const rig::Rig& rig, OnState on_state);
+  /// Receives the gauges whenever they change. Called on the session thread; must return at once.
+  using OnGauges = std::function<void(FingerGauges)>;
+  /// `language` is that of all texts and figures, such as "de".
+  LiveView(const protocol::Protocol& protocol, const rig::Rig& rig, OnState on_state,
+           std::string language = "en", OnGauges on_gauges = {});
   ~LiveView() override;
 
   void trial_begins(const trial::TrialSpec& spec, const protocol::Block& block,
                     const session::PlanAhead::Plans& plans) override;
   void surface_follows(const trial::TrialSpec& spec, const scene::DrivePlan& plan) override;
   void trial_ended(const trial::TrialSpec& spec, const records::TrialRow& row) override;
+  bool watches_finger() const override { return static_cast<bool>(on_gauges_); }
+  void finger_moved(const std::optional<session::FingerSeen>& finger) override;
 
  private:
   struct Begun {
@@ -106,6 +80,9 @@ class LiveView : public session::Monitor {
   void tell();
 
   OnState on_state_;
+  OnGauges on_gauges_;
+  std::optional<FingerGauges> gauges_;  ///< as they were last shown; used on the session thread alone
+  std::string language_;
   /// name of the factor that the first procedure varies, or "Level" if there is no procedure
   std::string level_;
   std::optional<protocol::Sensing> asked_;

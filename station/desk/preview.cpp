@@ -19,6 +19,7 @@ namespace turnpoint::desk {
 namespace {
 
 using text::number;
+using texts::Phrase, texts::phrase, texts::plain;
 
 protocol::FactorValue first_value(const protocol::Factor& factor) {
   if (!factor.levels.empty()) return factor.levels.front();
@@ -26,11 +27,19 @@ protocol::FactorValue first_value(const protocol::Factor& factor) {
   return 0.0;
 }
 
-std::string in_mm(const std::optional<double>& value_m, int digits = 5) {
-  return value_m ? number(1e3 * *value_m, digits) + " mm" : "none";
+Phrase shown(double value, int digits) { return plain(number(value, digits)); }
+
+Phrase in_mm(const std::optional<double>& value_m, int digits = 5) {
+  return value_m ? plain(number(1e3 * *value_m, digits) + " mm") : phrase("preview.none");
 }
 
-std::string um(double value_m) { return number(1e6 * value_m, 3) + " \u00b5m"; }
+Phrase um(double value_m) { return plain(number(1e6 * value_m, 3) + " \u00b5m"); }
+
+Phrase phrase_of(const physics::Warning& warning) {
+  std::vector<Phrase> values;
+  for (const auto& value : warning.values) values.push_back(plain(value));
+  return phrase("physics_warning." + warning.code, std::move(values));
+}
 
 std::optional<Knob> knob_of(const protocol::Factor& factor) {
   Knob knob;
@@ -52,36 +61,49 @@ std::optional<Knob> knob_of(const protocol::Factor& factor) {
   return knob;
 }
 
-/// Describes the scene in words.
-void describe(SceneLook& look) {
+void describe_plan(SceneLook& look) {
   const auto& plan = look.plan;
-  look.facts = {{"Boundary", in_mm(plan.boundary_m) + " (" + physics::format(plan.scene.edge) + ")"},
-                {"Model", plan.reason.empty() ? std::string(physics::name(plan.model)) : plan.reason},
-                {"Model error", "at most " + number(1e3 * plan.error_bound_m, 3) + " mm" +
-                                    (plan.inside_tolerance ? "" : ", EXCEEDS the scene's tolerance")},
-                {"Uncertain parameters", number(1e3 * plan.uncertainty_m, 3) + " mm (SD)"}};
+  const auto add = [&look](const char* label, Phrase value) {
+    look.facts.emplace_back(phrase(label), std::move(value));
+  };
+  add("preview.boundary",
+      {"", "", {in_mm(plan.boundary_m), plain(" (" + physics::format(plan.scene.edge) + ")")}});
+  add("preview.model", plain(std::string(physics::name(plan.model))));
+  add("preview.error", phrase(plan.inside_tolerance ? "preview.at_most_mm" : "preview.beyond_tolerance",
+                              {shown(1e3 * plan.error_bound_m, 3)}));
+  if (plan.cheaper)
+    add("preview.cheaper",
+        phrase("preview.cheaper_error", {plain(std::string(physics::name(plan.cheaper->model))),
+                                         shown(1e3 * plan.cheaper->boundary_bound_m, 3)}));
+  add("preview.uncertain", phrase("preview.mm_sd", {shown(1e3 * plan.uncertainty_m, 3)}));
   for (const auto& tone : plan.tones)
-    look.facts.emplace_back("Tone", number(1e-3 * tone.frequency_Hz, 6) + " kHz, drive " +
-                                        um(tone.amplitude_m) + " on " + tone.transducer + " (" +
-                                        number(100 * tone.full_scale, 3) + " % of full scale)");
+    add("preview.tone",
+        phrase("preview.tone_drive", {shown(1e-3 * tone.frequency_Hz, 6), um(tone.amplitude_m),
+                                      plain(tone.transducer), shown(100 * tone.full_scale, 3)}));
   if (plan.zone_friction)
-    look.facts.emplace_back("Zone", "mean friction " + number(*plan.zone_friction, 3) + ", rms " +
-                                        number(plan.residual.value_or(0), 2) + " about it");
-  look.facts.emplace_back(
-      "Surface", um(plan.peak_displacement_m) + " at most, crest factor " + number(plan.crest_factor, 3));
-  look.facts.emplace_back("Lowest friction", number(plan.lowest_friction, 3) + " of the surface at rest");
+    add("preview.zone", phrase("preview.zone_friction",
+                               {shown(*plan.zone_friction, 3), shown(plan.residual.value_or(0), 2)}));
+  add("preview.surface",
+      phrase("preview.crest", {um(plan.peak_displacement_m), shown(plan.crest_factor, 3)}));
+  add("preview.lowest_friction", phrase("preview.of_rest", {shown(plan.lowest_friction, 3)}));
   for (const auto& product : plan.audible_products)
-    look.facts.emplace_back("Audible product",
-                            number(product.frequency_Hz, 5) + " Hz, order " + std::to_string(product.order));
-  for (const auto& warning : plan.warnings) look.facts.emplace_back("Warning", warning.text);
-  const auto& cues = plan.cues;
-  look.cues = {{"Pitch", cues.pitch_Hz > 0 ? number(cues.pitch_Hz, 5) + " Hz" : "inaudible"},
-               {"Loudness", cues.pitch_Hz > 0 ? number(cues.loudness_dB, 3) + " dB re 1 \u00b5m" : "silent"},
-               {"Amplitude at the wide end", um(cues.wide_end_amplitude_m)},
-               {"Stripes at the wide end", in_mm(cues.stripe_pitch_m, 3) + " apart"},
-               {"Width of the edge", in_mm(cues.edge_width_m, 3)},
-               {"Strip width at the boundary", in_mm(cues.strip_width_m, 3)},
-               {"Displacement at the last maximum", um(cues.displacement_m)}};
+    add("preview.product", phrase("preview.product_order",
+                                  {shown(product.frequency_Hz, 5), plain(std::to_string(product.order))}));
+  for (const auto& warning : plan.warnings) add("preview.warning", phrase_of(warning));
+}
+
+void describe_cues(SceneLook& look) {
+  const auto& cues = look.plan.cues;
+  const bool heard = cues.pitch_Hz > 0;
+  look.cues = {{phrase("preview.pitch"),
+                heard ? plain(number(cues.pitch_Hz, 5) + " Hz") : phrase("preview.inaudible")},
+               {phrase("preview.loudness"),
+                heard ? plain(number(cues.loudness_dB, 3) + " dB re 1 \u00b5m") : phrase("preview.silent")},
+               {phrase("preview.amplitude"), um(cues.wide_end_amplitude_m)},
+               {phrase("preview.stripes"), phrase("preview.apart", {in_mm(cues.stripe_pitch_m, 3)})},
+               {phrase("preview.edge"), in_mm(cues.edge_width_m, 3)},
+               {phrase("preview.width"), in_mm(cues.strip_width_m, 3)},
+               {phrase("preview.last_maximum"), um(cues.displacement_m)}};
 }
 
 }  // namespace
@@ -172,7 +194,8 @@ SceneLook look_at(scene::DrivePlan planned, protocol::Factors factors, scene::Pl
   look.plan = std::move(planned);
   look.profile = planner.profile(look.plan, kProfilePoints);
   look.under = planner.under_finger(look.plan);
-  describe(look);
+  describe_plan(look);
+  describe_cues(look);
   return look;
 }
 

@@ -6,6 +6,7 @@
 #include "station/protocol/protocol.hpp"
 #include "station/rig/rig.hpp"
 #include "station/scene/planner.hpp"
+#include "station/texts/texts.hpp"
 
 namespace turnpoint::desk {
 
@@ -36,7 +37,7 @@ struct SceneLook {
   scene::UnderFinger under;
   /// facts about the scene and its cues, as pairs of a label and a value, in the order in which they are
   /// shown
-  std::vector<std::pair<std::string, std::string>> facts, cues;
+  std::vector<std::pair<texts::Phrase, texts::Phrase>> facts, cues;
 };
 
 constexpr int kProfilePoints = 401;

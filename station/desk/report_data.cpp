@@ -3,28 +3,67 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <concepts>
 #include <map>
 #include <set>
 #include <stdexcept>
 #include <string>
 
 #include "station/protocol/protocol.hpp"
+#include "station/report/stored_estimates.hpp"
 #include "station/report/stored_trials.hpp"
 #include "station/session/planned_session.hpp"
 #include "station/store/open.hpp"
 #include "station/store/stored_signals.hpp"
+#include "station/terms/limits.hpp"
 #include "station/text/number.hpp"
 
 namespace turnpoint::desk {
 
 namespace {
 
+using texts::Phrase, texts::phrase, texts::plain;
+
+Phrase whole(std::integral auto number) { return plain(std::to_string(number)); }
+
+/// Adds a part to a list, after a separator if there are others already.
+void append(Phrase& list, Phrase part, const char* separator = ", ") {
+  if (!list.values.empty()) list.values.push_back(plain(separator));
+  list.values.push_back(std::move(part));
+}
+Phrase or_none(Phrase list) { return list.values.empty() ? phrase("station.none") : list; }
+Phrase or_none(const std::string& text) { return text.empty() ? phrase("station.none") : plain(text); }
+
 /// Says by how many frames in total the participant's screen was late, according to the events in the log.
-std::string late_frames(const std::vector<records::EventRow>& events) {
+Phrase late_frames(const std::vector<records::EventRow>& events) {
   int frames = 0, trials = 0;
   for (const auto& event : events)
     if (event.kind == "frames_lost") frames += std::stoi(event.value), ++trials;
-  return frames == 0 ? "none" : std::to_string(frames) + " in " + std::to_string(trials) + " trials";
+  return frames == 0 ? phrase("station.none") : phrase("station.in_trials", {whole(frames), whole(trials)});
+}
+
+/// Says how many flashes were shown, and how long after their time; empty if there were none.
+std::optional<Phrase> flashes(const std::vector<records::EventRow>& events) {
+  std::vector<double> delays_s;
+  std::optional<double> light_s;
+  int late = 0;
+  for (const auto& event : events) {
+    const auto seconds = text::read_number(event.value);
+    if (event.kind == records::kDisplayLatencyEvent) light_s = seconds;
+    if (event.kind != records::kSignalShownEvent && event.kind != records::kSignalLateEvent) continue;
+    late += event.kind == records::kSignalLateEvent ? 1 : 0;
+    delays_s.push_back(seconds.value_or(0));
+  }
+  if (delays_s.empty()) return std::nullopt;
+  std::sort(delays_s.begin(), delays_s.end());
+  const auto ms = [](double s) { return plain(text::number(1e3 * s, 3)); };
+  Phrase list;
+  append(list, phrase("station.flashes_shown", {whole(delays_s.size()), ms(delays_s[delays_s.size() / 2]),
+                                                ms(delays_s.back()), whole(late), ms(terms::kSignalLate_s)}));
+  append(list,
+         light_s ? phrase("station.flash_light", {ms(*light_s)}) : phrase("station.flash_light_unknown"),
+         "; ");
+  return list;
 }
 
 /// Describes the largest model error and the largest uncertainty of the boundaries of the tones that were
@@ -41,8 +80,15 @@ std::string boundary_errors(const std::vector<store::BlockRecord>& blocks) {
          (uncertainty_mm > 0 ? text::number(uncertainty_mm, 3) + " mm (SD)" : std::string("not known"));
 }
 
+/// The numbers of trials by the words that the database has for them, such as "57 ok, 2 wire".
+Phrase counted(const std::map<std::string, int>& counts) {
+  Phrase list;
+  for (const auto& [word, count] : counts) append(list, plain(std::to_string(count) + " " + word));
+  return or_none(std::move(list));
+}
+
 /// Says how many trials the pick-ups have proven, and why others are flagged: "57 ok, 2 flagged (level)".
-std::string proofs(const std::vector<store::BlockRecord>& blocks) {
+Phrase proofs(const std::vector<store::BlockRecord>& blocks) {
   std::map<records::Proof, int> counts;
   std::map<records::Proof, std::map<std::string, int>> causes;
   for (const auto& block : blocks)
@@ -58,25 +104,22 @@ std::string proofs(const std::vector<store::BlockRecord>& blocks) {
       why += (why.empty() ? "" : ", ") + cause + (times > 1 ? " " + std::to_string(times) : "");
     if (!why.empty()) text += " (" + why + ")";
   }
-  return text.empty() ? "none" : text;
+  return or_none(text);
 }
 
 /// Says in how many trials the forces are known, and why they are not known in others, such as "57 ok, 2
 /// wire" for a broken wire.
-std::string forces(const std::vector<store::BlockRecord>& blocks) {
+Phrase forces(const std::vector<store::BlockRecord>& blocks) {
   std::map<std::string, int> counts;
   for (const auto& block : blocks)
     for (const auto& row : block.trials)
       if (!row.finger.sensing.empty()) ++counts[row.finger.sensing];
-  std::string text;
-  for (const auto& [state, count] : counts)
-    text += (text.empty() ? "" : ", ") + std::to_string(count) + " " + state;
-  return text.empty() ? "none" : text;
+  return counted(counts);
 }
 
 /// Says how many trigger codes were sent, how many of them were read back or missed, and how many were
 /// captured without having been sent.
-std::string triggers(const std::vector<records::EventRow>& events) {
+Phrase triggers(const std::vector<records::EventRow>& events) {
   int sent = 0, heard = 0, missed = 0, extra = 0;
   for (const auto& event : events) {
     if (event.kind == "trigger_missed") ++missed;
@@ -85,39 +128,40 @@ std::string triggers(const std::vector<records::EventRow>& events) {
     ++sent;
     if (event.value.find("read back") != std::string::npos) ++heard;
   }
-  if (sent + missed + extra == 0) return "none";
-  std::string text = std::to_string(sent) + " sent, ";
-  if (heard + missed + extra == 0) return text + "not read back";
-  return text + std::to_string(heard) + " read back, " + std::to_string(missed) + " missed, " +
-         std::to_string(extra) + " that were not sent";
+  if (sent + missed + extra == 0) return phrase("station.none");
+  if (heard + missed + extra == 0) return phrase("station.sent", {whole(sent)});
+  return phrase("station.sent_and_read", {whole(sent), whole(heard), whole(missed), whole(extra)});
 }
 
 /// Describes the result of the newest self-test: which checks failed, and how many were not possible.
-std::string self_test(const std::vector<records::EventRow>& events) {
+Phrase self_test(const std::vector<records::EventRow>& events) {
   const records::EventRow* newest = nullptr;
   for (const auto& event : events)
     if (event.kind == "self_test") newest = &event;
-  if (newest == nullptr) return "none";
+  if (newest == nullptr) return phrase("station.none");
   auto text = newest->value;
   int absent = 0;
   for (const auto& check : newest->checks) {
     if (check.verdict == records::Verdict::failed) text += "; " + check.name + ": " + check.what;
     if (check.verdict == records::Verdict::not_possible) ++absent;
   }
-  return text + "; " + std::to_string(newest->checks.size()) + " checks, " + std::to_string(absent) +
-         " not possible";
+  // What a failed check has found is stored in English.
+  const auto result = text == "passed" ? phrase("station.passed") : plain(text);
+  return phrase("station.checks", {result, whole(newest->checks.size()), whole(absent)});
 }
 
 /// Lists what was stated before the session about room, surface and finger.
-std::string conditions(const records::Conditions& stated) {
-  std::string text;
-  const auto add = [&text](const std::string& part) { text += (text.empty() ? "" : ", ") + part; };
-  if (stated.humidity_percent) add("humidity " + text::number(*stated.humidity_percent, 3) + " %");
-  if (stated.room_temperature_C) add(text::number(*stated.room_temperature_C, 3) + " °C");
-  if (stated.surface_cleaned) add(*stated.surface_cleaned ? "surface cleaned" : "surface not cleaned");
-  if (!stated.finger.empty()) add("finger " + stated.finger);
-  if (stated.skin_moisture) add("skin moisture " + text::number(*stated.skin_moisture, 4));
-  return text.empty() ? "not stated" : text;
+Phrase conditions(const records::Conditions& stated) {
+  Phrase list;
+  if (stated.humidity_percent)
+    append(list, phrase("station.humidity", {plain(text::number(*stated.humidity_percent, 3))}));
+  if (stated.room_temperature_C) append(list, plain(text::number(*stated.room_temperature_C, 3) + " °C"));
+  if (stated.surface_cleaned)
+    append(list, phrase(*stated.surface_cleaned ? "station.cleaned" : "station.not_cleaned"));
+  if (!stated.finger.empty()) append(list, phrase("station.finger", {plain(stated.finger)}));
+  if (stated.skin_moisture)
+    append(list, phrase("station.moisture", {plain(text::number(*stated.skin_moisture, 4))}));
+  return list.values.empty() ? phrase("station.not_stated") : list;
 }
 
 std::vector<report::MeasuredTrial> measured_trials(const std::vector<store::BlockRecord>& blocks) {
@@ -145,38 +189,39 @@ void add_health(const store::StoredSession& stored, report::SessionData& data) {
       // any
       offset_s = std::max(offset_s, row.response_offset_s);
     }
-  std::string qualities;
+  Phrase qualities;
   for (const auto& [name, count] : quality)
-    qualities += (qualities.empty() ? "" : ", ") + name + " (" + std::to_string(count) + ")";
+    append(qualities, plain(name + " (" + std::to_string(count) + ")"));
   int attempts = 0;
   for (const auto& block : stored.blocks) attempts += block.start.attempt > 0;
   const auto& start = stored.session.start;
-  data.health = {{"Trials stored", std::to_string(trials)},
-                 {"Vibration of the surface", proofs(stored.blocks)},
-                 {"Force cells", forces(stored.blocks)},
-                 {"Self-test", self_test(stored.events)},
-                 {"Room, surface and finger", conditions(start.conditions)},
-                 {"Trigger codes", triggers(stored.events)},
-                 {"Underruns and overruns", std::to_string(xruns)},
-                 {"Touches that were not answers", std::to_string(extra)},
-                 {"Late screen frames", late_frames(stored.events)},
-                 {"Times the session was resumed", std::to_string(stored.session.segments - 1)},
-                 {"Blocks that were restarted", std::to_string(attempts)},
-                 {"Response times stamped by", qualities.empty() ? "none" : qualities},
-                 {"Response offset (not subtracted)", text::number(offset_s, 4) + " s"},
-                 {"Calibration", start.calibration_id.value_or("none")},
-                 {"Real-time rights", start.realtime_rights},
-                 {"Kernel", start.kernel},
-                 {"Place in the counterbalancing",
-                  text::number(stored.session.sequence_index, 6) +
-                      (stored.session.leased_place ? ", leased from the collector: unique among its stations"
-                                                   : ", given by this station alone")},
-                 {"Planned session", start.planned_session ? std::to_string(*start.planned_session) : "none"},
-                 {"Group", start.group.empty() ? "none" : start.group},
-                 {"Checksum of the data", stored.session.checksum.empty()
-                                              ? "none, because an earlier release recorded the session"
-                                              : stored.session.checksum},
-                 {"Software", start.software_version}};
+  const auto add = [&data](const char* name, Phrase text) {
+    data.health.emplace_back(phrase(name), std::move(text));
+  };
+  add("station.trials", whole(trials));
+  add("station.vibration", proofs(stored.blocks));
+  add("station.forces", forces(stored.blocks));
+  add("operator.self_test", self_test(stored.events));
+  add("station.conditions", conditions(start.conditions));
+  add("station.triggers", triggers(stored.events));
+  add("station.xruns", whole(xruns));
+  add("live.other_touches", whole(extra));
+  add("station.late_frames", late_frames(stored.events));
+  if (auto shown = flashes(stored.events)) add("station.flashes", std::move(*shown));
+  add("station.resumed", whole(stored.session.segments - 1));
+  add("station.restarted", whole(attempts));
+  add("station.stamped", or_none(std::move(qualities)));
+  add("station.offset", plain(text::number(offset_s, 4) + " s"));
+  add("operator.calibration", or_none(start.calibration_id.value_or("")));
+  add("station.rights", plain(start.realtime_rights));
+  add("station.kernel", plain(start.kernel));
+  add("station.place", phrase(stored.session.leased_place ? "station.leased" : "station.given",
+                              {plain(text::number(stored.session.sequence_index, 6))}));
+  add("station.planned", start.planned_session ? whole(*start.planned_session) : phrase("station.none"));
+  add("station.group", or_none(start.group));
+  add("station.checksum",
+      stored.session.checksum.empty() ? phrase("station.no_checksum") : plain(stored.session.checksum));
+  add("station.software", plain(start.software_version));
 }
 
 /// Adds friction along the strip, from the stored signals of those trials that the report's section on the
@@ -206,7 +251,8 @@ std::vector<analysis::FrictionCurve> curves_of(const session::AlongStrip& along)
     auto curve = along.curve(direction);
     if (curve.friction.empty()) continue;
     curves.push_back({direction > 0 ? "towards the narrow end" : "towards the wide end",
-                      std::move(curve.from_boundary_mm), std::move(curve.friction), std::move(curve.se)});
+                      std::move(curve.from_boundary_mm), std::move(curve.friction), std::move(curve.se),
+                      direction > 0});
   }
   return curves;
 }
@@ -221,6 +267,19 @@ void add_programs(const std::vector<records::EventRow>& events, report::SessionD
           program.procedure.empty() ? "Program of the observer" : "Program of " + program.procedure;
       if (told.insert(name + fact).second) data.facts.emplace_back(name, std::move(fact));
     }
+}
+
+void add_own_estimates(const std::string& database, const store::StoredSession& stored,
+                       const protocol::Protocol& protocol, report::SessionData& data) {
+  procedure::EarlierTrials earlier;
+  try {
+    earlier = session::earlier_trials(database, protocol, stored.session);
+  } catch (const std::runtime_error&) {
+    // The earlier sessions cannot be repeated by this program. The report then has no estimates of procedures
+    // that continue.
+  }
+  report::add_estimates(stored.blocks, protocol, stored.session.start.seed, earlier, data);
+  report::add_program_estimates(stored.blocks, stored.events, protocol, data);
 }
 
 report::SessionData report_data(const std::string& database, const std::string& session_id) {
@@ -248,14 +307,8 @@ report::SessionData report_data(const std::string& database, const std::string& 
               (answer.occasion > 0 ? " (after block " + std::to_string(answer.occasion) + ")" : ""),
           answer.answer);
   data.seed = start.seed;
-  try {
-    data.earlier = session::earlier_trials(database, protocol, stored.session);
-  } catch (const std::runtime_error&) {
-    // The earlier sessions cannot be repeated by this program. The report then has no estimates of procedures
-    // that continue.
-  }
   report::add_trials(stored.blocks, protocol, data);
-  report::add_program_estimates(stored.blocks, stored.events, data);
+  add_own_estimates(database, stored, protocol, data);
   add_programs(stored.events, data);
   add_health(stored, data);
   data.measured = measured_trials(stored.blocks);

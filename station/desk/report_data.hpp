@@ -2,6 +2,7 @@
 #include <string>
 #include <vector>
 
+#include "station/protocol/protocol.hpp"
 #include "station/report/summary.hpp"
 #include "station/session/along_strip.hpp"
 #include "station/store/read.hpp"
@@ -12,6 +13,10 @@ namespace turnpoint::desk {
 /// with the session. If a block was repeated, its last attempt counts. Throws StoreError, or text::BadInput
 /// if this program can no longer read the protocol text.
 report::SessionData report_data(const std::string& database, const std::string& session_id);
+
+/// Adds to `data` what the procedures of a stored session, and its separate programs, estimated themselves.
+void add_own_estimates(const std::string& database, const store::StoredSession& stored,
+                       const protocol::Protocol& protocol, report::SessionData& data);
 
 /// Returns the friction along the strip as curves for a report, one for each direction in which there were
 /// strokes.

@@ -8,11 +8,14 @@
 #include "physics/surface.hpp"
 #include "station/plot/palette.hpp"
 #include "station/plot/svg.hpp"
+#include "station/report/words.hpp"
 #include "station/text/number.hpp"
 
 namespace turnpoint::desk {
 
 namespace {
+
+using report::Words;
 
 const std::string kInk = "#16202a", kQuiet = "#3f4a54", kAccent = "#b3400a", kPaper = "#ffffff";
 
@@ -21,7 +24,6 @@ plot::Paint stroke(const std::string& colour, double width, const std::string& d
 }
 plot::Paint fill(const std::string& colour, double opacity = 1) { return {"", colour, 1, "", opacity}; }
 
-const std::string kMark = "mark";
 // text size of the label with the boundary's position, and the label's distance from the strip
 constexpr double kName_px = 14, kNameAbove_px = 20;
 
@@ -113,28 +115,30 @@ void draw_transducer(plot::Canvas& canvas, const Place& at) {
 
 /// Draws the mark beside the strip, to which a question can refer, where the participant sees it. Its name is
 /// on the side away from the boundary.
-void draw_mark(plot::Canvas& canvas, const SceneLook& look, const Place& at) {
+void draw_mark(plot::Canvas& canvas, const SceneLook& look, const Place& at, const std::string& name) {
   const auto mark = mark_of(look);
   if (!mark || *mark <= 0 || *mark >= at.length_m) return;
   const auto [x, y] = at.above(*mark, 3);
   canvas.polygon({{x, y}, {x - 6, y - 9}, {x + 6, y - 9}}, fill(kInk));
   const bool to_left = look.plan.boundary_m && at.x(*look.plan.boundary_m) >= x;
-  canvas.text({to_left ? x - 10 : x + 10, y - 3}, kMark, 12,
-              to_left ? plot::Anchor::end : plot::Anchor::start, kInk);
+  canvas.text({to_left ? x - 10 : x + 10, y - 3}, name, 12, to_left ? plot::Anchor::end : plot::Anchor::start,
+              kInk);
 }
 
 /// Returns the y coordinate of the boundary's name. If the name would overlap the mark (the place that a
 /// question refers to) or the mark's name, it moves up above both.
-double boundary_name_y(const SceneLook& look, const Place& at, const std::string& name) {
+double boundary_name_y(const SceneLook& look, const Place& at, const std::string& name,
+                       const std::string& mark_name) {
   const double boundary = *look.plan.boundary_m, own = at.above(boundary).second;
   const auto mark = mark_of(look);
   if (!mark) return own - kNameAbove_px;
-  const double reach = 0.5 * plot::text_width(name, kName_px) + 10 + plot::text_width(kMark, 12);
+  const double reach = 0.5 * plot::text_width(name, kName_px) + 10 + plot::text_width(mark_name, 12);
   const bool near = std::abs(at.x(*mark) - at.x(boundary)) < reach;
   return (near ? std::min(own, at.above(*mark).second) : own) - kNameAbove_px;
 }
 
-void draw_boundary(plot::Canvas& canvas, const SceneLook& look, const Place& at) {
+void draw_boundary(plot::Canvas& canvas, const SceneLook& look, const Place& at,
+                   const std::string& mark_name) {
   for (const auto& tone : look.plan.tones)
     if (tone.turning_point_m)
       canvas.line(at.below(*tone.turning_point_m, -0.4 * at.half(*tone.turning_point_m)),
@@ -147,24 +151,23 @@ void draw_boundary(plot::Canvas& canvas, const SceneLook& look, const Place& at)
                    fill(kAccent, 0.25));
   }
   const auto name = text::number(1e3 * b, 5) + " mm";
-  const double name_y = boundary_name_y(look, at, name);
+  const double name_y = boundary_name_y(look, at, name, mark_name);
   canvas.line({at.x(b), name_y + 5}, at.below(b, 6), stroke(kAccent, 2.4));
   canvas.text({at.x(b), name_y}, name, kName_px, plot::Anchor::middle, kAccent, 600);
 }
 
 void draw_surface(plot::Canvas& canvas, const SceneLook& look, const rig::Rig& rig, double width_px,
-                  double height_px) {
+                  double height_px, const Words& words) {
   canvas.begin(width_px, height_px, "Surface from above, scene " + look.scene);
   canvas.rectangle({0, 0}, width_px, height_px, fill(kPaper));
   const auto at = place_on(rig, width_px, height_px);
   draw_transducer(canvas, at);
   draw_heat(canvas, look, at);
   draw_scale(canvas, at);
-  draw_mark(canvas, look, at);
-  draw_boundary(canvas, look, at);
+  draw_mark(canvas, look, at, words("figure.mark"));
+  draw_boundary(canvas, look, at, words("figure.mark"));
   if (height_px < kCaptionFrom_px) return;
-  canvas.text({width_px / 2, height_px - 10}, "mm from the wide end; darker places move more", 12,
-              plot::Anchor::middle, kQuiet);
+  canvas.text({width_px / 2, height_px - 10}, words("figure.surface"), 12, plot::Anchor::middle, kQuiet);
 }
 
 }  // namespace
@@ -180,28 +183,29 @@ Drawing drawing_of(plot::Figure figure) {
   };
 }
 
-Drawing drawing_of_surface(const SceneLook& look, const rig::Rig& rig) {
+Drawing drawing_of_surface(const SceneLook& look, const rig::Rig& rig, const std::string& language) {
   require_plan(look);
-  return [look, rig](plot::Canvas& canvas, double width_px, double height_px) {
+  return [look, rig, words = Words(language)](plot::Canvas& canvas, double width_px, double height_px) {
     // Scale and labels need at least 240 x 84 px. For a smaller size, draw larger and scale down.
     const double larger = std::max({1.0, 240 / width_px, 84 / height_px});
-    draw_surface(canvas, look, rig, larger * width_px, larger * height_px);
+    draw_surface(canvas, look, rig, larger * width_px, larger * height_px, words);
   };
 }
 
 std::string surface_svg(const SceneLook& look, const rig::Rig& rig, double width_px, double height_px) {
   require_plan(look);
   plot::Svg svg;
-  draw_surface(svg, look, rig, width_px, height_px);
+  draw_surface(svg, look, rig, width_px, height_px, Words("en"));
   return svg.finish();
 }
 
-plot::Figure profile_figure(const std::vector<SceneLook>& looks) {
+plot::Figure profile_figure(const std::vector<SceneLook>& looks, const std::string& language) {
+  const Words words(language);
   if (looks.empty()) throw std::invalid_argument("there is no scene to draw");
   plot::Figure figure;
   figure.title = "Displacement and friction";
-  plot::Chart displacement{"Displacement without a finger", {}, {"Displacement (\u00b5m)", 0, 1}, {}};
-  plot::Chart friction{"Friction under a fingertip", {}, {"Friction, relative", 0, 1.2}, {}};
+  plot::Chart displacement{words("figure.displacement_free"), {}, {words("figure.displacement"), 0, 1}, {}};
+  plot::Chart friction{words("figure.friction_under"), {}, {words("figure.friction"), 0, 1.2}, {}};
   const bool several = looks.size() > 1;
   double most_um = 0;
   for (std::size_t i = 0; i < looks.size(); ++i) {
@@ -225,11 +229,11 @@ plot::Figure profile_figure(const std::vector<SceneLook>& looks) {
   }
   if (most_um > 0) displacement.y.high = 1.15 * most_um;
   for (auto* panel : {&displacement, &friction}) {
-    panel->x = {"Distance from the wide end (mm)", 0, 1e3 * looks.front().profile.x_m.back()};
+    panel->x = {words("figure.from_wide"), 0, 1e3 * looks.front().profile.x_m.back()};
     for (const auto& look : looks)
       if (look.plan.boundary_m)
         panel->layers.push_back(plot::Rule{plot::Rule::Direction::vertical, 1e3 * *look.plan.boundary_m,
-                                           several ? "" : "boundary"});
+                                           several ? "" : words("figure.boundary")});
     figure.charts.push_back(std::move(*panel));
   }
   figure.columns = 2;
@@ -237,7 +241,8 @@ plot::Figure profile_figure(const std::vector<SceneLook>& looks) {
   return figure;
 }
 
-plot::Figure spectrum_figure(const SceneLook& look) {
+plot::Figure spectrum_figure(const SceneLook& look, const std::string& language) {
+  const Words words(language);
   require_plan(look);
   plot::Points points;
   double most = 0;
@@ -249,14 +254,14 @@ plot::Figure spectrum_figure(const SceneLook& look) {
     most = std::max(most, 1e6 * tone.amplitude_m);
   }
   plot::Chart panel;
-  panel.title = "Drive";
-  panel.x = plot::fitted("Frequency (kHz)", points.x, 0.3);
-  panel.y = {"Drive edge (\u00b5m)", 0, most > 0 ? 1.2 * most : 1};
+  panel.title = words("figure.drive");
+  panel.x = plot::fitted(words("figure.frequency"), points.x, 0.3);
+  panel.y = {words("figure.drive_edge"), 0, most > 0 ? 1.2 * most : 1};
   for (const auto& tone : look.plan.tones)
     if (tone.nearest_resonance_Hz && 1e-3 * *tone.nearest_resonance_Hz > panel.x.low &&
         1e-3 * *tone.nearest_resonance_Hz < panel.x.high && look.plan.tones.size() == 1)
-      panel.layers.push_back(
-          plot::Rule{plot::Rule::Direction::vertical, 1e-3 * *tone.nearest_resonance_Hz, "resonance"});
+      panel.layers.push_back(plot::Rule{plot::Rule::Direction::vertical, 1e-3 * *tone.nearest_resonance_Hz,
+                                        words("figure.resonance")});
   panel.layers.push_back(points);
   plot::Figure figure;
   figure.title = "Tones, scene " + look.scene;

@@ -9,14 +9,14 @@
 
 namespace turnpoint::desk {
 
-// Figures of a planned scene, for the screen and for files. All functions throw std::invalid_argument if the
-// scene has a problem instead of a plan.
+// Figures of a planned scene, for the screen and for files, in a language such as "de". All functions throw
+// std::invalid_argument if the scene has a problem instead of a plan.
 
 /// Draws a figure at about the given size, with text of 12 px. The layout of the figure depends on that size.
 using Drawing = std::function<void(plot::Canvas& canvas, double width_px, double height_px)>;
 Drawing drawing_of(plot::Figure figure);
 /// Returns the picture of surface_svg() as a Drawing, for the screen.
-Drawing drawing_of_surface(const SceneLook& look, const rig::Rig& rig);
+Drawing drawing_of_surface(const SceneLook& look, const rig::Rig& rig, const std::string& language = "en");
 
 /// Returns an SVG document that shows the surface from above, to scale along its length. It contains a heat
 /// map of the displacement, the boundary with its model error, the turning points of the tones, and the mark,
@@ -26,9 +26,9 @@ std::string surface_svg(const SceneLook& look, const rig::Rig& rig, double width
 
 /// Plots displacement and friction along the centre line, with the boundary. Several scenes are numbered in
 /// the order of presentation. Throws std::invalid_argument if `looks` is empty.
-plot::Figure profile_figure(const std::vector<SceneLook>& looks);
+plot::Figure profile_figure(const std::vector<SceneLook>& looks, const std::string& language = "en");
 
 /// Plots the drive's tones: displacement of the drive edge against frequency.
-plot::Figure spectrum_figure(const SceneLook& look);
+plot::Figure spectrum_figure(const SceneLook& look, const std::string& language = "en");
 
 }  // namespace turnpoint::desk

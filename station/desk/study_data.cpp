@@ -7,6 +7,7 @@
 #include <map>
 #include <set>
 
+#include "station/desk/report_data.hpp"
 #include "station/protocol/protocol.hpp"
 #include "station/report/stored_trials.hpp"
 #include "station/store/read.hpp"
@@ -124,14 +125,29 @@ protocol::Protocol by_group(protocol::Protocol protocol) {
   return protocol;
 }
 
-/// Returns the trials of all sessions of one participant.
-report::SessionData data_of(const std::string& person, const std::vector<Found>& sessions,
-                            const protocol::Protocol& protocol) {
+/// Adds what the procedures of a session estimated themselves.
+void add_own(const std::string& database, const store::StoredSession& stored,
+             const protocol::Protocol& protocol, std::vector<report::SessionEstimate>& all) {
+  report::SessionData own;
+  add_own_estimates(database, stored, protocol, own);
+  for (auto& estimate : own.estimates) all.push_back({stored.session.session_id, std::move(estimate)});
+}
+
+/// The trials of all sessions of one participant, and the procedures' own estimates of each session.
+struct PersonData {
   report::SessionData all;
+  std::vector<report::SessionEstimate> estimates;
+};
+
+PersonData data_of(const std::string& person, const std::vector<Found>& sessions,
+                   const protocol::Protocol& protocol) {
+  PersonData data;
+  auto& all = data.all;
   std::vector<records::BlockRecord> blocks;
   int trials = 0, first_block = 0;
   for (const auto& found : sessions) {
     auto stored = store::read_session(found.database, found.session.session_id);
+    add_own(found.database, stored, protocol, data.estimates);
     int last_block = first_block;
     for (auto& block : stored.blocks) {
       block.start.block_index += first_block;
@@ -145,9 +161,8 @@ report::SessionData data_of(const std::string& person, const std::vector<Found>&
   all.title = protocol.title;
   all.participant = person;
   report::add_trials(blocks, protocol, all);
-  // estimates of procedures and forces cannot be combined over sessions, so leave them out
-  all.estimates.clear(), all.finger.clear();
-  return all;
+  all.finger.clear();  // forces cannot be combined over sessions
+  return data;
 }
 
 report::Study head_of(const StudyChoice& choice, const std::vector<Found>& all, int copies) {
@@ -166,8 +181,8 @@ report::Study head_of(const StudyChoice& choice, const std::vector<Found>& all, 
                  {"Recorded by version", fmt::format("{}", fmt::join(versions, ", "))}};
   if (copies > 0)
     study.statements.push_back(
-        {"copies", fmt::format("{} session{} in more than one file and count{} once.", copies,
-                               copies == 1 ? " is" : "s are", copies == 1 ? "s" : "")});
+        {"copies", texts::phrase(copies == 1 ? "statement.one_copy" : "statement.copies",
+                                 {texts::plain(std::to_string(copies))})});
   return study;
 }
 
@@ -188,17 +203,18 @@ report::Study study_data(const StudyChoice& choice, const StudySink& sink, const
   for (const auto& [person, sessions] : people) {
     if (!progress(done, static_cast<int>(people.size()))) {
       study.statements.push_back(
-          {"stopped",
-           fmt::format("Stopped after {} of {} participants; the others are missing.", done, people.size())});
+          {"stopped", texts::phrase("statement.stopped", {texts::plain(std::to_string(done)),
+                                                          texts::plain(std::to_string(people.size()))})});
       break;
     }
     ++done;
-    auto data = data_of(person, sessions, protocol);
+    auto [data, estimates] = data_of(person, sessions, protocol);
     const bool incomplete = std::any_of(sessions.begin(), sessions.end(), [](const Found& found) {
       return found.session.status != records::SessionStatus::completed;
     });
     auto result = report::study_person(data, rules, incomplete);
     for (const auto& found : sessions) result.sessions.push_back(found.session.session_id);
+    result.estimates = std::move(estimates);
     result.group = sessions.front().session.start.group;
     sink(result, data);
     study.persons.push_back(std::move(result));

@@ -59,8 +59,7 @@ CaptureCounters DeviceCapture::counters() const noexcept {
 }
 
 std::vector<system::MemoryRange> DeviceCapture::memory() const {
-  return {system::range_of(*device_), system::range_of(period_), system::range_of(*outgoing_),
-          system::range_of(*blocks_)};
+  return {system::range_of(*device_), system::range_of(period_), system::range_of(*blocks_)};
 }
 
 void DeviceCapture::step() noexcept {
@@ -107,13 +106,15 @@ void DeviceCapture::push(std::int64_t frames) noexcept {
   const std::int64_t most = CapturedBlock::kSamples / config_.channels;
   for (std::int64_t at = 0; at < frames; at += most) {
     const std::int64_t some = std::min(most, frames - at);
-    outgoing_->first_frame = frames_.load();
-    outgoing_->numbering = numbering_.load();
-    outgoing_->count = static_cast<std::int32_t>(some * config_.channels);
-    std::copy_n(period_.begin() + at * config_.channels, outgoing_->count, outgoing_->samples.begin());
-    // the ring is full, because nobody has taken blocks for too long
-    if (!blocks_->push(*outgoing_)) return lose(frames - at);
-    frames_.store(outgoing_->first_frame + some);
+    const std::int64_t first = frames_.load();
+    const bool pushed = blocks_->fill([&](CapturedBlock& block) {
+      block.first_frame = first;
+      block.numbering = numbering_.load();
+      block.count = static_cast<std::int32_t>(some * config_.channels);
+      std::copy_n(period_.begin() + at * config_.channels, block.count, block.samples.begin());
+    });
+    if (!pushed) return lose(frames - at);  // the ring is full: nobody has taken blocks for too long
+    frames_.store(first + some);
   }
 }
 

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "station/drive/block_ring.hpp"
 #include "station/drive/output.hpp"
-#include "station/drive/ring.hpp"
 #include "station/system/memory_range.hpp"
 #include "station/system/rights.hpp"
 
@@ -30,6 +30,9 @@ struct CapturedBlock {
   }
 };
 
+/// The blocks that wait between the capture thread and the thread that uses them: 0.7 s for six channels.
+using CaptureRing = BlockRing<CapturedBlock, 1024>;
+
 struct CaptureCounters {
   std::int64_t frames = 0;        ///< frames captured or lost so far
   std::int64_t overruns = 0;      ///< gaps for which the device said how many frames were lost
@@ -44,8 +47,9 @@ struct CaptureCounters {
 class Capture {
  public:
   virtual ~Capture() = default;
-  /// Takes the oldest block that has not been taken yet. Returns false if there is none. Wait-free.
-  [[nodiscard]] virtual bool take(CapturedBlock& block) noexcept = 0;
+  /// Takes the oldest block that has not been taken yet. Returns null if there is none. The block is valid
+  /// until the next call. Wait-free.
+  [[nodiscard]] virtual const CapturedBlock* take() noexcept = 0;
   virtual CaptureCounters counters() const noexcept = 0;
   virtual system::Rights rights() const = 0;
 };
@@ -65,7 +69,7 @@ class DeviceCapture : public Capture {
   /// lock, except while it tries to open a lost device again.
   void step() noexcept;
 
-  bool take(CapturedBlock& block) noexcept override { return blocks_->pop(block); }
+  const CapturedBlock* take() noexcept override { return blocks_->take(); }
   CaptureCounters counters() const noexcept override;
   system::Rights rights() const override { return {}; }
 
@@ -85,8 +89,7 @@ class DeviceCapture : public Capture {
   OutputConfig config_;
   std::unique_ptr<Device> device_;
   std::vector<std::int32_t> period_;
-  std::unique_ptr<CapturedBlock> outgoing_ = std::make_unique<CapturedBlock>();
-  std::unique_ptr<Ring<CapturedBlock, 1024>> blocks_ = std::make_unique<Ring<CapturedBlock, 1024>>();
+  std::unique_ptr<CaptureRing> blocks_ = std::make_unique<CaptureRing>();
   std::atomic<std::int64_t> frames_{0}, overruns_{0}, lost_frames_{0}, unknown_gaps_{0};
   std::atomic<std::uint32_t> numbering_{0};
   std::atomic<bool> present_{true};

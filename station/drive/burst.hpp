@@ -63,6 +63,18 @@ struct MaskingNoise {
   std::uint64_t seed = 1;
 };
 
+/// A short tone on headphones that asks for an answer. It begins at `at_frame` (counted from the burst's
+/// first frame) with a ramp of its own, so that its onset does not depend on the burst's ramps. If the burst
+/// is stopped, so is the tone. Amplitude 0 means no tone.
+struct SignalTone {
+  std::int32_t channel = 1;
+  double amplitude = 0;
+  double frequency_Hz = 1000;
+  std::int64_t at_frame = 0;
+  std::int64_t frames = 9600;
+  Ramp ramp{960};
+};
+
 /// Describes one stimulus. `start_frame` counts from the opening of the stream. The length includes both
 /// ramps.
 struct Burst {
@@ -74,6 +86,7 @@ struct Burst {
   std::int32_t change_count = 0;
   Marker marker;
   MaskingNoise noise;
+  SignalTone signal;
 };
 
 static_assert(std::is_trivially_copyable_v<Burst>);

@@ -44,12 +44,15 @@ Channels sum_of(const std::array<PreparedTone, max_tones>& tones, int count) {
   return sum;
 }
 
-Channels with_marker_and_noise(Channels tones, const PreparedBurst& burst) {
+// Adds the marker, the noise and the signal to the tones.
+Channels with_extras(Channels tones, const PreparedBurst& burst) {
   if (burst.marker.kind != MarkerKind::none)
     tones[static_cast<std::size_t>(burst.marker.channel)] += std::abs(burst.marker.amplitude);
   if (burst.noise.gain > 0)
     tones[static_cast<std::size_t>(burst.noise.channel)] +=
         burst.noise.gain * impulse_response(burst.noise).magnitude;
+  if (burst.signal.amplitude > 0)
+    tones[static_cast<std::size_t>(burst.signal.channel)] += burst.signal.amplitude;
   return tones;
 }
 
@@ -63,11 +66,11 @@ std::array<double, max_channels> peak_bound(const PreparedBurst& burst) {
     const Channels sum = sum_of(burst.changes[k].to, burst.changes[k].count);
     for (std::size_t c = 0; c < max_channels; ++c) largest[c] = std::max(largest[c], sum[c]);
   }
-  return with_marker_and_noise(largest, burst);
+  return with_extras(largest, burst);
 }
 
 std::array<double, max_channels> peak_bound(const PreparedBurst& burst, const PreparedChange& change) {
-  return with_marker_and_noise(sum_of(change.to, change.count), burst);
+  return with_extras(sum_of(change.to, change.count), burst);
 }
 
 std::array<double, max_channels> rendered_peak(const PreparedBurst& burst, const Format& format) {

@@ -177,6 +177,23 @@ PreparedNoise prepare(const MaskingNoise& noise, const Format& format, const Syn
   return out;
 }
 
+PreparedSignal prepare(const SignalTone& signal, const Burst& burst, const Format& format,
+                       const SynthLimits& limits) {
+  if (signal.amplitude == 0) return {};
+  check_channel("signal", signal.channel, format);
+  check_frequency("signal", signal.frequency_Hz, format, limits);
+  if (!(signal.amplitude > 0 && signal.amplitude <= 1))
+    refuse("signal with amplitude {}; the amplitude must be from 0 to 1", signal.amplitude);
+  if (signal.at_frame < 0 || signal.frames < 1 || signal.at_frame + signal.frames > burst.length_frames)
+    refuse("signal at frame {} with a length of {} frames; it must lie within the burst's {} frames",
+           signal.at_frame, signal.frames, burst.length_frames);
+  if (signal.ramp.frames < 0 || signal.ramp.frames > signal.frames / 2)
+    refuse("ramps of {} frames in a signal of {} frames; a ramp may take at most half of the signal",
+           signal.ramp.frames, signal.frames);
+  return {signal.channel,  signal.amplitude, phase_increment(signal.frequency_Hz, format.rate_Hz),
+          signal.at_frame, signal.frames,    signal.ramp};
+}
+
 void check_shape(const Burst& burst, const SynthLimits& limits) {
   if (burst.start_frame < 0) refuse("start frame {}; it must not be negative", burst.start_frame);
   if (burst.length_frames < 1 || burst.length_frames > limits.longest_frames)
@@ -205,6 +222,7 @@ PreparedBurst prepare(const Burst& burst, const Format& format, const SynthLimit
   prepare_changes(burst, format, limits, out);
   out.marker = prepare(burst.marker, burst, format, limits);
   out.noise = prepare(burst.noise, format, limits);
+  out.signal = prepare(burst.signal, burst, format, limits);
   out.peak = peak_bound(out);
   const auto above = [&](double peak) { return peak > largest; };
   if (std::any_of(out.peak.begin(), out.peak.end(), above) &&

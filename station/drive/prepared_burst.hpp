@@ -78,6 +78,15 @@ struct PreparedMarker {
   std::array<std::uint32_t, max_changes + 1> patterns{};  ///< pulse patterns of the codes (trigger_code.hpp)
 };
 
+struct PreparedSignal {
+  std::int32_t channel = 0;
+  double amplitude = 0;
+  std::uint64_t increment = 0;
+  std::int64_t at_frame = 0;
+  std::int64_t frames = 0;
+  Ramp ramp;
+};
+
 /// A checked burst, ready for the audio thread. It contains only plain integers and doubles, and the audio
 /// thread need not check anything.
 struct PreparedBurst {
@@ -91,6 +100,7 @@ struct PreparedBurst {
   std::array<PreparedChange, max_changes> changes{};
   PreparedMarker marker;
   PreparedNoise noise;
+  PreparedSignal signal;
   std::array<double, max_channels>
       /// largest sample of each channel (or an upper limit of it, if that is below the allowed peak)
       peak{};

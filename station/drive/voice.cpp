@@ -146,6 +146,14 @@ void Voice::tones(std::int64_t at, int offset, int count, Scratch& scratch, cons
   }
 }
 
+// Returns the product of the ramps of all stops at frame `at`.
+double Voice::stop_gain(std::int64_t at) const noexcept {
+  double gain = 1;
+  for (std::size_t s = 0; s < stop_count_; ++s)
+    if (at >= stops_[s].at) gain *= ramp_at(stops_[s].end() - 1 - at, stops_[s].ramp.frames);
+  return gain;
+}
+
 // Computes the product of all ramps that overlap these frames. Returns false if no ramp does: the gain is
 // then 1.
 bool Voice::gains(std::int64_t at, int count, Scratch& scratch) const noexcept {
@@ -158,8 +166,7 @@ bool Voice::gains(std::int64_t at, int count, Scratch& scratch) const noexcept {
     double gain = 1;
     if (f < ramp) gain *= ramp_at(f, ramp);
     if (f >= fall) gain *= ramp_at(burst_.length_frames - 1 - f, ramp);
-    for (std::size_t s = 0; s < stop_count_; ++s)
-      if (f >= stops_[s].at) gain *= ramp_at(stops_[s].end() - 1 - f, stops_[s].ramp.frames);
+    gain *= stop_gain(f);
     if (resuming && f < resume_at_ + ramp) gain *= ramp_at(f - resume_at_, ramp);
     scratch.gain[static_cast<std::size_t>(n)] = gain;
   }
@@ -187,6 +194,23 @@ void Voice::markers(std::int64_t at, int first, int last, Mix& mix) const noexce
         wave = trigger_wave(pattern, static_cast<int>(since / marker.frames));
       mix.samples[channel][static_cast<std::size_t>(n)] += marker.amplitude * wave;
     }
+  }
+}
+
+void Voice::signal(std::int64_t at, int first, int last, Mix& mix) const noexcept {
+  const PreparedSignal& signal = burst_.signal;
+  if (signal.amplitude == 0) return;
+  auto& row = mix.samples[static_cast<std::size_t>(signal.channel)];
+  const int from = static_cast<int>(std::clamp<std::int64_t>(signal.at_frame - at, first, last));
+  const int to =
+      static_cast<int>(std::clamp<std::int64_t>(signal.at_frame + signal.frames - at, first, last));
+  for (int n = from; n < to; ++n) {
+    const std::int64_t since = at + n - signal.at_frame, left = signal.frames - 1 - since;
+    double gain = stop_gain(at + n);
+    if (since < signal.ramp.frames) gain *= ramp_at(since, signal.ramp.frames);
+    if (left < signal.ramp.frames) gain *= ramp_at(left, signal.ramp.frames);
+    row[static_cast<std::size_t>(n)] +=
+        signal.amplitude * gain * sine_of_phase(signal.increment * static_cast<std::uint64_t>(since));
   }
 }
 
@@ -237,6 +261,7 @@ void Voice::add(std::int64_t at, Mix& mix, Scratch& scratch, const Kernels& kern
   }
   noise(at, first, last, mix, scratch, gated);
   markers(at, first, last, mix);
+  signal(at, first, last, mix);
 }
 
 }  // namespace turnpoint::drive

@@ -58,6 +58,8 @@ class Voice {
   void tones(std::int64_t at, int offset, int count, Scratch& scratch, const Kernels& kernels) noexcept;
   bool gains(std::int64_t at, int count, Scratch& scratch) const noexcept;
   void markers(std::int64_t at, int first, int last, Mix& mix) const noexcept;
+  void signal(std::int64_t at, int first, int last, Mix& mix) const noexcept;
+  double stop_gain(std::int64_t at) const noexcept;
   void noise(std::int64_t at, int first, int last, Mix& mix, const Scratch& scratch, bool gated) noexcept;
 
   PreparedBurst burst_;

@@ -119,15 +119,16 @@ bool sound_measured(double frequency_Hz, const std::vector<SoundLevel>& measured
   return measured_from(frequency_Hz, measured) != measured.end();
 }
 
-std::string sound_problem(double frequency_Hz, double amplitude, const std::vector<SoundLevel>& measured) {
-  if (!(amplitude > 0)) return "";
+std::optional<texts::Phrase> sound_problem(double frequency_Hz, double amplitude,
+                                           const std::vector<SoundLevel>& measured) {
+  using texts::phrase, texts::plain;
+  if (!(amplitude > 0)) return std::nullopt;
+  const auto tone_Hz = plain(fmt::format("{:.1f}", frequency_Hz));
   const auto above = measured_from(frequency_Hz, measured);
-  if (above == measured.end())
-    return frequency_Hz < terms::kAudible_Hz
-               ? fmt::format(
-                     "tone of {:.1f} Hz below {} Hz without a measured sound level in the calibration",
-                     frequency_Hz, terms::kAudible_Hz)
-               : "";
+  if (above == measured.end()) {
+    if (frequency_Hz >= terms::kAudible_Hz) return std::nullopt;
+    return phrase("refusal.sound_not_measured", {tone_Hz, plain(fmt::format("{}", terms::kAudible_Hz))});
+  }
   double full_scale_dB = above->level_dB;
   if (above->frequency_Hz != frequency_Hz) {
     const SoundLevel& below = *(above - 1);
@@ -136,9 +137,9 @@ std::string sound_problem(double frequency_Hz, double amplitude, const std::vect
   }
   const double level_dB = full_scale_dB + 20 * std::log10(amplitude);
   const double allowed_dB = terms::allowed_sound_dB(frequency_Hz);
-  if (level_dB <= allowed_dB) return "";
-  return fmt::format("tone of {:.1f} Hz would be {:.1f} dB loud; allowed {} dB", frequency_Hz, level_dB,
-                     allowed_dB);
+  if (level_dB <= allowed_dB) return std::nullopt;
+  return phrase("refusal.too_loud",
+                {tone_Hz, plain(fmt::format("{:.1f}", level_dB)), plain(fmt::format("{}", allowed_dB))});
 }
 
 }  // namespace turnpoint::limits

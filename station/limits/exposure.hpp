@@ -1,10 +1,13 @@
 #pragma once
 #include <cstdint>
 #include <deque>
+#include <optional>
 #include <span>
 #include <stdexcept>
 #include <string>
 #include <vector>
+
+#include "station/texts/texts.hpp"
 
 namespace turnpoint::limits {
 
@@ -78,7 +81,8 @@ bool sound_measured(double frequency_Hz, const std::vector<SoundLevel>& measured
 
 /// Checks the sound of a tone in a live session. A tone below 22.4 kHz needs a measured level (see
 /// sound_measured()). The measured level, reduced to the tone's amplitude, must not exceed
-/// terms::allowed_sound_dB(). Returns the problem, or "" if there is none.
-std::string sound_problem(double frequency_Hz, double amplitude, const std::vector<SoundLevel>& measured);
+/// terms::allowed_sound_dB(). Returns the problem; empty if there is none.
+std::optional<texts::Phrase> sound_problem(double frequency_Hz, double amplitude,
+                                           const std::vector<SoundLevel>& measured);
 
 }  // namespace turnpoint::limits

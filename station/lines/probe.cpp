@@ -17,6 +17,7 @@ namespace turnpoint::lines {
 namespace {
 
 using Status = Finding::Status;
+using texts::Phrase, texts::phrase, texts::plain;
 
 // True if the value of this key of a URI is the name of a line; false for keys with settings.
 bool names_line(const std::string& key) {
@@ -24,61 +25,62 @@ bool names_line(const std::string& key) {
          key != "hold_ms" && key != "refractory_ms" && key != "pulse_ms" && key != "axis";
 }
 
-Finding check_line(const std::string& device, const std::string& role, const std::string& line) {
-  Finding check{device + " " + role, Status::ok, "", ""};
+Finding check_line(const Phrase& device, const std::string& role, const std::string& line) {
+  Finding check{{"", "", {device, plain(" " + role)}}, Status::failed, {}, {}};
   try {
     const auto state = find_line(line);
     if (!state) {
-      check.status = Status::failed;
-      check.what = "no GPIO chip has a line named " + line;
-      check.mend =
-          gpio_chips().empty()
-              ? "no GPIO chip can be opened: load the board's GPIO driver, and put the user into the group "
-                "gpio"
-              : "name the line in the device tree (gpio-line-names), or correct the rig file; gpioinfo lists "
-                "them";
+      check.what = phrase("doctor.line_missing", {plain(line)});
+      check.mend = phrase(gpio_chips().empty() ? "doctor.chip_mend" : "doctor.line_missing_mend");
     } else if (state->used) {
-      check.status = Status::failed;
-      check.what = line + " is in use by " + (state->consumer.empty() ? "a driver" : state->consumer);
-      check.mend =
-          "end the other program; if a driver uses the line, remove the line from its device tree node";
+      const auto user = state->consumer.empty() ? phrase("doctor.a_driver") : plain(state->consumer);
+      check.what = phrase("doctor.line_used", {plain(line), user});
+      check.mend = phrase("doctor.line_used_mend");
     } else {
-      check.what = line + " is line " + std::to_string(state->offset) + " of " + state->chip;
+      check.status = Status::ok;
+      check.what =
+          phrase("doctor.line_good", {plain(line), plain(std::to_string(state->offset)), plain(state->chip)});
     }
   } catch (const std::exception& error) {
-    check.status = Status::failed;
-    check.what = error.what();
-    check.mend = "put the user into the group that owns /dev/gpiochip*";
+    check.what = reported(error);
+    check.mend = phrase("doctor.line_rights_mend");
   }
   return check;
 }
 
+/// The finding about a device that is not on lines of the kernel.
+Finding elsewhere(const Phrase& device, const Uri& uri) {
+  return {device, Status::ok, uri.scheme == "sim" ? phrase("doctor.simulated") : plain(uri.scheme), {}};
+}
+
 }  // namespace
 
-std::vector<Finding> check_lines(const std::string& device, const std::string& text) {
+Phrase reported(const std::exception& error) { return phrase("doctor.reported", {plain(error.what())}); }
+
+std::vector<Finding> check_lines(const Phrase& device, const std::string& text) {
   const Uri uri = parse_uri(text);
-  if (uri.scheme != "gpio") return {{device, Status::ok, uri.scheme == "sim" ? "simulated" : uri.scheme, ""}};
+  if (uri.scheme != "gpio") return {elsewhere(device, uri)};
   std::vector<Finding> checks;
   for (const auto& [key, line] : uri.values)
     if (names_line(key)) checks.push_back(check_line(device, key, line));
   return checks;
 }
 
-Finding check_touch(const std::string& device, const std::string& text) {
+Finding check_touch(const Phrase& device, const std::string& text) {
   const Uri uri = parse_uri(text);
-  if (uri.scheme != "evdev") return {device, Status::ok, uri.scheme == "sim" ? "simulated" : uri.scheme, ""};
-  const std::string mend =
-      "plug the device in; its name is listed in /proc/bus/input/devices; the user must be in the group "
-      "input";
+  if (uri.scheme != "evdev") return elsewhere(device, uri);
+  const auto mend = phrase("doctor.touch_mend");
   try {
     const auto panel = touch::EvdevDevice::find(uri.name);
     if (!panel)
-      return {device, Status::failed,
-              "input device '" + uri.name + "': " + std::generic_category().message(errno), mend};
+      return {
+          device, Status::failed,
+          phrase("doctor.touch_missing", {plain(uri.name), plain(std::generic_category().message(errno))}),
+          mend};
     static_cast<void>(panel->range(panel->slot_count() > 0 ? ABS_MT_POSITION_X : ABS_X));
-    return {device, Status::ok, "'" + uri.name + "' exists and has monotonic time stamps", ""};
+    return {device, Status::ok, phrase("doctor.touch_good", {plain(uri.name)}), {}};
   } catch (const std::exception& error) {
-    return {device, Status::failed, error.what(), mend};
+    return {device, Status::failed, reported(error), mend};
   }
 }
 

@@ -1,26 +1,32 @@
 #pragma once
+#include <exception>
 #include <optional>
 #include <string>
 #include <vector>
+
+#include "station/texts/texts.hpp"
 
 namespace turnpoint::lines {
 
 /// The result of one check by `doctor`.
 struct Finding {
   enum class Status { ok, warning, failed };
-  std::string name;
+  texts::Phrase name;
   Status status = Status::ok;
-  std::string what;
-  std::string mend;  ///< how to fix it; "" if nothing is wrong
+  texts::Phrase what;
+  texts::Phrase mend;  ///< how to fix it; without words if nothing is wrong
 };
+
+/// What the system or a driver said when a check failed, for a finding. It stays as it is in every language.
+texts::Phrase reported(const std::exception& error);
 
 /// Checks that each line in a device's URI (`gpio:...`) is on a chip and not in use. Returns one finding per
 /// line; for `sim:`, one finding that the device is simulated.
-std::vector<Finding> check_lines(const std::string& device, const std::string& uri);
+std::vector<Finding> check_lines(const texts::Phrase& device, const std::string& uri);
 
 /// Checks that the touch sensor or panel of an `evdev:NAME` URI exists, is readable and has monotonic time
 /// stamps.
-Finding check_touch(const std::string& device, const std::string& uri);
+Finding check_touch(const texts::Phrase& device, const std::string& uri);
 
 /// The result of trying to open the machine's input devices.
 struct InputDevices {

@@ -14,6 +14,7 @@
 #include "station/session/simulated_room.hpp"
 #include "station/session/stage.hpp"
 #include "station/system/clocks.hpp"
+#include "station/terms/force_carrier.hpp"
 #include "station/terms/usage_error.hpp"
 
 namespace turnpoint::maintenance {
@@ -21,13 +22,15 @@ namespace turnpoint::maintenance {
 namespace {
 
 constexpr double kSettle_s = 1, kRead_s = 1, kGlance_s = 0.12, kPatience_s = 5;
+constexpr double kTap_s = 3.5;                  // time in which the operator taps, and the plate rings
+constexpr double kBlow_N = 1, kBlow_s = 0.005;  // a tap in the simulated laboratory
 constexpr double kLeastReference = 0.02;  // smallest accepted amplitude of the reference; 1 is full scale
 
 sensing::BridgeOptions bridge_options(const rig::Rig& rig, double reference_amplitude) {
   const auto& capture = *rig.capture;
   sensing::BridgeOptions options;
   options.rate_Hz = rig.output.rate_Hz;
-  options.carrier_Hz = sensing::carriers_Hz.front();
+  options.carrier_Hz = terms::kForceCarrier_Hz;
   options.channels = capture.channels;
   options.reference = capture.reference;
   options.bridges = {capture.bridges[0], capture.bridges[1], capture.bridges[2]};
@@ -42,19 +45,9 @@ class BridgeMean {
   explicit BridgeMean(const rig::Rig& rig) : rig_(rig) {}
 
   BridgeReading of(const std::vector<std::int32_t>& samples) {
-    const auto options = bridge_options(rig_, reference_ > 0 ? reference_ : found_reference(samples));
-    sensing::BridgeDemodulator demodulator(options);
     BridgeReading reading;
-    std::vector<sensing::BridgePoint> points;
-    demodulator.push({samples, options.channels, 0, options.rate_Hz}, [&](const sensing::BridgePoint& point) {
-      // skip the first 17 ms, in which the filter is still settling
-      if (point.index >= 20) points.push_back(point);
-    });
-    if (points.empty()) throw std::runtime_error("force cells: nothing was captured");
-    for (const auto& point : points) {
-      check(point);
-      add(point, reading, 1.0 / static_cast<double>(points.size()));
-    }
+    const auto points = points_of(samples);
+    for (const auto& point : points) add(point, reading, 1.0 / static_cast<double>(points.size()));
     for (const auto& point : points)
       for (std::size_t cell = 0; cell < 3; ++cell)
         reading.sd[cell] +=
@@ -64,7 +57,29 @@ class BridgeMean {
     return reading;
   }
 
+  /// Returns the frequency with which the plate rings after a tap; empty if it does not.
+  std::optional<double> ringing_Hz(const std::vector<std::int32_t>& samples) {
+    const auto points = points_of(samples);
+    std::array<std::vector<double>, 3> cells;
+    for (const auto& point : points)
+      for (std::size_t cell = 0; cell < 3; ++cell) cells[cell].push_back(point.ratio[cell]);
+    return ringing_of(cells, sensing::points_per_second(sensing::Band::force));
+  }
+
  private:
+  std::vector<sensing::BridgePoint> points_of(const std::vector<std::int32_t>& samples) const {
+    const auto options = bridge_options(rig_, reference_ > 0 ? reference_ : found_reference(samples));
+    sensing::BridgeDemodulator demodulator(options);
+    std::vector<sensing::BridgePoint> points;
+    demodulator.push({samples, options.channels, 0, options.rate_Hz}, [&](const sensing::BridgePoint& point) {
+      // skip the first 17 ms, in which the filter is still settling
+      if (point.index >= 20) points.push_back(point);
+    });
+    if (points.empty()) throw std::runtime_error("force cells: nothing was captured");
+    for (const auto& point : points) check(point);
+    return points;
+  }
+
   double found_reference(const std::vector<std::int32_t>& samples) const {
     const auto options = bridge_options(rig_, 1);
     sensing::BridgeDemodulator demodulator(options);
@@ -129,13 +144,29 @@ class SimulatedBridges : public BridgeReader {
   }
 
   BridgeReading read(const WeightStep& step) override {
-    constexpr double gravity_m_s2 = 9.81;
     room_.plant().set_load(
-        {1e-3 * step.mass_g * gravity_m_s2, 1e-3 * step.pull_g * gravity_m_s2, 1e-3 * step.position_mm});
+        {1e-3 * step.mass_g * kGravity_m_s2, 1e-3 * step.pull_g * kGravity_m_s2, 1e-3 * step.position_mm});
     pass(kSettle_s);
     return kept(kRead_s);
   }
   BridgeReading glance() override { return kept(kGlance_s); }
+  bool notices_taps() const override { return true; }
+  std::optional<double> tapped_Hz(Tap where) override {
+    const double middle_m = 0.5 * rig_.surface.length_m;
+    auto& plant = room_.plant();
+    plant.set_load({});
+    pass(kSettle_s);
+    samples_.clear();
+    keep_ = true;
+    pass(0.5 * kTap_s);
+    plant.set_load(where == Tap::along ? plant::Load{0, kBlow_N, middle_m}
+                                       : plant::Load{kBlow_N, 0, middle_m});
+    pass(kBlow_s);
+    plant.set_load({});
+    pass(0.5 * kTap_s);
+    keep_ = false;
+    return mean_.ringing_Hz(samples_);
+  }
 
  private:
   BridgeReading kept(double seconds) {
@@ -171,6 +202,8 @@ class CardBridges : public BridgeReader {
     return mean_.of(collect(kRead_s));
   }
   BridgeReading glance() override { return mean_.of(collect(kGlance_s)); }
+  bool notices_taps() const override { return true; }
+  std::optional<double> tapped_Hz(Tap) override { return mean_.ringing_Hz(collect(kTap_s)); }
 
  private:
   std::vector<std::int32_t> collect(double seconds) {
@@ -178,7 +211,7 @@ class CardBridges : public BridgeReader {
     auto& stream = *devices_.stream;
     const auto& uri = rig_.capture->uri;
     std::vector<std::int32_t> samples;
-    while (capture.take(*block_)) {
+    while (capture.take() != nullptr) {
     }
     const auto before = capture.counters();
     const auto underruns = stream.counters().underruns;
@@ -191,8 +224,8 @@ class CardBridges : public BridgeReader {
       while (stream.poll()) {
       }
       bool taken = false;
-      while (capture.take(*block_)) {
-        const auto used = block_->used();
+      while (const auto* block = capture.take()) {
+        const auto used = block->used();
         samples.insert(samples.end(), used.begin(), used.end());
         taken = true;
       }
@@ -209,7 +242,6 @@ class CardBridges : public BridgeReader {
   const rig::Rig rig_;
   BridgeDevices devices_;
   BridgeMean mean_;
-  std::unique_ptr<drive::CapturedBlock> block_ = std::make_unique<drive::CapturedBlock>();
 };
 
 }  // namespace

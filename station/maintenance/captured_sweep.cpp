@@ -9,8 +9,8 @@
 #include <stdexcept>
 #include <thread>
 
-#include "station/drive/alsa_capture.hpp"
 #include "station/drive/engine.hpp"
+#include "station/maintenance/capture_thread.hpp"
 #include "station/maintenance/play_armed.hpp"
 #include "station/sensing/pilot.hpp"
 #include "station/session/capture_feed.hpp"
@@ -36,45 +36,33 @@ void append(const sensing::CaptureBlock& block, std::vector<std::vector<double>>
     channels[k % count].push_back(0x1p-31 * block.samples[k]);
 }
 
-/// Records on its own thread everything that a device captures.
+/// Records everything that a device captures.
 class Recorder {
  public:
   explicit Recorder(const drive::OutputConfig& device)
-      : device_(device), capture_(drive::open_capture(device)), thread_([this](const std::stop_token& stop) {
-          while (!stop.stop_requested()) {
-            take();
-            std::this_thread::sleep_for(std::chrono::milliseconds(2));
-          }
-        }) {}
+      : device_(device), thread_(device, [this](const drive::CapturedBlock& block) { take(block); }) {}
 
   /// Ends the recording. The samples are interleaved. Throws std::runtime_error if frames are missing.
   std::vector<std::int32_t> end() {
-    thread_.request_stop();
-    thread_.join();
-    take();
-    const auto counters = capture_->counters();
-    if (!counters.present) throw std::runtime_error(device_.uri + ": the sound device was disconnected");
+    const auto counters = thread_.end();
     if (lost_ || counters.lost_frames > 0 || counters.unknown_gaps > 0)
       throw std::runtime_error(device_.uri + ": captured frames were lost; start the command again");
     return std::move(samples_);
   }
 
  private:
-  void take() {
-    while (capture_->take(*block_)) {
-      const auto next = static_cast<std::int64_t>(samples_.size()) / device_.channels;
-      lost_ = lost_ || block_->first_frame != next || block_->numbering != 0;
-      const auto used = block_->used();
-      samples_.insert(samples_.end(), used.begin(), used.end());
-    }
+  void take(const drive::CapturedBlock& block) {
+    const auto next = static_cast<std::int64_t>(samples_.size()) / device_.channels;
+    lost_ = lost_ || block.first_frame != next || block.numbering != 0;
+    const auto used = block.used();
+    samples_.insert(samples_.end(), used.begin(), used.end());
   }
 
   const drive::OutputConfig device_;
-  std::unique_ptr<drive::Capture> capture_;
-  std::unique_ptr<drive::CapturedBlock> block_ = std::make_unique<drive::CapturedBlock>();
   std::vector<std::int32_t> samples_;
   bool lost_ = false;
-  std::jthread thread_;
+  // The last member, so that its thread ends before the objects that it uses are destroyed.
+  CaptureThread thread_;
 };
 
 }  // namespace
@@ -96,8 +84,9 @@ std::vector<double> rendered(const rig::Rig& rig, const drive::Burst& burst, int
 }
 
 Captured capture_simulated(const rig::Rig& rig, const std::vector<drive::Burst>& bursts,
-                           const std::function<void(plant::Setup&)>& laboratory) {
+                           const std::function<void(plant::Setup&)>& laboratory, const plant::Load& load) {
   session::SimulatedRoom room(rig, laboratory);
+  room.plant().set_load(load);
   const auto stream = drive::open_synchronous(silent_stream(rig));
   Captured made;
   made.channels.resize(static_cast<std::size_t>(rig.capture.value().channels));

@@ -20,9 +20,10 @@ struct Captured {
 /// Returns the samples that a burst plays on one channel, beginning with its first frame; 1 is full scale.
 std::vector<double> rendered(const rig::Rig& rig, const drive::Burst& burst, int channel);
 
-/// Plays the bursts in the simulated laboratory, and captures them there.
+/// Plays the bursts in the simulated laboratory, and captures them there, while `load` rests on the surface.
 Captured capture_simulated(const rig::Rig& rig, const std::vector<drive::Burst>& bursts,
-                           const std::function<void(plant::Setup&)>& laboratory);
+                           const std::function<void(plant::Setup&)>& laboratory,
+                           const plant::Load& load = {});
 
 /// Plays a pilot (a chirp that shows the delay from playback to capture) and then the bursts on the rig's
 /// sound card, and captures all of it with the same card (see play_armed()). The first burst must not start

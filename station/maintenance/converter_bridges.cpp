@@ -17,7 +17,8 @@ namespace turnpoint::maintenance {
 
 namespace {
 
-constexpr double kConverterSettle_s = 1, kConverterRead_s = 1, kConverterGlance_s = 0.12;
+constexpr double kConverterSettle_s = 1, kConverterRead_s = 1, kConverterGlance_s = 0.12,
+                 kConverterTap_s = 3.5;
 
 /// Means of the samples of a converter with a clock of its own. The samples count the time.
 class ConverterBridges : public BridgeReader {
@@ -29,6 +30,13 @@ class ConverterBridges : public BridgeReader {
     return mean_of(collect(kConverterSettle_s, kConverterRead_s));
   }
   BridgeReading glance() override { return mean_of(collect(0, kConverterGlance_s)); }
+  bool notices_taps() const override { return true; }
+  std::optional<double> tapped_Hz(Tap) override {
+    std::array<std::vector<double>, 3> cells;
+    for (const auto& sample : collect(0, kConverterTap_s))
+      for (std::size_t cell = 0; cell < cells.size(); ++cell) cells[cell].push_back(sample.value[cell]);
+    return ringing_of(cells, rig_.rate_Hz);
+  }
 
  private:
   /// Returns the samples of this length of time, which begins `settle_s` from now. Older samples may still
@@ -61,9 +69,8 @@ class ConverterBridges : public BridgeReader {
     if (clock.counters().lost + clock.counters().disorder > 0)
       throw std::runtime_error(fmt::format("{}: {} samples were lost", rig_.uri, clock.counters().lost));
     if (const auto rate_Hz = clock.rate_Hz())
-      if (const auto problem = session::wrong_rate(rig_.uri.substr(4), *rate_Hz, rig_.rate_Hz);
-          !problem.empty())
-        throw std::runtime_error(problem);
+      if (const auto wrong = session::wrong_rate(rig_.uri.substr(4), *rate_Hz, rig_.rate_Hz))
+        throw std::runtime_error(texts::say(*wrong, "en"));
     for (const auto& sample : samples)
       for (std::size_t cell = 0; cell < cells.size(); ++cell)
         reading.sd[cell] += std::pow(sample.value[cell] - reading.ratio[cell], 2) / count;

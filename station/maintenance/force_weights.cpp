@@ -9,7 +9,9 @@
 
 #include "station/calibration/apply.hpp"
 #include "station/maintenance/panel_latency.hpp"
+#include "station/sensing/tap.hpp"
 #include "station/system/write_file.hpp"
+#include "station/terms/force_carrier.hpp"
 #include "station/terms/usage_error.hpp"
 #include "station/text/number.hpp"
 
@@ -17,7 +19,7 @@ namespace turnpoint::maintenance {
 
 namespace {
 
-constexpr double kGravity_m_s2 = 9.81, kRatedLoad_N = 10;
+constexpr double kRatedLoad_N = 10;
 // largest allowed change and SD of the zero reading; sessions use the same limits before a trial
 constexpr double kMoved_N = 20e-3, kRestless_N = 2e-3;
 // refuse a reading whose SD is this many times that of the first reading
@@ -27,6 +29,7 @@ constexpr double kRipple = 1e-4;  // SD that remains after demodulation, as a fr
 constexpr double kDeaf_share = 0.01;
 constexpr double kOutlier = 4;  // ask again for a weight whose sensing::deviations() is larger than this
 constexpr std::size_t kMostRepeats = 4, kFewest = 8;
+constexpr int kMostTaps = 3;  // how often a tap that shows no resonance is asked for
 // Residuals larger than this multiple of the errors of places, masses and pulley show that something else is
 // wrong.
 constexpr double kMostMisfit = 20;
@@ -173,6 +176,21 @@ class Weighing {
     }
   }
 
+  /// Asks for a tap. Returns the frequency with which the plate rings, or nothing if the step was left out.
+  std::optional<double> tap(Tap where) {
+    if (!bridges_.notices_taps()) return std::nullopt;
+    WeightStep step;
+    step.tap = where;
+    for (int k = 0; k < kMostTaps && ready_(step); ++k) try {
+        if (const auto found_Hz = bridges_.tapped_Hz(where)) return found_Hz;
+        if (!failed_("the plate did not ring after a tap; tap harder, with a fingernail or a pencil"))
+          return std::nullopt;
+      } catch (const std::runtime_error& error) {
+        if (!failed_(error.what())) throw;
+      }
+    return std::nullopt;
+  }
+
   const std::vector<Weighed>& all() const { return all_; }
   const std::vector<BridgeReading>& tares() const { return tares_; }
   const std::vector<WeightStep>& repeated() const { return repeated_; }
@@ -259,6 +277,7 @@ void check(const ForceResult& made, const std::vector<BridgeReading>& tares) {
 std::string WeightStep::name() const {
   using text::number;
   if (tare) return "the empty surface";
+  if (tap != Tap::none) return tap == Tap::from_above ? "the tap from above" : "the tap along the plate";
   auto said = fmt::format("{} g at {} mm", number(mass_g), number(position_mm, 4));
   if (pull_g != 0)
     said += fmt::format(" with a pull of {} g towards the {} edge", number(std::abs(pull_g)),
@@ -269,6 +288,12 @@ std::string WeightStep::name() const {
 std::string WeightStep::text() const {
   using text::number;
   if (tare) return "Take everything off the surface.";
+  if (tap == Tap::from_above)
+    return "Leave the surface empty. When the reading begins, tap the middle of the plate once from "
+           "above with a fingernail, within three seconds.";
+  if (tap == Tap::along)
+    return "When the reading begins, tap the narrow end of the plate once along the plate with a fingernail, "
+           "within three seconds.";
   if (pull_g == 0)
     return fmt::format("Put {} g at {} mm from the wide edge.", number(mass_g), number(position_mm, 4));
   return fmt::format(
@@ -291,6 +316,16 @@ std::vector<WeightStep> weight_steps(double length_mm) {
   return steps;
 }
 
+std::optional<double> ringing_of(const std::array<std::vector<double>, 3>& readings, double rate_Hz) {
+  const std::vector<double>* most = nullptr;
+  double deflection = 0;
+  for (const auto& cell : readings) {
+    const auto [low, high] = std::minmax_element(cell.begin(), cell.end());
+    if (low != cell.end() && *high - *low > deflection) most = &cell, deflection = *high - *low;
+  }
+  return most != nullptr ? sensing::ringing_Hz(*most, rate_Hz) : std::nullopt;
+}
+
 ForceResult weigh(const rig::Rig& rig, BridgeReader& bridges,
                   const std::function<bool(const WeightStep&)>& ready,
                   const std::function<bool(const std::string&)>& failed) {
@@ -309,7 +344,7 @@ ForceResult weigh(const rig::Rig& rig, BridgeReader& bridges,
   made.cells.changes = fit.calibration.changes();
   const auto& tares = weighing.tares();
   made.cells.reference_amplitude = tares.front().reference;
-  if (tares.front().reference > 0) made.cells.carrier_Hz = sensing::carriers_Hz.front();
+  if (tares.front().reference > 0) made.cells.carrier_Hz = terms::kForceCarrier_Hz;
   made.cells.rated_ratio = rated_ratios(weights);
   const double middle_Nmm = 0.5 * 0.5e3 * rig.surface.length_m;
   made.sd = fit.calibration.sd(readings_under(made.cells.matrix, {0.5, 0.25, middle_Nmm}));
@@ -319,6 +354,11 @@ ForceResult weigh(const rig::Rig& rig, BridgeReader& bridges,
         std::max(made.zero_moved_mN, 1e3 * std::max(std::abs(moved.normal_N), std::abs(moved.lateral_N)));
   }
   check(made, tares);
+  const auto above_Hz = weighing.tap(Tap::from_above), along_Hz = weighing.tap(Tap::along);
+  if (above_Hz && along_Hz) {
+    made.resonance_Hz = std::min(*above_Hz, *along_Hz);
+    made.cells.usable_Hz = sensing::kUsableShare * *made.resonance_Hz;
+  }
   return made;
 }
 

@@ -2,6 +2,7 @@
 #include <array>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,13 +16,19 @@
 
 namespace turnpoint::maintenance {
 
-/// One step of the calibration with dead weights.
+inline constexpr double kGravity_m_s2 = 9.81;  ///< converts the masses of weights to forces
+
+/// Where the operator taps the plate, to show its resonances.
+enum class Tap { none, from_above, along };
+
+/// One step of the calibration with dead weights: a weight, a reading without one, or a tap.
 struct WeightStep {
   bool tare = false;  ///< true for a reading with nothing on the surface
   double mass_g = 0, position_mm = 0;
   /// mass that hangs on the string and so pulls along the surface; negative if it pulls towards the wide edge
   double pull_g = 0;
   std::string remark = {};  ///< why the step is repeated; usually empty
+  Tap tap = Tap::none;
 
   /// text() is what the operator is asked to do; name() is what messages call the step.
   std::string text() const;
@@ -50,7 +57,15 @@ class BridgeReader {
   virtual BridgeReading read(const WeightStep& step) = 0;
   /// Takes a quick reading, over a tenth of a second. Throws like read().
   virtual BridgeReading glance() { return {}; }
+  /// Waits for a tap for a few seconds, and returns the frequency with which the plate rings; empty if it
+  /// does not. Throws like read(). Taps are asked for only if the reader can notice them.
+  virtual std::optional<double> tapped_Hz(Tap) { return std::nullopt; }
+  virtual bool notices_taps() const { return false; }
 };
+
+/// Returns the frequency with which the most deflected of three cells rings (sensing/tap.hpp); empty if it
+/// does not. `readings` has one list per cell, of `rate_Hz` readings a second.
+std::optional<double> ringing_of(const std::array<std::vector<double>, 3>& readings, double rate_Hz);
 
 /// The sound card of a rig whose force cells are read. `pause` is called to wait while nothing new was
 /// captured.
@@ -85,6 +100,8 @@ struct ForceResult {
   std::array<double, 3> misfit{};
   /// largest change of a reading without a weight, from one tare to another
   double zero_moved_mN = 0;
+  /// lowest resonance of the plate on its cells; empty if no tap was measured
+  std::optional<double> resonance_Hz;
   /// standard deviations of forces, position and friction for a finger at the middle of the surface that
   /// presses with 0.5 N and is dragged with 0.25 N
   sensing::ForceSd sd;
@@ -93,8 +110,9 @@ struct ForceResult {
 /// Asks for each step and reads the bridges. `ready` shows the step to the operator and returns false to
 /// leave it out. If a reading fails, `failed` gets the reason and returns true to repeat the step; otherwise
 /// the error is thrown. A weight that does not agree with the others is asked for once more, with a remark.
-/// Throws terms::UsageError if too many steps were left out, if a cell does not respond, if a weight still
-/// does not agree, or if the zero moved.
+/// The last two steps are taps, from above and along the plate; a tap that is left out, or that is not
+/// repeated although nothing rang, leaves the resonance unknown. Throws terms::UsageError if too many steps
+/// were left out, if a cell does not respond, if a weight still does not agree, or if the zero moved.
 ForceResult weigh(const rig::Rig& rig, BridgeReader& bridges,
                   const std::function<bool(const WeightStep&)>& ready,
                   const std::function<bool(const std::string&)>& failed);

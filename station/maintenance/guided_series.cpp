@@ -13,9 +13,9 @@
 #include "station/drive/burst.hpp"
 #include "station/maintenance/calibrate.hpp"
 #include "station/maintenance/panel_latency.hpp"
-#include "station/maintenance/play_armed.hpp"
 #include "station/scene/transducer.hpp"
 #include "station/system/write_file.hpp"
+#include "station/terms/limits.hpp"
 #include "station/terms/usage_error.hpp"
 
 namespace turnpoint::maintenance {
@@ -23,10 +23,11 @@ namespace turnpoint::maintenance {
 namespace {
 
 constexpr double kTone_s = 4, kRamp_s = 0.05, kToneRest_s = 0.5;
-constexpr double kQuiet = 0.1;                               // amplitude of a response or sound measurement
-constexpr double kLowest_Hz = 22'400, kHighest_Hz = 46'000;  // inaudible, and what a station can sample
-constexpr double kSand_um = 1;                               // enough to move sand at these frequencies
-constexpr double kSand_sd_mm = 1.5;                          // of the edge of sand, read by eye on a scale
+constexpr double kQuiet = 0.1;  // amplitude of a response or sound measurement
+constexpr double kLowest_Hz = terms::kAudible_Hz,
+                 kHighest_Hz = 46'000;  // inaudible, and what a station can sample
+constexpr double kSand_um = 1;          // enough to move sand at these frequencies
+constexpr double kSand_sd_mm = 1.5;     // of the edge of sand, read by eye on a scale
 constexpr int kResponsePoints = 9, kBoundaryPoints = 6, kSoundPoints = 5;
 constexpr int kValidDays = 90;
 
@@ -151,7 +152,8 @@ double rest_after_tone_s(const rig::Rig& rig) {
   return std::max(kToneRest_s, tone_length_s(rig) * (1 / rig.limits.duty - 1));
 }
 
-void play_point(const rig::Rig& rig, const SeriesPoint& point, const std::stop_token& stop) {
+void play_point(const rig::Rig& rig, const SeriesPoint& point, const std::stop_token& stop,
+                const OnToneReadings& on_readings) {
   const auto frames = [&](double s) {
     return static_cast<std::int64_t>(std::llround(s * rig.output.rate_Hz));
   };
@@ -164,7 +166,7 @@ void play_point(const rig::Rig& rig, const SeriesPoint& point, const std::stop_t
   burst.ramp.frames = frames(kRamp_s);
   burst.tones.count = 1;
   burst.tones.tones[0] = {point.frequency_Hz, point.full_scale, 0, transducer->channel};
-  play_on_rig(rig, burst, stop);
+  play_and_read(rig, burst, stop, on_readings);
 }
 
 SeriesResult finish_series(const rig::Rig& rig, Series series, const std::vector<SeriesPoint>& points) {

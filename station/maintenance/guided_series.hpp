@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "station/calibration/calibration.hpp"
+#include "station/maintenance/tone_readings.hpp"
 #include "station/plot/chart.hpp"
 #include "station/rig/rig.hpp"
 
@@ -36,8 +37,10 @@ std::pair<double, double> possible_values(const rig::Rig& rig, Series series);
 /// it.
 double tone_length_s(const rig::Rig& rig);
 double rest_after_tone_s(const rig::Rig& rig);
-/// Plays the tone of a point with play_on_rig(), after an operator's request.
-void play_point(const rig::Rig& rig, const SeriesPoint& point, const std::stop_token& stop);
+/// Plays the tone of a point after an operator's request, and reads the pick-ups meanwhile; see
+/// play_and_read().
+void play_point(const rig::Rig& rig, const SeriesPoint& point, const std::stop_token& stop,
+                const OnToneReadings& on_readings);
 
 /// A calibration with a series that was measured anew.
 struct SeriesResult {

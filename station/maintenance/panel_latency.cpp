@@ -5,6 +5,7 @@
 #include "station/calibration/apply.hpp"
 #include "station/lines/buttons.hpp"
 #include "station/setup/open_touch.hpp"
+#include "station/system/write_file.hpp"
 #include "station/terms/usage_error.hpp"
 #include "station/touch/touch_reader.hpp"
 
@@ -62,6 +63,12 @@ calibration::Calibration with_panel(const rig::Rig& rig, const calibration::Pane
   }
   made.panel = panel;
   return made;
+}
+
+std::string keep_panel(const rig::Rig& rig, const calibration::PanelLatency& measured) {
+  const auto file = calibration::file_for(rig.path, calibration::today());
+  system::write_file(file, calibration::to_toml(with_panel(rig, measured)));
+  return file;
 }
 
 void keep_devices(const rig::Rig& rig, calibration::Calibration& made) {

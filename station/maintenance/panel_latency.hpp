@@ -51,6 +51,8 @@ class LatencyDevices {
 /// has a latency measured with the other reference (button or photodiode), that value is kept. The
 /// calibration gets today's date.
 calibration::Calibration with_panel(const rig::Rig& rig, const calibration::PanelLatency& measured);
+/// Writes that calibration beside the rig file, and returns its path. Throws std::system_error.
+std::string keep_panel(const rig::Rig& rig, const calibration::PanelLatency& measured);
 
 /// Returns the newest valid calibration beside the rig file; without one, a calibration with nothing in it.
 calibration::Calibration known_calibration(const rig::Rig& rig);

@@ -17,9 +17,9 @@ constexpr double kLn2 = 0.69314718055994531;
 // largest |z| that is used: beyond it the tail of the normal distribution is below 1e-9, and its logarithm
 // loses precision
 constexpr double kSurest_sd = 6;
-constexpr double kRatingStep_sd = 0.5;  // distance between the criteria of neighbouring ratings
+// distance between the criteria of neighbouring ratings, also of confidence
+constexpr double kRatingStep_sd = 0.5;
 constexpr double kLinePoints = 9;
-constexpr double kConfidenceSd = 0.2;
 constexpr double kSqrt2 = 1.4142135623730951, kSqrt6 = 2.4494897427831779;
 constexpr double kNormalPeak = 0.39894228040143268;  // density of the standard normal distribution at 0
 constexpr double kLn10 = 2.302585092994046;
@@ -59,15 +59,18 @@ double nearest_is_right(double d_prime, double of_two) {
   return apart * beside + (1 - apart) * (1 - beside);
 }
 
-/// Returns d' of an observer who is right this often with two intervals.
-double d_prime_of_two(double right) {
+/// The inverse of random::normal_cdf(), between -kSurest_sd and kSurest_sd.
+double normal_quantile(double p) {
   double low = -kSurest_sd, high = kSurest_sd;
   for (int i = 0; i < 50; ++i) {
     const double middle = 0.5 * (low + high);
-    (random::normal_cdf(middle) < right ? low : high) = middle;
+    (random::normal_cdf(middle) < p ? low : high) = middle;
   }
-  return kSqrt2 * 0.5 * (low + high);
+  return 0.5 * (low + high);
 }
+
+/// Returns d' of an observer who is right this often with two intervals.
+double d_prime_of_two(double right) { return kSqrt2 * normal_quantile(right); }
 
 /// Returns the proportion correct of a task, given the probability `upper` that a diffusion ends at its upper
 /// boundary. That probability is the proportion correct with two answers. For any number of answers, a
@@ -189,10 +192,11 @@ double Observer::value(const Question& q, random::Draws& draws) const {
 }
 
 int Observer::confidence(const Question& q, int choice, random::Draws& draws) const {
-  const double chance = 1.0 / q.answers;
-  const double sure = q.answers < 2 ? 0.5 : std::max(0.0, (share(q, choice) - chance) / (1 - chance));
-  const double felt = std::clamp(sure + kConfidenceSd * draws.normal(), 0.0, 1.0);
-  return 1 + std::min(q.confidence - 1, static_cast<int>(felt * q.confidence));
+  // The evidence has SD 1, and is above 0 as often as this answer is given. It was above 0 in this trial, so
+  // it comes from that part of its distribution.
+  const double given = share(q, choice);
+  const double evidence = normal_quantile(given) - normal_quantile(draws.uniform() * given);
+  return 1 + std::min(q.confidence - 1, static_cast<int>(std::max(0.0, evidence) / kRatingStep_sd));
 }
 
 /// Returns the drift in s^-1/2. What a positive drift leads to depends on q.decides: the right answer

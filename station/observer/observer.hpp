@@ -126,7 +126,7 @@ struct Question {
 struct Reply {
   std::optional<int> choice;
   std::optional<double> value;    ///< set if the question asks for a number; `choice` is then 0
-  std::optional<int> confidence;  ///< from 1; higher if the observer is more likely to choose this answer
+  std::optional<int> confidence;  ///< from 1; how far the evidence is from the criterion
   double response_time_s =
       0;  ///< time of the answer after response_zero; may be negative for an anticipation
   double confidence_time_s = 0;  ///< time from the answer to the statement of confidence

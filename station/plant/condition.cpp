@@ -25,6 +25,8 @@ double amount_of(const Fault& fault) {
       return 480;
     case FaultKind::warmer:
       return 10;
+    case FaultKind::sounding:
+      return 0.05;
     default:
       return 0;
   }
@@ -54,9 +56,9 @@ void check_capture(const Setup& setup) {
   for (const auto& pickup : setup.pickups) use(pickup.channel, "pick-up");
 }
 
-constexpr std::array<std::string_view, 11> kNames{
+constexpr std::array<std::string_view, 12> kNames{
     "transducer dead", "transducer half", "resonance off", "frequency off", "drive late", "clip",
-    "broken bridge",   "no reference",    "finger lifts",  "gap",           "warmer"};
+    "broken bridge",   "no reference",    "finger lifts",  "gap",           "warmer",     "sounding"};
 
 }  // namespace
 
@@ -108,6 +110,9 @@ Condition condition_at(const Setup& setup, const std::vector<Fault>& faults, std
         break;
       case FaultKind::warmer:
         c.warmth_K += amount;
+        break;
+      case FaultKind::sounding:
+        c.sounding_um += amount;
         break;
     }
   }

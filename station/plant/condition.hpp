@@ -15,9 +15,10 @@ struct Condition {
   bool no_reference = false, lifted = false;
   double clip = 1e300;  ///< level at which the amplifier clips, as a fraction of full scale
   std::int64_t late_frames = 0;
-  double resonance = 1;  ///< factor by which all resonance frequencies of the surface are multiplied
-  double frequency = 1;  ///< factor by which the frequencies of the drive are multiplied
-  double warmth_K = 0;   ///< present temperature minus Setup::surface_temperature_C
+  double resonance = 1;    ///< factor by which all resonance frequencies of the surface are multiplied
+  double frequency = 1;    ///< factor by which the frequencies of the drive are multiplied
+  double sounding_um = 0;  ///< amplitude of a tone at the drive edge that nobody plays
+  double warmth_K = 0;     ///< present temperature minus Setup::surface_temperature_C
 };
 
 Condition condition_at(const Setup& setup, const std::vector<Fault>& faults, std::int64_t frame);

@@ -20,6 +20,9 @@ std::vector<double> places_of(const std::vector<Pickup>& pickups) {
 // The friction under the fingertip is the mean of this many equal parts.
 constexpr int kFingertipParts = 10;
 
+// frequency of the fault `sounding`
+constexpr double kSounding_Hz = 27000;
+
 /// Interpolates linearly between values at positions that are `step_m` apart.
 double between(const std::vector<double>& values, double step_m, double x_m) {
   const double place = std::clamp(x_m / step_m, 0.0, static_cast<double>(values.size() - 1));
@@ -237,6 +240,7 @@ void Plant::next_frame(std::span<double> out) {
   double edge = edge_um(full_scale);
   for (auto& tone : tones_) tone.lock_in.add(edge);
   if (now_.frequency != 1) edge = shifted_edge_um();
+  if (now_.sounding_um > 0) edge += now_.sounding_um * phasor(kSounding_Hz / setup_.rate_Hz, world_).real();
   filters_[filter_].second.step(edge);
 
   CellForces forces = forces_on(setup_.cells, load_);
@@ -268,7 +272,8 @@ void Plant::write(std::span<double> out) {
           wires_.bridge(static_cast<int>(c), truth_.reading_N[c], world_, !now_.bridge_open[c]);
   for (std::size_t k = 0; k < setup_.pickups.size(); ++k) {
     const Pickup& pickup = setup_.pickups[k];
-    put(pickup.channel) = converted(pickup.full_scale_per_um * filters_[filter_].second.output(k) +
+    const double signal = pickup.full_scale_per_um * filters_[filter_].second.output(k);
+    put(pickup.channel) = converted(signal + pickup.cubic * signal * signal * signal +
                                         pickup.noise_full_scale * pickup_noise_[k].at(world_),
                                     setup_.wires.bits);
   }

@@ -28,6 +28,8 @@ struct Pickup {
   double x_m = 0;   ///< distance of the pick-up from the drive edge
   double full_scale_per_um = 0.1;
   double noise_full_scale = 1e-4;  ///< rms of the noise in one captured sample
+  /// An overdriven preamplifier: a signal y (full scale 1) becomes y + cubic y^3.
+  double cubic = 0;
 };
 
 /// The cells a and b below the surface carry the normal force. A third cell measures the lateral force. For a
@@ -113,7 +115,8 @@ enum class FaultKind {
   no_reference,     ///< the reference channel carries only noise
   finger_lifts,     ///< the finger is not on the surface
   gap,              ///< `amount` captured frames are lost at `from_frame` (480)
-  warmer            ///< surface and cells are warmer by `amount` kelvin (10)
+  warmer,           ///< surface and cells are warmer by `amount` kelvin (10)
+  sounding          ///< the drive edge also moves at 27 kHz, by `amount` um (0.05), whatever is played
 };
 
 /// The name of the enumerator, with spaces instead of underscores: "transducer dead".

@@ -6,6 +6,7 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "station/plot/legend.hpp"
 #include "station/plot/palette.hpp"
 #include "station/plot/rule_labels.hpp"
 #include "station/plot/svg.hpp"
@@ -14,37 +15,11 @@ namespace turnpoint::plot {
 
 namespace {
 
-constexpr double kText = 12, kTitle = 13.5, kPad = 10, kTick = 5, kCaptionLine = 16;
-const std::string kInk = "#222222", kSoft = "#545454", kGrid = "#e6e6e6";
+constexpr double kTitle = 13.5, kPad = 10, kTick = 5, kCaptionLine = 16;
+const std::string kSoft = "#545454", kGrid = "#e6e6e6";
 
 void check(bool good, const std::string& what) {
   if (!good) throw std::invalid_argument("plot: " + what);
-}
-
-void marker(Canvas& canvas, Point at, double r, const Style& style, bool open) {
-  const Paint paint{style.colour, open ? "#ffffff" : style.colour, 1.6, "", 1};
-  const auto [x, y] = at;
-  switch (style.marker) {
-    case Marker::circle:
-      canvas.circle(at, r, paint);
-      break;
-    case Marker::square:
-      canvas.rectangle({x - 0.89 * r, y - 0.89 * r}, 1.78 * r, 1.78 * r, paint);
-      break;
-    case Marker::triangle:
-      canvas.polygon({{x, y - 1.25 * r}, {x + 1.15 * r, y + 0.8 * r}, {x - 1.15 * r, y + 0.8 * r}}, paint);
-      break;
-    case Marker::diamond:
-      canvas.polygon({{x, y - 1.3 * r}, {x + 1.3 * r, y}, {x, y + 1.3 * r}, {x - 1.3 * r, y}}, paint);
-      break;
-    case Marker::down:
-      canvas.polygon({{x, y + 1.25 * r}, {x + 1.15 * r, y - 0.8 * r}, {x - 1.15 * r, y - 0.8 * r}}, paint);
-      break;
-    case Marker::cross:
-      canvas.line({x - r, y - r}, {x + r, y + r}, {style.colour, "", 2, "", 1});
-      canvas.line({x - r, y + r}, {x + r, y - r}, {style.colour, "", 2, "", 1});
-      break;
-  }
 }
 
 struct Draw {
@@ -132,58 +107,6 @@ struct Draw {
   }
 };
 
-/// One entry of the legend. Layers with the same name and series share one entry.
-struct Entry {
-  std::string name;
-  int series = 0;
-  bool line = false, points = false, open_points = false, area = false;
-};
-
-std::vector<Entry> legend_of(const Chart& chart) {
-  std::vector<Entry> entries;
-  const auto add = [&](const std::string& name, int series, bool Entry::*what) {
-    if (name.empty()) return;
-    for (auto& entry : entries)
-      if (entry.name == name && entry.series == series) {
-        entry.*what = true;
-        return;
-      }
-    entries.push_back({name, series, false, false, false, false});
-    entries.back().*what = true;
-  };
-  for (const auto& layer : chart.layers) {
-    if (const auto* line = std::get_if<Line>(&layer)) add(line->name, line->series, &Entry::line);
-    if (const auto* dots = std::get_if<Points>(&layer)) {
-      const bool open =
-          !dots->open.empty() && std::find(dots->open.begin(), dots->open.end(), false) == dots->open.end();
-      add(dots->name, dots->series, open ? &Entry::open_points : &Entry::points);
-    }
-    if (const auto* band = std::get_if<Band>(&layer)) add(band->name, band->series, &Entry::area);
-    if (const auto* bars = std::get_if<Histogram>(&layer)) add(bars->name, bars->series, &Entry::area);
-  }
-  return entries;
-}
-
-/// Draws the legend between title and data, in rows that fit the width. Returns its height.
-double draw_legend(Canvas* canvas, const std::vector<Entry>& entries, double left, double top, double width) {
-  constexpr double sample = 24, gap = 18, row = 18;
-  double x = left, y = top;
-  for (const auto& entry : entries) {
-    const double need = sample + 6 + text_width(entry.name, kText);
-    if (x > left && x + need > left + width) x = left, y += row;
-    if (canvas) {
-      const auto look = style(entry.series);
-      if (entry.area)
-        canvas->rectangle({x, y + 3}, sample, 10, {"", look.colour, 0, "", entry.line ? 0.18 : 0.85});
-      if (entry.line) canvas->line({x, y + 8}, {x + sample, y + 8}, {look.colour, "", 2, look.dash, 1});
-      if (entry.points || entry.open_points) marker(*canvas, {x + sample / 2, y + 8}, 4, look, !entry.points);
-      canvas->text({x + sample + 6, y + 12}, entry.name, kText, Anchor::start, kInk);
-    }
-    x += need + gap;
-  }
-  return entries.empty() ? 0 : y - top + row + 6;
-}
-
 const HeatMap* heat_map(const Chart& chart) {
   for (const auto& layer : chart.layers)
     if (const auto* map = std::get_if<HeatMap>(&layer)) return map;
@@ -201,8 +124,8 @@ void draw_colour_bar(Canvas& canvas, const Frame& frame, double from, const Heat
   const Axis axis{map.name, map.low, map.high, AxisScale::linear};
   for (const auto& tick : ticks(axis, 4))
     canvas.text({left + width + 5, frame.y + (1 - position(axis, tick.value)) * frame.height + 4}, tick.label,
-                kText - 1, Anchor::start, kSoft);
-  canvas.text({left + width + 46, frame.y + frame.height / 2}, map.name, kText, Anchor::middle, kInk, 400,
+                kText_px - 1, Anchor::start, kSoft);
+  canvas.text({left + width + 46, frame.y + frame.height / 2}, map.name, kText_px, Anchor::middle, kInk, 400,
               90);
 }
 
@@ -212,19 +135,19 @@ void draw_axes(Canvas& canvas, const Frame& frame, const std::vector<Tick>& acro
   for (const auto& tick : up) {
     const double y = frame.at(frame.across->low, tick.value).second;
     canvas.line({frame.x, y}, {frame.x + frame.width, y}, {kGrid, "", 1, "", 1});
-    canvas.text({frame.x - kTick - 3, y + 4}, tick.label, kText, Anchor::end, kInk);
+    canvas.text({frame.x - kTick - 3, y + 4}, tick.label, kText_px, Anchor::end, kInk);
   }
   double free_from = -1e9;
   for (const auto& tick : across) {
     const double x = frame.at(tick.value, frame.up->low).first;
     canvas.line({x, bottom}, {x, bottom + kTick}, {kInk, "", 1, "", 1});
-    const double half = text_width(tick.label, kText) / 2;
+    const double half = text_width(tick.label, kText_px) / 2;
     if (x - half < free_from) continue;  // skip labels that would touch the previous one
-    canvas.text({x, bottom + kTick + 13}, tick.label, kText, Anchor::middle, kInk);
+    canvas.text({x, bottom + kTick + 13}, tick.label, kText_px, Anchor::middle, kInk);
     free_from = x + half + 6;
   }
   canvas.line({frame.x, bottom}, {frame.x + frame.width, bottom}, {kInk, "", 1, "", 1});
-  canvas.text({frame.x + frame.width / 2, bottom + 37}, frame.across->label, kText, Anchor::middle, kInk);
+  canvas.text({frame.x + frame.width / 2, bottom + 37}, frame.across->label, kText_px, Anchor::middle, kInk);
 }
 
 /// Returns those ticks of the horizontal axis whose labels fit. On a log axis, some ticks have no label.
@@ -233,7 +156,7 @@ std::vector<Tick> ticks_with_room(const Axis& axis, double width) {
     const auto some = ticks(axis, wanted);
     double free_from = -1e9;
     const bool fit = std::all_of(some.begin(), some.end(), [&](const Tick& tick) {
-      const double x = position(axis, tick.value) * width, half = text_width(tick.label, kText) / 2;
+      const double x = position(axis, tick.value) * width, half = text_width(tick.label, kText_px) / 2;
       const bool free = x - half >= free_from;
       free_from = x + half + 6;
       return free;
@@ -251,7 +174,7 @@ struct Place {
 struct Division {
   double left = 0, width = 0, legend_top = 0;  ///< left end and width of the data area; top of the legend
   std::vector<Tick> up;
-  std::vector<Entry> entries;
+  std::vector<LegendEntry> entries;
   Labelled labelled;
 };
 
@@ -259,7 +182,7 @@ Division divided(const Chart& chart, const Place& place, VerticalLabels where, i
   Division d;
   d.up = ticks(chart.y, wanted_ticks);
   double labels = 0;
-  for (const auto& tick : d.up) labels = std::max(labels, text_width(tick.label, kText));
+  for (const auto& tick : d.up) labels = std::max(labels, text_width(tick.label, kText_px));
   d.left = place.left + kPad + 18 + labels + kTick + 3;
   d.width = place.left + place.width - kPad - 6 - (heat_map(chart) ? 72 : 0) - d.left;
   d.legend_top = place.top + kPad + (chart.title.empty() ? 4 : 26);
@@ -276,7 +199,7 @@ Division divided(const Chart& chart, const Place& place, VerticalLabels where, i
 Division divided(const Chart& chart, const Place& place, VerticalLabels where) {
   for (int wanted = 5;; --wanted) {
     auto d = divided(chart, place, where, wanted);
-    const double needed = 1.5 * kText * static_cast<double>(d.up.size() - 1);
+    const double needed = 1.5 * kText_px * static_cast<double>(d.up.size() - 1);
     if (wanted == 2 || needed <= d.labelled.frame.height) return d;
   }
 }
@@ -302,7 +225,7 @@ void draw_chart(Canvas& canvas, const Chart& chart, const Place& place, const Di
   draw_title(canvas, chart.title, place, d.left);
   draw_legend(&canvas, d.entries, d.left, d.legend_top, d.width);
   draw_axes(canvas, frame, ticks_with_room(chart.x, frame.width), d.up);
-  canvas.text({place.left + kPad + 10, frame.y + frame.height / 2}, chart.y.label, kText, Anchor::middle,
+  canvas.text({place.left + kPad + 10, frame.y + frame.height / 2}, chart.y.label, kText_px, Anchor::middle,
               kInk, 400, 90);
   const auto clip = drawn_in(frame);
   canvas.begin_clip({clip.left, clip.top}, clip.right - clip.left, clip.bottom - clip.top);
@@ -327,7 +250,7 @@ std::vector<std::string> caption_lines(const std::string& caption, double width)
   std::vector<std::string> lines;
   std::istringstream words(caption);
   for (std::string word; words >> word;) {
-    if (lines.empty() || text_width(lines.back() + " " + word, kText) > width)
+    if (lines.empty() || text_width(lines.back() + " " + word, kText_px) > width)
       lines.push_back(word);
     else
       lines.back() += " " + word;
@@ -358,9 +281,9 @@ void draw(Canvas& canvas, const Figure& figure) {
   canvas.rectangle({0, 0}, width, height, {"", "#ffffff", 0, "", 1});
   for (std::size_t i = 0; i < places.size(); ++i)
     draw_chart(canvas, figure.charts[i], places[i], divisions[i]);
-  double y = charts + kText;
+  double y = charts + kText_px;
   for (const auto& line : caption) {
-    canvas.text({2 * kPad, y}, line, kText, Anchor::start, kSoft);
+    canvas.text({2 * kPad, y}, line, kText_px, Anchor::start, kSoft);
     y += kCaptionLine;
   }
 }

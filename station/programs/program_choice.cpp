@@ -19,9 +19,7 @@ bool is_program(const std::string& text) { return text.starts_with(kPrefix); }
 
 std::string located(const std::string& observer) {
   if (!is_program(observer)) return observer;
-  const auto path = parse_program("--observer", observer).path;
-  if (const auto problem = problem_of(path); !problem.empty())
-    throw terms::UsageError("--observer " + observer + ": " + problem);
+  const auto path = existing_program("--observer", observer).path;
   return kPrefix + std::filesystem::absolute(path).lexically_normal().string() +
          observer.substr(kPrefix.size() + path.size());
 }
@@ -51,6 +49,13 @@ ProgramChoice parse_program(const std::string& option, const std::string& text) 
     else
       choice.limit_s = *number;
   }
+  return choice;
+}
+
+ProgramChoice existing_program(const std::string& option, const std::string& text) {
+  auto choice = parse_program(option, text);
+  if (const auto problem = problem_of(choice.path); !problem.empty())
+    throw terms::UsageError(option + " " + text + ": " + problem);
   return choice;
 }
 

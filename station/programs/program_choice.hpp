@@ -15,4 +15,7 @@ struct ProgramChoice {
 /// Reads the value of an option. `option` is the name of the option, for messages. Throws terms::UsageError.
 ProgramChoice parse_program(const std::string& option, const std::string& text);
 
+/// The same, and also throws terms::UsageError if there is no such program, or if it cannot be run.
+ProgramChoice existing_program(const std::string& option, const std::string& text);
+
 }  // namespace turnpoint::programs

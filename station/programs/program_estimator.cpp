@@ -62,7 +62,7 @@ std::map<std::string, procedure::Estimate> estimates_in(const Json& message, con
 
 Estimated estimated_by(const std::string& estimator, const protocol::Protocol& protocol,
                        const std::vector<records::BlockRecord>& blocks) {
-  const auto choice = parse_program("--estimator", estimator);
+  const auto choice = existing_program("--estimator", estimator);
   auto choices = Json::array();
   for (const auto& answer : protocol.task.choices) choices.push_back(answer.id);
   Conversation with(choice.path, choice.limit_s,

@@ -154,6 +154,7 @@ std::vector<text::Problem> advice(const Protocol& protocol) {
   advise_on_times(advice);
   advise_on_grids(advice);
   advise_on_plan(advice);
+  advise_on_labels(advice);
   advise_on_interludes(advice);
   return std::move(advice.found);
 }

@@ -53,6 +53,8 @@ void advise_on_times(AdviceList& advice);
 void advise_on_grids(AdviceList& advice);
 /// Checks blocks, instructions, labels, questions, and the analysis.
 void advise_on_plan(AdviceList& advice);
+/// Finds labels of answers that are too long for a small screen.
+void advise_on_labels(AdviceList& advice);
 /// Finds questions that ask for what identifies a person, and answers that look the same.
 void advise_on_interludes(AdviceList& advice);
 

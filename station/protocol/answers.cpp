@@ -103,6 +103,20 @@ bool explored(const Task& task) {
          task.kind == TaskKind::adjustment;
 }
 
+std::optional<StimulusEnd> stimulus_end(const Protocol& protocol) {
+  const auto& task = protocol.task;
+  const auto whole = task.duration_s ? task.duration_s : protocol.timing.explore_s;
+  const auto zero = protocol.timing.response_zero;
+  if (zero == ResponseZero::interval_off) return StimulusEnd{};
+  if (!whole || task.intervals.empty()) return std::nullopt;
+  if (zero == ResponseZero::go_cue) return StimulusEnd{*whole, *whole};
+  const auto scenes = task.intervals.back().size();
+  if (zero != ResponseZero::change || scenes < 2) return std::nullopt;
+  const double even = *whole / static_cast<double>(scenes);
+  const auto change = task.foreperiod_s.value_or(Distribution{even, even});
+  return StimulusEnd{*whole - change.high, *whole - change.low};
+}
+
 std::optional<double> accepted(const ValueAnswer& answer, double given) {
   const double scale = std::pow(10.0, answer.decimals);
   const double value = std::round(given * scale) / scale;

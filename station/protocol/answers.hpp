@@ -33,6 +33,13 @@ AnswerRule answer_rule(const Protocol& protocol, const std::string& level);
 /// True if the participant may answer while the surface moves.
 bool explored(const Task& task);
 
+/// The earliest and the latest time from response_zero to the end of the last interval, in s; empty if they
+/// are not known before the trial.
+struct StimulusEnd {
+  double earliest_s = 0, latest_s = 0;
+};
+std::optional<StimulusEnd> stimulus_end(const Protocol& protocol);
+
 /// True if answers are ratings or numbers, none of which is right or wrong.
 inline bool judges(const Task& task) { return task.rating || task.value; }
 

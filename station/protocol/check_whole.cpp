@@ -50,6 +50,28 @@ void check_answers(const std::vector<Source>& sources, const Reading& reading) {
   }
 }
 
+// Reports a rating of a signal that all trials have, or that none has: then there is no ROC. Trials whose
+// signal depends on other factors than the level are not counted here.
+void check_present(const std::vector<Source>& sources, const Reading& reading) {
+  const auto& present = reading.protocol.task.present;
+  if (!present) return;
+  bool with = false, without = false;
+  for (const auto& source : sources) {
+    if (source.block->practice) continue;
+    for (const auto* side : {&present->left, &present->right})
+      for (const auto& name : factors_in(*side))
+        if (name != source.level) return;
+    auto factors = any_factors(reading.protocol);
+    for (const double level : source.levels) {
+      factors[source.level] = level;
+      (holds(*present, factors) ? with : without) = true;
+    }
+  }
+  if (with != without)
+    reading.findings.add(present->left.place, with ? "every trial has a signal" : "no trial has a signal",
+                         "levels with a signal and levels without one, such as 0");
+}
+
 // Without correct answers, a procedure cannot follow right answers, and practice cannot be passed. Reports
 // such procedures and blocks.
 void check_scored(text::TableReader& file, const Reading& reading) {
@@ -229,6 +251,7 @@ void check_timing(text::TableReader& file, const Reading& reading) {
 
 void check_whole(text::TableReader& file, Reading& reading) {
   check_timing(file, reading);
+  check_signal(reading);
   check_scored(file, reading);
   check_limits(reading);
   check_detection(reading);
@@ -237,6 +260,7 @@ void check_whole(text::TableReader& file, Reading& reading) {
   const auto needed = factors_used(reading.protocol);
   for (const auto& name : needed) check_values(sources, name, reading);
   check_answers(sources, reading);
+  check_present(sources, reading);
 }
 
 }  // namespace turnpoint::protocol

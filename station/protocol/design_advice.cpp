@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <set>
 
 #include "station/protocol/advice_list.hpp"
@@ -269,11 +270,16 @@ std::vector<Problem> notes(const Protocol& protocol) {
       all += (all.empty() ? "\"" : name == spec.balance.back() ? " and \"" : ", \"") + name + "\"";
     }
     if (spec.balance.size() > 1) note_uneven(notes, spec, crossed, "combinations of " + all);
-    std::set<double> seen;
-    for (const double value : spec.values)
-      if (!seen.insert(value).second)
+    std::map<double, int> times;
+    for (const double value : spec.values) ++times[value];
+    for (const auto& [value, listed] : times) {
+      const auto often = listed == 2 ? "twice" : std::to_string(listed) + " times";
+      if (listed > 1)
         notes.add(levels_key(spec),
-                  "the level " + number(value) + " is listed twice, so it is presented twice as often", "");
+                  "the level " + number(value) + " is listed " + often + ", so it is presented " + often +
+                      " as often",
+                  "");
+    }
   }
   if (protocol.timing.iti_s.high == 0) notes.add("timing.iti_s", "there is no pause between trials", "");
   if (protocol.task.gap_s == 0.0)

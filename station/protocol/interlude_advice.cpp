@@ -104,10 +104,45 @@ void check_item_words(AdviceList& advice, const std::string& key, const Item& it
       }
 }
 
+/// True if everybody who is in `inner` is in `outer` too; an empty list stands for all.
+template <class T>
+bool within(const std::vector<T>& inner, const std::vector<T>& outer) {
+  if (outer.empty()) return true;
+  const auto known = [&](const T& one) { return std::find(outer.begin(), outer.end(), one) != outer.end(); };
+  return !inner.empty() && std::all_of(inner.begin(), inner.end(), known);
+}
+
+bool same(const AnswerCondition& a, const AnswerCondition& b) {
+  return a.about == b.about && a.relation == b.relation && a.unequal == b.unequal && a.value == b.value;
+}
+
+/// Reports a screening that compares an answer which not everybody gives: a comparison with an answer that
+/// does not exist is false. That is meant only if the screening also turns away, by a comparison of its own,
+/// those who are not asked.
+void check_asked(AdviceList& advice, const Interlude& screening) {
+  const auto required = [&](const AnswerCondition& when) {
+    return std::any_of(screening.pass.begin(), screening.pass.end(),
+                       [&](const AnswerCondition& rule) { return same(rule, when); });
+  };
+  for (const auto& rule : screening.pass)
+    for (const auto& asked : advice.protocol.interludes)
+      for (const auto& item : asked.items) {
+        if (asked.name + "." + item.id != rule.about) continue;
+        const bool all = within(screening.audience.sessions, asked.audience.sessions) &&
+                         within(screening.audience.groups, asked.audience.groups);
+        if (all && std::all_of(item.when.begin(), item.when.end(), required)) continue;
+        advice.found.push_back(
+            {rule.place,
+             "\"" + rule.about + "\" is not asked of everybody, and nobody passes without an answer",
+             "ask it of everybody, with an answer for those to whom it does not apply"});
+      }
+}
+
 }  // namespace
 
 void advise_on_interludes(AdviceList& advice) {
   for (const auto& interlude : advice.protocol.interludes) {
+    if (interlude.kind == InterludeKind::screening) check_asked(advice, interlude);
     if (interlude.kind != InterludeKind::questionnaire) continue;
     for (std::size_t i = 0; i < interlude.items.size(); ++i) {
       const auto key = "questionnaire." + interlude.name + ".item." + std::to_string(i);

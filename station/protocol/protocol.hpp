@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "station/procedure/spec.hpp"
-#include "station/protocol/linear.hpp"
+#include "station/protocol/scene.hpp"
 #include "station/protocol/session_plan.hpp"
 #include "station/terms/trial.hpp"
 #include "station/text/problem.hpp"
@@ -17,74 +17,6 @@ namespace turnpoint::protocol {
 
 /// A text in each of the protocol's languages.
 using Localised = std::map<std::string, std::string>;
-
-/// How the values of a factor are drawn if nothing else sets the factor.
-enum class FactorDraw {
-  levels,              ///< one of the levels in each trial; a factor with a range is not drawn
-  without_repetition,  ///< the levels in shuffled order; each once before any comes again
-  uniform,             ///< uniform over the range
-  normal,              ///< normal; values outside of the range are drawn again
-  per_participant      ///< each participant has one of the levels in all sessions: a group
-};
-
-struct Factor {
-  std::string name;
-  FactorDraw draw = FactorDraw::levels;
-  double mean = 0, sd = 0;  ///< mean and standard deviation, if `draw` is FactorDraw::normal
-  std::optional<std::pair<double, double>> range;
-  std::vector<FactorValue> levels;
-  Place place;
-};
-
-/// What counts as the edge of a scene's vibration: a named point (turning, peak, p70, p50, p25 or p10), or
-/// the place with a given relative friction.
-struct Edge {
-  std::string name;                ///< "friction" for an edge defined by friction
-  std::optional<double> friction;  ///< relative friction in (0, 1)
-};
-
-/// One tone that a scene lists in `tones`, placed by boundary or by frequency.
-struct SceneTone {
-  std::optional<Linear> boundary_mm, frequency_Hz;
-  Edge edge;
-  Linear displacement_um;
-  double phase_deg = 0;
-};
-
-struct Zone {
-  std::optional<double> from_mm;
-  std::optional<Linear> friction;
-  std::optional<int> tones;
-};
-
-/// The accuracy that a scene requires. The planner uses the cheapest model that meets all tolerances that are
-/// given.
-struct Tolerance {
-  std::optional<double> boundary_mm, level_dB, friction;
-};
-
-/// A scene after its `base` has been merged in. It describes what one interval presents. Its expressions
-/// still contain factors.
-struct Scene {
-  std::string name, base;
-  std::optional<Linear> boundary_mm;
-  Edge edge;
-  /// strength at the last maximum of the vibration; at most one of displacement_um, friction and
-  /// displacement_under_finger_um is set
-  std::optional<Linear> displacement_um, friction;
-  /// displacement under a finger at position `finger_mm`
-  std::optional<Linear> displacement_under_finger_um, finger_mm;
-  std::vector<SceneTone> tones;
-  std::optional<Zone> zone;
-  /// how far the friction is below that of the base scene, in dB: 20 log10(difference / friction of the base
-  /// scene)
-  std::optional<Linear> friction_contrast_dB;
-  /// in each trial the displacement is changed by a random value, uniform between -rove_dB and +rove_dB
-  double rove_dB = 0;
-  double ramp_ms = 50;
-  Tolerance tolerance;
-  Place place;
-};
 
 /// A fixed value, or a uniform distribution between two values.
 struct Distribution {
@@ -152,6 +84,8 @@ struct Task {
   /// for a rating: texts at some of the choices, which are the points 1, 2, ...
   std::vector<Anchor> anchors;
   bool rating = false;  ///< true if the choices are the points of a scale, in ascending order
+  /// for a rating from the surest no to the surest yes: the trials that have a signal; the others are noise
+  std::optional<Comparison> present;
   std::optional<ValueAnswer> value;
   /// the number that stands for `standard`, the scene at the start of each trial
   std::optional<double> modulus;
@@ -172,7 +106,19 @@ using terms::ResponseZero;
 struct ResponseSignal {
   Linear after_s;  ///< time of the signal in s, counted from response_zero
   double window_s = 0;
+  /// A band on the screen, a flash of the whole screen, a tone on the rig's headphones, or a buzz of the
+  /// surface. Tone and buzz are part of the stimulus and begin on the very frame.
+  enum class By { screen, flash, tone, buzz };
+  By by = By::screen;
+  Place by_place;
+  std::string scene;    ///< buzz: the scene that the surface presents, in place of the last scene
+  double length_s = 0;  ///< buzz: how long it does so; then the last scene returns
 };
+
+/// True if the signal is part of the stimulus, so that it begins on the very frame.
+inline bool in_stimulus(const ResponseSignal& signal) {
+  return signal.by == ResponseSignal::By::tone || signal.by == ResponseSignal::By::buzz;
+}
 
 struct Timing {
   ResponseZero response_zero = ResponseZero::go_cue;

@@ -49,6 +49,7 @@ std::string without_effect(const std::string& word, const Protocol& protocol) {
   // do not add a second message: the reader of [task] has reported a task without choices
   if (word == "trace" || task.choices.empty()) return "";
   if (task.kind == TaskKind::adjustment) return "an adjustment task has settings instead of answers";
+  if (word == "dprime" && task.present) return "";
   if (judges(task)) return "ratings and numbers are neither right nor wrong";
   if ((word == "psychometric" || word == "dprime") &&
       answer_rule(protocol, level).kind == AnswerKind::category)

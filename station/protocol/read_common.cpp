@@ -119,4 +119,13 @@ const Factor* read_numeric_factor(TableReader& reader, const std::string& key, c
   return factor && (span(*factor) || is_broken(*factor)) ? factor : nullptr;
 }
 
+std::string read_scene_name(TableReader& reader, const std::string& key, const std::string& what,
+                            const Reading& reading) {
+  auto name = reader.string(key, what);
+  const auto& known = reading.declared_scenes;
+  if (reader.has(key) && std::find(known.begin(), known.end(), name) == known.end())
+    reading.findings.add(reader.place(key), "unknown scene \"" + name + "\"", suggestion(name, known));
+  return name;
+}
+
 }  // namespace turnpoint::protocol

@@ -188,15 +188,6 @@ std::vector<Choice> read_choice_list(TableReader& reader, const std::string& pat
   return choices;
 }
 
-std::string read_scene_name(TableReader& reader, const std::string& key, const std::string& what,
-                            const Reading& reading) {
-  auto name = reader.string(key, what);
-  const auto& known = reading.declared_scenes;
-  if (reader.has(key) && std::find(known.begin(), known.end(), name) == known.end())
-    reading.findings.add(reader.place(key), "unknown scene \"" + name + "\"", suggestion(name, known));
-  return name;
-}
-
 namespace {
 
 void read_rating(const Value& table, Task& task, const Reading& reading) {
@@ -223,6 +214,19 @@ void read_number(const Value& table, Task& task, const Reading& reading) {
   task.value = std::move(value);
 }
 
+/// Reads which trials have a signal, if the rating says how sure a person is that there was one.
+void read_present(TableReader& reader, Task& task, const Reading& reading) {
+  const auto* value = reader.take("present");
+  if (!value) return;
+  if (!task.rating)
+    return reader.problem("present", "only a rating on points can say how sure a person is of a signal",
+                          "points = 6 in [task.rating]");
+  if (value->kind != Value::Kind::string)
+    return reader.problem("present", "\"present\" is " + describe(*value),
+                          "write a comparison in quotes: \"strength_um > 0\"");
+  task.present = parse_comparison(value->string, value->place, reading.protocol.factors, reading.findings);
+}
+
 /// Reads the answer of a task without choices: [task.rating] or [task.number].
 void read_judgement(TableReader& reader, Task& task, const Reading& reading) {
   const auto* rating = reader.maybe_table("rating");
@@ -244,6 +248,7 @@ void read_judgement(TableReader& reader, Task& task, const Reading& reading) {
     read_rating(*rating, task, reading);
   else
     read_number(*number, task, reading);
+  read_present(reader, task, reading);
   if (task.value) task.choices = {{"value", {}}};
 }
 

@@ -1,3 +1,5 @@
+#include <map>
+
 #include "station/protocol/expression.hpp"
 #include "station/protocol/reading.hpp"
 
@@ -17,6 +19,19 @@ std::optional<Linear> read_time(TableReader& reader, const std::string& key, con
 
 const Range deadline_range{0, 3600, Range::Ends::open_low, "s"};
 
+void read_buzz(TableReader& reader, ResponseSignal& signal, const Reading& reading) {
+  if (signal.by == ResponseSignal::By::buzz) {
+    signal.scene =
+        read_scene_name(reader, "scene", "name the scene that the surface presents as the signal", reading);
+    signal.length_s = 1e-3 * reader.number("length_ms", {20, 500, Range::Ends::closed, "ms"});
+    return;
+  }
+  for (const char* key : {"scene", "length_ms"})
+    if (reader.take(key))
+      reader.problem(key, "\"" + std::string(key) + "\" applies only to a buzz of the surface",
+                     "by = \"buzz\"");
+}
+
 void read_signal(TableReader& timing, Reading& reading) {
   const auto* table = timing.maybe_table("response_signal");
   if (!table) return;
@@ -32,6 +47,13 @@ void read_signal(TableReader& timing, Reading& reading) {
   if (const auto after = read_time(reader, "after_s", {0.02, 60, Range::Ends::closed, "s"}, reading))
     signal.after_s = *after;
   signal.window_s = reader.number("window_s", {0.05, 10, Range::Ends::closed, "s"});
+  using By = ResponseSignal::By;
+  static const std::map<std::string, By> kinds{
+      {"screen", By::screen}, {"flash", By::flash}, {"tone", By::tone}, {"buzz", By::buzz}};
+  if (const auto by = reader.maybe_word("by", {"screen", "flash", "tone", "buzz"}); by && kinds.count(*by))
+    signal.by = kinds.at(*by);
+  signal.by_place = reader.place("by");
+  read_buzz(reader, signal, reading);
   reader.finish();
   reading.protocol.timing.signal = signal;
 }

@@ -48,6 +48,8 @@ void read_resume(text::TableReader& file, Reading& reading);
 /// Checks what can be checked only when the whole file has been read: values of factors in each trial,
 /// answers, pass criteria, deadlines.
 void check_whole(text::TableReader& file, Reading& reading);
+/// Checks that a response signal that is part of the stimulus (a tone or a buzz) fits into it.
+void check_signal(const Reading& reading);
 /// Checks sessions and groups: that each has blocks, and that nothing depends on what a session does not
 /// have.
 void check_visits(const Reading& reading);

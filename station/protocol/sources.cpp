@@ -98,6 +98,7 @@ std::vector<std::string> scenes_used(const Protocol& protocol) {
   for (const auto& interval : protocol.task.intervals)
     for (const auto& name : interval) add_name(name);
   add_name(protocol.task.standard), add_name(protocol.task.target);
+  if (protocol.timing.signal) add_name(protocol.timing.signal->scene);
   return names;
 }
 
@@ -107,6 +108,7 @@ std::set<std::string> factors_used(const Protocol& protocol) {
     for (const auto* expression : expressions_of(protocol.scenes.at(name))) add(*expression, names);
   for (const auto& [id, comparison] : protocol.task.correct_answer)
     add(comparison.left, names), add(comparison.right, names);
+  if (const auto& present = protocol.task.present) add(present->left, names), add(present->right, names);
   const auto& timing = protocol.timing;
   add(timing.anticipation_s, names);
   if (timing.deadline_s) add(*timing.deadline_s, names);

@@ -9,14 +9,13 @@
 #include <stdexcept>
 
 #include "physics/boundary_map.hpp"
+#include "station/protocol/carrier_advice.hpp"
 #include "station/protocol/combinations.hpp"
 #include "station/protocol/key_places.hpp"
+#include "station/protocol/needs.hpp"
 #include "station/protocol/resolve.hpp"
 #include "station/protocol/sources.hpp"
-#include "station/protocol/triggers.hpp"
-#include "station/scene/measures.hpp"
 #include "station/scene/planner.hpp"
-#include "station/scene/scaled.hpp"
 #include "station/scene/transducer.hpp"
 #include "station/terms/limits.hpp"
 #include "station/text/number.hpp"
@@ -272,110 +271,6 @@ void plan_scenes(const Protocol& protocol, const rig::Rig& rig, const std::stop_
   for (const auto& [code, warning] : told) survey.warnings.push_back({{protocol.path, 0, 0}, warning, ""});
 }
 
-void check_devices(const Protocol& protocol, const rig::Rig& rig, Survey& survey) {
-  const auto add = [&](const Place& place, const std::string& what, const std::string& allowed) {
-    survey.problems.push_back({place, what, allowed});
-  };
-  const auto& task = protocol.task;
-  if (task.device == Device::buttons && !rig.buttons_uri)
-    add(task.device_place, "the task needs buttons, but the rig has none",
-        "use a rig with [buttons], or set device = \"touch\"");
-  if (task.device == Device::touch && !rig.touch_uri)
-    add(task.device_place, "the task needs a touchscreen, but the rig has none",
-        "use a rig with [touch], or set device = \"buttons\"");
-  if (task.device == Device::either && !rig.touch_uri && !rig.buttons_uri)
-    add(task.device_place, "the rig has neither touchscreen nor buttons",
-        "use a rig with [touch] or [buttons]");
-  const bool two_lines = rig.buttons_uri && rig.buttons_uri->rfind("gpio:", 0) == 0 &&
-                         rig.buttons_uri->find("third=") == std::string::npos;
-  const std::size_t answers = task.choices.size(), buttons = two_lines ? 2 : 3;
-  if (task.device == Device::buttons && answers > buttons && rig.buttons_uri)
-    add(task.device_place,
-        "the task has " + std::to_string(answers) + " answers, but the rig has only " +
-            std::to_string(buttons) + " buttons",
-        answers == 3 ? "add a line \"third\" to [buttons], or set device = \"touch\""
-                     : "set device = \"touch\"");
-  if (task.sound == Sound::masking_noise && !rig.noise)
-    add(task.sound_place, "the task needs masking noise, but the rig has none",
-        "use a rig with [noise] (headphones on a spare channel), or leave out \"sound\"");
-  const auto zero = protocol.timing.response_zero;
-  const bool contact = zero == ResponseZero::first_contact || zero == ResponseZero::lift_off;
-  if (contact && !rig.contact_uri)
-    add(protocol.timing.response_zero_place,
-        "response times are measured from the finger's contact, but the rig cannot sense contact",
-        "use a rig with [contact], or another \"response_zero\"");
-}
-
-/// The shortest time from the beginning of an interval, or of its second scene, to the next event.
-double shortest_event_s(const Protocol& protocol) {
-  const auto& task = protocol.task;
-  const double length_s = task.duration_s.value_or(protocol.timing.explore_s.value_or(0));
-  if (!task.foreperiod_s) return length_s;
-  return std::min(task.foreperiod_s->low, length_s);
-}
-
-void check_triggers(const Protocol& protocol, const rig::Rig& rig, Survey& survey) {
-  const int largest = rig::largest_trigger_code(rig);
-  if (largest == 0) return;
-  const auto codes = trigger_codes(protocol);
-  const auto most = std::max_element(codes.begin(), codes.end(),
-                                     [](const auto& a, const auto& b) { return a.code < b.code; });
-  auto place = protocol.triggers.place;
-  if (place.line == 0) place = {protocol.path, 0, 0};
-  if (most != codes.end() && most->code > largest)
-    survey.problems.push_back(
-        {place,
-         "the trigger codes go up to " + std::to_string(most->code) + ", for " +
-             std::to_string(codes.size() / protocol.triggers.send.size() - 1) + " conditions",
-         "the rig's outputs give codes up to " + std::to_string(largest) +
-             "; send fewer events (\"send\" in [triggers]), or use a rig with more trigger lines"});
-  const bool marked = rig.marker && rig.marker->kind == rig::Marker::Kind::code;
-  const double code_s = marked ? rig::trigger_code_bits * rig.marker->duration_s : 0;
-  if (!codes.empty() && code_s > shortest_event_s(protocol))
-    survey.problems.push_back({place,
-                               "a trigger code lasts " + text::number(1e3 * code_s, 3) +
-                                   " ms, longer than the shortest time between two events",
-                               "shorten \"duration_ms\" in [marker] of the rig"});
-}
-
-void check_sensing(const Protocol& protocol, const rig::Rig& rig, Survey& survey) {
-  if (!protocol.sensing) return;
-  if (rig::has_force_cells(rig)) {
-    if (rig.capture->uri != "sim:" && !rig.capture->forces)
-      survey.problems.push_back(
-          {protocol.sensing->place,
-           "the rig's force cells are not calibrated, so the finger's movement is not known",
-           "calibrate them with `turnpoint calibrate --forces`, or leave out [sensing]"});
-    return;
-  }
-  survey.problems.push_back(
-      {protocol.sensing->place, "the rig has no force cells, so the finger's movement is not known",
-       "leave out [sensing], or use a rig with \"bridges\" in [capture] or with [force_cells]"});
-}
-
-/// Plans each friction table's trials with the largest displacement, and reports those that the rig cannot
-/// play.
-void check_friction_tables(const Protocol& protocol, const rig::Rig& rig, Survey& survey) {
-  for (const auto& part : protocol.plan) {
-    const auto& block = block_of(part);
-    if (block.kind != BlockKind::friction_table) continue;
-    const auto& strokes = block.strokes;
-    try {
-      scene::Planner planner(rig);
-      const auto plan = planner.plan(resolve(protocol, strokes.scene, {}, 0));
-      const double reference_m =
-          scene::mean_displacement_m(planner, plan, {1e-3 * strokes.from_mm, 1e-3 * strokes.to_mm});
-      scene::refuse_beyond_limits(
-          rig, scene::scaled(planner, plan, 1e-6 * strokes.levels_um.back() / reference_m));
-    } catch (const terms::UsageError& error) {
-      survey.problems.push_back({block.place,
-                                 "friction table \"" + block.name + "\" at " +
-                                     text::number(strokes.levels_um.back()) + " um: " + error.what(),
-                                 "use smaller displacements, or another scene"});
-    }
-  }
-}
-
 void check_limits(const Protocol& protocol, const rig::Rig& rig, Survey& survey) {
   const double longest_s =
       protocol.task.duration_s ? *protocol.task.duration_s : protocol.timing.explore_s.value_or(0);
@@ -392,12 +287,11 @@ void check_limits(const Protocol& protocol, const rig::Rig& rig, Survey& survey)
 Survey survey(const Protocol& protocol, const rig::Rig& rig, const std::stop_token& stop,
               const std::function<void(int done, int of)>& progress) {
   Survey survey;
-  check_devices(protocol, rig, survey);
-  check_triggers(protocol, rig, survey);
-  check_sensing(protocol, rig, survey);
-  check_friction_tables(protocol, rig, survey);
+  check_needs(protocol, rig, survey);
   check_limits(protocol, rig, survey);
   plan_scenes(protocol, rig, stop, progress, survey);
+  for (auto& warning : carrier_warnings(protocol, rig, survey.sights))
+    survey.warnings.push_back(std::move(warning));
   for (auto& warning : advice(protocol)) survey.warnings.push_back(std::move(warning));
   return survey;
 }

@@ -1,6 +1,8 @@
 #include <algorithm>
+#include <optional>
 
 #include "station/protocol/advice_list.hpp"
+#include "station/protocol/answers.hpp"
 #include "station/protocol/expression.hpp"
 #include "station/text/number.hpp"
 
@@ -19,9 +21,35 @@ void check_length(AdviceList& advice, const std::string& key, double seconds) {
                "times are in seconds: write 0.8 for 800 ms");
 }
 
+// A person may think about what was felt, but nobody remembers it for longer than this. Typing a number takes
+// longer, so it is not meant here.
+constexpr double longest_after_s = 30;
+
+/// Warns of a deadline that nobody can meet, because answers are accepted only when the intervals have ended,
+/// and of one so long after the stimulus that it was probably meant otherwise.
+void check_reach(AdviceList& advice, const std::string& key, double shortest, double longest) {
+  const auto end = stimulus_end(advice.protocol);
+  if (!end) return;
+  const std::string zero = name(advice.protocol.timing.response_zero);
+  const double answers_from_s = explored(advice.protocol.task) ? 0 : end->latest_s;
+  if (answers_from_s > 0 && shortest < answers_from_s + shortest_deadline_s)
+    advice.add(
+        key,
+        "the deadline of " + number(shortest) +
+            " s cannot be met: answers are accepted when the last "
+            "interval has ended, up to " +
+            number(answers_from_s) + " s after \"" + zero + "\"",
+        number(answers_from_s + shortest_deadline_s) + " s or more, or response_zero = \"interval_off\"");
+  else if (!advice.protocol.task.value && longest - end->latest_s > longest_after_s && longest <= longest_s)
+    advice.add(key, "the deadline is " + number(longest - end->latest_s) + " s after the stimulus has ended",
+               "nobody remembers for longer than " + number(longest_after_s) + " s what was felt: at most " +
+                   number(end->latest_s + longest_after_s) + " s");
+}
+
 void check_deadline(AdviceList& advice, const std::string& key, const Linear& deadline) {
   const auto [seconds, longest] = bounds(deadline, advice.protocol.factors);
   check_length(advice, key, longest);
+  if (seconds >= shortest_deadline_s) check_reach(advice, key, seconds, longest);
   if (seconds < shortest_deadline_s)
     advice.add(key, "nobody can answer within " + number(seconds) + " s",
                number(shortest_deadline_s) + " s or more");
@@ -46,6 +74,22 @@ void check_change(AdviceList& advice) {
                "the foreperiod plus the transition must be well below " + number(whole_s) + " s");
 }
 
+// A person who slides over the surface judges what it does at the signal. After the tones there is nothing to
+// feel.
+void check_lag(AdviceList& advice, const ResponseSignal& signal) {
+  const double latest_s = bounds(signal.after_s, advice.protocol.factors).second;
+  const auto end = stimulus_end(advice.protocol);
+  const std::string key = "timing.response_signal.after_s";
+  const bool is_felt =
+      explored(advice.protocol.task) && advice.protocol.timing.response_zero != ResponseZero::interval_off;
+  if (end && is_felt && !in_stimulus(signal) && latest_s > end->earliest_s)
+    advice.add(key,
+               "the signal can come " + number(latest_s) + " s after \"" +
+                   name(advice.protocol.timing.response_zero) + "\", when the tones may have ended " +
+                   number(latest_s - end->earliest_s) + " s before",
+               "at most " + number(end->earliest_s) + " s, or longer tones");
+}
+
 }  // namespace
 
 void advise_on_times(AdviceList& advice) {
@@ -59,6 +103,7 @@ void advise_on_times(AdviceList& advice) {
     advice.add("timing.response_signal.window_s",
                "nobody can answer within " + number(timing.signal->window_s) + " s of a signal",
                number(shortest_deadline_s) + " s or more");
+  if (timing.signal) check_lag(advice, *timing.signal);
   check_length(advice, "timing.iti_s", timing.iti_s.high);
   check_length(advice, "timing.explore_s", timing.explore_s.value_or(0));
   check_length(advice, "task.duration_s", task.duration_s.value_or(0));

@@ -60,12 +60,15 @@ std::vector<Visit> different_visits(const Protocol& protocol) {
   return visits;
 }
 
+std::string group_name(const Protocol& protocol, const Visit& visit) {
+  const auto groups = group_names(protocol);
+  return groups.empty() ? "" : groups[static_cast<std::size_t>(visit.place) % groups.size()];
+}
+
 std::string in_words(const Protocol& protocol, const Visit& visit) {
   std::string words = protocol.sessions ? "session " + std::to_string(visit.session) : "";
-  const auto groups = group_names(protocol);
-  if (!groups.empty())
-    words += (words.empty() ? "group " : ", group ") +
-             groups[static_cast<std::size_t>(visit.place) % groups.size()];
+  if (const auto group = group_name(protocol, visit); !group.empty())
+    words += (words.empty() ? "group " : ", group ") + group;
   return words;
 }
 

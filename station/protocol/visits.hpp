@@ -30,6 +30,10 @@ bool is_for(const Audience& audience, const Protocol& protocol, const Visit& vis
 /// Each planned session of each group. The blocks of other visits differ from these only in their order.
 std::vector<Visit> different_visits(const Protocol& protocol);
 
+/// The name of the group to which a visit's place in the counterbalancing belongs; "" if the protocol has no
+/// groups.
+std::string group_name(const Protocol& protocol, const Visit& visit);
+
 /// How people call a visit: "session 2", "session 2, group trained", "group trained"; "" if the protocol has
 /// neither planned sessions nor groups.
 std::string in_words(const Protocol& protocol, const Visit& visit);

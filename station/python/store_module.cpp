@@ -91,11 +91,11 @@ py::list tables(const std::string& database, const std::string& session, const s
 }
 
 py::list signals(const std::string& database, const std::string& session, const std::string& participant,
-                 const std::string& protocol) {
+                 const std::string& protocol, const std::string& stream) {
   std::vector<SignalTable> read;
   {
     const py::gil_scoped_release other_threads_run;
-    read = read_signals(database, {session, participant, protocol});
+    read = read_signals(database, {session, participant, protocol}, stream);
   }
   py::list list;
   for (auto& one : read) {
@@ -132,10 +132,10 @@ PYBIND11_MODULE(_store, module) {
       PyErr_SetString(store_error.ptr(), error.what());
     }
   });
-  const auto define = [&](const char* name, auto function) {
+  const auto define = [&](const char* name, auto function, const auto&... more) {
     module.def(name, function, py::arg("database"), py::arg("session"), py::arg("participant"),
-               py::arg("protocol"));
+               py::arg("protocol"), more...);
   };
   define("tables", &turnpoint::python::tables);
-  define("signals", &turnpoint::python::signals);
+  define("signals", &turnpoint::python::signals, py::arg("stream"));
 }

@@ -74,22 +74,23 @@ std::vector<ProtocolTables> read_tables(const std::string& database, const store
   return all;
 }
 
-std::vector<SignalTable> read_signals(const std::string& database, const store::ExportOptions& options) {
+std::vector<SignalTable> read_signals(const std::string& database, const store::ExportOptions& options,
+                                      const std::string& stream) {
   const auto copy = readable(database, options);
   auto selected = store::select_for_export(copy.path(), "", options);
   store::keep_with_signals(selected.database, selected.protocols);
   std::vector<SignalTable> all;
   for (const auto& selection : selected.protocols)
-    for (const auto& session : selection.sessions)
-      for (const auto& stream : store::signal_streams(selected.database, session.session_id)) {
-        const auto channels = store::signal_channels(selected.database, session.session_id, stream);
-        auto& table = all.emplace_back(SignalTable{session.session_id, stream, {}, {}, {}, {}, {}});
-        for (const auto& column : store::signal_columns(channels)) table.channels.push_back(column.name);
-        table.values.resize(channels.size());
-        store::SignalReader reader(selected.database, session.session_id, stream);
-        while (const auto stored = reader.next())
-          add_points(table, *stored, store::places_of(stored->row, channels));
-      }
+    for (const auto& session : selection.sessions) {
+      const auto channels = store::signal_channels(selected.database, session.session_id, stream);
+      if (channels.empty()) continue;
+      auto& table = all.emplace_back(SignalTable{session.session_id, stream, {}, {}, {}, {}, {}});
+      for (const auto& column : store::signal_columns(channels)) table.channels.push_back(column.name);
+      table.values.resize(channels.size());
+      store::SignalReader reader(selected.database, session.session_id, stream);
+      while (const auto stored = reader.next())
+        add_points(table, *stored, store::places_of(stored->row, channels));
+    }
   return all;
 }
 

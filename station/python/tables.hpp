@@ -35,8 +35,9 @@ struct SignalTable {
   std::vector<std::vector<double>> values;  ///< indexed by [channel][point]; NaN where a point is missing
 };
 
-/// Reads the signals that store::export_data() would write in its format "signals". Throws StoreError if
-/// there are none.
-std::vector<SignalTable> read_signals(const std::string& database, const store::ExportOptions& options);
+/// Reads the signals of one stream that store::export_data() would write in its format "signals". Throws
+/// StoreError if the sessions have no signals of any stream.
+std::vector<SignalTable> read_signals(const std::string& database, const store::ExportOptions& options,
+                                      const std::string& stream);
 
 }  // namespace turnpoint::python

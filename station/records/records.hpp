@@ -165,10 +165,13 @@ struct Bytes {
   bool operator==(const Bytes&) const = default;
 };
 
+/// The stream with all captured channels of a void trial, sample by sample.
+inline constexpr const char* kRawStream = "raw";
+
 /// What a sensor recorded during one trial: points at a fixed rate, compressed
 /// (station/store/signal_code.hpp).
 struct SignalRow {
-  std::string stream;            ///< what recorded the signal: "finger" (the force cells)
+  std::string stream;            ///< what recorded the signal: "finger" (the force cells) or kRawStream
   std::int64_t start_frame = 0;  ///< playback frame of the first point
   double start_s = 0;            ///< time of the first point from the start of the program run (segment)
   double rate_Hz = 0;            ///< points of the signal per second
@@ -230,6 +233,9 @@ struct TrialRow {
   /// the part of the measured vibration that was not planned, relative to the planned vibration
   std::optional<double> drive_residual_dB;
   std::optional<double> onset_error_us;  ///< measured minus planned onset of the vibration
+  /// What the pick-up captured in the silence before the first stimulus, relative to the planned vibration:
+  /// everything (rms), and the strongest tone; the latter is empty if no tone stands out of the noise.
+  std::optional<double> silence_dB, silence_tone_dB;
   FingerRow finger;
   std::vector<ToneRow> tones;
   std::vector<SignalRow> signal_rows;  ///< signals of the trial; written, but not read back with the trial
@@ -260,6 +266,13 @@ struct EventRow {
 /// Kinds of events that belong to separate programs.
 inline constexpr const char* kProgramEvent = "program";
 inline constexpr const char* kEstimatesEvent = "estimates";
+
+/// Kinds of events of a flash (a response signal): when its frame was handed to the screen, and how many
+/// seconds after the flash was due. The second kind is for flashes that were too late (terms::kSignalLate_s).
+inline constexpr const char* kSignalShownEvent = "signal_shown";
+inline constexpr const char* kSignalLateEvent = "signal_late";
+/// The delay in seconds from a touch to the light on the screen, as measured with a photodiode.
+inline constexpr const char* kDisplayLatencyEvent = "display_latency";
 
 /// Kinds of events around the trials: an answer; the withdrawal of an answer by the Back button, whose value
 /// names questionnaire and occasion; and the end of a questionnaire, consent, explanation or screening.

@@ -5,6 +5,7 @@
 
 #include "station/analysis/proportion.hpp"
 #include "station/analysis/quantile.hpp"
+#include "station/report/words.hpp"
 #include "station/text/number.hpp"
 
 namespace turnpoint::report {
@@ -65,9 +66,10 @@ void mark_threshold(const NamedFit& named, const SessionData& data, int series, 
   const double at = fit.parameters->threshold;
   if (at < panel.x.low || at > panel.x.high) return;
   const auto unit = data.level_unit.empty() ? "" : " " + data.level_unit;
-  panel.layers.push_back(plot::Rule{plot::Rule::Direction::vertical, at,
-                                    (data.design == Design::two_sided ? "PSE " : "threshold ") +
-                                        (name.empty() ? "" : name + " ") + text::number(at, 3) + unit});
+  panel.layers.push_back(
+      plot::Rule{plot::Rule::Direction::vertical, at,
+                 Words(data.language)(data.design == Design::two_sided ? "figure.pse" : "figure.threshold",
+                                      (name.empty() ? "" : name + " ") + text::number(at, 3) + unit)});
   if (!named.intervals.threshold) return;
   const auto& interval = named.intervals.threshold->interval;
   const double height = analysis::probability(fit.options.function, fit.options.scale, *fit.parameters, at);
@@ -78,7 +80,7 @@ void mark_threshold(const NamedFit& named, const SessionData& data, int series, 
                  ""});
 }
 
-std::string or_default(const std::string& name, const char* fallback) {
+std::string or_default(const std::string& name, const std::string& fallback) {
   return name.empty() ? fallback : name;
 }
 
@@ -90,12 +92,15 @@ std::optional<plot::Figure> psychometric_figure(const Summary& summary) {
     for (const auto& point : named.fit.data)
       if (point.level != analysis::kNoise) levels.push_back(point.level);
   if (levels.empty()) return std::nullopt;
+  const Words words(summary.data.language);
   const bool logarithmic = summary.data.scale == analysis::Scale::log10;
   plot::Chart panel;
   panel.x = plot::fitted(summary.data.level_label, levels, 0.05,
                          logarithmic ? plot::AxisScale::log10 : plot::AxisScale::linear);
   const bool forced = summary.data.design == Design::forced_choice;
-  panel.y = {"Proportion " + summary.fits.front().positive + " (0 to 1)", forced ? 0.3 : -0.03, 1.03};
+  const auto& positive = summary.fits.front().positive;
+  panel.y = {words("figure.proportion", positive == "correct" ? words("figure.correct") : positive),
+             forced ? 0.3 : -0.03, 1.03};
   if (forced)
     for (const auto& named : summary.fits)
       for (const auto& point : named.fit.data)
@@ -106,12 +111,13 @@ std::optional<plot::Figure> psychometric_figure(const Summary& summary) {
                                         summary.fits[i].intervals.band_low,
                                         summary.fits[i].intervals.band_high, static_cast<int>(i), ""});
   if (forced)
-    panel.layers.push_back(
-        plot::Rule{plot::Rule::Direction::horizontal, 1.0 / summary.data.alternatives, "chance"});
+    panel.layers.push_back(plot::Rule{plot::Rule::Direction::horizontal, 1.0 / summary.data.alternatives,
+                                      words("figure.chance")});
   for (const auto& named : summary.fits)
     if (const auto noise = false_alarms(named))
-      panel.layers.push_back(plot::Rule{plot::Rule::Direction::horizontal, *noise,
-                                        named.name.empty() ? "false alarms" : "false alarms, " + named.name});
+      panel.layers.push_back(plot::Rule{
+          plot::Rule::Direction::horizontal, *noise,
+          named.name.empty() ? words("figure.false_alarms") : words("figure.false_alarms_of", named.name)});
   for (std::size_t i = 0; i < summary.fits.size(); ++i) {
     const auto& named = summary.fits[i];
     const int series = static_cast<int>(i);
@@ -130,6 +136,7 @@ std::optional<plot::Figure> psychometric_figure(const Summary& summary) {
 
 std::optional<plot::Figure> trace_figure(const Summary& summary) {
   plot::Figure figure;
+  const Words words(summary.data.language);
   figure.title = "Levels in the order presented";
   figure.chart_width_px = 620;
   figure.chart_height_px = 240;
@@ -147,10 +154,10 @@ std::optional<plot::Figure> trace_figure(const Summary& summary) {
       line.x.push_back(points.x.back());
       line.y.push_back(points.y.back());
     }
-    if (!wrong.x.empty()) right.name = "right", wrong.name = "wrong";
+    if (!wrong.x.empty()) right.name = words("figure.right"), wrong.name = words("figure.wrong");
     plot::Chart panel;
-    panel.title = or_default(trace.procedure, "all trials");
-    panel.x = plot::fitted("Trial (number in the session)", line.x, 0.03);
+    panel.title = or_default(trace.procedure, words("figure.all_trials"));
+    panel.x = plot::fitted(words("figure.trial_in_session"), line.x, 0.03);
     panel.x.counts = true;
     panel.y = plot::fitted(summary.data.level_label, line.y, 0.1);
     // Draw a line only if the procedure moves in small steps. A line through shuffled levels would only
@@ -201,6 +208,7 @@ std::optional<plot::Figure> settings_figure(const Summary& summary) {
 }
 
 std::optional<plot::Figure> judgement_figure(const Summary& summary) {
+  const Words words(summary.data.language);
   const bool numbers = summary.data.design == Design::numbers;
   plot::Chart chart;
   std::vector<double> levels, values;
@@ -228,8 +236,8 @@ std::optional<plot::Figure> judgement_figure(const Summary& summary) {
     return logarithmic ? plot::AxisScale::log10 : plot::AxisScale::linear;
   };
   chart.x = plot::fitted(summary.data.level_label, levels, 0.06, scale(ratios));
-  chart.y =
-      plot::fitted(numbers ? "Geometric mean of the numbers" : "Mean rating", values, 0.08, scale(numbers));
+  chart.y = plot::fitted(words(numbers ? "figure.geometric_mean" : "figure.mean_rating"), values, 0.08,
+                         scale(numbers));
   plot::Figure figure;
   figure.title = numbers ? "Numbers at each level" : "Ratings at each level";
   figure.chart_width_px = 620;
@@ -245,19 +253,20 @@ std::optional<plot::Figure> confusion_figure(const Summary& summary) {
     return all;
   };
   plot::Figure figure;
+  const Words words(summary.data.language);
   figure.title = "Answers to each stimulus";
   figure.chart_width_px = 620;
   figure.chart_height_px = 380;
   for (const auto& confusion : summary.confusions) {
     if (confusion.rows.empty()) continue;
-    plot::HeatMap shares{edges(summary.data.choices.size()),           edges(confusion.rows.size()), {}, 0, 1,
-                         "Share of trials with this stimulus (0 to 1)"};
+    plot::HeatMap shares{
+        edges(summary.data.choices.size()), edges(confusion.rows.size()), {}, 0, 1, words("figure.share")};
     for (const auto& row : confusion.rows)
       for (const int count : row.answers) shares.values.push_back(static_cast<double>(count) / row.trials);
     plot::Chart chart;
-    chart.title = or_default(confusion.condition, "all trials");
-    chart.x = {"Answer (number of the choice)", 0.5, shares.x_edges.back(), plot::AxisScale::linear, true};
-    chart.y = {"Stimulus (number of the row)", 0.5, shares.y_edges.back(), plot::AxisScale::linear, true};
+    chart.title = or_default(confusion.condition, words("figure.all_trials"));
+    chart.x = {words("figure.answer"), 0.5, shares.x_edges.back(), plot::AxisScale::linear, true};
+    chart.y = {words("figure.stimulus"), 0.5, shares.y_edges.back(), plot::AxisScale::linear, true};
     chart.layers.push_back(std::move(shares));
     figure.charts.push_back(std::move(chart));
   }
@@ -299,6 +308,7 @@ std::optional<plot::Figure> response_time_figure(const Summary& summary) {
   const double high = std::ceil(analysis::quantile(all, 1) / width) * width;
   const int bins = std::clamp(static_cast<int>(std::lround(high / width)) * 2, 10, 60);
   plot::Figure figure;
+  const Words words(summary.data.language);
   figure.title = "Response times";
   figure.chart_width_px = 620;
   figure.chart_height_px = 200;
@@ -312,20 +322,22 @@ std::optional<plot::Figure> response_time_figure(const Summary& summary) {
     const auto& entry = summary.trade.instructions[i];
     bars[i].series = static_cast<int>(i);
     plot::Chart panel;
-    panel.title = or_default(entry.instruction, "all trials");
-    panel.x = {"Response time (s)", 0, high};
-    panel.y = {"Trials (number)", 0, tallest * 1.12, plot::AxisScale::linear, true};
+    panel.title = or_default(entry.instruction, words("figure.all_trials"));
+    panel.x = {words("figure.response_time"), 0, high};
+    panel.y = {words("figure.trials"), 0, tallest * 1.12, plot::AxisScale::linear, true};
     panel.layers.push_back(bars[i]);
     if (entry.times)
       panel.layers.push_back(plot::Rule{plot::Rule::Direction::vertical, entry.times->median_s,
-                                        "median " + text::number(entry.times->median_s, 3) + " s"});
+                                        words("figure.median", text::number(entry.times->median_s, 3))});
     figure.charts.push_back(std::move(panel));
   }
   return figure;
 }
 
 std::optional<plot::Figure> trade_figure(const Summary& summary) {
-  plot::Chart caf{"Conditional accuracy", {}, {}, {}}, cells{"Within equal difficulty", {}, {}, {}};
+  const Words words(summary.data.language);
+  plot::Chart caf{words("figure.conditional"), {}, {}, {}},
+      cells{words("figure.equal_difficulty"), {}, {}, {}};
   std::vector<double> caf_times, cell_times, accuracies;
   int series = 0;
   // in an identification task, the level says which answer is right, not how difficult the trial is
@@ -351,7 +363,7 @@ std::optional<plot::Figure> trade_figure(const Summary& summary) {
     }
     caf_times.insert(caf_times.end(), bins.x.begin(), bins.x.end());
     cell_times.insert(cell_times.end(), by_difficulty.x.begin(), by_difficulty.x.end());
-    const auto name = or_default(entry.instruction, "all trials");
+    const auto name = or_default(entry.instruction, words("figure.all_trials"));
     bins.series = bin_line.series = by_difficulty.series = cell_line.series = series++;
     bins.name = bin_line.name = by_difficulty.name = cell_line.name = name;
     bin_line.x = bins.x, bin_line.y = bins.y;
@@ -363,9 +375,9 @@ std::optional<plot::Figure> trade_figure(const Summary& summary) {
   }
   if (cell_times.empty() && caf_times.empty()) return std::nullopt;
   const double lowest = std::min(0.45, *std::min_element(accuracies.begin(), accuracies.end()) - 0.03);
-  caf.x = plot::fitted("Response time, mean of bin (s)", caf_times, 0.12);
-  cells.x = plot::fitted("Mean correct response time (s)", cell_times, 0.12);
-  caf.y = cells.y = {"Proportion correct (0 to 1)", lowest, 1.03};
+  caf.x = plot::fitted(words("figure.bin_time"), caf_times, 0.12);
+  cells.x = plot::fitted(words("figure.correct_time"), cell_times, 0.12);
+  caf.y = cells.y = {words("figure.proportion", words("figure.correct")), lowest, 1.03};
   plot::Figure figure;
   figure.title = "Speed and accuracy";
   figure.columns = 2;

@@ -6,7 +6,8 @@
 
 namespace turnpoint::report {
 
-/// The figures of a report. Each function returns nullopt if the session has no data for its figure.
+/// The figures of a report, in the language of its SessionData. Each function returns nullopt if the session
+/// has no data for its figure.
 
 /// Plots the proportion of answers at each level with its Wilson interval, and the fitted curve with its
 /// band. The area of a marker is proportional to the number of trials.
@@ -28,6 +29,8 @@ std::optional<plot::Figure> judgement_figure(const Summary& summary);
 std::optional<plot::Figure> vibration_figure(const Summary& summary);
 /// Plots d' against the response time at each lag of the response signal, and the fitted curve.
 std::optional<plot::Figure> signal_figure(const Summary& summary);
+/// Plots hits against false alarms for each degree of confidence, with one curve for each level.
+std::optional<plot::Figure> roc_figure(const Summary& summary);
 /// Plots the share of each answer by stimulus, in one chart for each condition.
 std::optional<plot::Figure> confusion_figure(const Summary& summary);
 /// Plots accuracy against response time in two panels: the conditional accuracy functions, and one point for
@@ -43,6 +46,7 @@ std::optional<plot::Figure> finger_figure(const Summary& summary);
 std::optional<plot::Figure> friction_figure(const Summary& summary);
 /// Plots friction along the strip beside the planned boundary, with bars of one standard error. Empty without
 /// curves.
-std::optional<plot::Chart> strip_chart(const std::vector<analysis::FrictionCurve>& curves);
+std::optional<plot::Chart> strip_chart(const std::vector<analysis::FrictionCurve>& curves,
+                                       const std::string& language = "en");
 
 }  // namespace turnpoint::report

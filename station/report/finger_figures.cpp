@@ -2,6 +2,7 @@
 #include <span>
 
 #include "station/report/figures.hpp"
+#include "station/report/words.hpp"
 
 namespace turnpoint::report {
 
@@ -57,7 +58,7 @@ plot::Points grouped(const std::vector<Reading>& list, std::size_t size) {
 }
 
 /// Draws one value over the session, with a series for each condition.
-plot::Chart over_session(const analysis::Finger& finger, const std::string& label, Value value) {
+plot::Chart over_session(const analysis::Finger& finger, const Words& words, const char* label, Value value) {
   plot::Chart chart;
   std::vector<double> all, trials;
   const auto size = (finger.trials.size() + kMostMarkers - 1) / kMostMarkers;
@@ -70,10 +71,10 @@ plot::Chart over_session(const analysis::Finger& finger, const std::string& labe
     trials.insert(trials.end(), points.x.begin(), points.x.end());
     chart.layers.push_back(std::move(points));
   }
-  chart.x = plot::fitted("Trial (number in the session)", trials, 0.04);
+  chart.x = plot::fitted(words("figure.trial_in_session"), trials, 0.04);
   chart.x.counts = true;
   all.push_back(0);  // force and speed are shown from 0, so that conditions can be compared by their ratio
-  chart.y = plot::fitted(label, all, 0.12);
+  chart.y = plot::fitted(words(label), all, 0.12);
   chart.y.low = 0;
   return chart;
 }
@@ -123,20 +124,22 @@ std::vector<plot::Chart> boundary_charts(const Summary& summary) {
   const auto& [shift_mm, mu_low, mu_high] = summary.finger->boundaries;
   std::vector<double> planned;
   for (const auto& at : shift_mm) planned.push_back(at.planned_mm);
-  const auto along = plot::fitted("Planned boundary (mm)", planned, 0.08);
-  plot::Chart felt{"Where friction changes", along, {}, {}}, sides{"Friction on both sides", along, {}, {}};
+  const Words words(summary.data.language);
+  const auto along = plot::fitted(words("figure.planned_boundary"), planned, 0.08);
+  plot::Chart felt{words("figure.where_changes"), along, {}, {}},
+      sides{words("figure.both_sides"), along, {}, {}};
   auto shifts = extent(shift_mm);
   shifts.push_back(0);
-  felt.y = plot::fitted("Felt minus planned boundary (mm)", shifts, 0.1);
+  felt.y = plot::fitted(words("figure.felt"), shifts, 0.1);
   felt.layers.push_back(plot::Rule{plot::Rule::Direction::horizontal, 0, ""});
   felt.layers.push_back(markers(shift_mm, along, plot::kNeutral, ""));
   auto friction = extent(mu_low);
   for (const double value : extent(mu_high)) friction.push_back(value);
   friction.push_back(0);
-  sides.y = plot::fitted("Coefficient of friction", friction, 0.1);
+  sides.y = plot::fitted(words("figure.coefficient"), friction, 0.1);
   sides.y.low = 0;
-  sides.layers.push_back(markers(mu_low, along, kSmoothSeries, "smooth side"));
-  sides.layers.push_back(markers(mu_high, along, kRoughSeries, "rough side"));
+  sides.layers.push_back(markers(mu_low, along, kSmoothSeries, words("figure.smooth_side")));
+  sides.layers.push_back(markers(mu_high, along, kRoughSeries, words("figure.rough_side")));
   return {std::move(felt), std::move(sides)};
 }
 
@@ -149,22 +152,26 @@ std::optional<plot::Figure> finger_figure(const Summary& summary) {
   figure.columns = 2;
   figure.chart_width_px = 400;
   figure.chart_height_px = 260;
-  for (auto chart : {over_session(*summary.finger, "Normal force (N)", &analysis::FingerTrial::normal_N),
-                     over_session(*summary.finger, "Speed (mm/s)", &analysis::FingerTrial::speed_mm_s)})
+  const Words words(summary.data.language);
+  for (auto chart :
+       {over_session(*summary.finger, words, "figure.normal_force", &analysis::FingerTrial::normal_N),
+        over_session(*summary.finger, words, "figure.speed", &analysis::FingerTrial::speed_mm_s)})
     if (!chart.layers.empty()) figure.charts.push_back(std::move(chart));
   if (figure.charts.empty()) return std::nullopt;
   return figure;
 }
 
-std::optional<plot::Chart> strip_chart(const std::vector<analysis::FrictionCurve>& curves) {
+std::optional<plot::Chart> strip_chart(const std::vector<analysis::FrictionCurve>& curves,
+                                       const std::string& language) {
+  const Words words(language);
   plot::Chart chart;
-  chart.title = "Friction along the strip";
+  chart.title = words("figure.along_strip");
   std::vector<double> along, friction{0};
   for (const auto& curve : curves) {
     if (curve.from_boundary_mm.empty()) continue;
     plot::Points points;
     points.series = static_cast<int>(chart.layers.size());
-    points.name = curve.direction;
+    points.name = words(curve.narrow ? "figure.towards_narrow" : "figure.towards_wide");
     points.x = curve.from_boundary_mm;
     points.y = curve.friction;
     for (std::size_t i = 0; i < points.x.size(); ++i) {
@@ -177,15 +184,16 @@ std::optional<plot::Chart> strip_chart(const std::vector<analysis::FrictionCurve
   }
   if (along.empty()) return std::nullopt;
   along.push_back(0);
-  chart.x = plot::fitted("Distance from the planned boundary (mm)", along, 0.04);
-  chart.y = plot::fitted("Coefficient of friction", friction, 0.1);
+  chart.x = plot::fitted(words("figure.from_boundary"), along, 0.04);
+  chart.y = plot::fitted(words("figure.coefficient"), friction, 0.1);
   chart.y.low = 0;
-  chart.layers.insert(chart.layers.begin(), plot::Rule{plot::Rule::Direction::vertical, 0, "planned"});
+  chart.layers.insert(chart.layers.begin(),
+                      plot::Rule{plot::Rule::Direction::vertical, 0, words("figure.planned")});
   return chart;
 }
 
 std::optional<plot::Figure> friction_figure(const Summary& summary) {
-  const auto strip = strip_chart(summary.data.strip);
+  const auto strip = strip_chart(summary.data.strip, summary.data.language);
   if (!summary.finger || (summary.finger->boundaries.shift_mm.empty() && !strip)) return std::nullopt;
   plot::Figure figure;
   figure.title = "Friction along the strip";

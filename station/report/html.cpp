@@ -71,7 +71,7 @@ std::string fit_table(const NamedFit& named, const SessionData& data) {
           row("Share of bootstrap replicates with a worse fit (proportion)", *found.deviance_p, std::nullopt);
     html += "</table>\n";
   }
-  if (const auto text = describe_intervals(named, data); !text.empty())
+  if (const auto text = texts::say(describe_intervals(named, data), "en"); !text.empty())
     html += "<p class=\"soft\">" + escaped(text) + "</p>\n";
   return html + notes(named.fit.statements) + notes(named.intervals.statements);
 }
@@ -229,7 +229,8 @@ std::string trade_section(const Summary& summary) {
   if (summary.data.design != Design::categories) html += difficulty_table(summary);
   for (const auto& entry : summary.trade.instructions) {
     for (auto statement : entry.statements) {
-      if (!entry.instruction.empty()) statement.text = entry.instruction + ": " + statement.text;
+      if (!entry.instruction.empty())
+        statement.text = {"", "", {texts::plain(entry.instruction + ": "), statement.text}};
       html += notes({statement});
     }
   }
@@ -290,7 +291,8 @@ std::string course_section(const Summary& summary) {
              " %" +
              (summary.bias->criterion ? ", criterion c = " + number(*summary.bias->criterion, 2) : ""));
   line("Trend of response time", trend(summary.fatigue.response_time_s, " s"));
-  line("Trend of accuracy", trend(summary.fatigue.proportion_correct, " (proportion correct)"));
+  if (summary.data.scored && summary.data.design != Design::adjustment)
+    line("Trend of accuracy", trend(summary.fatigue.proportion_correct, " (proportion correct)"));
   html += "</table>\n" + picture(trace_figure(summary));
   if (summary.bias) html += notes(summary.bias->statements);
   return html + notes(summary.fatigue.statements);
@@ -306,14 +308,14 @@ std::string to_html(const Summary& summary) {
   if (data.run_mode != "live") html += " <span class=\"mode\">" + escaped(data.run_mode) + "</span>";
   html += "</p>\n" + facts_table(data.facts);
   if (judges(data.design)) {
-    html += judgement_section(summary);
+    html += judgement_section(summary) + roc_section(summary);
   } else if (data.design != Design::adjustment) {
     if (!summary.fits.empty())
       html += "<h2>Psychometric function</h2>\n" + picture(psychometric_figure(summary));
     for (const auto& named : summary.fits) html += fit_table(named, data);
     html += threshold_curve_section(summary) + confusion_section(summary) + estimate_section(data) +
-            detection_section(summary) + discrimination_section(summary) + signal_section(summary) +
-            trade_section(summary);
+            detection_section(summary) + roc_section(summary) + discrimination_section(summary) +
+            signal_section(summary) + trade_section(summary);
   } else {
     html += settings_section(summary);
   }
@@ -323,7 +325,7 @@ std::string to_html(const Summary& summary) {
         "<h2>Vibration of the surface</h2>\n<p class=\"soft\">Open markers: void, because the vibration was "
         "too far from the plan.</p>\n" +
         picture(vibration_figure(summary));
-  if (!data.health.empty()) html += "<h2>The station</h2>\n" + facts_table(data.health);
+  if (!data.health.empty()) html += "<h2>The station</h2>\n" + facts_table(in_english(data.health));
   return html + "</body></html>\n";
 }
 

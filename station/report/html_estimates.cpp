@@ -15,11 +15,19 @@ namespace {
 
 using plot::escaped;
 
-/// Says why a procedure's own estimate differs from the fit.
-std::string why_estimates_differ(const SessionData& data) {
+std::string bare(double value, const analysis::Interval& interval) {
+  const auto shown = [&](double end) {
+    return text::estimated(end, text::uncertainty(value, interval.low, interval.high));
+  };
+  return minus(shown(interval.low)) + " to " + minus(shown(interval.high));
+}
+
+}  // namespace
+
+std::string why_estimates_differ(const std::vector<ProcedureEstimate>& estimates, bool thresholds_differ) {
   bool posterior = false, track = false, series = false, program = false;
   std::set<std::string> settles_at;
-  for (const auto& estimate : data.estimates) {
+  for (const auto& estimate : estimates) {
     posterior |= estimate.choice == procedure::Choice::posterior;
     track |= estimate.choice == procedure::Choice::track;
     series |= estimate.choice == procedure::Choice::series;
@@ -32,11 +40,10 @@ std::string why_estimates_differ(const SessionData& data) {
     why +=
         "A procedure with a posterior estimates the mean of that posterior, with the prior and the grid of "
         "the protocol; its 95 % intervals are central. ";
-    if (!data.thresholds_differ)
+    if (!thresholds_differ)
       why +=
           "The fit uses the same answers, but a prior of its own, which is nearly flat, and shows medians. "
-          "The "
-          "fewer answers there are, the further the two are apart. ";
+          "The fewer answers there are, the further the two are apart. ";
   }
   if (track) why += "A staircase estimates from the last levels that it tried; the fit uses all answers. ";
   if (program)
@@ -57,33 +64,29 @@ std::string why_estimates_differ(const SessionData& data) {
   return why;
 }
 
-std::string bare(double value, const analysis::Interval& interval) {
-  const auto shown = [&](double end) {
-    return text::estimated(end, text::uncertainty(value, interval.low, interval.high));
-  };
-  return minus(shown(interval.low)) + " to " + minus(shown(interval.high));
-}
+const char* const kEstimateTitles =
+    "<th>Procedure</th><th>Block</th><th>Parameter</th><th>Estimate</th><th>Standard deviation</th>"
+    "<th>95 % interval</th><th>Taken from</th>";
 
-}  // namespace
+std::string estimate_cells(const ProcedureEstimate& estimate) {
+  const auto mean =
+      estimate.sd ? text::estimated(estimate.mean, *estimate.sd) : text::number(estimate.mean, 3);
+  const bool level = estimate.parameter.starts_with("threshold") || estimate.parameter == "pse";
+  const auto unit = estimate.unit.empty() && level ? "no unit" : estimate.unit;
+  return "<td>" + escaped(estimate.procedure) + "</td><td>" + escaped(estimate.block) + "</td><td>" +
+         escaped(estimate.parameter + (unit.empty() ? "" : " (" + unit + ")")) + "</td><td class=\"n\">" +
+         minus(mean) + "</td><td class=\"n\">" + (estimate.sd ? number(*estimate.sd, 2) : "") +
+         "</td><td class=\"n\">" + (estimate.interval ? bare(estimate.mean, *estimate.interval) : "") +
+         "</td><td>" + escaped(estimate.basis) + "</td>";
+}
 
 std::string estimate_section(const SessionData& data) {
   if (data.estimates.empty()) return "";
   std::string html =
-      "<h2>The procedure's own estimate</h2>\n<table><tr><th>Procedure</th><th>Block</th>"
-      "<th>Parameter</th><th>Estimate</th><th>Standard deviation</th><th>95 % interval</th>"
-      "<th>Taken from</th></tr>";
-  for (const auto& estimate : data.estimates) {
-    const auto mean =
-        estimate.sd ? text::estimated(estimate.mean, *estimate.sd) : text::number(estimate.mean, 3);
-    const bool level = estimate.parameter.starts_with("threshold") || estimate.parameter == "pse";
-    const auto unit = estimate.unit.empty() && level ? "no unit" : estimate.unit;
-    html += "<tr><td>" + escaped(estimate.procedure) + "</td><td>" + escaped(estimate.block) + "</td><td>" +
-            escaped(estimate.parameter + (unit.empty() ? "" : " (" + unit + ")")) + "</td><td class=\"n\">" +
-            minus(mean) + "</td><td class=\"n\">" + (estimate.sd ? number(*estimate.sd, 2) : "") +
-            "</td><td class=\"n\">" + (estimate.interval ? bare(estimate.mean, *estimate.interval) : "") +
-            "</td><td>" + escaped(estimate.basis) + "</td></tr>";
-  }
-  return html + "</table>\n<p class=\"soft\">" + why_estimates_differ(data) + "</p>\n";
+      std::string("<h2>The procedure's own estimate</h2>\n<table><tr>") + kEstimateTitles + "</tr>";
+  for (const auto& estimate : data.estimates) html += "<tr>" + estimate_cells(estimate) + "</tr>";
+  return html + "</table>\n<p class=\"soft\">" +
+         why_estimates_differ(data.estimates, data.thresholds_differ) + "</p>\n";
 }
 
 std::string threshold_curve_section(const Summary& summary) {

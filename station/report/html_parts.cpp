@@ -60,7 +60,8 @@ std::string cell(const std::optional<Estimate>& estimate) {
 
 std::string notes(const std::vector<analysis::Statement>& statements) {
   std::string html;
-  for (const auto& statement : statements) html += "<p class=\"note\">" + escaped(statement.text) + "</p>\n";
+  for (const auto& statement : statements)
+    html += "<p class=\"note\">" + escaped(texts::say(statement.text, "en")) + "</p>\n";
   return html;
 }
 

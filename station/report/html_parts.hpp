@@ -28,10 +28,18 @@ std::string picture(const std::optional<plot::Figure>& figure);
 /// The name of a condition, or "all trials" if there is only one condition.
 std::string name_of(const std::string& condition);
 
+/// The titles and the cells of a table row with a procedure's own estimate.
+extern const char* const kEstimateTitles;
+std::string estimate_cells(const ProcedureEstimate& estimate);
+/// Says why procedures' own estimates differ from the fit. `thresholds_differ`: see SessionData.
+std::string why_estimates_differ(const std::vector<ProcedureEstimate>& estimates, bool thresholds_differ);
 /// The section on the procedures' own estimates; "" if there are none.
 std::string estimate_section(const SessionData& data);
 /// The section on the threshold along the second dimension of the stimuli; "" if there is none.
 std::string threshold_curve_section(const Summary& summary);
+
+/// The section on the ROC of answers with confidence; "" if there is none.
+std::string roc_section(const Summary& summary);
 
 /// The section on accuracy at the response signal; "" if there was none.
 std::string signal_section(const Summary& summary);

@@ -47,7 +47,7 @@ Json fit_json(const NamedFit& named, const SessionData& data) {
   json["deviance"] = p && !posterior ? value(named.fit.deviance) : Json(nullptr);
   json["deviance_p"] = value(named.intervals.deviance_p);
   json["replicates"] = named.intervals.replicates;
-  json["intervals"] = describe_intervals(named, data);
+  json["intervals"] = texts::say(describe_intervals(named, data), "en");
   json["prior"] = prior_json(named);
   json["levels"] = Json::array();  // a noise trial has no level, so its level is null
   for (const auto& point : named.fit.data)
@@ -186,6 +186,31 @@ Json confusion_json(const analysis::Confusion& confusion, const SessionData& dat
   return json;
 }
 
+Json rating_fit_json(const std::optional<analysis::RatingFit>& fit) {
+  if (!fit) return nullptr;
+  Json json{{"sensitivity", value(std::optional(fit->sensitivity))},  // d' or d_a
+            {"mean", value(fit->mean)},
+            {"sd", value(std::optional(fit->sd))},
+            {"area", value(std::optional(fit->area))},
+            {"log_likelihood", value(fit->log_likelihood)}};
+  json["criteria"] = Json::array();
+  for (const double criterion : fit->criteria) json["criteria"].push_back(value(criterion));
+  return json;
+}
+
+Json roc_json(const analysis::RatedDetection& entry) {
+  Json json{{"condition", entry.condition}, {"level", value(entry.level)}};
+  json["noise"] = entry.noise;  // numbers of trials, from the surest no to the surest yes
+  json["signal"] = entry.signal;
+  json["points"] = Json::array();
+  for (const auto& point : entry.roc.points)
+    json["points"].push_back({{"false_alarms", value(point.false_alarms)}, {"hits", value(point.hits)}});
+  json["area"] = value(std::optional(entry.roc.area));
+  json["equal_variances"] = rating_fit_json(entry.equal);
+  json["unequal_variances"] = rating_fit_json(entry.unequal);
+  return json;
+}
+
 Json discrimination_json(const analysis::Discrimination& entry) {
   Json json{{"condition", entry.condition}, {"level", value(entry.level)}};
   json["correct"] = proportion_json(entry.right);
@@ -220,7 +245,7 @@ std::string to_json(const Summary& summary) {
             {"run_mode", data.run_mode},     {"status", data.status},           {"level", data.level_label},
             {"level_unit", data.level_unit}, {"choices", data.choices}};
   json["facts"] = facts_json(data.facts);
-  json["station"] = facts_json(data.health);
+  json["station"] = facts_json(in_english(data.health));
   const auto& n = summary.outcomes;
   json["trials"] = {{"presented", n.presented},         {"answered", n.answered}, {"timeouts", n.timeouts},
                     {"anticipations", n.anticipations}, {"aborted", n.aborted},   {"faults", n.faults}};
@@ -261,6 +286,8 @@ std::string to_json(const Summary& summary) {
                                  {"correct_rejections", entry.counts.correct_rejections},
                                  {"d_prime", value(entry.d_prime)},
                                  {"criterion", value(entry.criterion)}});
+  json["roc"] = Json::array();
+  for (const auto& entry : summary.rocs) json["roc"].push_back(roc_json(entry));
   json["response_signal"] = Json::array();
   for (const auto& curve : summary.curves) {
     auto lags = Json::array();
@@ -282,15 +309,7 @@ std::string to_json(const Summary& summary) {
   for (const auto& entry : summary.discriminations)
     json["discrimination"].push_back(discrimination_json(entry));
   json["estimates"] = Json::array();
-  for (const auto& estimate : data.estimates)
-    json["estimates"].push_back({{"procedure", estimate.procedure},
-                                 {"block", estimate.block},
-                                 {"parameter", estimate.parameter},
-                                 {"mean", value(estimate.mean)},
-                                 {"sd", value(estimate.sd)},
-                                 {"interval", estimate.interval ? value(*estimate.interval) : Json(nullptr)},
-                                 {"unit", estimate.unit},
-                                 {"basis", estimate.basis}});
+  for (const auto& estimate : data.estimates) json["estimates"].push_back(value(estimate));
   json["threshold_curves"] = threshold_curves_json(data.threshold_curves);
   json["bias"] = nullptr;
   if (summary.bias)

@@ -6,6 +6,7 @@
 
 #include "station/analysis/estimate.hpp"
 #include "station/analysis/psychometric_fit.hpp"
+#include "station/report/session_data.hpp"
 
 namespace turnpoint::report {
 
@@ -30,10 +31,21 @@ inline Json value(const std::optional<analysis::ParameterInterval>& interval) {
           {"touches_high", interval->touches_high}};
 }
 
+inline Json value(const ProcedureEstimate& estimate) {
+  return {{"procedure", estimate.procedure},
+          {"block", estimate.block},
+          {"parameter", estimate.parameter},
+          {"mean", value(estimate.mean)},
+          {"sd", value(estimate.sd)},
+          {"interval", estimate.interval ? value(*estimate.interval) : Json(nullptr)},
+          {"unit", estimate.unit},
+          {"basis", estimate.basis}};
+}
+
 inline Json value(const std::vector<analysis::Statement>& statements) {
   Json list = Json::array();
   for (const auto& statement : statements)
-    list.push_back({{"code", statement.code}, {"text", statement.text}});
+    list.push_back({{"code", statement.code}, {"text", texts::say(statement.text, "en")}});
   return list;
 }
 

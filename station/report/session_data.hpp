@@ -12,6 +12,7 @@
 #include "station/analysis/trial_record.hpp"
 #include "station/procedure/continuation.hpp"
 #include "station/procedure/description.hpp"
+#include "station/texts/texts.hpp"
 
 namespace turnpoint::report {
 
@@ -67,8 +68,16 @@ struct ThresholdCurve {
   std::vector<Trial> trials;
 };
 
-/// A name and its text, for the head or the health table of a report.
+/// A name and its text, for the head of a report.
 using Fact = std::pair<std::string, std::string>;
+/// A fact in a language that is chosen later.
+using SpokenFact = std::pair<texts::Phrase, texts::Phrase>;
+/// The facts as a file says them.
+inline std::vector<Fact> in_english(const std::vector<SpokenFact>& facts) {
+  std::vector<Fact> said;
+  for (const auto& [name, text] : facts) said.emplace_back(texts::say(name, "en"), texts::say(text, "en"));
+  return said;
+}
 
 /// The measured vibration of a trial's stimuli, compared with the plan.
 struct MeasuredTrial {
@@ -79,14 +88,12 @@ struct MeasuredTrial {
 
 /// All data for a report. They come from a database (desk/report_data.cpp) or from a simulated session.
 struct SessionData {
-  /// the trials of the participant's earlier sessions, for procedures that continue; set it before
-  /// add_trials()
-  procedure::EarlierTrials earlier = {};
   std::string title;  ///< title of the protocol
   std::string participant, session_id, run_mode, status;
-  std::vector<Fact> facts;  ///< rows for the head of the report: protocol, date, rig, ...
+  std::string language = "en";  ///< the language of the figures, such as "de"
+  std::vector<Fact> facts;      ///< rows for the head of the report: protocol, date, rig, ...
   /// rows for the table "The station": xruns, calibration age, restarts, ...
-  std::vector<Fact> health;
+  std::vector<SpokenFact> health;
   Design design = Design::forced_choice;
   int alternatives = 2;
   /// for 3ifc, 4ifc, ABX and match-to-sample: the models by which the report computes d'

@@ -1,14 +1,17 @@
 #include "station/report/stored_estimates.hpp"
 
 #include <algorithm>
+#include <map>
 #include <optional>
 #include <string>
+#include <tuple>
 #include <utility>
 
 #include "station/procedure/continuation.hpp"
 #include "station/procedure/description.hpp"
 #include "station/protocol/conditions.hpp"
 #include "station/protocol/sources.hpp"
+#include "station/report/stored_trials.hpp"
 
 namespace turnpoint::report {
 
@@ -74,22 +77,30 @@ void add_curve(const std::string& block, const procedure::Spec& spec, const proc
   data.threshold_curves.push_back(std::move(curve));
 }
 
+/// Unit of a parameter that a separate program estimated: that of the level for thresholds.
+std::string unit_of_program(const std::string& parameter, const protocol::Protocol& protocol) {
+  if (protocol.procedures.empty() || (!parameter.starts_with("threshold") && parameter != "pse")) return "";
+  return protocol::words_of(protocol.procedures.front().level).unit;
+}
+
 }  // namespace
 
-void add_estimates(const std::vector<const records::BlockRecord*>& blocks, const protocol::Protocol& protocol,
-                   SessionData& data) {
+void add_estimates(const std::vector<records::BlockRecord>& blocks, const protocol::Protocol& protocol,
+                   std::uint64_t seed, const procedure::EarlierTrials& earlier, SessionData& data) {
+  const auto counted = last_attempts(blocks);
+  const auto choices = std::max<std::size_t>(2, protocol.task.choices.size());
   for (const auto& spec : protocol.procedures) {
     if (!procedure::follows_answers(spec) || spec.kind == procedure::Kind::program) continue;
     const auto& kind = procedure::description(spec.kind);
     const bool posterior = kind.choice == procedure::Choice::posterior;
-    const double least = spec.tracks.empty() ? 1.0 / data.alternatives : 0;
-    for (const auto* block : blocks) {
+    const double least = spec.tracks.empty() ? 1.0 / static_cast<double>(choices) : 0;
+    for (const auto* block : counted) {
       if (block->start.practice) continue;
       const auto key =
-          procedure::key_of(data.seed, block->start.block_index,
-                            place_in_block(spec, block->start.name, protocol), block->start.attempt);
+          procedure::key_of(seed, block->start.block_index, place_in_block(spec, block->start.name, protocol),
+                            block->start.attempt);
       const auto replayed = procedure::make_procedure(spec, {}, key);
-      if (const auto before = data.earlier.find(spec.name); spec.continues && before != data.earlier.end())
+      if (const auto before = earlier.find(spec.name); spec.continues && before != earlier.end())
         procedure::continue_from(before->second, spec, *replayed);
       const auto learned = replay(block->trials, spec, *replayed);
       if (replayed->recorded() == 0 || !learned) continue;
@@ -101,6 +112,48 @@ void add_estimates(const std::vector<const records::BlockRecord*>& blocks, const
       add_curve(block->start.name, spec, *replayed, *learned, data);
     }
   }
+}
+
+void add_program_estimates(const std::vector<records::BlockRecord>& blocks,
+                           const std::vector<records::EventRow>& events, const protocol::Protocol& protocol,
+                           SessionData& data) {
+  // The newest event about a block counts: an interrupted session may have ended the block twice.
+  std::map<std::tuple<int, std::string, std::string>, std::pair<int, records::EstimateRow>> newest;
+  for (const auto& event : events)
+    for (const auto& row : event.estimates)
+      newest.insert_or_assign({row.block_index, row.procedure, row.parameter}, std::pair(row.attempt, row));
+  for (const auto& [key, found] : newest)
+    for (const auto& block : blocks) {
+      if (block.start.block_index != std::get<0>(key) || block.start.attempt != found.first ||
+          block.start.practice)
+        continue;
+      const auto& row = found.second;
+      data.estimates.push_back({block.start.name,
+                                row.procedure,
+                                row.parameter,
+                                row.mean,
+                                row.sd,
+                                row.basis,
+                                unit_of_program(row.parameter, protocol),
+                                std::nullopt,
+                                procedure::Choice::program,
+                                {}});
+    }
+}
+
+void add_estimator(const std::string& program, const std::map<std::string, procedure::Estimate>& estimates,
+                   const protocol::Protocol& protocol, SessionData& data) {
+  for (const auto& [parameter, estimate] : estimates)
+    data.estimates.push_back({"all blocks",
+                              program,
+                              parameter,
+                              estimate.mean,
+                              estimate.sd,
+                              estimate.basis,
+                              unit_of_program(parameter, protocol),
+                              std::nullopt,
+                              procedure::Choice::program,
+                              {}});
 }
 
 std::string axis_label(std::string name, const std::string& unit) {

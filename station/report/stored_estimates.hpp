@@ -1,17 +1,30 @@
 #pragma once
+#include <cstdint>
+#include <map>
 #include <string>
 #include <vector>
 
+#include "station/procedure/continuation.hpp"
 #include "station/protocol/protocol.hpp"
 #include "station/records/records.hpp"
 #include "station/report/session_data.hpp"
 
 namespace turnpoint::report {
 
-/// Recomputes the final estimates of adaptive procedures from the stored answers of these blocks, and adds
-/// them to `data`. `data.seed`, `data.alternatives` and `data.level_unit` must be set.
-void add_estimates(const std::vector<const records::BlockRecord*>& blocks, const protocol::Protocol& protocol,
-                   SessionData& data);
+/// Recomputes the final estimates of adaptive procedures from the stored answers of a session, from the last
+/// attempt at each block, and adds them to `data`. `seed` is that of the session, and `earlier` are the
+/// trials of the participant's earlier sessions, for procedures that continue.
+void add_estimates(const std::vector<records::BlockRecord>& blocks, const protocol::Protocol& protocol,
+                   std::uint64_t seed, const procedure::EarlierTrials& earlier, SessionData& data);
+
+/// Adds the estimates that separate programs gave at the end of these blocks.
+void add_program_estimates(const std::vector<records::BlockRecord>& blocks,
+                           const std::vector<records::EventRow>& events, const protocol::Protocol& protocol,
+                           SessionData& data);
+
+/// Adds what a separate program has estimated from all trials of the session.
+void add_estimator(const std::string& program, const std::map<std::string, procedure::Estimate>& estimates,
+                   const protocol::Protocol& protocol, SessionData& data);
 
 /// An axis label: "Contrast (dB)" for the name "contrast" and the unit "dB".
 std::string axis_label(std::string name, const std::string& unit);

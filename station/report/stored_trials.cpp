@@ -59,6 +59,7 @@ analysis::TrialRecord record_of(const records::TrialRow& row, const records::Blo
   record.right_choice = index_of(row.correct_response, protocol);
   record.response = index_of(row.response, protocol);
   record.correct = row.correct;
+  if (protocol.task.present) record.present = protocol::holds(*protocol.task.present, factors_of(row));
   if (row.response &&
       (protocol.task.kind == protocol::TaskKind::adjustment || protocol::judges(protocol.task)))
     record.setting = text::read_number(*row.response);
@@ -110,18 +111,6 @@ bool moved_otherwise(const records::TrialRow& row) {
   return row.outcome == terms::Outcome::fault &&
          (sensing == "strokes" || sensing == "light" || sensing == "hard" || sensing == "slow" ||
           sensing == "fast");
-}
-
-/// Returns the last attempt at each block. The trials of earlier attempts are not analysed.
-std::vector<const records::BlockRecord*> last_attempts(const std::vector<records::BlockRecord>& blocks) {
-  std::map<int, const records::BlockRecord*> last;
-  for (const auto& block : blocks) {
-    auto& entry = last[block.start.block_index];
-    if (!entry || block.start.attempt >= entry->start.attempt) entry = &block;
-  }
-  std::vector<const records::BlockRecord*> result;
-  for (const auto& [index, block] : last) result.push_back(block);
-  return result;
 }
 
 report::Design design_of(const protocol::Protocol& protocol, const protocol::AnswerRule& rule,
@@ -235,12 +224,18 @@ void set_level_words(const std::string& level, report::SessionData& data) {
   data.level_label = axis_label(name, words.unit);
 }
 
-/// Unit of a parameter that a separate program estimated: that of the level for thresholds.
-std::string unit_of_program(const std::string& parameter, const report::SessionData& data) {
-  return parameter.starts_with("threshold") || parameter == "pse" ? data.level_unit : "";
-}
-
 }  // namespace
+
+std::vector<const records::BlockRecord*> last_attempts(const std::vector<records::BlockRecord>& blocks) {
+  std::map<int, const records::BlockRecord*> last;
+  for (const auto& block : blocks) {
+    auto& entry = last[block.start.block_index];
+    if (!entry || block.start.attempt >= entry->start.attempt) entry = &block;
+  }
+  std::vector<const records::BlockRecord*> result;
+  for (const auto& [index, block] : last) result.push_back(block);
+  return result;
+}
 
 std::vector<analysis::Deciding> deciding_in(protocol::TaskKind kind) {
   using analysis::Deciding;
@@ -288,48 +283,6 @@ void add_trials(const std::vector<records::BlockRecord>& blocks, const protocol:
         const auto& by = protocol.analysis.by;
         return spec.second && std::find(by.begin(), by.end(), spec.second->level) == by.end();
       });
-  add_estimates(counted, protocol, data);
-}
-
-void add_program_estimates(const std::vector<records::BlockRecord>& blocks,
-                           const std::vector<records::EventRow>& events, report::SessionData& data) {
-  // The newest event about a block counts: an interrupted session may have ended the block twice.
-  std::map<std::tuple<int, std::string, std::string>, std::pair<int, records::EstimateRow>> newest;
-  for (const auto& event : events)
-    for (const auto& row : event.estimates)
-      newest.insert_or_assign({row.block_index, row.procedure, row.parameter}, std::pair(row.attempt, row));
-  for (const auto& [key, found] : newest)
-    for (const auto& block : blocks) {
-      if (block.start.block_index != std::get<0>(key) || block.start.attempt != found.first ||
-          block.start.practice)
-        continue;
-      const auto& row = found.second;
-      data.estimates.push_back({block.start.name,
-                                row.procedure,
-                                row.parameter,
-                                row.mean,
-                                row.sd,
-                                row.basis,
-                                unit_of_program(row.parameter, data),
-                                std::nullopt,
-                                procedure::Choice::program,
-                                {}});
-    }
-}
-
-void add_estimator(const std::string& program, const std::map<std::string, procedure::Estimate>& estimates,
-                   report::SessionData& data) {
-  for (const auto& [parameter, estimate] : estimates)
-    data.estimates.push_back({"all blocks",
-                              program,
-                              parameter,
-                              estimate.mean,
-                              estimate.sd,
-                              estimate.basis,
-                              unit_of_program(parameter, data),
-                              std::nullopt,
-                              procedure::Choice::program,
-                              {}});
 }
 
 }  // namespace turnpoint::report

@@ -129,6 +129,25 @@ void add_measures(const Summary& summary, StudyPerson& person) {
       measures.add(detection.condition, "d'", "", detection.d_prime);
       measures.add(detection.condition, "criterion c", "", detection.criterion);
     }
+  for (const auto& entry : summary.rocs) {
+    if (entry.level) continue;
+    measures.add(entry.condition, "area under the ROC", "", std::optional(entry.roc.area.value));
+    if (entry.equal)
+      measures.add(entry.condition, "d' of ratings", "", std::optional(entry.equal->sensitivity));
+    if (!entry.unequal) continue;
+    measures.add(entry.condition, "d_a of ratings", "", std::optional(entry.unequal->sensitivity));
+    measures.add(entry.condition, "SD with a signal", "SD without", std::optional(entry.unequal->sd));
+  }
+  for (const auto& entry : summary.discriminations)
+    if (!entry.level)
+      for (const auto& [model, d_prime] : entry.d_primes)
+        measures.add(entry.condition, std::string("d' (") + analysis::name(model) + ")", "",
+                     std::optional(d_prime.value));
+  for (const auto& curve : summary.curves) {
+    measures.add(curve.condition, "asymptote of d'", "", curve.asymptote);
+    measures.add(curve.condition, "rate of d'", "1/s", curve.rate_per_s);
+    measures.add(curve.condition, "intercept of d'", "s", curve.intercept_s);
+  }
   // With several procedures, name the procedure too: a measure can have only one value in each condition.
   for (const auto& settings : summary.settings) {
     const auto condition = settings.condition.empty() || summary.settings.size() == 1
@@ -136,9 +155,18 @@ void add_measures(const Summary& summary, StudyPerson& person) {
                                : settings.procedure + ", " + settings.condition;
     measures.add(condition, "mean setting", data.level_unit, settings.mean);
     measures.add(condition, "scatter of settings", data.level_unit, settings.sd);
+    measures.add(condition, "settings from below minus from above", data.level_unit,
+                 settings.side_difference);
   }
-  for (const auto& judged : summary.judgements)
+  for (const auto& judged : summary.judgements) {
     measures.add(judged.condition, "exponent of Stevens' law", "", judged.exponent);
+    const std::string what = data.design == Design::ratings ? "mean rating" : "geometric mean";
+    for (const auto& level : judged.levels)
+      measures.add(judged.condition,
+                   what + " at " + text::number(level.level, 4) + (data.level_unit.empty() ? "" : " ") +
+                       data.level_unit,
+                   "", level.mean);
+  }
 }
 
 /// Returns the lower asymptote of the psychometric function, which the hierarchical fit takes as known.

@@ -12,6 +12,12 @@
 
 namespace turnpoint::report {
 
+/// What a procedure estimated itself in one session.
+struct SessionEstimate {
+  std::string session_id;
+  ProcedureEstimate estimate;
+};
+
 /// What a study needs to know about one participant. It contains no trials, so that memory does not grow with
 /// their number.
 struct StudyPerson {
@@ -26,6 +32,7 @@ struct StudyPerson {
   std::vector<std::string> excluded;
   std::vector<NamedFit> fits;  ///< one fit for each condition, without confidence bands
   std::vector<analysis::PersonMeasure> measures;
+  std::vector<SessionEstimate> estimates;  ///< the procedures' own estimates, in the order of the sessions
 };
 
 /// The hierarchical fit of one condition.
@@ -72,7 +79,7 @@ struct Table {
   std::string csv;
 };
 /// Tidy tables for other programs: answers.csv (one row for each participant, condition and level),
-/// measures.csv, participants.csv and groups.csv.
+/// measures.csv, estimates.csv (the procedures' own estimates), participants.csv and groups.csv.
 std::vector<Table> study_tables(const Study& study);
 /// The header and the rows of trials.csv: one row for each experimental trial of a participant.
 std::string trial_table_header();

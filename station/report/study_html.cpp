@@ -124,6 +124,23 @@ std::string means_section(const Study& study) {
          "number of comparisons.</p>\n";
 }
 
+/// The procedures' own estimates, session by session.
+std::string own_section(const Study& study) {
+  std::vector<ProcedureEstimate> all;
+  std::string rows;
+  for (const auto& person : study.persons)
+    for (const auto& [session, estimate] : person.estimates) {
+      rows += "<tr><td>" + escaped(person.person) + "</td><td>" + escaped(session) + "</td>" +
+              estimate_cells(estimate) + "</tr>";
+      all.push_back(estimate);
+    }
+  if (all.empty()) return "";
+  return std::string(
+             "<h2>The procedures\u2019 own estimates</h2>\n<table><tr><th>Participant</th><th>Session</th>") +
+         kEstimateTitles + "</tr>" + rows + "</table>\n<p class=\"soft\">" +
+         why_estimates_differ(all, study.settings.thresholds_differ) + "</p>\n";
+}
+
 }  // namespace
 
 std::string to_html(const Study& study) {
@@ -132,7 +149,7 @@ std::string to_html(const Study& study) {
   if (study.settings.run_mode != "live")
     html += " <span class=\"mode\">" + escaped(study.settings.run_mode) + "</span>";
   html += "</p>\n" + facts_table(study.facts) + notes(study.statements) + people_section(study) +
-          group_section(study) + means_section(study);
+          group_section(study) + means_section(study) + own_section(study);
   return html + "</body></html>\n";
 }
 

@@ -32,6 +32,12 @@ Json person_json(const StudyPerson& person) {
                             {"lapse", p ? value(p->lapse) : Json(nullptr)},
                             {"statements", value(named.fit.statements)}});
   }
+  json["estimates"] = Json::array();
+  for (const auto& [session, estimate] : person.estimates) {
+    Json own{{"session", session}};
+    own.update(value(estimate));
+    json["estimates"].push_back(std::move(own));
+  }
   json["measures"] = Json::array();
   for (const auto& measure : person.measures)
     json["measures"].push_back({{"condition", measure.condition},

@@ -57,6 +57,21 @@ std::string measures_table(const Study& study) {
   return csv;
 }
 
+std::string estimates_table(const Study& study) {
+  std::string csv =
+      "participant,excluded,session,procedure,block,parameter,mean,sd,low_95,high_95,unit,basis\n";
+  for (const auto& person : study.persons)
+    for (const auto& [session, own] : person.estimates) {
+      const auto ends =
+          own.interval ? csv_number(own.interval->low) + "," + csv_number(own.interval->high) : ",";
+      csv += csv_field(person.person) + "," + yes_or_no(!person.excluded.empty()) + "," + csv_field(session) +
+             "," + csv_field(own.procedure) + "," + csv_field(own.block) + "," + csv_field(own.parameter) +
+             "," + csv_number(own.mean) + "," + csv_number(own.sd) + "," + ends + "," + csv_field(own.unit) +
+             "," + csv_field(own.basis) + "\n";
+    }
+  return csv;
+}
+
 std::string participants_table(const Study& study) {
   std::string csv =
       "participant,group,sessions,presented,answered,accuracy,catch_accuracy,timeouts,anticipations,median_"
@@ -101,6 +116,7 @@ std::string groups_table(const Study& study) {
 std::vector<Table> study_tables(const Study& study) {
   return {{"answers.csv", answers_table(study)},
           {"measures.csv", measures_table(study)},
+          {"estimates.csv", estimates_table(study)},
           {"participants.csv", participants_table(study)},
           {"groups.csv", groups_table(study)}};
 }

@@ -8,6 +8,8 @@
 
 namespace turnpoint::report {
 
+using texts::phrase, texts::plain;
+
 namespace {
 
 using analysis::TrialRecord;
@@ -162,45 +164,45 @@ bool slope_estimated(const NamedFit& named) {
   return !named.fit.at_bound.slope_low && !named.fit.at_bound.slope_high;
 }
 
-std::string describe_intervals(const NamedFit& named, const SessionData& data) {
+texts::Phrase describe_intervals(const NamedFit& named, const SessionData& data) {
   const auto& intervals = named.intervals;
-  if (intervals.method == analysis::IntervalMethod::none) return "";
+  if (intervals.method == analysis::IntervalMethod::none) return {};
   if (intervals.method == analysis::IntervalMethod::bootstrap)
-    return "Maximum likelihood. 95 % intervals: profile likelihood, calibrated by " +
-           std::to_string(intervals.replicates) + " parametric bootstraps at the levels presented.";
-  const auto range = [](double low, double high) {
-    return text::number(low, 3) + " to " + text::number(high, 3);
-  };
+    return phrase("statement.likelihood", {plain(std::to_string(intervals.replicates))});
   const auto& prior = *intervals.prior;
   const auto& options = named.fit.options;
   const auto flat = analysis::flat_part(options.function, options.scale, prior);
-  const auto falling = [&](double low, double high) {
-    if (prior.falling_share == 0) return std::string();
-    return ", falling to 0 at " + text::number(low, 3) + " and " + text::number(high, 3);
+  const auto number = [](double value) { return plain(text::number(value, 3)); };
+  texts::Phrase parts;
+  const auto add = [&](const char* name, const char* how, double low, double high) {
+    if (!parts.values.empty()) parts.values.push_back(plain("; "));
+    parts.values.push_back(phrase(how, {phrase(name), number(low), number(high)}));
   };
-  const bool two_sided = data.design == Design::two_sided;
-  std::string text =
-      "Medians and central 95 % credible intervals of a posterior on a grid, because the answers "
-      "determined the levels. Prior: " +
-      std::string(two_sided ? "PSE" : "threshold") + " uniform" +
-      (options.scale == analysis::Scale::log10 ? " in its logarithm" : "") + " from " +
-      range(flat.threshold_low, flat.threshold_high);
-  if (!data.level_unit.empty()) text += " " + data.level_unit;
-  text += falling(prior.threshold_low, prior.threshold_high);
-  text += std::string(options.function == terms::Function::normal ? "; spread" : "; slope") +
-          " uniform in its logarithm from " + range(flat.slope_low, flat.slope_high) +
-          falling(prior.slope_low, prior.slope_high);
-  text += "; lapse rate uniform from " + range(options.lapse_low, options.lapse_high);
+  const auto falling = [&](double low, double high) {
+    if (prior.falling_share != 0)
+      parts.values.push_back(phrase("statement.falling", {number(low), number(high)}));
+  };
+  constexpr const char *kUniform = "statement.uniform", *kLogarithm = "statement.uniform_logarithm";
+  add(data.design == Design::two_sided ? "report.pse" : "report.threshold",
+      options.scale == analysis::Scale::log10 ? kLogarithm : kUniform, flat.threshold_low,
+      flat.threshold_high);
+  if (!data.level_unit.empty()) parts.values.push_back(plain(" " + data.level_unit));
+  falling(prior.threshold_low, prior.threshold_high);
+  add(options.function == terms::Function::normal ? "report.spread" : "report.slope", kLogarithm,
+      flat.slope_low, flat.slope_high);
+  falling(prior.slope_low, prior.slope_high);
+  add("report.lapse", kUniform, options.lapse_low, options.lapse_high);
   if (options.guess == analysis::Guess::fitted)
-    text += "; guess rate uniform from " + range(options.guess_low, options.guess_high);
-  return text + ".";
+    add("statement.guess", kUniform, options.guess_low, options.guess_high);
+  return phrase("statement.posterior", {parts});
 }
 
 bool shows(const SessionData& data, const std::string& part) {
   if (data.show) return std::find(data.show->begin(), data.show->end(), part) != data.show->end();
   if (part == "response-signal") return true;
   if (part == "ez") return data.choices.size() <= 2;
-  return part != "dprime" || data.design == Design::yes_no || !data.deciding.empty();
+  return part != "dprime" || data.design == Design::yes_no || data.design == Design::ratings ||
+         !data.deciding.empty();
 }
 
 analysis::TradeOptions trade_options(const SessionData& data) {
@@ -227,6 +229,9 @@ Summary summarise(const SessionData& data) {
   }
   if (judges(data.design)) {
     summary.judgements = judgements_of(data);
+    if (data.design == Design::ratings && shows(data, "dprime"))
+      summary.rocs =
+          analysis::rating_rocs(data.trials, data.conditions, static_cast<int>(data.choices.size()));
     return summary;
   }
   if (data.choices.size() <= 2) summary.bias = analysis::choice_bias(data.trials);
@@ -236,6 +241,8 @@ Summary summarise(const SessionData& data) {
   summary.trade = analysis::trade(data.trials, trade_options(data));
   hide(data, summary.trade);
   summary.detections = detections_of(data);
+  if (data.design == Design::yes_no && !summary.detections.empty())
+    summary.rocs = analysis::rocs(data.trials, data.conditions, data.positive);
   if (data.choices.size() == 2 && shows(data, "response-signal"))
     summary.curves = analysis::response_signal(data.trials, data.conditions, detecting(data), positive(data));
   if (!data.deciding.empty() && shows(data, "dprime"))

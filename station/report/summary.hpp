@@ -37,7 +37,8 @@ struct Summary {
   std::map<int, analysis::Proportion> confidence;
   analysis::Fatigue fatigue;
   analysis::Trade trade;
-  std::vector<analysis::Detection> detections;            ///< d' and criterion, if the report shows them
+  std::vector<analysis::Detection> detections;  ///< d' and criterion, if the report shows them
+  std::vector<analysis::RatedDetection> rocs;   ///< only for yes/no with confidence, if the report shows d'
   std::vector<analysis::Discrimination> discriminations;  ///< d' computed with each model in data.deciding
   /// one for each condition; only with a response signal
   std::vector<analysis::SpeedAccuracyCurve> curves;
@@ -64,7 +65,7 @@ std::vector<analysis::Judgements> judgements_of(const SessionData& data);
 bool slope_estimated(const NamedFit& named);
 
 /// Says in a sentence or two how the intervals of a fit were computed, and with which prior.
-std::string describe_intervals(const NamedFit& named, const SessionData& data);
+texts::Phrase describe_intervals(const NamedFit& named, const SessionData& data);
 
 /// The options for analysing the speed-accuracy trade-off of these data.
 analysis::TradeOptions trade_options(const SessionData& data);

@@ -2,6 +2,7 @@
 #include <utility>
 
 #include "station/report/figures.hpp"
+#include "station/report/words.hpp"
 
 namespace turnpoint::report {
 
@@ -55,8 +56,7 @@ std::optional<plot::Figure> threshold_curve_figure(const Summary& summary) {
   figure.title = "Threshold along the second dimension";
   figure.chart_width_px = 620;
   figure.chart_height_px = 340;
-  figure.caption =
-      "The area of a marker is proportional to its number of trials. Open: wrong, or not the tracked answer.";
+  figure.caption = Words(summary.data.language)("figure.areas");
   for (const auto& curve : summary.data.threshold_curves)
     figure.charts.push_back(panel_of(curve, summary.data.level_label));
   if (figure.charts.empty()) return std::nullopt;

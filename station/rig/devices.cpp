@@ -1,6 +1,7 @@
 #include "station/rig/devices.hpp"
 
 #include <algorithm>
+#include <regex>
 #include <set>
 
 namespace turnpoint::rig {
@@ -61,12 +62,11 @@ std::optional<std::string> read_device(TableReader& file, const std::string& key
 
 std::string read_thermometer(TableReader& reader, const std::string& key) {
   const std::string allowed =
-      "\"hwmon:NAME/tempN\" or \"hwmon:NAME@DEVICE/tempN\", such as \"hwmon:lm75/temp1\"";
+      "\"hwmon:NAME/tempN\" or \"iio:NAME/temp\", such as \"hwmon:lm75/temp1\"; NAME@DEVICE if several have "
+      "that name";
   const auto uri = reader.string(key, allowed);
-  const auto slash = uri.find('/');
-  const bool good = uri.starts_with("hwmon:") && slash != std::string::npos && slash > 6 &&
-                    uri.substr(slash + 1).starts_with("temp") && uri.size() > slash + 5 &&
-                    uri.find_first_not_of("0123456789", slash + 5) == std::string::npos;
+  static const std::regex form("hwmon:[^/]+/temp[0-9]+|iio:[^/]+/temp[0-9a-z_]*");
+  const bool good = std::regex_match(uri, form);
   if (!uri.empty() && !good)
     reader.problem(key, "\"" + uri + "\" does not name a temperature sensor", "allowed: " + allowed);
   return uri;

@@ -141,6 +141,9 @@ struct ForceCells {
   std::array<double, 3> rotation_rad{};  ///< phase of each bridge signal against the reference signal
   /// ratio of bridge to reference signal at the rated load of each cell
   std::array<double, 3> rated_ratio{};
+  /// Forces are right up to this frequency: a third of the lowest resonance of the plate on its cells. Empty
+  /// if nobody tapped the plate.
+  std::optional<double> usable_Hz = {};
 };
 
 /// Force cells on a converter with a clock of its own, which the kernel offers as a device of its subsystem
@@ -178,16 +181,23 @@ struct Capture {
 };
 
 /// Where the temperatures of the surface and of the frame that clamps it are read: hwmon:NAME/tempN or
-/// hwmon:NAME@DEVICE/tempN (`system/thermometer.hpp`).
+/// iio:NAME/temp (`system/thermometer.hpp`).
 struct Thermometers {
   std::string plate_uri, frame_uri;
 };
 
-/// Headphones that mask the audible part of a stimulus, for protocols that require it.
+/// Headphones that mask the audible part of a stimulus or give the response signal, for protocols that
+/// require it.
 struct MaskingNoise {
   int channel = 1;
   double rms = 0;  ///< level of the noise; 1 is full scale
   double low_Hz = 100, high_Hz = 8000;
+  /// the tone that asks for an answer, for protocols whose response signal is a tone; amplitude 1 is full
+  /// scale
+  struct Signal {
+    double frequency_Hz = 0, amplitude = 0;
+  };
+  std::optional<Signal> signal = {};
 };
 
 /// The relation between amplitude and relative friction: the illustrative load-sharing curve or a measured

@@ -61,6 +61,14 @@ MaskingNoise read_noise(const text::Value& table, const Rig& rig, text::Findings
     noise.low_Hz = band->first, noise.high_Hz = band->second;
   else if (!reader.has("band_Hz"))
     reader.defaulted("band_Hz", "[100, 8000]");
+  if (const auto* signal = reader.maybe_table("signal")) {
+    TableReader tone(*signal, "noise.signal", findings);
+    noise.signal = MaskingNoise::Signal{};
+    noise.signal->frequency_Hz =
+        tone.number("frequency_Hz", {20, std::min(20e3, highest_Hz(rig)), Range::Ends::closed, "Hz"});
+    noise.signal->amplitude = tone.number("amplitude", {0, 0.5, Range::Ends::open_low});
+    tone.finish();
+  }
   reader.finish();
   return noise;
 }

@@ -285,6 +285,7 @@ DrivePlan Planner::make(const Scene& scene) {
   plan.level_bound_dB = choice.bound.level_bound_dB;
   plan.amplitude_bound = choice.bound.amplitude_bound;
   plan.reason = choice.reason;
+  plan.cheaper = choice.cheaper;
   plan.uncertainty_m = solution.uncertainty_m;
   if (scene.boundary_m && !plan.boundary_m) plan.boundary_m = scene.boundary_m;
   std::vector<Tone> tones;

@@ -9,6 +9,7 @@
 #include "physics/crest.hpp"
 #include "physics/friction.hpp"
 #include "physics/model.hpp"
+#include "physics/planner.hpp"
 #include "physics/surface.hpp"
 #include "physics/warning.hpp"
 #include "station/rig/rig.hpp"
@@ -54,7 +55,8 @@ struct DrivePlan {
   double amplitude_bound = 0;  ///< upper limit of the model's relative error in the amplitude
   /// standard deviation of the boundary's position, from the standard deviations in the rig file
   double uncertainty_m = 0;
-  std::string reason;  ///< why the planner chose this model
+  std::string reason;                            ///< why the planner chose this model
+  std::optional<physics::RungEstimate> cheaper;  ///< the most exact one of the cheaper models
   /// the plate theory used, if the surface is a plate
   physics::PlateTheory theory = physics::PlateTheory::kirchhoff;
   /// How far the boundary would move with the next more exact plate theory; empty for membranes.

@@ -7,39 +7,6 @@
 
 namespace turnpoint::sensing {
 
-namespace {
-
-// Sums and maxima are computed as eight independent partial results, so that the processor can work on them
-// in parallel.
-constexpr int kLanes = 8;
-
-double energy_of(const double* y, int frames) noexcept {
-  double lane[kLanes] = {};
-  int n = 0;
-  for (; n + kLanes <= frames; n += kLanes)
-    for (int k = 0; k < kLanes; ++k) lane[k] += y[n + k] * y[n + k];
-  double sum = 0;
-  for (; n < frames; ++n) sum += y[n] * y[n];
-  for (const double value : lane) sum += value;
-  return sum;
-}
-
-double largest_of(const double* s, int frames) noexcept {
-  double lane[kLanes] = {};
-  int n = 0;
-  for (; n + kLanes <= frames; n += kLanes)
-    for (int k = 0; k < kLanes; ++k) {
-      const double size = std::fabs(s[n + k]);
-      lane[k] = size > lane[k] ? size : lane[k];
-    }
-  double largest = 0;
-  for (; n < frames; ++n) largest = std::max(largest, std::fabs(s[n]));
-  for (const double value : lane) largest = std::max(largest, value);
-  return largest;
-}
-
-}  // namespace
-
 AlignedBlocks::AlignedBlocks(int rate_Hz, int channels, std::vector<int> inputs, int block_frames,
                              int high_pass_step)
     : rate_Hz_(rate_Hz),
@@ -50,7 +17,8 @@ AlignedBlocks::AlignedBlocks(int rate_Hz, int channels, std::vector<int> inputs,
       capacity_(block_frames + 2 * high_pass_step),
       raw_(inputs_.size(), std::vector<double>(static_cast<std::size_t>(capacity_))),
       filtered_(inputs_.size(), std::vector<double>(static_cast<std::size_t>(block_frames))),
-      energies_(inputs_.size()) {
+      energies_(inputs_.size()),
+      loops_(&best_loops()) {
   for (const int input : inputs_)
     if (input < 0 || input >= channels) throw std::logic_error("sensing: no such captured channel");
   for (const auto& row : filtered_) rows_.push_back(row.data());
@@ -84,8 +52,7 @@ void AlignedBlocks::take(const CaptureBlock& block, std::int64_t at) noexcept {
   const std::int64_t count = std::min(block.frames() - at, capacity_ - filled_);
   for (std::size_t i = 0; i < inputs_.size(); ++i) {
     const std::int32_t* from = block.samples.data() + at * channels_ + inputs_[i];
-    double* to = raw_[i].data() + filled_;
-    for (std::int64_t n = 0; n < count; ++n) to[n] = 0x1p-31 * from[n * channels_];
+    loops_->scale(from, channels_, count, raw_[i].data() + filled_);
   }
   filled_ += count;
   next_ += count;
@@ -99,11 +66,11 @@ const AlignedBlock& AlignedBlocks::finish() noexcept {
     const double* s = raw_[i].data() + step_;
     double* y = filtered_[i].data();
     if (step_ > 0)
-      for (int n = 0; n < block_frames_; ++n) y[n] = 0.25 * (2 * s[n] - s[n - step_] - s[n + step_]);
+      loops_->high_pass(s, block_frames_, step_, y);
     else
       std::copy_n(s, block_frames_, y);
-    energies_[i] = energy_of(y, block_frames_);
-    block_.largest = std::max(block_.largest, largest_of(s, block_frames_));
+    energies_[i] = loops_->energy(y, block_frames_);
+    block_.largest = std::max(block_.largest, loops_->largest(s, block_frames_));
     block_.lost = block_.lost || std::isnan(energies_[i]);
     std::copy_n(raw_[i].end() - 2 * step_, 2 * step_, raw_[i].begin());
   }

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "station/sensing/capture_block.hpp"
+#include "station/sensing/sample_loops.hpp"
 
 namespace turnpoint::sensing {
 
@@ -65,6 +66,7 @@ class AlignedBlocks {
   std::vector<std::vector<double>> raw_, filtered_;
   std::vector<const double*> rows_;
   std::vector<double> energies_;
+  const SampleLoops* loops_;
   AlignedBlock block_;
 };
 

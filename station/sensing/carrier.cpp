@@ -36,38 +36,7 @@ const BridgeOptions& checked(const BridgeOptions& options) {
   return options;
 }
 
-double folded(double frequency_Hz, int rate_Hz) {
-  return std::abs(frequency_Hz - rate_Hz * std::round(frequency_Hz / rate_Hz));
-}
-
-double clearance_Hz(double carrier_Hz, std::span<const std::vector<double>> plans, int rate_Hz) {
-  double nearest = std::numeric_limits<double>::infinity();
-  const auto see = [&](double product_Hz) {
-    nearest = std::min(nearest, std::abs(folded(product_Hz, rate_Hz) - carrier_Hz));
-  };
-  for (const auto& tones : plans)
-    for (const double f : tones) {
-      see(f);
-      for (const double g : tones) {
-        if (g == f) continue;
-        see(2 * f - g);
-        for (int k = 1; k <= 4; ++k) see(k * (f - g));
-      }
-    }
-  return nearest;
-}
-
 }  // namespace
-
-CarrierChoice choose_carrier(std::span<const std::vector<double>> plans, int rate_Hz) {
-  CarrierChoice best{carriers_Hz.front(), -1};
-  for (const double carrier_Hz : carriers_Hz) {
-    const double clearance = clearance_Hz(carrier_Hz, plans, rate_Hz);
-    if (clearance >= enough_clearance_Hz) return {carrier_Hz, clearance};
-    if (clearance > best.clearance_Hz) best = {carrier_Hz, clearance};
-  }
-  return best;
-}
 
 double bridge_rotation_rad(const BridgePoint& without, const BridgePoint& with, std::size_t bridge) {
   return std::atan2(with.quadrature[bridge] - without.quadrature[bridge],

@@ -2,41 +2,13 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <span>
-#include <vector>
 
 #include "station/sensing/capture_block.hpp"
 #include "station/sensing/carrier_filter.hpp"
 #include "station/sensing/decimator.hpp"
+#include "station/terms/force_carrier.hpp"
 
 namespace turnpoint::sensing {
-
-/// The possible carrier frequencies for the excitation of the strain-gauge bridges; the first is the default.
-/// Each is 25 Hz above a multiple of 300 Hz, and so at least 25 Hz away from every harmonic of 50 and 60 Hz
-/// mains. There are only five, because amplifier and filter treat each carrier differently, so each needs its
-/// own calibration.
-inline constexpr std::array carriers_Hz{10525.0, 6325.0, 8425.0, 12625.0, 14725.0};
-
-/// A carrier, and its distance from the nearest distortion product of the drive tones.
-struct CarrierChoice {
-  double carrier_Hz = carriers_Hz.front();
-  double clearance_Hz = 0;
-};
-/// With this clearance (distance from the nearest distortion product of the drive tones), the products are
-/// far outside the filter of either band.
-inline constexpr double enough_clearance_Hz = 1500;
-
-/// Chooses the first of carriers_Hz with enough clearance, or else the one with the most clearance. Products
-/// of the drive tones f are the tones themselves, the differences k |f_i - f_j| up to k = 4, and 2 f_i - f_j,
-/// all after aliasing at the sampling rate. Each plan lists the tones of one stimulus of a block. Tones of
-/// different plans never sound together, but all plans get the same carrier.
-///
-/// With many tones, there is often no carrier with enough clearance. For random plans from 22.4 to 46 kHz
-/// with tones at least 1 kHz apart, there is one in 98 % of plans with two tones, 58 % with three and 11 %
-/// with four. A clearance above the stop edge of Band::force (600 Hz) still keeps the products out of the
-/// force. This clearance is reached in 99 % of plans with three tones, 81 % with four, 15 % with six, and
-/// hardly any with eight.
-CarrierChoice choose_carrier(std::span<const std::vector<double>> plans, int rate_Hz);
 
 /// Bandwidth of the force signal and rate of its points. `force` passes 0 to 400 Hz, stops 600 Hz and above,
 /// and gives 1000 points a second. `wide` passes 0 to 1 kHz, stops 2 kHz and above, and gives 4000 points a
@@ -51,7 +23,7 @@ inline constexpr std::size_t bridge_count = 3;
 /// a and b below the surface, and the lateral cell.
 struct BridgeOptions {
   int rate_Hz = 192000;  ///< sampling rate; must be a multiple of 8000
-  double carrier_Hz = carriers_Hz.front();
+  double carrier_Hz = terms::kForceCarrier_Hz;
   Band band = Band::force;
   int channels = 4;   ///< number of channels in a captured frame
   int reference = 0;  ///< captured channel of the excitation itself

@@ -13,11 +13,6 @@ namespace {
 // number of outputs after which the kept frames are moved to the front of their buffer
 constexpr std::size_t kSpareOutputs = 16;
 
-/// Four numbers in one vector register; every 64-bit processor has such registers.
-using Lanes [[gnu::vector_size(CarrierFilter::inputs * sizeof(float))]] = float;
-
-Lanes lanes_of(const float (&x)[CarrierFilter::inputs]) noexcept { return Lanes{x[0], x[1], x[2], x[3]}; }
-
 }  // namespace
 
 CarrierFilter::CarrierFilter(const std::vector<double>& taps, int factor, std::uint64_t increment,
@@ -28,7 +23,8 @@ CarrierFilter::CarrierFilter(const std::vector<double>& taps, int factor, std::u
       channels_(channels),
       stride_(stride),
       kept_(taps.size() + kSpareOutputs * static_cast<std::size_t>(factor)),
-      filled_(taps.size()) {
+      filled_(taps.size()),
+      loops_(&best_loops()) {
   const float nan = std::numeric_limits<float>::quiet_NaN();
   std::fill(kept_.begin(), kept_.end(), Quad{{nan, nan, nan, nan}});
   const double scale = 0x1p-30;  // 2 / 2^31: the factor 2 of the filter, and the full scale of a sample
@@ -67,30 +63,18 @@ void CarrierFilter::append(const std::int32_t* frames, std::int64_t count) noexc
     std::fill_n(to, count, Quad{{nan, nan, nan, nan}});
     return;
   }
-  for (std::int64_t n = 0; n < count; ++n, frames += stride_)
-    for (std::size_t i = 0; i < inputs; ++i) to[n].value[i] = static_cast<float>(frames[channels_[i]]);
+  loops_->pick_four(frames, count, channels_.data(), stride_, to->value);
 }
 
 void CarrierFilter::finish(std::int64_t centre) noexcept {
-  const Quad* middle = kept_.data() + filled_ - 1 - half_;
-  // Real part and imaginary part are each added up in two sums, so that an addition need not wait for the
-  // previous one.
-  Lanes re[2] = {}, im[2] = {};
-  const auto add = [&](std::ptrdiff_t n, std::size_t k) {
-    const Lanes after = lanes_of(middle[n].value), before = lanes_of(middle[-n].value);
-    re[k] += (after + before) * lanes_of(even_[static_cast<std::size_t>(n)].value);
-    im[k] += (after - before) * lanes_of(odd_[static_cast<std::size_t>(n)].value);
-  };
-  for (std::ptrdiff_t n = 0; n + 1 <= half_; n += 2) {
-    add(n, 0);
-    add(n + 1, 1);
-  }
-  if (half_ % 2 == 0) add(half_, 0);
-  const Lanes sum_re = re[0] + re[1], sum_im = im[0] + im[1];
+  // The processor works on the sines, each a long chain of operations, while it begins with the filter.
   const std::uint64_t phase = increment_ * static_cast<std::uint64_t>(centre);
   const double c = drive::sine_of_phase(phase + drive::quarter_cycle), s = drive::sine_of_phase(phase);
+  const Quad* middle = kept_.data() + filled_ - 1 - half_;
+  Quad re, im;
+  loops_->carrier(middle->value, half_, even_.front().value, odd_.front().value, re.value, im.value);
   for (std::size_t i = 0; i < inputs; ++i) {
-    const double real = sum_re[i], imaginary = -sum_im[i];
+    const double real = re.value[i], imaginary = -im.value[i];
     output_[i] = {real * c + imaginary * s, imaginary * c - real * s};
   }
   output_index_ = centre / factor_;

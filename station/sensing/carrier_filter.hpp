@@ -5,6 +5,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "station/sensing/sample_loops.hpp"
+
 namespace turnpoint::sensing {
 
 /// Mixes four captured channels s down from a carrier, filters them with the taps h, and keeps every
@@ -48,6 +50,7 @@ class CarrierFilter {
   std::vector<Quad> even_, odd_;  ///< filter taps times cosine (even_) or sine (odd_) of the carrier
   std::vector<Quad> kept_;        ///< the most recent frames, the newest last
   std::size_t filled_ = 0;
+  const SampleLoops* loops_;
   bool ready_ = false;
   std::int64_t output_index_ = 0;
   std::array<std::complex<double>, inputs> output_{};

@@ -10,8 +10,8 @@
 namespace turnpoint::sensing {
 
 namespace {
-/// Two numbers in one vector register; every 64-bit processor has such registers.
-using Pair [[gnu::vector_size(2 * sizeof(double))]] = double;
+// number of samples after which the kept ones are moved to the front of their buffer
+constexpr std::size_t kSpareSamples = 128;
 }  // namespace
 
 std::vector<double> low_pass(double pass_Hz, double stop_Hz, double rate_Hz, double attenuation_dB) {
@@ -30,33 +30,29 @@ std::vector<double> low_pass(double pass_Hz, double stop_Hz, double rate_Hz, dou
   return taps;
 }
 
-Decimator::Decimator(std::vector<double> taps, int factor)
-    : taps_(std::move(taps)),
-      ring_(taps_.size()),
-      half_(static_cast<std::int64_t>(taps_.size() / 2)),
-      factor_(factor) {
-  for (Lanes& sample : ring_) sample.fill(std::numeric_limits<double>::quiet_NaN());
+Decimator::Decimator(const std::vector<double>& taps, int factor)
+    : half_taps_(taps.begin() + static_cast<std::ptrdiff_t>(taps.size() / 2), taps.end()),
+      kept_(taps.size() + kSpareSamples),
+      filled_(taps.size()),
+      half_(static_cast<std::int64_t>(taps.size() / 2)),
+      factor_(factor),
+      loops_(&best_loops()) {
+  half_taps_.front() /= 2;  // the loop adds the sample in the middle twice
+  for (Lanes& sample : kept_) sample.fill(std::numeric_limits<double>::quiet_NaN());
 }
 
 bool Decimator::push(std::int64_t index, const Lanes& sample) noexcept {
-  newest_ = newest_ + 1 == ring_.size() ? 0 : newest_ + 1;
-  ring_[newest_] = sample;
+  if (filled_ == kept_.size()) {
+    const auto kept = static_cast<std::size_t>(2 * half_);
+    std::copy_n(kept_.end() - static_cast<std::ptrdiff_t>(kept), kept, kept_.begin());
+    filled_ = kept;
+  }
+  kept_[filled_++] = sample;
   const std::int64_t centre = index - half_;
   if (centre % factor_ != 0) return false;
   output_index_ = centre / factor_;
-  // The filter is symmetric, so samples and taps need not be in the same order of time.
-  const std::size_t first_part = ring_.size() - (newest_ + 1);
-  double sum[lanes] = {};
-  const auto add = [&](const Lanes* in, const double* tap, std::size_t count) {
-    Pair local[lanes / 2];
-    for (std::size_t k = 0; k < lanes / 2; ++k) local[k] = Pair{sum[2 * k], sum[2 * k + 1]};
-    for (std::size_t i = 0; i < count; ++i)
-      for (std::size_t k = 0; k < lanes / 2; ++k) local[k] += Pair{in[i][2 * k], in[i][2 * k + 1]} * tap[i];
-    for (std::size_t k = 0; k < lanes; ++k) sum[k] = local[k / 2][k % 2];
-  };
-  add(ring_.data() + newest_ + 1, taps_.data(), first_part);
-  add(ring_.data(), taps_.data() + first_part, ring_.size() - first_part);
-  std::copy_n(sum, lanes, output_.begin());
+  const Lanes& middle = kept_[filled_ - 1 - static_cast<std::size_t>(half_)];
+  loops_->eight(middle.data(), half_, half_taps_.data(), output_.data());
   return true;
 }
 

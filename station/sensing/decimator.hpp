@@ -4,6 +4,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "station/sensing/sample_loops.hpp"
+
 namespace turnpoint::sensing {
 
 /// Designs a linear-phase low-pass filter of odd length by the window method: an ideal low-pass with its edge
@@ -19,7 +21,8 @@ class Decimator {
   static constexpr std::size_t lanes = 8;
   using Lanes = std::array<double, lanes>;
 
-  Decimator(std::vector<double> taps, int factor);
+  /// `taps` must be symmetric, and their number odd.
+  Decimator(const std::vector<double>& taps, int factor);
 
   /// Takes the sample with this index, which must be one more than that of the previous sample. Returns true
   /// if it completes an output.
@@ -28,10 +31,11 @@ class Decimator {
   std::int64_t output_index() const noexcept { return output_index_; }
 
  private:
-  std::vector<double> taps_;
-  std::vector<Lanes> ring_;
-  std::size_t newest_ = 0;
+  std::vector<double> half_taps_;  ///< the taps from the middle on; the first is halved
+  std::vector<Lanes> kept_;        ///< the most recent samples, the newest last
+  std::size_t filled_;
   std::int64_t half_, factor_, output_index_ = 0;
+  const SampleLoops* loops_;
   Lanes output_{};
 };
 

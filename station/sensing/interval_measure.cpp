@@ -21,7 +21,10 @@ constexpr double kVibrates_dB = -10;   // the onset is not measured if the level
 
 void IntervalProof::State::measure_tones() {
   double measured = 0, planned = 0;
-  for (std::size_t s = 0; s < stretches_.size(); ++s)
+  for (std::size_t s = 0; s < stretches_.size(); ++s) {
+    const bool played = std::any_of(windows_.begin(), windows_.end(),
+                                    [s](const Window& window) { return window.stretch == s; });
+    if (cut_ && s > 0 && !played) continue;  // a stop came before this stretch, or just after it had begun
     for (std::size_t l = 0; l < stretches_[s].lines.size(); ++l) {
       const PlannedLine& line = stretches_[s].lines[l];
       measure_tone(s, line, l);
@@ -32,6 +35,7 @@ void IntervalProof::State::measure_tones() {
       planned += amplitude * amplitude;
       measured += amplitude * amplitude * std::pow(10, last.ratio_dB / 10);
     }
+  }
   result_.ratio_dB = planned > 0 ? in_dB(std::sqrt(measured / planned)) : 0;
   vibrates_ = planned > 0 && result_.ratio_dB > kVibrates_dB;
 }
@@ -40,7 +44,7 @@ void IntervalProof::State::measure_tones() {
 // that responds best to this line.
 void IntervalProof::State::measure_tone(std::size_t stretch, const PlannedLine& line, std::size_t place) {
   ToneProof made;
-  made.stretch = static_cast<int>(stretch);
+  made.stretch = stretches_[stretch].plan.changes;
   made.frequency_Hz = line.frequency_Hz;
   const auto p =
       static_cast<std::size_t>(std::max_element(line.seen.begin(), line.seen.end()) - line.seen.begin());
@@ -76,7 +80,7 @@ void IntervalProof::State::measure_tone(std::size_t stretch, const PlannedLine& 
 }
 
 void IntervalProof::State::measure_residual() {
-  result_.residual_dB = -200;
+  result_.residual_dB = kNothing_dB;
   for (const Window& window : windows_) {
     const double planned = planned_power(stretches_[window.stretch].lines, main_);
     if (!window.valid || !(planned > 0)) continue;
@@ -113,10 +117,10 @@ std::span<const double> IntervalProof::State::unexplained() {
   const std::span<double> rest{worst_raw_.data(), static_cast<std::size_t>(window.end - window.first)};
   if (fit_subtracted_) return rest;
   fit_subtracted_ = true;
-  const auto& [plan, lines, sums] = stretches_[window.stretch];
+  const auto& lines = stretches_[window.stretch].lines;
   for (std::size_t l = 0; l < lines.size(); ++l) {
     const auto a = window.amplitude[main_ * lines.size() + l] * lines[l].gain;
-    std::uint64_t phase = sums->phase_at(l, window.first) + drive::phase_of_angle(std::arg(a));
+    std::uint64_t phase = window.phase[l] + drive::phase_of_angle(std::arg(a));
     const double size = std::abs(a);
     for (double& sample : rest) {
       sample -= size * drive::sine_of_phase(phase);
@@ -161,7 +165,7 @@ void IntervalProof::State::find_lost() {
 std::optional<double> IntervalProof::State::found_elsewhere(const ToneProof& tone) {
   if (result_.residual_dB < plan_.limits.residual_dB.stop - 20) return std::nullopt;
   const auto rest = unexplained();
-  if (rest.empty() || static_cast<int>(windows_[*worst_].stretch) != tone.stretch) return std::nullopt;
+  if (rest.empty() || stretches_[windows_[*worst_].stretch].plan.changes != tone.stretch) return std::nullopt;
   double planned = 0;
   for (const PlannedLine& line : stretches_[windows_[*worst_].stretch].lines)
     if (line.frequency_Hz == tone.frequency_Hz) planned = std::abs(line.expected[main_]);
@@ -210,9 +214,24 @@ void IntervalProof::State::judge_tones(const Limits& level) {
   }
 }
 
+void IntervalProof::State::judge_glides(const Limits& level) {
+  result_.glides.clear();
+  for (const GlideProof& glide : glides_) {
+    if (glide.failed()) findings_.push_back({ProofCause::none, Proof::unproven});
+    for (const GlideToneProof& tone : glide.result(plan_.limits.unseen_dB)) {
+      result_.glides.push_back(tone);
+      if (!tone.seen) continue;
+      findings_.push_back({ProofCause::level, judged(std::fabs(tone.worst_ratio_dB), level)});
+      if (tone.worst_ratio_dB > plan_.limits.dead_dB)
+        findings_.push_back(
+            {ProofCause::phase, judged(std::fabs(tone.phase_error_deg), plan_.limits.phase_deg)});
+    }
+  }
+}
+
 void IntervalProof::State::judge_rest() {
   const ProofLimits& limits = plan_.limits;
-  const double product = result_.product ? result_.product->level_dB : -200;
+  const double product = result_.product ? result_.product->level_dB : kNothing_dB;
   const Proof residual = judged(std::max(result_.residual_dB, product), limits.residual_dB);
   findings_.push_back({ProofCause::residual, residual});
   if (result_.largest_sample >= limits.clipped) findings_.push_back({ProofCause::clipped, Proof::refused});
@@ -225,7 +244,7 @@ void IntervalProof::State::judge_rest() {
     findings_.push_back({ProofCause::late, Proof::refused});
   else
     findings_.push_back({ProofCause::none, Proof::unproven});
-  if (windows_.empty()) findings_.push_back({ProofCause::none, Proof::unproven});
+  if (windows_.empty() || unplanned_) findings_.push_back({ProofCause::none, Proof::unproven});
 }
 
 void IntervalProof::State::conclude(std::optional<bool> in_contact) {
@@ -239,8 +258,11 @@ void IntervalProof::State::conclude(std::optional<bool> in_contact) {
   measure_onset();
   find_lost();
   const ProofLimits& limits = plan_.limits;
-  judge_tones(in_contact.value_or(true) ? limits.level_in_contact_dB : limits.level_dB);
+  const Limits& level = in_contact.value_or(true) ? limits.level_in_contact_dB : limits.level_dB;
+  judge_tones(level);
+  judge_glides(level);
   judge_rest();
+  result_.live_changes = live_changes_;
   const Finding all = concluded(findings_);
   result_.verdict = all.verdict;
   result_.cause = all.cause;

@@ -11,10 +11,7 @@ namespace turnpoint::sensing {
 
 namespace {
 
-constexpr double kWindow_s = 0.2;     // approximate length of the windows for the joint fits
-constexpr double kShortest_s = 0.01;  // a shorter steady stretch is not measured
-// time that the plate needs to follow a change: 7 time constants at Q 60
-constexpr double kSettle_s = 0.005;
+constexpr double kWindow_s = 0.2;  // approximate length of the windows for the joint fits
 // the onset is looked for from this time before the rising ramp to this time after it
 constexpr double kBefore_s = 0.02, kAfter_s = 0.06;
 
@@ -32,22 +29,27 @@ IntervalProof::State::State(const IntervalPlan& plan)
       shape_(LockInShape::of_rate(plan.rate_Hz)),
       blocks_(plan.rate_Hz, plan.capture_channels, inputs_of(plan), shape_.block_frames,
               high_pass_step(plan.rate_Hz)),
+      tones_(plan.burst, plan.rate_Hz),
       fit_(drive::max_tones) {
   begin_ =
       static_cast<std::int64_t>(std::floor(static_cast<double>(plan.burst.start_frame) + plan.delay_frames));
   end_ = begin_ + 1 + plan.burst.length_frames;
   next_ = std::numeric_limits<std::int64_t>::min();
   good_.resize(static_cast<std::size_t>((end_ - 1) / shape_.block_frames - begin_ / shape_.block_frames + 1));
-  add_stretches();
+  add_parts();
   if (!stretches_.empty()) main_ = main_pick_up(stretches_.front().lines, pick_ups());
   add_onset();
   products_.resize(pick_ups() * drive::max_tones);
   energy_.resize(pick_ups());
   phases_.resize(drive::max_tones);
   increments_.resize(drive::max_tones);
+  size_buffers();
+}
+
+void IntervalProof::State::size_buffers() {
   std::int64_t longest = 0;
   for (const Window& window : windows_) longest = std::max(longest, window.end - window.first);
-  raw_.resize(static_cast<std::size_t>(longest));
+  raw_.resize(std::max(raw_.size(), static_cast<std::size_t>(longest)));
   worst_raw_.resize(raw_.size());
   std::size_t tones = 0;
   for (const Measured& stretch : stretches_) tones += stretch.plan.tones.size();
@@ -55,37 +57,79 @@ IntervalProof::State::State(const IntervalPlan& plan)
   findings_.reserve(6 * tones + 16);
 }
 
-void IntervalProof::State::add_stretches() {
-  for (Stretch& plan : planned_stretches(plan_.burst, plan_.rate_Hz)) {
-    Measured made;
-    made.lines = planned_lines(plan, plan_.pick_ups, plan_.rate_Hz);
-    std::vector<FollowedTone> followed;
-    for (const PlannedLine& line : made.lines)
-      followed.push_back({{line.phase, line.increment, 0, 0, 0}, plan.origin_frame});
-    made.sums = std::make_unique<ToneSums>(followed, pick_ups(), shape_.block_frames, shape_.window_frames,
-                                           plan_.delay_frames);
-    made.plan = std::move(plan);
-    stretches_.push_back(std::move(made));
-    add_windows(stretches_.size() - 1);
+// Adds the stretches of the burst, and the glides between them.
+void IntervalProof::State::add_parts() {
+  const drive::PreparedBurst& burst = plan_.burst;
+  const std::int64_t start = burst.start_frame, risen = start + burst.ramp.frames,
+                     falls = start + burst.length_frames - burst.ramp.frames;
+  for (int c = 0; c <= burst.change_count; ++c) {
+    const auto begins_at = [&](int change) {
+      return change < burst.change_count
+                 ? std::min(start + burst.changes[static_cast<std::size_t>(change)].at_frame, falls)
+                 : falls;
+    };
+    const std::int64_t first = std::max(tones_.origin_frame(), risen), end = begins_at(c);
+    if (first < end) add_stretch(tones_.stretch(first, end));
+    if (c < burst.change_count)
+      add_glide(tones_.change(burst.changes[static_cast<std::size_t>(c)]), begins_at(c + 1));
   }
+}
+
+void IntervalProof::State::add_stretch(Stretch plan) {
+  Measured made;
+  made.lines = planned_lines(plan, plan_.pick_ups, plan_.rate_Hz);
+  std::vector<FollowedTone> followed;
+  for (const PlannedLine& line : made.lines)
+    followed.push_back({{line.phase, line.increment, 0, 0, 0}, plan.origin_frame});
+  made.sums = std::make_unique<ToneSums>(followed, pick_ups(), shape_.block_frames, shape_.window_frames,
+                                         plan_.delay_frames);
+  made.plan = std::move(plan);
+  stretches_.push_back(std::move(made));
+  add_windows(stretches_.size() - 1);
+}
+
+// Measures a glide until the plate has settled, if the burst does not change again before. What lies in the
+// ramps of the burst is left out.
+void IntervalProof::State::add_glide(const Glide& glide, std::int64_t end_frame) {
+  const drive::PreparedBurst& burst = plan_.burst;
+  const std::int64_t first = std::max(glide.first_frame, burst.start_frame + burst.ramp.frames);
+  const std::int64_t end = std::min(glide.first_frame + glide.frames + frames_of(kSettle_s), end_frame);
+  const std::int64_t block = block_at_or_before(first), end_block = block_at_or_after(end);
+  const std::int64_t from = first > glide.first_frame ? block_at_or_after(first) : block;
+  const std::int64_t to = end == end_frame ? block_at_or_before(end) : end_block;
+  if (from < to && !glide.tones.empty())
+    glides_.emplace_back(glide, from, to, plan_.pick_ups, plan_.rate_Hz, shape_.block_frames,
+                         plan_.delay_frames);
+}
+
+std::int64_t IntervalProof::State::block_at_or_after(std::int64_t playback_frame) const {
+  const double block = shape_.block_frames;
+  return static_cast<std::int64_t>(
+             std::ceil((static_cast<double>(playback_frame) + plan_.delay_frames) / block)) *
+         shape_.block_frames;
+}
+
+std::int64_t IntervalProof::State::block_at_or_before(std::int64_t playback_frame) const {
+  const double block = shape_.block_frames;
+  return static_cast<std::int64_t>(
+             std::floor((static_cast<double>(playback_frame) + plan_.delay_frames) / block)) *
+         shape_.block_frames;
 }
 
 void IntervalProof::State::add_windows(std::size_t stretch) {
   const Stretch& plan = stretches_[stretch].plan;
-  const double block = shape_.block_frames;
-  const auto first = static_cast<std::int64_t>(
-      std::ceil((static_cast<double>(plan.first_frame + frames_of(kSettle_s)) + plan_.delay_frames) / block));
-  const auto end = static_cast<std::int64_t>(
-      std::floor((static_cast<double>(plan.end_frame) + plan_.delay_frames) / block));
-  const std::int64_t blocks = end - first;
-  if (static_cast<double>(blocks) * block < kShortest_s * plan_.rate_Hz || plan.tones.empty()) return;
-  const auto count = std::max<std::int64_t>(
-      1, std::llround(static_cast<double>(blocks) * block / (kWindow_s * plan_.rate_Hz)));
+  const std::int64_t first = block_at_or_after(plan.first_frame + frames_of(kSettle_s)),
+                     end = block_at_or_before(plan.end_frame);
+  if (static_cast<double>(end - first) < kShortest_s * plan_.rate_Hz || plan.tones.empty()) return;
+  const std::int64_t blocks = (end - first) / shape_.block_frames;
+  const auto count =
+      std::max<std::int64_t>(1, std::llround(static_cast<double>(end - first) / (kWindow_s * plan_.rate_Hz)));
   for (std::int64_t k = 0; k < count; ++k) {
     Window window;
     window.stretch = stretch;
-    window.first = (first + blocks * k / count) * shape_.block_frames;
-    window.end = (first + blocks * (k + 1) / count) * shape_.block_frames;
+    window.first = first + blocks * k / count * shape_.block_frames;
+    window.end = first + blocks * (k + 1) / count * shape_.block_frames;
+    window.phase.resize(stretches_[stretch].lines.size());
     window.amplitude.resize(pick_ups() * stretches_[stretch].lines.size());
     window.residual.resize(pick_ups());
     windows_.push_back(std::move(window));
@@ -119,24 +163,29 @@ void IntervalProof::State::add_onset() {
   points_.reserve(static_cast<std::size_t>((onset_end_ - onset_first_) / block + 1) * lines.size());
 }
 
-// Windows that extend beyond the end of the burst do not count, even if they are already filled.
+// Windows that extend beyond the end of the burst do not count, even if they are already filled. A window
+// that is not filled yet may end earlier.
 void IntervalProof::State::end_at(std::int64_t playback_frame) noexcept {
   const auto end =
       static_cast<std::int64_t>(std::floor(static_cast<double>(playback_frame) + plan_.delay_frames));
   if (end >= end_) return;
+  cut_ = true;
   end_ = std::max(end, begin_);
-  for (Window& window : windows_) window.valid = window.valid && window.end <= end_;
-  while (!windows_.empty() && windows_.back().end > end_) windows_.pop_back();
-  if (worst_ && *worst_ >= windows_.size()) worst_.reset();
+  end_windows_at(end_ / shape_.block_frames * shape_.block_frames);
+  for (GlideProof& glide : glides_) glide.end_at(end_);
 }
 
-void IntervalProof::State::take(const AlignedBlock& block) noexcept {
+void IntervalProof::State::take(const AlignedBlock& block) {
   const std::int64_t end = block.first_frame + block.frames;
   next_ = end;
   if (end > begin_ && block.first_frame < end_ && !block.lost) {
     good_[static_cast<std::size_t>(block.first_frame / block.frames - begin_ / block.frames)] = 1;
     result_.largest_sample = std::max(result_.largest_sample, block.largest);
   }
+  while (current_glide_ < glides_.size() && glides_[current_glide_].end_frame() <= block.first_frame)
+    ++current_glide_;
+  for (std::size_t g = current_glide_; g < std::min(current_glide_ + 2, glides_.size()); ++g)
+    glides_[g].take(block);  // two glides may meet in a block
   const bool onset = onset_planned_ && block.first_frame >= onset_first_ && end <= onset_end_;
   while (current_ < windows_.size() && windows_[current_].end <= block.first_frame) {
     ++current_;
@@ -179,7 +228,7 @@ void IntervalProof::State::accumulate(const AlignedBlock& block, Window& window,
 void IntervalProof::State::finish(Window& window, const ToneSums& sums) noexcept {
   const std::size_t lines = sums.tones();
   for (std::size_t l = 0; l < lines; ++l) {
-    phases_[l] = sums.phase_at(l, window.first);
+    phases_[l] = window.phase[l] = sums.phase_at(l, window.first);
     increments_[l] = sums.increment(l);
   }
   if (!fit_.prepare({phases_.data(), lines}, {increments_.data(), lines}, summed_)) return;
@@ -220,6 +269,10 @@ void IntervalProof::push(const CaptureBlock& block) {
 }
 
 void IntervalProof::stopped(std::int64_t frame) noexcept { state_->end_at(frame); }
+
+void IntervalProof::changed(const drive::Change& change, const drive::Format& format) {
+  state_->change(change, format);
+}
 
 bool IntervalProof::complete() const noexcept { return state_->next_ >= state_->end_; }
 

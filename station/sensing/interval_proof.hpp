@@ -22,12 +22,13 @@ struct IntervalPlan {
 
 /// Proves that the surface vibrated as planned during one interval. Amplitude, phase and residual come from
 /// joint fits of all tones (JointFit) to windows of about 0.2 s, in the parts of the burst where nothing
-/// changes. The onset comes from the envelope of a lock-in. Allocates only in its constructor. The capture
-/// may arrive in blocks of any size. For an ordinary thread; not thread-safe.
+/// changes, and to windows of about 5 ms in glides between two tone sets (GlideProof). The onset comes from
+/// the envelope of a lock-in. The capture may arrive in blocks of any size. For an ordinary thread; not
+/// thread-safe.
 ///
-/// Not measured: glides between two tone sets, changes that are sent while the burst plays, the falling ramp,
-/// masking noise and markers. Tones of equal frequency on several output channels are measured as one. If
-/// tones are less than about 10 Hz apart, the interval stays unproven.
+/// Not measured: the ramps, the residual in a glide, masking noise and markers. Tones of equal frequency on
+/// several output channels are measured as one. If tones are less than about 10 Hz apart, the interval stays
+/// unproven.
 class IntervalProof {
  public:
   /// Throws std::logic_error if there is no pick-up, or if a pick-up's channel is not captured.
@@ -47,6 +48,11 @@ class IntervalProof {
   /// Call this if the burst was stopped. The result then contains only what was played before this absolute
   /// playback frame.
   void stopped(std::int64_t frame) noexcept;
+
+  /// Call this when a change is sent while the burst plays. `format` is that of the output. The proof needs
+  /// to know of a change before its captured frames arrive. If it does not, or if a change begins before the
+  /// last one has ended, the interval stays unproven.
+  void changed(const drive::Change& change, const drive::Format& format);
 
   /// True once all needed frames have been received.
   bool complete() const noexcept;

@@ -37,7 +37,7 @@ struct ProofLimits {
 
 /// What was measured for one tone, in one part of the burst in which nothing changes (a stretch).
 struct ToneProof {
-  int stretch = 0;  ///< number of the stretch, from 0; each change of the burst begins another one
+  int stretch = 0;  ///< number of changes of the burst before this stretch
   int tone = 0;     ///< index in the burst's tone set
   int drive_channel = 0;
   double frequency_Hz = 0;
@@ -48,23 +48,51 @@ struct ToneProof {
   double phase_error_deg = 0;
 };
 
+/// What was measured for one tone while it glided from one stretch to the next.
+struct GlideToneProof {
+  int change = 0;  ///< number of the change, from 1
+  int tone = 0;    ///< index in the burst's tone set
+  int drive_channel = 0;
+  double from_Hz = 0, to_Hz = 0;
+  bool seen = false;          ///< true if a pick-up can judge this tone in some part of the glide
+  int pick_up = -1;           ///< the pick-up that measured worst_ratio_dB
+  double worst_ratio_dB = 0;  ///< measured level relative to plan, in the window of 5 ms that deviates most
+  double phase_error_deg = 0;
+};
+
+/// The level that stands for nothing at all; measured levels are above it.
+inline constexpr double kNothing_dB = -200;
+
+/// Vibration between intervals, as measured by a pick-up.
+struct SilenceResult {
+  /// `unproven` if the burst has no steady tones to compare with, `lost` if fewer than 50 ms were captured
+  terms::Proof verdict = terms::Proof::unproven;
+  terms::ProofCause cause = terms::ProofCause::none;
+  /// The strongest tone of any frequency in the loudest 50 ms, and the rms of everything in them. Both are
+  /// relative to the burst, after the high-pass filter. The pick-up's own noise counts only for the rms.
+  double level_dB = kNothing_dB, rms_dB = kNothing_dB;
+};
+
 /// What the pick-ups measured of one interval.
 struct IntervalResult {
   /// `unproven` if there is a tone that no pick-up can judge, or if the interval is too short to measure.
   terms::Proof verdict = terms::Proof::unproven;
   terms::ProofCause cause = terms::ProofCause::none;
   std::vector<ToneProof> tones;
-  double ratio_dB = 0;  ///< measured level of all judged tones together, relative to the planned level
+  std::vector<GlideToneProof> glides;
+  int live_changes = 0;  ///< number of changes that were sent while the burst played
+  double ratio_dB = 0;   ///< measured level of all judged tones together, relative to the planned level
   /// rms of everything that the tones do not explain, relative to the plan, in the worst window of 0.2 s. A
   /// high-pass filter (high_pass_gain()) comes first, so hum and friction noise hardly count.
-  double residual_dB = -200;
+  double residual_dB = kNothing_dB;
   /// the strongest distortion product, in the window with the largest residual
   std::optional<Product> product;
   /// time at which the envelope reaches half its level, measured minus planned
   std::optional<double> onset_error_us;
-  std::optional<double> found_Hz;  ///< if the cause is `frequency`: the frequency of the vibration
-  double largest_sample = 0;       ///< largest sample of the pick-ups, as a fraction of full scale
-  std::int64_t lost_frames = 0;    ///< lost frames within the interval, rounded up to blocks of 1 ms
+  std::optional<double> found_Hz;        ///< if the cause is `frequency`: the frequency of the vibration
+  double largest_sample = 0;             ///< largest sample of the pick-ups, as a fraction of full scale
+  std::int64_t lost_frames = 0;          ///< lost frames within the interval, rounded up to blocks of 1 ms
+  std::optional<SilenceResult> silence;  ///< the silence before the interval, if it is the first of a trial
 };
 
 /// A verdict on one measured quantity, and the cause that the quantity points to.

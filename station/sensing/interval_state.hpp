@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "station/sensing/aligned_blocks.hpp"
+#include "station/sensing/glide_proof.hpp"
 #include "station/sensing/interval_proof.hpp"
 #include "station/sensing/joint_fit.hpp"
 #include "station/sensing/lock_in.hpp"
@@ -18,11 +19,16 @@
 
 namespace turnpoint::sensing {
 
+constexpr double kShortest_s = 0.01;  // a shorter steady stretch is not measured
+// time that the plate needs to follow a change: 7 time constants at Q 60
+constexpr double kSettle_s = 0.005;
+
 /// A window of captured frames to which all tones are fitted. Nothing changes in the burst during a window.
 struct Window {
   std::size_t stretch = 0;
   std::int64_t first = 0, end = 0;  // first captured frame, and the one after the last
   bool valid = false;
+  std::vector<std::uint64_t> phase;  // played phase of each line at the first frame, in 2^-64 cycles
   std::vector<std::complex<double>> amplitude;  // captured complex amplitudes, [pick-up][line]
   std::vector<double> residual;                 // mean squares of what the tones do not explain, after the
                                                 // high-pass filter, [pick-up]
@@ -31,7 +37,7 @@ struct Window {
 struct Measured {
   Stretch plan;
   std::vector<PlannedLine> lines;
-  std::unique_ptr<ToneSums> sums;
+  std::unique_ptr<ToneSums> sums;  // null once all frames of the stretch have been received
 };
 
 struct IntervalProof::State {
@@ -39,13 +45,21 @@ struct IntervalProof::State {
 
   std::size_t pick_ups() const { return plan_.pick_ups.size(); }
   std::int64_t frames_of(double seconds) const { return std::llround(seconds * plan_.rate_Hz); }
-  void add_stretches();
+  void add_parts();
+  void add_stretch(Stretch plan);
+  void add_glide(const Glide& glide, std::int64_t end_frame);
+  void size_buffers();
+  void change(const drive::Change& change, const drive::Format& format);
+  void end_stretch_at(std::int64_t frame);
+  void end_windows_at(std::int64_t end) noexcept;
+  std::int64_t block_at_or_after(std::int64_t playback_frame) const;
+  std::int64_t block_at_or_before(std::int64_t playback_frame) const;
   void add_windows(std::size_t stretch);
   void add_onset();
 
   void end_at(std::int64_t playback_frame) noexcept;
 
-  void take(const AlignedBlock& block) noexcept;
+  void take(const AlignedBlock& block);
   void accumulate(const AlignedBlock& block, Window& window, const ToneSums& sums) noexcept;
   void finish(Window& window, const ToneSums& sums) noexcept;
   void keep_if_worst(const Window& window) noexcept;
@@ -59,16 +73,23 @@ struct IntervalProof::State {
   void measure_onset();
   void find_lost();
   void judge_tones(const Limits& level);
+  void judge_glides(const Limits& level);
   void judge_rest();
   std::optional<double> found_elsewhere(const ToneProof& tone);
 
   IntervalPlan plan_;
   LockInShape shape_;
   AlignedBlocks blocks_;
+  PlannedTones tones_;
   std::vector<Measured> stretches_;
   std::vector<Window> windows_;
+  std::vector<GlideProof> glides_;
+  std::size_t current_glide_ = 0;
+  int live_changes_ = 0;
+  bool unplanned_ = false;            // a live change came that cannot be measured
   std::size_t current_ = 0;           // index of the window that is being filled
   std::int64_t begin_ = 0, end_ = 0;  // the burst's first captured frame, and the one after its last
+  bool cut_ = false;                  // the burst was stopped
   std::int64_t next_ = 0;             // first captured frame that has not been received
   std::vector<std::uint8_t> good_;    // for each aligned block of the burst: 1 if it was captured
   std::size_t main_ = 0;              // index of the pick-up that captures the planned tones most strongly

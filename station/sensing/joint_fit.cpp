@@ -39,6 +39,13 @@ bool JointFit::prepare(std::span<const std::uint64_t> phase, std::span<const std
   return factorise();
 }
 
+bool JointFit::prepare(std::span<const double> normal_matrix, std::size_t tones) noexcept {
+  unknowns_ = 2 * tones;
+  for (std::size_t i = 0; i < unknowns_; ++i)
+    for (std::size_t j = 0; j <= i; ++j) entry(i, j) = normal_matrix[i * unknowns_ + j];
+  return factorise();
+}
+
 bool JointFit::factorise() noexcept {
   for (std::size_t i = 0; i < unknowns_; ++i)
     for (std::size_t j = 0; j <= i; ++j) {

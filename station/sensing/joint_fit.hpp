@@ -20,6 +20,10 @@ class JointFit {
   [[nodiscard]] bool prepare(std::span<const std::uint64_t> phase, std::span<const std::uint64_t> increment,
                              std::int64_t frames) noexcept;
 
+  /// Prepares fits of other signals than sinusoids of constant frequency. Column 2t of the normal matrix
+  /// belongs to tone t, and column 2t + 1 to the same tone a quarter of a cycle ahead.
+  [[nodiscard]] bool prepare(std::span<const double> normal_matrix, std::size_t tones) noexcept;
+
   /// Computes the complex amplitudes A e^(i theta) of signals A sin(phase + theta). `sums[t]` is the sum of
   /// sample times i e^(-i phase) for tone t, and `energy` the sum of squared samples. Returns the part of
   /// `energy` that the tones do not explain.

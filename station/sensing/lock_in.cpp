@@ -6,16 +6,12 @@
 
 namespace turnpoint::sensing {
 
-namespace {
-constexpr std::size_t kParts = 3;
-}
-
 HannWindow::HannWindow(std::size_t tones, std::size_t inputs, int block_frames, int window_frames)
     : count_(tones * inputs),
       blocks_(static_cast<std::size_t>(window_frames / block_frames)),
       block_frames_(block_frames),
       window_frames_(window_frames),
-      kept_(blocks_ * kParts * count_),
+      kept_(blocks_ * ToneSums::part_count * count_),
       angle_(blocks_),
       values_(count_) {
   for (std::size_t k = 0; k < blocks_; ++k)
@@ -27,7 +23,7 @@ bool HannWindow::take(const AlignedBlock& block, const ToneSums& sums) noexcept 
   if (block.first_frame != expected_) taken_ = 0;
   expected_ = block.first_frame + block_frames_;
   newest_ = (newest_ + 1) % blocks_;
-  auto* kept = kept_.data() + newest_ * kParts * count_;
+  auto* kept = kept_.data() + newest_ * ToneSums::part_count * count_;
   const double nan = std::numeric_limits<double>::quiet_NaN();
   for (std::size_t k = 0; k < count_; ++k) {
     const std::size_t input = k / sums.tones(), tone = k % sums.tones();
@@ -40,7 +36,7 @@ bool HannWindow::take(const AlignedBlock& block, const ToneSums& sums) noexcept 
   // the angle of the block's middle (angle_).
   std::fill(values_.begin(), values_.end(), std::complex<double>{});
   for (std::size_t b = 0; b < blocks_; ++b) {
-    const auto* one = kept_.data() + (newest_ + 1 + b) % blocks_ * kParts * count_;
+    const auto* one = kept_.data() + (newest_ + 1 + b) % blocks_ * ToneSums::part_count * count_;
     const double c = angle_[b].real(), s = angle_[b].imag();
     for (std::size_t k = 0; k < count_; ++k)
       values_[k] += one[k] - c * one[count_ + k] + s * one[2 * count_ + k];

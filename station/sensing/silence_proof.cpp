@@ -1,10 +1,12 @@
 #include "station/sensing/silence_proof.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <stdexcept>
 
 #include "station/sensing/lock_in.hpp"
 #include "station/sensing/planned_lines.hpp"
+#include "station/sensing/strongest_tone.hpp"
 
 namespace turnpoint::sensing {
 
@@ -31,11 +33,15 @@ Compared compared_with(const IntervalPlan& plan) {
 }  // namespace
 
 SilenceProof::SilenceProof(const IntervalPlan& plan)
-    : limits_(plan.limits.silence_dB),
+    : rate_Hz_(plan.rate_Hz),
+      tone_limits_(plan.limits.silence_dB),
+      rms_limits_(plan.limits.residual_dB),
       planned_(compared_with(plan).power),
       blocks_(plan.rate_Hz, plan.capture_channels, {compared_with(plan).channel},
               LockInShape::of_rate(plan.rate_Hz).block_frames, high_pass_step(plan.rate_Hz)),
-      window_blocks_(static_cast<int>(kSilence_s * plan.rate_Hz / blocks_.block_frames())) {}
+      window_blocks_(static_cast<int>(kSilence_s * plan.rate_Hz / blocks_.block_frames())),
+      window_(static_cast<std::size_t>(window_blocks_ * blocks_.block_frames())),
+      loudest_(window_.size()) {}
 
 void SilenceProof::push(const CaptureBlock& block) {
   blocks_.push(block, [this](const AlignedBlock& aligned) { take(aligned); });
@@ -47,20 +53,36 @@ void SilenceProof::take(const AlignedBlock& block) noexcept {
     energy_ = 0;
     return;
   }
+  std::copy_n(block.row[0], block.frames, window_.begin() + blocks_taken_ * block.frames);
   energy_ += block.energy[0];
   if (++blocks_taken_ < window_blocks_) return;
-  largest_ = std::max(largest_, energy_ / static_cast<double>(window_blocks_ * block.frames));
+  const double power = energy_ / static_cast<double>(window_.size());
+  if (!measured_ || power > largest_) {
+    largest_ = power;
+    window_.swap(loudest_);
+  }
   measured_ = true;
   blocks_taken_ = 0;
   energy_ = 0;
 }
 
-SilenceResult SilenceProof::result() const noexcept {
+SilenceResult SilenceProof::result() const {
   SilenceResult result;
-  if (!measured_ || !(planned_ > 0)) return result;
-  result.level_dB = in_dB(std::sqrt(largest_ / planned_));
-  result.verdict = judged(result.level_dB, limits_);
-  if (result.verdict != terms::Proof::ok) result.cause = terms::ProofCause::noisy;
+  if (!(planned_ > 0)) return result;
+  if (!measured_) {
+    result.verdict = terms::Proof::lost;
+    result.cause = terms::ProofCause::gap;
+    return result;
+  }
+  result.rms_dB = in_dB(std::sqrt(largest_ / planned_));
+  const auto tone = strongest_tone(loudest_, rate_Hz_);
+  result.level_dB = in_dB(std::sqrt((tone ? tone->power : 0) / planned_));
+  const auto cause = terms::ProofCause::noisy;
+  const Finding all = concluded({{cause, terms::Proof::ok},
+                                 {cause, judged(result.level_dB, tone_limits_)},
+                                 {cause, judged(result.rms_dB, rms_limits_)}});
+  result.verdict = all.verdict;
+  result.cause = all.cause;
   return result;
 }
 

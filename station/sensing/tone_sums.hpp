@@ -7,6 +7,7 @@
 
 #include "station/drive/oscillator.hpp"
 #include "station/sensing/aligned_blocks.hpp"
+#include "station/sensing/sample_loops.hpp"
 
 namespace turnpoint::sensing {
 
@@ -27,6 +28,7 @@ struct FollowedTone {
 /// times as much. Allocates only in its constructor.
 class ToneSums {
  public:
+  static constexpr std::size_t part_count = 3;  ///< plain(), cosine() and sine()
   enum class Parts {
     plain,    ///< compute only plain()
     windowed  ///< compute also cosine() and sine(), for a Hann window; three times the cost
@@ -66,7 +68,7 @@ class ToneSums {
   int block_frames_, window_frames_;
   std::int64_t delay_;
   double delay_fraction_;
-  std::size_t columns_;  ///< number of tones, rounded up to a multiple of kWidth
+  std::size_t columns_;  ///< number of tones, rounded up to a multiple of kTones
   /// sines of the tones, [part: 1, cos, sin][parity: even, odd][frame after the middle][column]
   std::vector<double> table_;
   std::vector<double>
@@ -76,6 +78,7 @@ class ToneSums {
   std::vector<std::uint64_t> part_of_frame_;
   std::vector<std::uint64_t> phase_;        ///< phase of each tone in the middle of the block
   std::vector<std::complex<double>> turn_;  ///< e^(i phase) of each tone in the middle of the block
+  const SampleLoops* loops_;
 };
 
 }  // namespace turnpoint::sensing

@@ -169,12 +169,14 @@ std::optional<FingerNow> TrialFinger::now() {
   if (!zero_ || loaded_ || state_of(first, newest) != ForcesState::ok) return std::nullopt;
   // The track ends before the newest point, because the position at a point needs the points after it.
   FingerNow now;
+  now.position_mm = std::numeric_limits<double>::quiet_NaN();
   double speed_sum = 0;
   int points = 0, moving = 0;
   for (const auto& point : track(first, newest)) {
     now.normal_N += point.normal_N;
     now.contact = point.contact;
     ++points;
+    if (!std::isnan(point.position_mm)) now.position_mm = point.position_mm;
     if (std::isnan(point.speed_mm_s)) continue;
     speed_sum += point.speed_mm_s, ++moving;
   }

@@ -49,11 +49,13 @@ struct TrialForces {
   std::int64_t frames_per_point = 0;  ///< point k is at playback frame k * frames_per_point
 };
 
-/// The finger at this moment: what may be shown to a participant.
+/// The finger at this moment. A participant may see force and speed, and the operator all of it. Lateral
+/// force and friction are left out on purpose, because they would reveal the answer.
 struct FingerNow {
   double normal_N = 0;    ///< mean over the last tenth of a second
   double speed_mm_s = 0;  ///< mean over the last tenth of a second; NaN if it is not known
   bool contact = false;
+  double position_mm = 0;  ///< newest known position, from the wide edge; NaN if it is not known
 };
 
 /// Measures the finger in one trial after another from captured frames, which must have the numbers at which

@@ -5,6 +5,8 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "station/terms/limits.hpp"
+
 namespace turnpoint::session {
 
 drive::ToneSet tones_of(const scene::DrivePlan& plan) {
@@ -24,7 +26,7 @@ drive::ToneSet tones_of(const scene::DrivePlan& plan) {
 }
 
 drive::Burst burst_of(const std::vector<scene::DrivePlan>& scenes, const std::vector<double>& starts_s,
-                      double transition_s, double length_s, int rate_Hz) {
+                      const std::vector<double>& transitions_s, double length_s, int rate_Hz) {
   if (scenes.size() - 1 > static_cast<std::size_t>(drive::max_changes))
     throw std::length_error("an interval has more changes of scene than the drive supports");
   const auto frames = [rate_Hz](double s) { return static_cast<std::int64_t>(std::llround(s * rate_Hz)); };
@@ -35,7 +37,7 @@ drive::Burst burst_of(const std::vector<scene::DrivePlan>& scenes, const std::ve
   for (std::size_t i = 1; i < scenes.size(); ++i) {
     auto& change = burst.changes[static_cast<std::size_t>(burst.change_count++)];
     change.at_frame = frames(starts_s[i - 1]);
-    change.frames = std::max<std::int64_t>(1, frames(transition_s));
+    change.frames = std::max<std::int64_t>(1, frames(transitions_s[i - 1]));
     change.to = tones_of(scenes[i]);
   }
   return burst;
@@ -50,8 +52,9 @@ void mark(drive::Burst& burst, const rig::Marker& marker, int rate_Hz, const Mar
   if (marker.kind == Kind::code) {
     made.kind = drive::MarkerKind::code;
     made.frames = 2 * std::llround(marker.duration_s * rate_Hz / 2);
-    made.codes.fill(static_cast<std::uint8_t>(codes.change));
     made.codes.front() = static_cast<std::uint8_t>(codes.onset);
+    for (std::size_t i = 1; i < made.codes.size(); ++i)
+      made.codes[i] = static_cast<std::uint8_t>(i <= codes.changes ? codes.change : 0);
     return;
   }
   made.kind = marker.kind == Kind::tone ? drive::MarkerKind::tone : drive::MarkerKind::pulse;
@@ -60,6 +63,12 @@ void mark(drive::Burst& burst, const rig::Marker& marker, int rate_Hz, const Mar
 
 void mask(drive::Burst& burst, const rig::MaskingNoise& noise, std::uint64_t seed) {
   burst.noise = {noise.channel, noise.rms, noise.low_Hz, noise.high_Hz, seed};
+}
+
+void signal(drive::Burst& burst, const rig::MaskingNoise& headphones, double at_s, int rate_Hz) {
+  const auto frames = [rate_Hz](double s) { return static_cast<std::int64_t>(std::llround(s * rate_Hz)); };
+  burst.signal = {headphones.channel, headphones.signal->amplitude, headphones.signal->frequency_Hz,
+                  frames(at_s),       frames(terms::kSignal_s),     {frames(0.1 * terms::kSignal_s)}};
 }
 
 }  // namespace turnpoint::session

@@ -1,4 +1,5 @@
 #include "station/session/capture_feed.hpp"
+#include "station/terms/force_carrier.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -11,6 +12,7 @@ namespace turnpoint::session {
 namespace {
 
 constexpr std::int64_t kBefore_frames = 80;
+constexpr double kOff_s = 0.15;  // from switching the amplifier off until the surface must be still
 
 sensing::Pilot pilot_of(const rig::Rig& rig) {
   sensing::Pilot pilot;
@@ -37,7 +39,7 @@ std::optional<CardCapture> card_capture_of(const rig::Rig& rig) {
   plan.setup.channels = rig.capture->channels;
   plan.setup.pick_ups = calibrated_pick_ups(*rig.capture);
   plan.pilot = pilot_of(rig);
-  if (!rig.capture->bridges.empty()) plan.pilot.carrier_Hz = sensing::carriers_Hz.front();
+  if (!rig.capture->bridges.empty()) plan.pilot.carrier_Hz = terms::kForceCarrier_Hz;
   plan.setup.finger = calibrated_finger(rig);
   plan.cells = cell_plan_of(rig);
   plan.reference = rig.capture->reference;
@@ -72,6 +74,22 @@ std::int64_t CaptureFeed::end_frame() const {
   return end_frame_;
 }
 
+void CaptureFeed::amplifier_is_off() {
+  const std::lock_guard lock(mutex_);
+  stillness_.emplace(plan_.setup.rate_Hz, plan_.setup.channels, plan_.setup.pick_ups);
+  still_from_ = capture_->counters().frames + static_cast<std::int64_t>(kOff_s * plan_.setup.rate_Hz);
+}
+
+void CaptureFeed::amplifier_goes_on() {
+  const std::lock_guard lock(mutex_);
+  stillness_.reset();
+}
+
+std::optional<sensing::Disturbance> CaptureFeed::disturbance() {
+  const std::lock_guard lock(mutex_);
+  return stillness_ ? stillness_->take() : std::nullopt;
+}
+
 CaptureFeed::Pilot CaptureFeed::pilot() const {
   const std::lock_guard lock(mutex_);
   return pilot_;
@@ -93,10 +111,9 @@ void CaptureFeed::listen(std::int64_t start_frame) {
 }
 
 void CaptureFeed::run(const std::stop_token& stop) {
-  const auto block = std::make_unique<drive::CapturedBlock>();
   while (!stop.stop_requested()) {
     const auto numbering = capture_->counters().numbering;
-    while (capture_->take(*block))
+    while (const auto* block = capture_->take())
       if (take(*block)) conclude();
     {
       const std::lock_guard lock(mutex_);
@@ -110,8 +127,10 @@ void CaptureFeed::run(const std::stop_token& stop) {
 // the vibration watch. Returns true once enough has been captured to contain the whole pilot.
 bool CaptureFeed::take(const drive::CapturedBlock& captured) {
   const std::lock_guard lock(mutex_);
-  const sensing::CaptureBlock block{captured.used(), plan_.device.channels, captured.first_frame + shift_,
-                                    plan_.device.rate_Hz};
+  sensing::CaptureBlock block{captured.used(), plan_.device.channels, captured.first_frame,
+                              plan_.device.rate_Hz};
+  if (stillness_ && block.first_frame >= still_from_) stillness_->push(block);
+  block.first_frame += shift_;
   if (captured.numbering != numbering_) aligned_ = false;
   if (listener_) {
     // The listener notices by itself if frames of the pilot are missing.

@@ -8,6 +8,7 @@
 #include "station/drive/alsa_capture.hpp"
 #include "station/rig/rig.hpp"
 #include "station/sensing/pilot.hpp"
+#include "station/sensing/stillness_watch.hpp"
 #include "station/session/cell_feed.hpp"
 #include "station/session/triggers.hpp"
 #include "station/session/vibration_watch.hpp"
@@ -36,6 +37,7 @@ class CaptureFeed {
   CaptureFeed(std::unique_ptr<drive::Capture> capture, const CardCapture& plan);
 
   VibrationWatch& watch() { return watch_; }
+  const VibrationWatch& watch() const { return watch_; }
   TriggerCapture& triggers() { return triggers_; }
 
   bool aligned() const;
@@ -44,6 +46,13 @@ class CaptureFeed {
   void misalign();
   /// All playback frames before this one have been captured and passed to the vibration watch.
   std::int64_t end_frame() const;
+
+  /// Call this when the amplifier has been switched off, and before it is switched on. While it is off, the
+  /// surface must be still, whether playback and capture are aligned or not.
+  void amplifier_is_off();
+  void amplifier_goes_on();
+  /// Returns, once, a vibration that was captured while the amplifier was off.
+  std::optional<sensing::Disturbance> disturbance();
 
   enum class Pilot { awaited, heard, missing };
   /// Call this once the pilot has been scheduled, before it is played.
@@ -71,6 +80,8 @@ class CaptureFeed {
   std::uint32_t numbering_ = 0;  ///< value of the capture's `numbering` for which shift_ holds
   bool aligned_ = false;
   std::int64_t end_frame_ = 0;
+  std::optional<sensing::StillnessWatch> stillness_;  ///< empty while the amplifier is on
+  std::int64_t still_from_ = 0;  ///< frame of the capture device from which the surface must be still
   // The last member, so that the thread is joined before the objects that it uses are destroyed.
   std::jthread thread_;
 };

@@ -41,10 +41,11 @@ std::optional<CellPlan> cell_plan_of(const rig::Rig& rig) {
   return plan;
 }
 
-std::string wrong_rate(const std::string& device, double measured_Hz, double stated_Hz) {
-  if (std::abs(measured_Hz / stated_Hz - 1) <= kRateTolerance) return "";
-  return fmt::format("iio:{} sends {:.1f} samples a second, and rate_Hz in [force_cells] is {}", device,
-                     measured_Hz, stated_Hz);
+std::optional<texts::Phrase> wrong_rate(const std::string& device, double measured_Hz, double stated_Hz) {
+  if (std::abs(measured_Hz / stated_Hz - 1) <= kRateTolerance) return std::nullopt;
+  return texts::phrase("doctor.wrong_rate",
+                       {texts::plain("iio:" + device), texts::plain(fmt::format("{:.1f}", measured_Hz)),
+                        texts::plain(fmt::format("{}", stated_Hz))});
 }
 
 CellFeed::CellFeed(const CellPlan& plan, Open open)
@@ -93,7 +94,8 @@ std::string CellFeed::problem() const {
     if (!problem_.empty()) return problem_;
   }
   const auto rate_Hz = clock_.rate_Hz();
-  return rate_Hz ? wrong_rate(plan_.device.device, *rate_Hz, plan_.device.rate_Hz) : "";
+  const auto wrong = rate_Hz ? wrong_rate(plan_.device.device, *rate_Hz, plan_.device.rate_Hz) : std::nullopt;
+  return wrong ? texts::say(*wrong, "en") : "";
 }
 
 std::vector<std::string> CellFeed::news() {

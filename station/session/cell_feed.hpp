@@ -15,6 +15,7 @@
 #include "station/rig/rig.hpp"
 #include "station/sensing/own_clock.hpp"
 #include "station/session/vibration_watch.hpp"
+#include "station/texts/texts.hpp"
 
 namespace turnpoint::session {
 
@@ -30,8 +31,8 @@ iio::Config converter_of(const rig::CellConverter& converter);
 /// The converter of the rig's force cells; empty if the card captures them, or if they are not calibrated.
 std::optional<CellPlan> cell_plan_of(const rig::Rig& rig);
 
-/// A problem if a converter does not send as many samples a second as the rig says; otherwise "".
-std::string wrong_rate(const std::string& device, double measured_Hz, double stated_Hz);
+/// Says so if a converter does not send as many samples a second as the rig says.
+std::optional<texts::Phrase> wrong_rate(const std::string& device, double measured_Hz, double stated_Hz);
 
 /// Reads the converter on a thread of its own, and passes its samples to a VibrationWatch as points in
 /// playback frames. If the device fails, the thread opens it again as soon as it is back.

@@ -31,7 +31,8 @@ void move_bar(std::optional<Guidance::Bar>& bar, const std::optional<std::pair<d
 Guide::Guide(const std::optional<protocol::Sensing>& sensing) {
   if (!sensing || !sensing->guidance) return;
   sensing_ = sensing;
-  bars_ = Guidance{empty_bar(sensing->normal_N), empty_bar(sensing->speed_mm_s), false};
+  bars_ = Guidance{empty_bar(sensing->normal_N), empty_bar(sensing->speed_mm_s)};
+  if (const auto& speed = sensing->speed_mm_s) bars_->pace_mm_s = (speed->first + speed->second) / 2;
 }
 
 bool Guide::move(const std::optional<sensing::FingerNow>& finger) {

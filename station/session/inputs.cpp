@@ -54,6 +54,7 @@ std::optional<trial::Event> event_of(const Input& input) {
     case InputKind::arm:
     case InputKind::note:
     case InputKind::frames_lost:
+    case InputKind::signal_shown:
       break;
   }
   return std::nullopt;
@@ -67,6 +68,24 @@ void Inputs::push(Input input) {
     queue_.insert(later, std::move(input));
   }
   arrived_.notify_one();
+}
+
+void Inputs::push(InputKind kind, std::int64_t time_ns, std::string text, int value) {
+  Input input;
+  input.time_ns = time_ns;
+  input.kind = kind;
+  input.value = value;
+  input.text = std::move(text);
+  push(std::move(input));
+}
+
+void Inputs::push_fault(std::int64_t time_ns, FaultKind kind, std::string detail) {
+  Input input;
+  input.time_ns = time_ns;
+  input.kind = InputKind::fault;
+  input.fault = kind;
+  input.text = std::move(detail);
+  push(std::move(input));
 }
 
 std::optional<Input> Inputs::wait_until(std::int64_t deadline_ns) {

@@ -50,6 +50,9 @@ enum class InputKind {
   repeat,       ///< the operator declares the current trial void; it is presented again
   note,         ///< the operator writes an annotation of the session; `text` is stored
   frames_lost,  ///< value = how many frames the screen was late in the previous trial
+  /// the frame with a flash (a response signal) was handed to the screen at time_ns; number = how many
+  /// seconds after the time at which the flash was due
+  signal_shown,
 };
 
 /// Where the time stamp comes from: the kernel, a toolkit, or a simulated observer.
@@ -76,6 +79,8 @@ std::optional<trial::Event> event_of(const Input& input);
 class Inputs {
  public:
   void push(Input input);
+  void push(InputKind kind, std::int64_t time_ns, std::string text, int value = 0);
+  void push_fault(std::int64_t time_ns, FaultKind kind, std::string detail);
   /// Waits for an input and returns the one with the oldest time stamp. Returns nothing once `deadline_ns`
   /// (CLOCK_MONOTONIC) has passed.
   std::optional<Input> wait_until(std::int64_t deadline_ns);

@@ -1,5 +1,6 @@
 #pragma once
 #include <cstdint>
+#include <optional>
 #include <string>
 
 #include "station/protocol/protocol.hpp"
@@ -8,6 +9,13 @@
 #include "station/trial/director.hpp"
 
 namespace turnpoint::session {
+
+/// A finger that touches the surface, as the operator sees it.
+struct FingerSeen {
+  double normal_N = 0;
+  double speed_mm_s = 0;   ///< NaN if it is not known
+  double position_mm = 0;  ///< from the wide edge; NaN if it is not known
+};
 
 /// Observes a session for the operator. Its functions are called on the session thread: they must copy what
 /// they need and return at once. A monitor cannot affect what the participant sees or feels.
@@ -23,6 +31,13 @@ class Monitor {
   /// In an adjustment, the slider was moved, and the surface now glides to `plan`. `spec` has the slider's
   /// setting among its factors. Called at most once every kGlideEvery_s.
   virtual void surface_follows(const trial::TrialSpec& /*spec*/, const scene::DrivePlan& /*plan*/) {}
+
+  /// True if finger_moved() should be called.
+  virtual bool watches_finger() const { return false; }
+  /// What the finger does at this moment; empty if it does not touch the surface, or if that is not known.
+  /// Called about twenty times a second during trials, if the rig has force cells, whatever the participant
+  /// sees.
+  virtual void finger_moved(const std::optional<FingerSeen>& /*finger*/) {}
 
   /// A trial has ended and is stored.
   virtual void trial_ended(const trial::TrialSpec& spec, const records::TrialRow& row) = 0;

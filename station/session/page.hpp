@@ -3,7 +3,9 @@
 #include <string>
 #include <vector>
 
+#include "station/session/early_session.hpp"
 #include "station/terms/fault.hpp"
+#include "station/texts/texts.hpp"
 
 namespace turnpoint::session {
 
@@ -63,13 +65,17 @@ struct Guidance {
     bool operator==(const Bar&) const = default;
   };
   std::optional<Bar> force, speed;  ///< empty if the protocol accepts any value
-  bool frozen = false;              ///< the bars stand still, because a stimulus is being presented
+  /// The speed at which the finger is to slide: the middle of the protocol's range. It is the same in all
+  /// trials. Empty if the protocol accepts any speed.
+  std::optional<double> pace_mm_s = {};
+  bool frozen = false;  ///< the bars stand still, because a stimulus is being presented
   bool operator==(const Guidance&) const = default;
 };
 
-/// A line of the operator's summary at the end of a session.
+/// A line of the operator's summary at the end of a session, whose label is said in the operator's language.
 struct SummaryLine {
-  std::string label, value;
+  texts::Phrase label;
+  std::string value;
 };
 
 struct Page {
@@ -78,10 +84,12 @@ struct Page {
   std::string text;   ///< the question, instruction or message, in the session's language
   std::vector<AnswerButton> answers;
   bool answers_open = false;
-  bool back = false;            ///< the participant can return to the previous question or page
-  bool playing = false;         ///< true while an example is being presented
-  std::string picture;          ///< path of an explanation's picture; "" if there is none
-  bool answer_now = false;      ///< true once the response signal has been given
+  bool back = false;        ///< the participant can return to the previous question or page
+  bool playing = false;     ///< true while an example is being presented
+  std::string picture;      ///< path of an explanation's picture; "" if there is none
+  bool answer_now = false;  ///< true once the response signal has been given
+  /// when the response signal was due, if it begins with a flash of the whole page
+  std::optional<std::int64_t> flash_ns;
   std::optional<bool> correct;  ///< whether the answer was right; used only for feedback
   /// "", "speed", "accuracy", ...: determines the block's style, which never differs by colour alone
   std::string instruction;
@@ -110,6 +118,8 @@ struct Page {
   std::string run_mode;
   bool resumable = false;            ///< on the end page: the session can be continued later
   std::vector<SummaryLine> summary;  ///< on the end page: summary of the session for the operator
+  /// on a page of kind `failed`: set if the session did not begin because it would be too early
+  std::optional<EarlySession> early;
   FaultKind fault = FaultKind::other;
   std::string safe, to_do;  ///< on a fault page: what is safe and what to do; `text` says what happened
   std::string detail;       ///< on a fault page: the detail that is also logged; may be ""

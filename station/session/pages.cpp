@@ -5,6 +5,7 @@
 #include "station/protocol/answers.hpp"
 #include "station/protocol/interludes.hpp"
 #include "station/scene/planner.hpp"
+#include "station/session/parameter_name.hpp"
 #include "station/text/number.hpp"
 #include "station/texts/texts.hpp"
 
@@ -247,13 +248,16 @@ Page Pages::end(const Summary& summary, const trial::Director& director) const {
   page.resumable = summary.status == records::SessionStatus::interrupted;
   // at the end the exact total is known; with adaptive procedures it was an estimate before
   if (whole) page.trials_total = page.trials_done;
-  page.summary = {{"Trials", std::to_string(summary.trials)},
-                  {"Too late", std::to_string(summary.timeouts)},
-                  {"Too early", std::to_string(summary.anticipations)},
-                  {"Void", std::to_string(summary.voided)}};
-  if (summary.accuracy) page.summary.push_back({"Right", text::number(100 * *summary.accuracy, 3) + " %"});
+  const auto add = [&page](const char* key, const std::string& value) {
+    page.summary.push_back({{key, "", {}}, value});
+  };
+  add("operator.trials", std::to_string(summary.trials));
+  add("report.too_late", std::to_string(summary.timeouts));
+  add("report.too_early", std::to_string(summary.anticipations));
+  add("report.void", std::to_string(summary.voided));
+  if (summary.accuracy) add("report.right", text::number(100 * *summary.accuracy, 3) + " %");
   for (const auto& e : summary.estimates)
-    page.summary.push_back({e.procedure + ", " + e.parameter, in_words(e)});
+    page.summary.push_back({{"", e.procedure + ", ", {parameter_name(e.parameter)}}, in_words(e)});
   return page;
 }
 

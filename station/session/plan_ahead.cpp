@@ -118,10 +118,17 @@ PlanAhead::Planned PlanAhead::plan(const trial::TrialSpec& trial, double drift) 
     planned.bursts = bursts_of(trial, planned.plans);
     return planned;
   }
-  for (std::size_t i = 0; i < trial.intervals.size(); ++i) {
+  const auto presented = trial::presented_scenes(protocol_, trial);
+  for (std::size_t i = 0; i < presented.size(); ++i) {
     auto& scenes = planned.plans.emplace_back();
-    for (const auto& name : trial.intervals[i])
-      scenes.push_back(planner_.plan(protocol::resolve(protocol_, name, trial.factors, trial.rove_dB[i])));
+    const auto of_the_task = trial.intervals[i].size();
+    for (const auto& name : presented[i]) {
+      // A buzz, which follows the task's scenes, is the same in all trials: compared with it, a strength that
+      // was roved could be recognised.
+      const bool is_buzz = presented[i].size() > of_the_task && scenes.size() == of_the_task;
+      const double rove_dB = is_buzz ? 0 : trial.rove_dB[i];
+      scenes.push_back(planner_.plan(protocol::resolve(protocol_, name, trial.factors, rove_dB)));
+    }
     for (auto& made : scenes)
       for (auto& tone : made.tones) tone.frequency_Hz *= 1 + drift;
   }
@@ -153,15 +160,20 @@ std::vector<drive::PreparedBurst> PlanAhead::bursts_of(const trial::TrialSpec& t
   const auto& task = protocol_.task;
   random::Draws noise(
       {seed_, random::Stream::masking_noise, trial.block_index, trial.attempt, trial.trial_in_block});
-  const MarkerCodes codes{protocol::trigger_code(protocol_, protocol::TriggerEvent::onset, trial.factors),
-                          protocol::trigger_code(protocol_, protocol::TriggerEvent::change, trial.factors)};
+  MarkerCodes codes{protocol::trigger_code(protocol_, protocol::TriggerEvent::onset, trial.factors),
+                    protocol::trigger_code(protocol_, protocol::TriggerEvent::change, trial.factors)};
   std::vector<drive::PreparedBurst> bursts;
   std::int64_t start_frame = 0;
   for (std::size_t i = 0; i < plans.size(); ++i) {
-    auto burst = burst_of(plans[i], times[i].starts_s, task.transition_ms.value_or(50) * 1e-3,
-                          times[i].length_s, rate_Hz);
+    auto burst = burst_of(plans[i], times[i].starts_s, times[i].transitions_s, times[i].length_s, rate_Hz);
+    codes.changes = trial.intervals[i].size() - 1;
     if (rig_.marker) mark(burst, *rig_.marker, rate_Hz, codes);
     if (rig_.noise && task.sound == protocol::Sound::masking_noise) mask(burst, *rig_.noise, noise.bits());
+    const auto& response = protocol_.timing.signal;
+    const bool tone = response && response->by == protocol::ResponseSignal::By::tone;
+    if (const auto at_s = trial::signal_in_stimulus_s(protocol_, trial);
+        at_s && tone && rig_.noise && rig_.noise->signal && i + 1 == plans.size())
+      signal(burst, *rig_.noise, *at_s, rate_Hz);
     burst.start_frame = start_frame;
     start_frame += burst.length_frames + std::llround(task.gap_s.value_or(0) * rate_Hz);
     bursts.push_back(drive::prepare(burst, drive::format_of(stream.output), stream.limits));

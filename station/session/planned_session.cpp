@@ -82,15 +82,13 @@ void check_days(const Setup& setup, const std::vector<const store::SessionRecord
   if (!before) return;
   const auto first = *before + std::chrono::days(min_days);
   if (*now >= first) return;
-  auto problem = fmt::format(
-      "participant {} had session {} on {}, and the protocol asks for at least {} day{} between sessions: "
-      "session {} is allowed from {}",
-      setup.participant, last->start.planned_session.value_or(0), text_of(*before), min_days,
-      min_days == 1 ? "" : "s", next.number.value_or(0), text_of(first));
+  EarlySession early{setup.participant, next.number.value_or(0),
+                     text_of(first),    last->start.planned_session.value_or(0),
+                     text_of(*before),  min_days};
   if (!setup.early.empty())
-    next.overruled = std::move(problem);
+    next.overruled = describe(early);
   else
-    next.problem = std::move(problem), next.too_early = true,
+    next.problem = describe(early), next.too_early = std::move(early),
     next.allowed = "come back on that day, or give the reason to begin earlier with --early; it is stored";
 }
 

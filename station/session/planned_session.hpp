@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "station/protocol/protocol.hpp"
+#include "station/session/early_session.hpp"
 #include "station/session/session.hpp"
 #include "station/store/session_log.hpp"
 #include "station/trial/earlier_trials.hpp"
@@ -19,8 +20,8 @@ struct NextSession {
   std::optional<int> number;  ///< empty if the protocol plans no sessions
   std::string problem;        ///< why the session cannot begin; "" if it can
   std::string allowed;        ///< what is possible instead
-  /// true if the problem is only that too few days have passed, so that a reason overrules it
-  bool too_early = false;
+  /// set if the problem is only that too few days have passed, so that a reason overrules it
+  std::optional<EarlySession> too_early;
   /// why it would be refused if the operator had not given a reason
   std::string overruled;
 };

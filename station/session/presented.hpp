@@ -56,16 +56,19 @@ inline std::vector<drive::PreparedBurst> scheduled(std::span<const drive::Prepar
   return bursts;
 }
 
-inline std::optional<std::int64_t> glide_to(drive::Stream& stream, const std::vector<Presented>& presented,
-                                            const drive::ToneSet& to, double seconds) {
+/// Makes the last interval glide to other tones. Returns the change that was sent; empty if it is too late
+/// for one.
+inline std::optional<drive::Change> glide_to(drive::Stream& stream, const std::vector<Presented>& presented,
+                                             const drive::ToneSet& to, double seconds) {
   if (presented.empty()) return std::nullopt;
   const auto& sounding = presented.back();
   const auto frames = static_cast<std::int64_t>(seconds * stream.config().output.rate_Hz);
   const auto at = std::max(stream.earliest_frame(), sounding.start_frame);
   // A burst that has begun its final ramp can no longer change to other tones.
   if (at + frames + sounding.ramp.frames >= sounding.end_frame) return std::nullopt;
-  stream.change(sounding.burst, {at - sounding.start_frame, frames, to});
-  return at;
+  const drive::Change change{at - sounding.start_frame, frames, to};
+  stream.change(sounding.burst, change);
+  return change;
 }
 
 inline std::optional<ClockFit> fit_of(drive::Stream& stream) {

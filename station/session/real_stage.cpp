@@ -4,12 +4,11 @@
 #include <cmath>
 #include <cstdlib>
 #include <cstring>
-#include <deque>
 #include <utility>
 
 #include "station/drive/recovery.hpp"
-#include "station/sensing/trial_finger.hpp"
 #include "station/session/presented.hpp"
+#include "station/session/trial_capture.hpp"
 #include "station/system/clock_watch.hpp"
 #include "station/system/clocks.hpp"
 
@@ -26,16 +25,8 @@ constexpr std::int64_t kFirstBlocks_ns = 500'000'000;
 constexpr std::int64_t kFirstPosition_ns = 500'000'000;
 // longest wait for the report that an interval was played completely
 constexpr std::int64_t kHeard_ns = 1'000'000'000;
-constexpr std::int64_t kPilot_ns = 1'000'000'000;               // longest wait for the captured pilot
-constexpr double kTare_s = sensing::TrialFinger::tare_s + 0.1;  // 0.1 s longer than the tare, for the filter
-constexpr std::int64_t kMeasured_ns = 1'000'000'000;  // longest wait for the captured frames of an interval
-// The measurement of an interval (its proof) needs captured frames from before the onset, so expect() must be
-// called at least this long before the onset.
-constexpr std::int64_t kExpected_ns = 50'000'000;
 // time from the end of the last stimulus to switching the amplifier off
 constexpr std::int64_t kTail_ns = 20'000'000;
-// longest wait for a converter of force cells that was connected again
-constexpr std::int64_t kConverter_ns = 1'500'000'000;
 
 class RealStage : public Stage {
  public:
@@ -45,12 +36,10 @@ class RealStage : public Stage {
     config.amplifier = devices_.amplifier.get();
     stream_ = devices_.open_stream(config);
     triggers_.emplace(triggers, *stream_, devices_.triggers.get());
-    if (!capture) return;
-    pilot_ = capture->pilot;
-    reference_ = capture->reference;
-    has_cells_ = capture->setup.finger.has_value();
-    feed_ = std::make_unique<CaptureFeed>(devices_.open_capture(capture->device), *capture);
-    if (capture->cells) cells_ = std::make_unique<CellFeed>(*capture->cells, devices_.open_cells);
+    if (capture)
+      capture_ =
+          std::make_unique<TrialCapture>(*capture, devices_, *stream_, inputs_,
+                                         [this](const std::function<bool()>& ready) { wait_for(ready); });
   }
 
   std::int64_t now_ns() override { return system::monotonic_ns(); }
@@ -70,7 +59,7 @@ class RealStage : public Stage {
     // Forget the stimuli of the previous trial, so that late reports about them cannot reach the next trial.
     presented_.clear();
     unheard_ = 0;
-    unmeasured_.clear();
+    if (capture_) capture_->forget();
     lost_ns_.reset();
     std::vector<Input> gathered;
     for (auto& input : inputs_.drain()) gathered.push_back(with_frame(std::move(input)));
@@ -91,15 +80,16 @@ class RealStage : public Stage {
     const auto until_ns = now_ns() + kFirstPosition_ns;
     wait_for([&] { return stream_->clock().pairs > 0 || now_ns() > until_ns; });
     earliest_ns = std::max(earliest_ns, opened_ns_ + kSettle_ns);
-    if (feed_) earliest_ns = std::max(earliest_ns, now_ns() + kExpected_ns);
+    if (capture_) earliest_ns = std::max(earliest_ns, now_ns() + kExpected_ns);
     if (triggers_->active())
       earliest_ns = std::max(earliest_ns, stream_->time_of(triggers_->free_from()).value_or(earliest_ns));
     auto onsets = schedule(*stream_, intervals, earliest_ns, presented_);
-    if (feed_ && !onsets.empty())
-      feed_->watch().expect(scheduled(intervals, presented_), stream_->frame_at(now_ns()).value_or(0));
+    if (capture_ && !onsets.empty())
+      capture_->feed().watch().expect(scheduled(intervals, presented_),
+                                      stream_->frame_at(now_ns()).value_or(0));
     if (onsets.empty())
-      push_fault(now_ns(), FaultKind::stimulus_missed,
-                 "the converter does not report which frame it is playing");
+      inputs_.push_fault(now_ns(), FaultKind::stimulus_missed,
+                         "the converter does not report which frame it is playing");
     else
       quiet_ns_ = std::max(quiet_ns_, later(onsets.back(), intervals.back().length_frames));
     if (!onsets.empty()) first_onset_ = onsets.front();
@@ -108,17 +98,26 @@ class RealStage : public Stage {
   }
 
   std::optional<std::int64_t> glide(const drive::ToneSet& to, double seconds) override {
-    const auto at = glide_to(*stream_, presented_, to, seconds);
-    if (at && feed_) feed_->watch().changed(presented_.size() - 1);
-    return at;
+    const auto change = glide_to(*stream_, presented_, to, seconds);
+    if (!change) return std::nullopt;
+    if (capture_)
+      capture_->feed().watch().changed(presented_.size() - 1, *change,
+                                       drive::format_of(stream_->config().output));
+    return presented_.back().start_frame + change->at_frame;
   }
 
-  std::int64_t silence() override {
+  std::int64_t silence(bool awaits_heard) override {
     // If the last burst has not begun, it is cancelled and never reported as heard, so do not wait for that
     // report.
     const auto from = stream_->earliest_frame();
-    if (!presented_.empty() && presented_.back().start_frame >= from) unheard_ = 0;
-    if (feed_) feed_->watch().cut(stream_->counters().frames);
+    if (!presented_.empty() && presented_.back().start_frame >= from) {
+      unheard_ = 0;
+      // Somebody has answered at a time when the stimulus should have been playing, so the drive is stalled.
+      if (awaits_heard)
+        inputs_.push_fault(now_ns(), FaultKind::stimulus_missed,
+                           "the trial was answered before the drive had begun the stimulus");
+    }
+    if (capture_) capture_->feed().watch().cut(stream_->counters().frames);
     const auto silent_ns = ramp_down(*stream_, presented_, now_ns());
     triggers_->cut(from, stream_->frame_at(silent_ns).value_or(from), now_ns());
     return quiet_ns_ = lost_ns_.value_or(silent_ns);
@@ -147,6 +146,7 @@ class RealStage : public Stage {
     if (const auto refusal = await_cells()) return refusal;
     closing_ = false;
     if (amplifier() == drive::AmplifierState::enabled) return std::nullopt;
+    if (capture_ && std::exchange(off_, false)) capture_->feed().amplifier_goes_on();
     opened_ns_ = now_ns();
     show_life();
     return amplifier_().enable();
@@ -154,7 +154,7 @@ class RealStage : public Stage {
   void close_amplifier() override { closing_ = true; }
 
   Triggers& triggers() override {
-    if (feed_) take_captured();
+    if (capture_) take_captured();
     return *triggers_;
   }
 
@@ -167,15 +167,18 @@ class RealStage : public Stage {
   void simulate(Input) override {}
   drive::Amplifier* guarded_amplifier() override { return devices_.amplifier.get(); }
   void set_drift(double share) override {
-    if (feed_) feed_->watch().set_drift(share);
+    if (capture_) capture_->feed().watch().set_drift(share);
   }
   std::optional<sensing::FingerNow> finger_now() override {
-    return feed_ ? feed_->watch().finger_now() : std::nullopt;
+    return capture_ ? capture_->feed().watch().finger_now() : std::nullopt;
+  }
+  std::optional<sensing::RawCapture> raw_capture() const override {
+    return capture_ ? std::optional(capture_->feed().watch().raw()) : std::nullopt;
   }
   std::optional<ClockFit> clock_fit() override { return fit_of(*stream_); }
   std::string realtime_rights() const override {
     const auto playback = describe(stream_->rights());
-    return feed_ ? playback + "; capture: " + describe(feed_->rights()) : playback;
+    return capture_ ? playback + "; capture: " + describe(capture_->feed().rights()) : playback;
   }
 
   void finish() override {
@@ -189,68 +192,17 @@ class RealStage : public Stage {
 
   /// Measures the delay from playback to capture if it is not known. The amplifier is off meanwhile.
   Refusal align() {
-    if (!feed_ || feed_->aligned()) return std::nullopt;
+    if (!capture_ || capture_->aligned()) return std::nullopt;
     closing_ = true;
     wait_for([this] { return amplifier() != drive::AmplifierState::enabled; });
-    feed_->listen(stream_->schedule_soon(sensing::pilot_burst(pilot_, 0)).start_frame);
-    const auto until_ns = now_ns() + static_cast<std::int64_t>(1e9 * feed_->longest_wait_s()) + kPilot_ns;
-    wait_for([&] { return feed_->pilot() != CaptureFeed::Pilot::awaited || now_ns() > until_ns; });
-    if (feed_->aligned()) {
-      if (has_cells_) await_tare();
-      return std::nullopt;
-    }
-    if (!feed_->counters().present) return Fault{FaultKind::capture, "the capture device is disconnected"};
-    return Fault{FaultKind::capture,
-                 fmt::format("the pilot on output channel {} was not heard on captured channel {}",
-                             pilot_.channel, reference_)};
+    return capture_->align();
   }
 
-  /// Waits for the converter of the force cells, if it has one of its own and was disconnected. A device that
-  /// is connected again is found within a second.
+  /// Waits for the converter of the force cells, if it has one of its own and was disconnected.
   Refusal await_cells() {
-    if (!cells_ || cells_->problem().empty()) return std::nullopt;
+    if (!capture_ || !capture_->misses_cells()) return std::nullopt;
     closing_ = true;
-    const auto until_ns = now_ns() + kConverter_ns;
-    wait_for([&] { return cells_->problem().empty() || now_ns() > until_ns; });
-    if (auto problem = cells_->problem(); !problem.empty())
-      return Fault{FaultKind::capture, std::move(problem)};
-    await_tare();
-    return std::nullopt;
-  }
-
-  /// The playback frame before which everything has been measured that is measured at all.
-  std::int64_t measured_until() const {
-    const auto captured = feed_->end_frame();
-    return cells_ && cells_->problem().empty() ? std::min(captured, cells_->end_frame()) : captured;
-  }
-
-  /// The force cells are read before each trial, which needs captured frames since the pilot.
-  void await_tare() {
-    const auto rate_Hz = stream_->config().output.rate_Hz;
-    const auto until_ns = now_ns() + static_cast<std::int64_t>(1e9 * feed_->longest_wait_s());
-    const auto wanted = stream_->frame_at(now_ns()).value_or(0) +
-                        static_cast<std::int64_t>(kTare_s * static_cast<double>(rate_Hz));
-    wait_for([&] { return measured_until() >= wanted || !feed_->aligned() || now_ns() > until_ns; });
-  }
-
-  /// Reports the intervals whose samples have been captured: first the measurements of an interval, then that
-  /// the interval was heard.
-  void measure(std::int64_t now) {
-    while (!unmeasured_.empty()) {
-      const auto [interval, limit_ns] = unmeasured_.front();
-      auto& watch = feed_->watch();
-      const auto index = static_cast<std::size_t>(interval);
-      if (feed_->aligned() && measured_until() < watch.known_at(index) && now < limit_ns) return;
-      unmeasured_.pop_front();
-      Input input;
-      input.time_ns = now;
-      input.kind = InputKind::measured;
-      input.value = interval;
-      input.measured = watch.result(index);
-      input.forces = watch.forces(index);
-      if (input.measured || input.forces) inputs_.push(std::move(input));
-      push(InputKind::heard, now, "", interval);
-    }
+    return capture_->await_cells();
   }
 
   /// Reports to the guard that the session thread is alive, and passes on when the participant's page last
@@ -270,15 +222,16 @@ class RealStage : public Stage {
       closing_ = false;
     }
     while (const auto event = stream_->poll()) hear(*event, now);
-    if (cells_) follow_cells(now);
-    measure(now);
-    if (feed_) take_captured();
+    if (capture_) {
+      capture_->attend(now);
+      take_captured();
+      listen_while_off();
+    }
     look_at_samples();
-    look_at_capture(now);
     if (unheard_ > 0 && now > quiet_ns_ + kHeard_ns) {
       unheard_ = 0;
-      push_fault(now, FaultKind::stimulus_missed,
-                 "the converter does not report whether a stimulus was played");
+      inputs_.push_fault(now, FaultKind::stimulus_missed,
+                         "the converter does not report whether a stimulus was played");
     }
     if (amplifier() == drive::AmplifierState::faulted && !std::exchange(fault_told_, true))
       tell_amplifier_fault();
@@ -288,11 +241,11 @@ class RealStage : public Stage {
   /// Passes on the trigger codes that were found in the captured signal, and reports the captured pulses of
   /// other devices.
   void take_captured() {
-    const auto news = feed_->triggers().take();
+    const auto news = capture_->feed().triggers().take();
     triggers_->captured(news);
     for (const auto frame : news.edges) {
       const auto time_ns = stream_->time_of(frame);
-      if (time_ns) push(InputKind::sync, *time_ns, fmt::format("frame {}", frame));
+      if (time_ns) inputs_.push(InputKind::sync, *time_ns, fmt::format("frame {}", frame));
     }
   }
 
@@ -310,7 +263,20 @@ class RealStage : public Stage {
     if (by_edge && reaction_ns >= 0)
       fault.detail = fmt::format("the amplifier was switched off after {:.0f} us",
                                  1e-3 * static_cast<double>(reaction_ns));
-    push_fault(fault.time_ns, fault.kind, fault.detail);
+    inputs_.push_fault(fault.time_ns, fault.kind, fault.detail);
+  }
+
+  /// Trips the guard if the pick-up hears a vibration while the amplifier is off: the amplifier does not
+  /// obey, or something else drives the surface.
+  void listen_while_off() {
+    auto& feed = capture_->feed();
+    const bool off = amplifier() != drive::AmplifierState::enabled;
+    if (off && !off_) feed.amplifier_is_off();
+    if (!off && off_) feed.amplifier_goes_on();
+    off_ = off;
+    if (const auto found = feed.disturbance())
+      amplifier_().trip(FaultKind::sounding, fmt::format("a tone of {:.1f} kHz at {:.0f} dB of full drive",
+                                                         1e-3 * found->frequency_Hz, found->level_dB));
   }
 
   void look_at_samples() {
@@ -319,26 +285,6 @@ class RealStage : public Stage {
       amplifier_().trip(FaultKind::converter_saturated,
                         fmt::format("{} samples clipped", saturated - saturated_));
     saturated_ = saturated;
-  }
-
-  /// Reports gaps of the capture, which are logged. A gap makes the trial void only if it hits one of the
-  /// trial's intervals.
-  void look_at_capture(std::int64_t now) {
-    if (!feed_) return;
-    const auto counters = feed_->counters();
-    if (counters.numbering == std::exchange(numbering_, counters.numbering)) return;
-    push(InputKind::notice, now,
-         fmt::format("the capture has lost {} frames in {} overruns, and has had {} gaps of unknown length",
-                     counters.lost_frames, counters.overruns, counters.unknown_gaps));
-  }
-
-  /// Passes on what the converter of the force cells has sent. Samples that it has lost make the forces of a
-  /// trial unknown only if the trial needs them.
-  void follow_cells(std::int64_t now) {
-    auto playback = stream_->clock();
-    playback.time_ns += std::llround(1e9 * stream_->config().converter_delay_s);
-    cells_->follow(playback, feed_->watch());
-    for (auto& news : cells_->news()) push(InputKind::notice, now, std::move(news));
   }
 
   /// Returns the time of the frame that comes `frames` after an onset.
@@ -350,18 +296,20 @@ class RealStage : public Stage {
     const auto interval = interval_of(presented_, event.burst);
     switch (event.kind) {
       case drive::EventKind::underrun:
-        if (feed_ && event.retimed) feed_->misalign();
-        push(InputKind::xrun, now, fmt::format("{} frames lost from frame {}", event.frames, event.frame),
-             interval ? 1 : 0);
+        if (capture_ && event.retimed) capture_->feed().misalign();
+        inputs_.push(InputKind::xrun, now,
+                     fmt::format("{} frames lost from frame {}", event.frames, event.frame),
+                     interval ? 1 : 0);
         if (underruns_.exceeded_by(now))
-          push(InputKind::failure, now,
-               "more than three underruns within a minute; run `turnpoint doctor`, then resume the session");
+          inputs_.push(
+              InputKind::failure, now,
+              "more than three underruns within a minute; run `turnpoint doctor`, then resume the session");
         return;
       case drive::EventKind::burst_missed:
         if (triggers_->owns(event.burst)) return triggers_->missed(event.burst);
-        return push_fault(now, FaultKind::stimulus_missed, "a stimulus came too late to be played");
+        return inputs_.push_fault(now, FaultKind::stimulus_missed, "a stimulus came too late to be played");
       case drive::EventKind::device_lost:
-        if (feed_) feed_->misalign();
+        if (capture_) capture_->feed().misalign();
         unheard_ = 0;  // the trial is void, so do not wait for reports about its intervals
         if (!presented_.empty()) lost_ns_ = later(first_onset_, event.frame - first_onset_.frame);
         amplifier_().trip(FaultKind::converter_gone,
@@ -369,7 +317,7 @@ class RealStage : public Stage {
         return;  // attend() will report the fault that the amplifier has latched
       case drive::EventKind::device_back:
         wrong_rate_.reset();  // this may be another device, with the right rate
-        return push(InputKind::notice, now, "the sound device is back");
+        return inputs_.push(InputKind::notice, now, "the sound device is back");
       case drive::EventKind::rate_wrong:
         wrong_rate_ = Fault{FaultKind::converter_rate, fmt::format("{:.1f} Hz instead of {} Hz",
                                                                    1e-3 * static_cast<double>(event.frames),
@@ -381,9 +329,8 @@ class RealStage : public Stage {
       case drive::EventKind::burst_heard:
         if (!interval) return;
         if (unheard_ > 0) --unheard_;
-        if (!feed_) return push(InputKind::heard, now, "", *interval);
-        unmeasured_.push_back({*interval, now + kMeasured_ns});
-        return;
+        if (!capture_) return inputs_.push(InputKind::heard, now, "", *interval);
+        return capture_->played(*interval, now);
     }
   }
 
@@ -391,29 +338,11 @@ class RealStage : public Stage {
     clocks_due_ns_ = now + kClocks_ns;
     const auto news = clocks_.look(devices_.clocks());
     if (news.jump_s)
-      push(InputKind::notice, now, fmt::format("the wall clock was set by {:+.3f} s", *news.jump_s));
+      inputs_.push(InputKind::notice, now, fmt::format("the wall clock was set by {:+.3f} s", *news.jump_s));
     if (!news.suspended_s) return;
     const auto slept = fmt::format("the computer was suspended for {:.1f} s", *news.suspended_s);
-    push(InputKind::notice, now, slept);
+    inputs_.push(InputKind::notice, now, slept);
     amplifier_().trip(FaultKind::suspended, slept);
-  }
-
-  void push_fault(std::int64_t time_ns, FaultKind kind, std::string detail) {
-    Input input;
-    input.time_ns = time_ns;
-    input.kind = InputKind::fault;
-    input.fault = kind;
-    input.text = std::move(detail);
-    inputs_.push(std::move(input));
-  }
-
-  void push(InputKind kind, std::int64_t time_ns, std::string text, int value = 0) {
-    Input input;
-    input.time_ns = time_ns;
-    input.kind = kind;
-    input.value = value;
-    input.text = std::move(text);
-    inputs_.push(std::move(input));
   }
 
   const std::vector<std::string> no_buttons_;
@@ -423,17 +352,7 @@ class RealStage : public Stage {
   Inputs& inputs_;
   std::unique_ptr<drive::Stream> stream_;
   std::optional<Triggers> triggers_;
-  bool has_cells_ = false;
-  std::unique_ptr<CaptureFeed> feed_;  ///< null if nothing is captured
-  std::unique_ptr<CellFeed> cells_;    ///< null unless the force cells have a converter of their own
-  sensing::Pilot pilot_;
-  int reference_ = 0;
-  /// An interval that was played, and the time until which to wait for its captured samples.
-  struct Unmeasured {
-    int interval = 0;
-    std::int64_t limit_ns = 0;
-  };
-  std::deque<Unmeasured> unmeasured_;
+  std::unique_ptr<TrialCapture> capture_;  ///< null if nothing is captured
   std::vector<Presented> presented_;
   Onset first_onset_;        ///< onset of the trial's first interval
   std::size_t unheard_ = 0;  ///< number of intervals not yet reported as played
@@ -445,8 +364,8 @@ class RealStage : public Stage {
   std::int64_t quiet_ns_ = 0;   ///< time from which the surface no longer vibrates
   std::int64_t opened_ns_ = 0;  ///< time at which the amplifier was enabled
   bool closing_ = false, fault_told_ = false;
-  std::uint32_t numbering_ = 0;  ///< the capture's `numbering` at the last reported loss of frames
-  std::int64_t saturated_ = 0;   ///< number of samples clipped so far
+  bool off_ = false;            ///< the capture knows that the amplifier is off
+  std::int64_t saturated_ = 0;  ///< number of samples clipped so far
   /// set if the converter runs at the wrong rate, until the device has been reopened
   Refusal wrong_rate_;
 };

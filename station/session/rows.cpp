@@ -8,14 +8,15 @@
 
 #include "station/sensing/felt_step.hpp"
 #include "station/store/signal_code.hpp"
+#include "station/terms/limits.hpp"
 #include "station/text/number.hpp"
 
 namespace turnpoint::session {
 
 namespace {
 
-const char* kind_of(InputKind kind) {
-  switch (kind) {
+const char* kind_of(const Input& input) {
+  switch (input.kind) {
     case InputKind::answer:
       return "answer";
     case InputKind::value:
@@ -38,6 +39,8 @@ const char* kind_of(InputKind kind) {
       return "pause";
     case InputKind::frames_lost:
       return "frames_lost";
+    case InputKind::signal_shown:
+      return input.number > terms::kSignalLate_s ? records::kSignalLateEvent : records::kSignalShownEvent;
     case InputKind::xrun:
       return "xrun";
     case InputKind::heard:
@@ -66,12 +69,22 @@ const char* kind_of(InputKind kind) {
   return "";
 }
 
+/// What is known of the silence before an interval.
+std::string silence_before(const sensing::IntervalResult& measured) {
+  if (!measured.silence || measured.silence->verdict == terms::Proof::unproven) return "";
+  if (measured.silence->verdict == terms::Proof::lost) return "; silence before it not measured";
+  return fmt::format("; silence before it: tone {:.0f} dB, all {:.0f} dB", measured.silence->level_dB,
+                     measured.silence->rms_dB);
+}
+
 std::string value_of(const Input& input) {
   if (input.kind == InputKind::fault)
     return input.text.empty() ? name(input.fault) : fmt::format("{}: {}", name(input.fault), input.text);
   if (input.kind == InputKind::measured)
-    return fmt::format("{} {} {}", input.value, name(input.measured->verdict), name(input.measured->cause));
+    return fmt::format("{} {} {}{}", input.value, name(input.measured->verdict), name(input.measured->cause),
+                       silence_before(*input.measured));
   if (!input.text.empty()) return input.text;
+  if (input.kind == InputKind::signal_shown) return text::number(input.number, 4);
   if (input.kind == InputKind::slider || input.kind == InputKind::value) return text::exact(input.number);
   if (input.kind == InputKind::contact && input.number >= 0)
     return fmt::format("{} {}", input.value, text::number(input.number, 4));
@@ -135,11 +148,22 @@ void set_scene(records::TrialRow& row, const scene::DrivePlan& scene, std::int64
   take_last(row, scene);
 }
 
+namespace {
+
+/// The scene of an interval to which a stretch belongs. An adjustment goes through many settings, of which
+/// the row has only the first and the last: scenes 0 and 1. Returns -1 for the others.
+int scene_of(const sensing::IntervalResult& measured, int stretch) {
+  if (measured.live_changes == 0 || stretch == 0) return stretch;
+  return stretch == measured.live_changes ? 1 : -1;
+}
+
+}  // namespace
+
 void add_measured(records::TrialRow& row, const sensing::IntervalResult& measured, int interval, bool first) {
   for (const auto& tone : measured.tones)
     for (auto& planned : row.tones) {
-      if (!tone.seen || planned.interval_index != interval || planned.scene_index != tone.stretch ||
-          planned.tone_index != tone.tone)
+      if (!tone.seen || planned.interval_index != interval ||
+          planned.scene_index != scene_of(measured, tone.stretch) || planned.tone_index != tone.tone)
         continue;
       planned.measured_dB = tone.ratio_dB;
       planned.measured_phase_deg = tone.phase_error_deg;
@@ -149,9 +173,15 @@ void add_measured(records::TrialRow& row, const sensing::IntervalResult& measure
   };
   for (const auto& tone : measured.tones)
     if (tone.seen) further(row.drive_ratio_dB, tone.ratio_dB);
+  for (const auto& tone : measured.glides)
+    if (tone.seen) further(row.drive_ratio_dB, tone.worst_ratio_dB);
   if (measured.onset_error_us) further(row.onset_error_us, *measured.onset_error_us);
   if (!measured.tones.empty())
     row.drive_residual_dB = std::max(row.drive_residual_dB.value_or(-1e9), measured.residual_dB);
+  if (const auto& silence = measured.silence; silence && silence->rms_dB > sensing::kNothing_dB) {
+    row.silence_dB = silence->rms_dB;
+    if (silence->level_dB > sensing::kNothing_dB) row.silence_tone_dB = silence->level_dB;
+  }
   const sensing::Finding now{measured.cause, measured.verdict};
   const auto all = first ? now : sensing::concluded({{row.proof_cause, row.proof}, now});
   row.proof = all.verdict;
@@ -232,7 +262,7 @@ std::string describe_proof(const records::TrialRow& row) {
 records::EventRow event_row(const Input& input, int trial_index) {
   records::EventRow row;
   row.time_ns = input.time_ns;
-  row.kind = kind_of(input.kind);
+  row.kind = kind_of(input);
   row.trial_index = trial_index;
   row.value = value_of(input);
   return row;

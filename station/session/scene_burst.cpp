@@ -10,7 +10,7 @@ drive::Burst scene_burst(const rig::Rig& rig, const protocol::Protocol& protocol
                          const protocol::Factors& factors, double length_s) {
   scene::Planner planner(rig);
   const auto plan = planner.plan(protocol::resolve(protocol, scene, factors, 0));
-  return burst_of({plan}, {}, 0, length_s, rig.output.rate_Hz);
+  return burst_of({plan}, {}, {}, length_s, rig.output.rate_Hz);
 }
 
 }  // namespace turnpoint::session

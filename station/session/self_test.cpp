@@ -8,156 +8,193 @@
 #include <functional>
 #include <utility>
 
+#include "station/lines/probe.hpp"
+
 namespace turnpoint::session {
 namespace {
 
-CheckRow not_possible(std::string name, std::string why) {
+using texts::Phrase, texts::phrase, texts::plain;
+
+/// Rounds to this number of decimals; a value that becomes 0 has no minus sign.
+double rounded(double value, int decimals) {
+  const double scale = std::pow(10, decimals);
+  return std::round(scale * value) / scale + 0.0;
+}
+
+Check not_possible(Phrase name, Phrase why) {
   return {std::move(name), Verdict::not_possible, {}, {}, "", std::move(why)};
 }
 
 Verdict verdict(bool good) { return good ? Verdict::passed : Verdict::failed; }
 
+bool is_good(terms::Proof proof) { return proof == terms::Proof::ok || proof == terms::Proof::flagged; }
+
+Phrase decibels(double value_dB) { return plain(fmt::format("{:.2f}", value_dB)); }
+
 /// Runs one part of the self-test. If the part throws, adds a failed check with its message.
-void run(const std::string& name, std::vector<CheckRow>& checks, const std::function<void()>& part) {
+void run(const Phrase& name, std::vector<Check>& checks, const std::function<void()>& part) {
   try {
     part();
+  } catch (const PartFailed& failed) {
+    checks.push_back({name, Verdict::failed, {}, {}, "", failed.why()});
   } catch (const std::exception& error) {
-    checks.push_back({name, Verdict::failed, {}, {}, "", error.what()});
+    checks.push_back({name, Verdict::failed, {}, {}, "", lines::reported(error)});
   }
 }
 
 }  // namespace
 
-CheckRow judged(const GateReading& reading) {
-  if (!reading.missing.empty()) return not_possible("gate", reading.missing);
-  CheckRow check{"gate", Verdict::failed, {}, 1e3 * kGateLimit_s, "ms", ""};
+CheckRow row_of(const Check& check) {
+  return {texts::say(check.name, "en"), check.verdict, check.value, check.limit, check.unit,
+          texts::say(check.what, "en")};
+}
+
+PartFailed::PartFailed(Phrase why) : std::runtime_error(texts::say(why, "en")), why_(std::move(why)) {}
+
+Check judged(const GateReading& reading) {
+  Check check{phrase("self_test.gate"), Verdict::failed, {}, 1e3 * kGateLimit_s, "ms", {}};
+  if (reading.missing) return not_possible(check.name, *reading.missing);
   if (!reading.opened) {
-    check.what = "the gate stays shut although the amplifier was enabled and the heartbeat runs";
+    check.what = phrase("self_test.gate_shut");
   } else if (!reading.dropped_s) {
-    check.what =
-        "the gate stays open although the heartbeat has stopped: nothing would switch the amplifier off "
-        "if the station hung; look at the monostable and its wiring";
+    check.what = phrase("self_test.gate_open");
   } else {
     check.value = 1e3 * *reading.dropped_s;
     check.verdict = verdict(*reading.dropped_s <= kGateLimit_s);
-    check.what = fmt::format("the gate shut {:.0f} ms after the heartbeat stopped", *check.value);
+    check.what = phrase("self_test.gate_dropped", {plain(fmt::format("{:.0f}", *check.value))});
   }
   return check;
 }
 
-CheckRow judged(const PressReading& reading) {
+Check judged(const PressReading& reading) {
   const bool stop = reading.button.empty();
-  const std::string name = stop ? "stop" : "button " + reading.button;
-  if (!reading.missing.empty()) return not_possible(name, reading.missing);
-  if (!reading.pressed)
-    return {
-        name, Verdict::failed, {}, {}, "", "no press arrived: look at the button, its wire and the rig file"};
-  if (!reading.released)
-    return {name, Verdict::failed, {}, {}, "", "the press arrived, but not the release: the button is stuck"};
-  return {
-      name, Verdict::passed,
-      {},   {},
-      "",   stop ? "the press switched the amplifier off, and the release was seen" : "the press arrived"};
+  const auto name = stop ? phrase("self_test.stop") : phrase("self_test.button", {plain(reading.button)});
+  if (reading.missing) return not_possible(name, *reading.missing);
+  const auto check = [&name](bool good, const char* what) {
+    return Check{name, verdict(good), {}, {}, "", phrase(what)};
+  };
+  if (!reading.pressed) return check(false, "self_test.not_pressed");
+  if (!reading.released) return check(false, "self_test.not_released");
+  return check(true, stop ? "self_test.stop_good" : "self_test.button_good");
 }
 
-CheckRow judged(const ToneReading& reading) {
-  const auto name = reading.transducer.empty() ? "tone" : "tone " + reading.transducer;
-  if (!reading.missing.empty()) return not_possible(name, reading.missing);
-  if (reading.proof == terms::Proof::unproven)
-    return not_possible(name, "the pick-ups are not calibrated for this transducer");
-  const bool good = reading.proof == terms::Proof::ok || reading.proof == terms::Proof::flagged;
-  CheckRow check{name, verdict(good), reading.ratio_dB, kToneLimit_dB, "dB", ""};
-  check.what =
-      fmt::format("a quiet tone of {:.1f} kHz was measured at {:+.2f} dB relative to its calibration",
-                  1e-3 * reading.frequency_Hz, reading.ratio_dB);
-  if (reading.cause != terms::ProofCause::none) check.what += fmt::format(": {}", describe(reading.cause));
-  return check;
+Check judged(const ToneReading& reading) {
+  const auto name = reading.transducer.empty() ? phrase("self_test.tone")
+                                               : phrase("self_test.tone_of", {plain(reading.transducer)});
+  if (reading.missing) return not_possible(name, *reading.missing);
+  if (reading.proof == terms::Proof::unproven) return not_possible(name, phrase("self_test.tone_unproven"));
+  const bool good = is_good(reading.proof);
+  auto what =
+      phrase("self_test.tone_measured", {plain(fmt::format("{:.1f}", 1e-3 * reading.frequency_Hz)),
+                                         plain(fmt::format("{:+.2f}", rounded(reading.ratio_dB, 2)))});
+  if (reading.cause != terms::ProofCause::none)
+    what = {"", "", {what, plain(": "), texts::phrase_of(reading.cause)}};
+  return {name, verdict(good), reading.ratio_dB, kToneLimit_dB, "dB", what};
 }
 
-std::vector<CheckRow> judged(const CellReading& reading) {
-  if (!reading.missing.empty()) return {not_possible("cells", reading.missing)};
-  const auto zero = "zero of cell " + reading.cell, noise = "noise of cell " + reading.cell;
-  if (!reading.fault.empty()) return {{zero, Verdict::failed, {}, kZeroLimit_N, "N", reading.fault}};
+std::optional<Check> judged_linearity(const ToneReading& reading) {
+  // without a vibration there are no levels to compare
+  const bool vibrates = is_good(reading.proof) || reading.proof == terms::Proof::refused;
+  if (!reading.nonlinearity_dB || !vibrates) return std::nullopt;
+  const double off_dB = *reading.nonlinearity_dB;
+  const auto what = off_dB >= kLinearityLimit_dB  ? phrase("self_test.linearity_bad", {decibels(off_dB)})
+                    : off_dB >= kLinearityFlag_dB ? phrase("self_test.linearity_flagged", {decibels(off_dB)})
+                                                  : phrase("self_test.linearity_good", {decibels(off_dB)});
+  return Check{phrase("self_test.linearity_of", {plain(reading.transducer)}),
+               verdict(off_dB < kLinearityLimit_dB),
+               off_dB,
+               kLinearityLimit_dB,
+               "dB",
+               what};
+}
+
+std::vector<Check> judged(const CellReading& reading) {
+  if (reading.missing) return {not_possible(phrase("self_test.cells"), *reading.missing)};
+  const auto zero = phrase("self_test.zero_of", {reading.cell}),
+             noise = phrase("self_test.noise_of", {reading.cell});
+  if (reading.fault) return {{zero, Verdict::failed, {}, kZeroLimit_N, "N", *reading.fault}};
   const bool near = std::abs(reading.zero_N) <= kZeroLimit_N, quiet = reading.noise_mN <= kNoiseLimit_mN;
   return {{zero, verdict(near), reading.zero_N, kZeroLimit_N, "N",
-           near ? fmt::format("the cell reads {:+.3f} N without a load", reading.zero_N)
-                : fmt::format("the cell reads {:+.3f} N: something lies on the surface, or the cell is "
-                              "overloaded or bent",
-                              reading.zero_N)},
+           phrase(near ? "self_test.zero_good" : "self_test.zero_bad",
+                  {plain(fmt::format("{:+.3f}", rounded(reading.zero_N, 3)))})},
           {noise, verdict(quiet), reading.noise_mN, kNoiseLimit_mN, "mN",
-           quiet ? fmt::format("standard deviation {:.2f} mN", reading.noise_mN)
-                 : fmt::format("standard deviation {:.2f} mN: somebody touched the surface, or a wire or a "
-                               "shield is loose",
-                               reading.noise_mN)}};
+           phrase(quiet ? "self_test.noise_good" : "self_test.noise_bad",
+                  {plain(fmt::format("{:.2f}", reading.noise_mN))})}};
 }
 
-CheckRow judged_temperature(std::optional<double> hottest_C) {
-  if (!hottest_C) return not_possible("temperature", "the machine has no temperature sensor");
+Check judged_temperature(std::optional<double> hottest_C) {
+  const auto name = phrase("self_test.temperature");
+  if (!hottest_C) return not_possible(name, phrase("self_test.temperature_missing"));
   const bool good = *hottest_C < kHottest_C;
-  return {"temperature",
+  return {name,
           verdict(good),
           *hottest_C,
           kHottest_C,
           "degC",
-          fmt::format("the hottest sensor of the machine reads {:.0f} degrees Celsius{}", *hottest_C,
-                      good ? "" : ": cool the machine, or it will slow down during the session")};
+          phrase(good ? "self_test.temperature_good" : "self_test.temperature_bad",
+                 {plain(fmt::format("{:.0f}", *hottest_C))})};
 }
 
-CheckRow judged(const ClockReading& reading) {
+Check judged(const ClockReading& reading) {
   const auto& clock = reading.clock;
-  CheckRow check{"clock", Verdict::passed, {}, {}, "", ""};
-  check.what =
-      fmt::format("source {}, {}", clock.source, clock.steered ? "synchronised" : "not synchronised");
+  Check check{phrase("self_test.clock"), Verdict::passed, {}, {}, "", {}};
+  check.what.values.push_back(
+      phrase(clock.steered ? "self_test.clock_steered" : "self_test.clock_free", {plain(clock.source)}));
   if (!clock.plausible) {
     check.verdict = Verdict::failed;
-    check.what += ", the date cannot be right";
+    check.what.values.push_back(phrase("self_test.clock_date"));
   }
   if (reading.jump_s) {
     check.verdict = Verdict::failed;
     check.value = *reading.jump_s;
     check.unit = "s";
-    check.what += fmt::format(", and the clock was set by {:+.3f} s during the self-test", *reading.jump_s);
+    check.what.values.push_back(
+        phrase("self_test.clock_set", {plain(fmt::format("{:+.3f}", *reading.jump_s))}));
   }
   return check;
 }
 
-CheckRow judged(const system::Disk& disk) {
-  CheckRow check{"disk", Verdict::failed, {}, kLeastDisk_MiB, "MiB", ""};
+Check judged(const system::Disk& disk) {
+  Check check{phrase("self_test.disk"), Verdict::failed, {}, kLeastDisk_MiB, "MiB", {}};
   if (!disk.error.empty()) {
-    check.what = disk.folder + ": " + disk.error;
+    check.what = phrase("self_test.disk_error", {plain(disk.folder), plain(disk.error)});
     return check;
   }
   check.value = disk.free_MiB;
   check.verdict = verdict(disk.free_MiB >= kLeastDisk_MiB && disk.writable);
-  check.what = fmt::format("{:.0f} MiB free in {}{}", disk.free_MiB, disk.folder,
-                           disk.writable ? "" : ", not writable");
+  check.what = phrase(disk.writable ? "self_test.disk_free" : "self_test.disk_protected",
+                      {plain(fmt::format("{:.0f}", disk.free_MiB)), plain(disk.folder)});
   return check;
 }
 
-std::vector<CheckRow> self_test(SelfTestRig& rig) {
-  std::vector<CheckRow> checks;
+std::vector<Check> self_test(SelfTestRig& rig) {
+  std::vector<Check> checks;
   const auto add = [&checks](const auto& reading) { checks.push_back(judged(reading)); };
-  run("gate", checks, [&] { add(rig.drop_heartbeat()); });
-  run("stop", checks, [&] { add(rig.press_stop()); });
-  run("buttons", checks, [&] {
+  run(phrase("self_test.gate"), checks, [&] { add(rig.drop_heartbeat()); });
+  run(phrase("self_test.stop"), checks, [&] { add(rig.press_stop()); });
+  run(phrase("doctor.buttons"), checks, [&] {
     for (const auto& reading : rig.press_buttons()) add(reading);
   });
-  run("tone", checks, [&] {
-    for (const auto& reading : rig.play_tones()) add(reading);
+  run(phrase("self_test.tone"), checks, [&] {
+    for (const auto& reading : rig.play_tones()) {
+      add(reading);
+      if (auto linearity = judged_linearity(reading)) checks.push_back(std::move(*linearity));
+    }
   });
-  run("cells", checks, [&] {
+  run(phrase("self_test.cells"), checks, [&] {
     for (const auto& reading : rig.read_cells())
       for (auto& check : judged(reading)) checks.push_back(std::move(check));
   });
-  run("temperature", checks, [&] { checks.push_back(judged_temperature(rig.hottest_C())); });
-  run("clock", checks, [&] { add(rig.clock()); });
-  run("disk", checks, [&] { add(rig.disk()); });
+  run(phrase("self_test.temperature"), checks,
+      [&] { checks.push_back(judged_temperature(rig.hottest_C())); });
+  run(phrase("self_test.clock"), checks, [&] { add(rig.clock()); });
+  run(phrase("self_test.disk"), checks, [&] { add(rig.disk()); });
   return checks;
 }
 
-bool passed(const std::vector<CheckRow>& checks) {
+bool passed(const std::vector<Check>& checks) {
   return std::none_of(checks.begin(), checks.end(),
-                      [](const CheckRow& check) { return check.verdict == Verdict::failed; });
+                      [](const Check& check) { return check.verdict == Verdict::failed; });
 }
 
 }  // namespace turnpoint::session

@@ -1,6 +1,7 @@
 #include "station/session/self_test_rig.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <stdexcept>
 #include <utility>
@@ -9,6 +10,7 @@
 #include "station/observer/observer.hpp"
 #include "station/sensing/pick_up.hpp"
 #include "station/system/clock_watch.hpp"
+#include "station/terms/limits.hpp"
 
 namespace turnpoint::session {
 namespace {
@@ -16,13 +18,16 @@ namespace {
 constexpr std::int64_t kGate_ns = 500'000'000;
 constexpr std::int64_t kQuiet_ns = 700'000'000;  // The cells are read for the last 0.4 s of this silence.
 constexpr std::int64_t kResult_ns = 5'000'000'000;
-constexpr double kTone_s = 0.6, kRamp_s = 0.05;
+// A tone is played at full level for kTone_s, and then kLower_s at each of its lower levels.
+constexpr double kTone_s = 0.6, kLower_s = 0.3, kRamp_s = 0.05;
+constexpr std::array kLower{0.71, 0.5};
 constexpr double kAmplitude = 0.1, kShareOfLimit = 0.25;
-// Below this frequency people with good hearing may hear the tone.
-constexpr double kInaudible_Hz = 22'400;
 
+using texts::phrase;
+
+/// Throws if the amplifier has refused. `what` is the key of the text that says what it was to do.
 void require(const std::optional<Fault>& refusal, const char* what) {
-  if (refusal) throw std::runtime_error(std::string(what) + ": " + terms::describe(*refusal));
+  if (refusal) throw PartFailed(phrase(what, {texts::phrase_of(*refusal)}));
 }
 
 /// Enables the amplifier. The destructor starts the heartbeat again and switches the amplifier off, even
@@ -30,7 +35,7 @@ void require(const std::optional<Fault>& refusal, const char* what) {
 class GateOpened {
  public:
   explicit GateOpened(drive::Amplifier& amplifier) : amplifier_(amplifier) {
-    require(amplifier.enable(), "the amplifier cannot be enabled");
+    require(amplifier.enable(), "self_test.cannot_enable");
   }
   ~GateOpened() {
     amplifier_.disable();
@@ -53,7 +58,7 @@ struct Choice {
 /// transducer.
 Choice best_tone(const rig::Transducer& transducer, const std::vector<sensing::PickUp>& pick_ups) {
   Choice best;
-  const auto low_Hz = std::min(std::max(transducer.low_Hz, kInaudible_Hz), transducer.high_Hz);
+  const auto low_Hz = std::min(std::max(transducer.low_Hz, terms::kAudible_Hz), transducer.high_Hz);
   for (const auto& pick_up : pick_ups)
     for (const auto& transfer : pick_up.transfers) {
       if (transfer.drive_channel != transducer.channel) continue;
@@ -74,16 +79,36 @@ double quiet_amplitude(const rig::Rig& rig, const rig::Transducer& transducer) {
   return std::min(kAmplitude, kShareOfLimit * rig.limits.displacement_m / m_per_full_scale);
 }
 
+/// A quiet tone that goes down in two steps, each of 3 dB. At lower levels, the noise of the pick-up would
+/// stand out.
 drive::PreparedBurst quiet_tone(const rig::Rig& rig, const rig::Transducer& transducer, double frequency_Hz) {
   const auto frames = [&](double s) {
     return static_cast<std::int64_t>(std::llround(s * rig.output.rate_Hz));
   };
+  const double amplitude = quiet_amplitude(rig, transducer);
   drive::Burst burst;
-  burst.length_frames = frames(kTone_s);
   burst.ramp.frames = frames(kRamp_s);
   burst.tones.count = 1;
-  burst.tones.tones[0] = {frequency_Hz, quiet_amplitude(rig, transducer), 0, transducer.channel};
+  burst.tones.tones[0] = {frequency_Hz, amplitude, 0, transducer.channel};
+  burst.length_frames = frames(kTone_s);
+  for (const double level : kLower) {
+    auto& change = burst.changes[static_cast<std::size_t>(burst.change_count++)];
+    change = {burst.length_frames, burst.ramp.frames, burst.tones};
+    change.to.tones[0].amplitude = level * amplitude;
+    burst.length_frames += frames(kLower_s);
+  }
   return drive::prepare(burst, {rig.output.rate_Hz, rig::channels(rig), rig.output.bits});
+}
+
+/// The largest difference between the measured levels of a tone, each relative to the plan. Empty unless all
+/// levels were measured.
+std::optional<double> nonlinearity_dB(const sensing::IntervalResult& measured) {
+  std::vector<double> ratios_dB;
+  for (const auto& tone : measured.tones)
+    if (tone.seen) ratios_dB.push_back(tone.ratio_dB);
+  if (ratios_dB.size() != kLower.size() + 1) return std::nullopt;
+  const auto [least, most] = std::minmax_element(ratios_dB.begin(), ratios_dB.end());
+  return *most - *least;
 }
 
 bool has_stop_line(const std::string& amplifier_uri) {
@@ -100,15 +125,15 @@ class StageRig : public SelfTestRig {
   GateReading drop_heartbeat() override {
     GateReading reading;
     if (parts_.amplifier == nullptr) {
-      reading.missing = "the session is simulated";
+      reading.missing = phrase("self_test.session_simulated");
       return reading;
     }
     auto& amplifier = *parts_.amplifier;
     if (!amplifier.gate()) {
-      reading.missing = "no line reads the gate; add gate=LINE to the rig's [amplifier] if it is wired";
+      reading.missing = phrase("self_test.gate_missing");
       return reading;
     }
-    require(parts_.stage->arm(), "the amplifier cannot be armed");
+    require(parts_.stage->arm(), "self_test.cannot_arm");
     // Measure up to three times and keep the shortest time, because a busy machine can only lengthen it.
     for (int attempt = 0; attempt < 3 && reading.dropped_s.value_or(1) > kGateLimit_s; ++attempt) {
       const GateOpened opened(amplifier);
@@ -120,8 +145,7 @@ class StageRig : public SelfTestRig {
       // Make sure that the external monitor has shut the gate. If the guard shut it after a fault, the
       // reading would say nothing about the monitor.
       if (amplifier.state() == drive::AmplifierState::faulted)
-        throw std::runtime_error("the amplifier was switched off for another reason: " +
-                                 terms::describe(amplifier.fault()));
+        throw PartFailed(phrase("self_test.gate_other", {texts::phrase_of(amplifier.fault())}));
       const auto dropped_s = 1e-9 * static_cast<double>(system::monotonic_ns() - held_ns);
       reading.dropped_s = std::min(dropped_s, reading.dropped_s.value_or(dropped_s));
     }
@@ -131,12 +155,12 @@ class StageRig : public SelfTestRig {
   PressReading press_stop() override {
     PressReading reading;
     if (!has_stop_line(parts_.rig->amplifier_uri))
-      reading.missing = "the rig has no stop line";
+      reading.missing = phrase("self_test.stop_missing");
     else if (!parts_.ask)
-      reading.missing = "nobody was asked to press it";
-    if (!reading.missing.empty()) return reading;
+      reading.missing = phrase("self_test.nobody_asked");
+    if (reading.missing) return reading;
     auto& amplifier = *parts_.amplifier;
-    require(parts_.stage->arm(), "the amplifier cannot be armed");
+    require(parts_.stage->arm(), "self_test.cannot_arm");
     parts_.ask({Request::Kind::press_stop, 0, ""});
     reading.pressed = until(
         [&] {
@@ -147,7 +171,7 @@ class StageRig : public SelfTestRig {
     if (!reading.pressed) return reading;
     parts_.ask({Request::Kind::release_stop, 0, ""});
     reading.released = until([&] { return !parts_.stage->clear(); }, press_ns_);
-    if (reading.released) require(parts_.stage->arm(), "the amplifier cannot be armed");
+    if (reading.released) require(parts_.stage->arm(), "self_test.cannot_arm");
     return reading;
   }
 
@@ -160,7 +184,7 @@ class StageRig : public SelfTestRig {
       if (parts_.ask)
         reading.pressed = reading.released = pressed(static_cast<int>(k), names[k]);
       else
-        reading.missing = "nobody was asked to press it";
+        reading.missing = phrase("self_test.nobody_asked");
     }
     return readings;
   }
@@ -168,7 +192,7 @@ class StageRig : public SelfTestRig {
   std::vector<ToneReading> play_tones() override {
     if (parts_.room == nullptr || !parts_.capture || parts_.capture->pick_ups.empty()) {
       ToneReading none;
-      none.missing = "the rig has no pick-up";
+      none.missing = phrase("self_test.pick_up_missing");
       return {none};
     }
     std::vector<ToneReading> readings;
@@ -184,20 +208,19 @@ class StageRig : public SelfTestRig {
   std::vector<CellReading> read_cells() override {
     CellReading reading;
     if (!parts_.capture || !parts_.capture->finger) {
-      reading.missing = rig::has_force_cells(*parts_.rig) ? "the force cells are not calibrated"
-                                                          : "the rig has no force cells";
+      reading.missing = phrase(rig::has_force_cells(*parts_.rig) ? "self_test.cells_not_calibrated"
+                                                                 : "self_test.cells_missing");
       return {reading};
     }
     std::vector<CellReading> readings;
     for (std::size_t k = 0; k < sensing::bridge_count; ++k) {
-      reading.cell = k == 0 ? "a" : k == 1 ? "b" : "lateral";
+      reading.cell = k == 2 ? phrase("self_test.lateral") : texts::plain(k == 0 ? "a" : "b");
       if (forces_ && forces_->zero && forces_->noise) {
         reading.zero_N = kRated_N * (*forces_->zero)[k];
         reading.noise_mN = 1e3 * kRated_N * (*forces_->noise)[k];
       } else {
-        reading.fault = forces_ && forces_->state == sensing::ForcesState::wire
-                            ? "a wire of the bridges or of the reference is off"
-                            : "samples of the cells were missing";
+        const bool wire = forces_ && forces_->state == sensing::ForcesState::wire;
+        reading.fault = phrase(wire ? "self_test.wire_off" : "self_test.samples_missing");
       }
       readings.push_back(reading);
     }
@@ -236,8 +259,8 @@ class StageRig : public SelfTestRig {
   void play(const rig::Transducer& transducer, ToneReading& reading) {
     auto& stage = *parts_.room;
     for (auto& input : stage.drain()) pass_on(std::move(input));
-    require(stage.arm(), "the amplifier cannot be armed");
-    require(stage.open_amplifier(), "the amplifier cannot be enabled");
+    require(stage.arm(), "self_test.cannot_arm");
+    require(stage.open_amplifier(), "self_test.cannot_enable");
     const auto settled_ns = stage.now_ns() + kQuiet_ns;
     while (auto input = stage.wait_until(settled_ns)) pass_on(std::move(*input));
     const auto burst = quiet_tone(*parts_.rig, transducer, reading.frequency_Hz);
@@ -249,7 +272,7 @@ class StageRig : public SelfTestRig {
         stage.close_amplifier();
         const Fault fault{input->fault, input->text};
         pass_on(std::move(*input));
-        throw std::runtime_error(terms::describe(fault));
+        throw PartFailed(texts::phrase_of(fault));
       }
       if (input->kind == InputKind::heard) break;
       if (input->kind != InputKind::measured) {
@@ -261,6 +284,7 @@ class StageRig : public SelfTestRig {
       reading.proof = input->measured->verdict;
       reading.cause = input->measured->cause;
       reading.ratio_dB = input->measured->ratio_dB;
+      reading.nonlinearity_dB = nonlinearity_dB(*input->measured);
     }
     stage.close_amplifier();
   }
@@ -277,7 +301,7 @@ std::unique_ptr<SelfTestRig> self_test_rig(SelfTestParts parts) {
   return std::make_unique<StageRig>(std::move(parts));
 }
 
-std::vector<CheckRow> self_test(const rig::Rig& rig, const AskOperator& ask, const std::string& data_folder) {
+std::vector<Check> self_test(const rig::Rig& rig, const AskOperator& ask, const std::string& data_folder) {
   if (rig.amplifier_uri == "sim:") return simulated_self_test(rig, data_folder);
   Inputs inputs;
   auto devices = open_devices(rig, inputs);
@@ -291,8 +315,8 @@ std::vector<CheckRow> self_test(const rig::Rig& rig, const AskOperator& ask, con
   return checks;
 }
 
-std::vector<CheckRow> simulated_self_test(const rig::Rig& rig, const std::string& data_folder,
-                                          const SimulatedFaults& faults) {
+std::vector<Check> simulated_self_test(const rig::Rig& rig, const std::string& data_folder,
+                                       const SimulatedFaults& faults) {
   Inputs inputs, room_inputs;
   const auto lines = std::make_shared<lines::SimulatedAmplifierLines>();
   if (faults.lines) faults.lines(*lines);

@@ -49,7 +49,7 @@ std::unique_ptr<SelfTestRig> self_test_rig(SelfTestParts parts);
 
 /// Opens the rig's devices, runs the self-test on them and closes them. Without an `ask`, no button is
 /// tested. Throws what open_devices() and real_stage() throw.
-std::vector<CheckRow> self_test(const rig::Rig& rig, const AskOperator& ask, const std::string& data_folder);
+std::vector<Check> self_test(const rig::Rig& rig, const AskOperator& ask, const std::string& data_folder);
 
 /// Faults of a simulated rig, for tests. Each function changes one part before the self-test.
 struct SimulatedFaults {
@@ -64,7 +64,7 @@ struct SimulatedFaults {
 
 /// Runs the self-test on a rig with a simulated amplifier. A script presses the buttons. Real devices of the
 /// rig are not opened.
-std::vector<CheckRow> simulated_self_test(const rig::Rig& rig, const std::string& data_folder,
-                                          const SimulatedFaults& faults = {});
+std::vector<Check> simulated_self_test(const rig::Rig& rig, const std::string& data_folder,
+                                       const SimulatedFaults& faults = {});
 
 }  // namespace turnpoint::session

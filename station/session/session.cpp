@@ -21,6 +21,7 @@
 #include "station/session/simulated_room.hpp"
 #include "station/session/stage.hpp"
 #include "station/system/clocks.hpp"
+#include "station/terms/force_carrier.hpp"
 #include "station/terms/usage_error.hpp"
 #include "station/text/canonical.hpp"
 
@@ -117,7 +118,7 @@ drive::StreamConfig stream_of(const rig::Rig& rig) {
 drive::StreamConfig session_stream(const rig::Rig& rig) {
   auto config = stream_of(rig);
   if (rig.capture && !rig.capture->bridges.empty())
-    config.carrier = {sensing::carriers_Hz.front(), kCarrier, *rig.capture->excitation_channel};
+    config.carrier = {terms::kForceCarrier_Hz, kCarrier, *rig.capture->excitation_channel};
   return config;
 }
 
@@ -155,6 +156,7 @@ struct Begun {
 
 Begun begin(const Setup& setup, Stage& stage, programs::Programs& programs) {
   const auto next = next_session(setup);
+  if (next.too_early) throw TooEarly(next.problem + "; " + next.allowed, *next.too_early);
   if (!next.problem.empty()) throw terms::UsageError(next.problem + "; " + next.allowed);
   auto earlier = earlier_trials(setup, next);
   // With one seed for all participants, the planned sessions still have different orders.

@@ -45,6 +45,9 @@ struct Setup {
   /// The source of time stamps (kernel | toolkit) for which response_offset_s was measured. Answers with time
   /// stamps from another source are stored without the offset. "" means that all answers by touch get it.
   std::string response_offset_quality;
+  /// The delay from a touch to the light on the screen; empty if it was not measured. It is stored in a
+  /// session with flashes, but never subtracted.
+  std::optional<double> display_latency_s = {};
   /// what is known about room, surface and finger; stored with the session
   records::Conditions conditions = {};
   /// run the self-test before the first block; in a session with a person, it runs after the operator has

@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "station/text/number.hpp"
 #include "station/trial/rows.hpp"
 
 namespace turnpoint::session {
@@ -39,6 +40,9 @@ SessionRun::SessionRun(const Setup& setup, trial::Director director, store::Sess
 Summary SessionRun::run() {
   started_ns_ = stage_->now_ns();
   begin_drift();
+  const auto& signal = setup_.protocol.timing.signal;
+  if (signal && signal->by == protocol::ResponseSignal::By::flash && setup_.display_latency_s)
+    log_.event({started_ns_, records::kDisplayLatencyEvent, text::number(*setup_.display_latency_s, 4), {}});
   // In a pilot session without a real amplifier, nobody has to arm it.
   if (setup_.run_mode != terms::RunMode::live && setup_.rig.amplifier_uri == "sim:")
     // if arming is refused, until_armed() below shows a page

@@ -49,6 +49,8 @@ class SessionRun {
     std::size_t measured = 0;  ///< number of intervals for which pick-ups have reported a measurement
     bool decided = false;
     bool outside = false;  ///< the finger did not move in the way that the protocol asks for
+    /// True if something went wrong. A trial that is repeated because of the finger's movement is not void.
+    bool is_void() const { return row.outcome == terms::Outcome::fault && !outside; }
     /// the boundary of the trial's last scene is where the relative friction has this value
     std::optional<double> friction_level = {};
     /// true if the answer came from a button, so that the touch panel's latency does not apply
@@ -90,6 +92,7 @@ class SessionRun {
   void ask_observer(const Running& trial, std::int64_t onset_ns);
   void decide(Running& trial);
   void finish_row(Running& trial);
+  void keep_raw(Running& trial);  // in session_run_raw.cpp
   void leave_surface();
   void count(const trial::TrialSpec& spec, const records::TrialRow& row);
 
@@ -106,6 +109,7 @@ class SessionRun {
   void finish_triggers();
 
   // Bars that guide the finger (session_run_guidance.cpp).
+  bool is_finger_watched() const;
   void move_bars();
   void hold_bars(trial::Phase phase, const Running& trial);
 

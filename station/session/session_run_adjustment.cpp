@@ -1,3 +1,5 @@
+#include <cmath>
+
 #include "station/protocol/answers.hpp"
 #include "station/session/burst.hpp"
 #include "station/session/rows.hpp"
@@ -12,7 +14,12 @@ void SessionRun::show_phase(trial::Phase phase, const Running& trial) {
   auto page = pages_.of_phase(phase, trial.machine.interval(), trial.spec, *director_.block(),
                               trial.machine.result(), director_);
   const bool adjusting = phase == trial::Phase::stimulus || phase == trial::Phase::response;
-  page.answer_now = adjusting && trial.machine.signalled();
+  // A tone or a buzz is the signal itself: a band on the screen would come a few frames of the screen later,
+  // as a second one.
+  const auto& signal = setup_.protocol.timing.signal;
+  page.answer_now = adjusting && trial.machine.signalled() && signal && !protocol::in_stimulus(*signal);
+  if (page.answer_now && signal->by == protocol::ResponseSignal::By::flash)
+    page.flash_ns = *trial.machine.result().zero_ns + std::llround(1e9 * *trial.spec.signal_s);
   if (trial.slider && adjusting) pages_.add_slider(page, *trial.spec.slider, trial.slider->setting());
   if (phase == trial::Phase::late && trial.machine.result().outcome == terms::Outcome::fault)
     page.text = pages_.movement(trial.row.finger.sensing);

@@ -36,7 +36,7 @@ Flow SessionRun::play_example(const protocol::Example& example, Page page) {
       const auto input = gate_.received(std::move(*waited));
       gate_.note(input);
       if (gate_.stop_asked() || gate_.fault() || input.kind == InputKind::pause) {
-        off_ns = std::min(off_ns, stage_->silence());
+        off_ns = std::min(off_ns, stage_->silence(false));
         break;
       }
     }

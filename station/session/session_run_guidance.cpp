@@ -2,13 +2,24 @@
 
 namespace turnpoint::session {
 
-// The part of SessionRun that moves the bars which guide the finger.
+// The part of SessionRun that moves the bars which guide the finger, and tells the operator of the finger.
+
+bool SessionRun::is_finger_watched() const {
+  return monitor_ != nullptr && monitor_->watches_finger() && rig::has_force_cells(setup_.rig);
+}
 
 /// Moves the bars if Guide::kEvery_ns has passed since they were last moved.
 void SessionRun::move_bars() {
-  if (!guide_.guides() || stage_->now_ns() < guide_due_ns_) return;
+  const bool watched = is_finger_watched();
+  if ((!guide_.guides() && !watched) || stage_->now_ns() < guide_due_ns_) return;
   guide_due_ns_ = stage_->now_ns() + Guide::kEvery_ns;
-  if (guide_.move(stage_->finger_now()) && display_ != nullptr) display_->guide(*guide_.bars());
+  const auto finger = stage_->finger_now();
+  if (guide_.move(finger) && display_ != nullptr) display_->guide(*guide_.bars());
+  if (!watched) return;
+  const bool touches = finger && finger->contact;
+  monitor_->finger_moved(
+      touches ? std::optional(FingerSeen{finger->normal_N, finger->speed_mm_s, finger->position_mm})
+              : std::nullopt);
 }
 
 /// Stops the bars during a stimulus, because they could show its effect on the finger. In trials without a

@@ -32,8 +32,9 @@ Flow SessionRun::pass_self_test() {
   parts.data_folder = std::filesystem::absolute(setup_.database).parent_path().string();
   parts.other = [this](Input input) { gate_.note(gate_.received(std::move(input))); };
   records::EventRow event{stage_->now_ns(), "self_test", "passed", std::nullopt};
-  event.checks = self_test(*self_test_rig(std::move(parts)));
-  if (passed(event.checks)) {
+  const auto checks = self_test(*self_test_rig(std::move(parts)));
+  for (const auto& check : checks) event.checks.push_back(row_of(check));
+  if (passed(checks)) {
     log_.event(std::move(event));
     return gate_.stop_asked() ? Flow::stop : Flow::go_on;
   }

@@ -54,6 +54,7 @@ Flow SessionRun::run_trial(const trial::TrialSpec& spec) {
   leave_surface();
   log_triggers();
   finish_row(trial);
+  keep_raw(trial);
   gate_.keep([&] { log_.append(trial.row); });
   count(spec, trial.row);
   correct_drift();
@@ -113,9 +114,8 @@ void SessionRun::check_plans(const trial::TrialSpec& spec) {
       account_.check(plan.peak_displacement_m, times[i].length_s);
       if (setup_.run_mode != terms::RunMode::live) continue;
       for (const auto& tone : plan.tones)
-        if (const auto problem = limits::sound_problem(tone.frequency_Hz, tone.full_scale, setup_.sound);
-            !problem.empty())
-          throw limits::LimitExceeded(problem);
+        if (const auto problem = limits::sound_problem(tone.frequency_Hz, tone.full_scale, setup_.sound))
+          throw limits::LimitExceeded(texts::say(*problem, "en"));
     }
 }
 
@@ -124,13 +124,12 @@ Flow SessionRun::after_trial(const Running& trial) {
   const auto& row = trial.row;
   const bool repeated = trial.outside && row.outcome == terms::Outcome::fault;
   repeats_in_a_row_ = repeated ? repeats_in_a_row_ + 1 : 0;
-  const bool is_void = row.outcome == terms::Outcome::fault && !repeated;
   // A single refused stimulus can be a coincidence, so it is presented again. Two in a row stop the session.
   const bool refused = row.proof == terms::Proof::refused || row.proof == terms::Proof::stopped;
   refused_in_a_row_ = refused ? refused_in_a_row_ + 1 : 0;
   if ((row.proof == terms::Proof::stopped || refused_in_a_row_ >= kRefusedBeforePage) && !gate_.fault())
     gate_.set_fault(Fault{FaultKind::vibration, describe_proof(row)});
-  voids_in_a_row_ = is_void ? voids_in_a_row_ + 1 : 0;
+  voids_in_a_row_ = trial.is_void() ? voids_in_a_row_ + 1 : 0;
   if (voids_in_a_row_ >= kVoidsBeforeStop) {
     gate_.stop("three trials in a row were void" +
                (gate_.fault() ? "; the last: " + terms::describe(*gate_.fault()) : ""));
@@ -149,7 +148,7 @@ void SessionRun::drive_trial(Running& trial, std::optional<trial::EventKind> cut
     const auto wake = machine.wake_ns();
     const auto follow_ns = trial.slider ? trial.slider->glide_due_ns().value_or(kForever) : kForever;
     const auto until = std::min(wake.value_or(kForever), follow_ns);
-    const auto bars_ns = guide_.guides() ? guide_due_ns_ : kForever;
+    const auto bars_ns = guide_.guides() || is_finger_watched() ? guide_due_ns_ : kForever;
     auto input = stage_->wait_until(std::min(until, bars_ns));
     if (input)
       handle_in_trial(std::move(*input), trial);
@@ -212,7 +211,7 @@ void SessionRun::perform(const std::vector<trial::Action>& actions, Running& tri
         show_phase(trial.machine.phase(), trial);
         break;
       case trial::ActionKind::silence: {
-        const auto silent_ns = stage_->silence();
+        const auto silent_ns = stage_->silence(!trial.machine.done());
         for (auto& interval : surface_) interval.off_ns = std::min(interval.off_ns, silent_ns);
         break;
       }

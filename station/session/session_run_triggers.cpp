@@ -17,8 +17,8 @@ void SessionRun::trigger(TriggerEvent event, const Running& trial) {
   if (trigger.code > 0) stage_->triggers().send(std::move(trigger), stage_->now_ns());
 }
 
-/// Records the codes of the scheduled intervals and of their changes of scene. On the marker channel these
-/// codes are part of the bursts.
+/// Records the codes of the scheduled intervals and of their changes of scene (a buzz has no code). On the
+/// marker channel these codes are part of the bursts.
 void SessionRun::trigger_intervals(const Running& trial) {
   if (!stage_->triggers().active()) return;
   const auto add = [&](TriggerEvent event, const Onset& onset, std::int64_t frames) {
@@ -33,7 +33,7 @@ void SessionRun::trigger_intervals(const Running& trial) {
   const auto& bursts = plans_.take(trial.spec).bursts;
   for (std::size_t i = 0; i < bursts.size(); ++i) {
     add(TriggerEvent::onset, trial.onsets[i], 0);
-    for (std::size_t c = 0; c < static_cast<std::size_t>(bursts[i].change_count); ++c)
+    for (std::size_t c = 0; c + 1 < trial.spec.intervals[i].size(); ++c)
       add(TriggerEvent::change, trial.onsets[i], bursts[i].changes[c].at_frame);
   }
 }

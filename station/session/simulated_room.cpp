@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "station/scene/planner.hpp"
+#include "station/terms/force_carrier.hpp"
 
 namespace turnpoint::session {
 
@@ -84,7 +85,7 @@ sensing::FingerSetup finger_of(const plant::Setup& room) {
   sensing::FingerSetup finger;
   auto& bridges = finger.bridges;
   bridges.rate_Hz = room.rate_Hz;
-  bridges.carrier_Hz = sensing::carriers_Hz.front();
+  bridges.carrier_Hz = terms::kForceCarrier_Hz;
   bridges.channels = room.capture.count;
   bridges.reference = *room.capture.reference;
   bridges.bridges = {*room.capture.bridge_a, *room.capture.bridge_b, *room.capture.lateral};

@@ -71,7 +71,10 @@ class Stage {
   /// Ramps all bursts down now, and cancels those that have not begun. Returns the time at which the surface
   /// will be silent. If the converter does not report its position, this time is an upper limit; if the
   /// converter is gone, it is the time of the loss.
-  virtual std::int64_t silence() = 0;
+  /// `awaits_heard` says that the trial has not ended: it still waits for the report that each interval was
+  /// played (InputKind::heard). No such report comes for an interval that is cancelled, so a fault comes
+  /// instead.
+  virtual std::int64_t silence(bool awaits_heard) = 0;
 
   /// Why the amplifier refused a command; empty if it did not.
   using Refusal = std::optional<Fault>;
@@ -114,6 +117,10 @@ class Stage {
   virtual void set_drift(double) {}
   /// Returns the force and movement of the finger at this moment; empty unless force cells measure them.
   virtual std::optional<sensing::FingerNow> finger_now() { return std::nullopt; }
+
+  /// Returns the newest captured frames of all channels; empty if the stage captures nothing. Their numbers
+  /// are those of the playback, less the fraction of the loop's delay.
+  virtual std::optional<sensing::RawCapture> raw_capture() const { return std::nullopt; }
 
   virtual std::optional<ClockFit> clock_fit() = 0;
   virtual std::string realtime_rights() const = 0;

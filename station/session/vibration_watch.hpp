@@ -8,6 +8,8 @@
 #include "station/drive/prepared_burst.hpp"
 #include "station/rig/rig.hpp"
 #include "station/sensing/interval_proof.hpp"
+#include "station/sensing/raw_ring.hpp"
+#include "station/sensing/silence_proof.hpp"
 #include "station/sensing/trial_finger.hpp"
 
 namespace turnpoint::session {
@@ -16,6 +18,10 @@ namespace turnpoint::session {
 constexpr double kCarrier = 0.5;
 /// The load for which a force cell is rated.
 constexpr double kRated_N = 10;
+
+/// VibrationWatch::expect must be called at least this long before the onset. Otherwise too little of the
+/// silence before the stimulus is left to be judged, and the trial is flagged.
+constexpr std::int64_t kExpected_ns = 65'000'000;
 
 /// What a rig captures, with the calibration and the limits by which the captured signals are judged.
 struct CaptureSetup {
@@ -37,8 +43,9 @@ void use(const rig::ForceCells& cells, sensing::FingerSetup& finger);
 /// The force cells of a rig; empty if they are not calibrated.
 std::optional<sensing::FingerSetup> calibrated_finger(const rig::Rig& rig);
 
-/// Judges the intervals of a trial by the signals of the pick-ups, and measures the finger with the force
-/// cells. One thread may push samples while the session thread calls the other functions.
+/// Judges the intervals of a trial, and the silence before the first of them, by the signals of the pick-ups,
+/// and measures the finger with the force cells. One thread may push samples while the session thread calls
+/// the other functions.
 class VibrationWatch {
  public:
   explicit VibrationWatch(CaptureSetup setup);
@@ -50,14 +57,15 @@ class VibrationWatch {
   void set_drift(double share);
 
   /// Announces the intervals of a trial, with absolute start frames, in order. They replace those of the
-  /// previous trial. Nobody is asked to touch the surface before playback frame `quiet_until`.
+  /// previous trial. Nobody is asked to touch the surface before playback frame `quiet_until`. From then
+  /// on, but at most for the last 80 ms before the first interval, the surface must be silent.
   void expect(std::span<const drive::PreparedBurst> intervals, std::int64_t quiet_until);
   /// Tells the watch that all bursts ramp down from this playback frame on. Intervals that have not begun by
   /// then are dropped.
   void cut(std::int64_t from_frame);
-  /// Tells the watch that this interval glides to other tones. A glide is not measured, so the interval stays
-  /// unproven.
-  void changed(std::size_t interval);
+  /// Tells the watch that this interval, which is playing, glides to other tones. `format` is that of the
+  /// output.
+  void changed(std::size_t interval, const drive::Change& change, const drive::Format& format);
 
   /// True if one of the expected intervals needs captured frames from this range.
   bool needs(std::int64_t first_frame, std::int64_t end_frame) const;
@@ -67,9 +75,13 @@ class VibrationWatch {
 
   /// Returns the captured frame after which the result of an interval is known.
   std::int64_t known_at(std::size_t interval) const;
-  /// The result of an interval. Frames that were not captured by now count as lost. Null if the interval is
-  /// not expected.
+  /// The result of an interval; that of the first one includes the silence before it. If fewer than 50 ms of
+  /// the silence were captured, the interval is flagged with the cause `gap`. Frames that were not captured
+  /// by now count as lost. Null if the interval is not expected.
   std::shared_ptr<const sensing::IntervalResult> result(std::size_t interval);
+  /// Returns the captured frames of the last 4 s, numbered by playback frames, in which the delay from
+  /// playback to capture is already compensated except for the fraction of a frame.
+  sensing::RawCapture raw() const;
   /// Returns force and movement of the finger at this moment. Empty if they are not known, and without force
   /// cells.
   std::optional<sensing::FingerNow> finger_now();
@@ -81,9 +93,11 @@ class VibrationWatch {
   CaptureSetup setup_;
   const std::vector<sensing::PickUp> calibrated_;
   mutable std::mutex mutex_;
-  /// null for an interval whose vibration is not measured
   std::vector<std::unique_ptr<sensing::IntervalProof>> proofs_;
+  std::optional<sensing::SilenceProof> silence_;      ///< empty if no interval is expected
+  std::int64_t silence_begin_ = 0, silence_end_ = 0;  ///< captured frames of the silence
   std::optional<sensing::TrialFinger> finger_;
+  sensing::RawRing raw_;
 };
 
 }  // namespace turnpoint::session

@@ -26,7 +26,8 @@ class VirtualStage : public Stage {
       capture_.emplace(triggers, room_->capture().delay_frames);
       stream_->listen([this](std::int64_t first_frame, std::span<const std::int32_t> played) {
         const auto frames = static_cast<std::int64_t>(played.size()) / stream_->config().output.channels;
-        const bool watched = touchable_ || watch_->needs(first_frame - kLead_frames, first_frame + frames);
+        const bool watched =
+            touchable_ || watch_->needs(first_frame - kLead_frames, first_frame + frames + kLead_frames);
         if (!watched && !triggers_.needs(first_frame - kLead_frames, first_frame + frames)) return;
         const auto captured = room_->advance(first_frame, played);
         if (watched) watch_->push(captured);
@@ -93,6 +94,7 @@ class VirtualStage : public Stage {
                              std::int64_t earliest_ns) override {
     // The bursts of an aborted trial may still be ramping down. They occupy the drive until they are silent.
     advance_to(quiet_ns_);
+    if (watch_) earliest_ns = std::max(earliest_ns, now_ns_ + kExpected_ns);
     if (triggers_.active())
       earliest_ns = std::max(earliest_ns, stream_->time_of(triggers_.free_from()).value());
     const auto onsets = schedule(*stream_, intervals, earliest_ns, presented_);
@@ -108,12 +110,13 @@ class VirtualStage : public Stage {
   }
 
   std::optional<std::int64_t> glide(const drive::ToneSet& to, double seconds) override {
-    const auto at = glide_to(*stream_, presented_, to, seconds);
-    if (at && watch_) watch_->changed(presented_.size() - 1);
-    return at;
+    const auto change = glide_to(*stream_, presented_, to, seconds);
+    if (!change) return std::nullopt;
+    if (watch_) watch_->changed(presented_.size() - 1, *change, drive::format_of(stream_->config().output));
+    return presented_.back().start_frame + change->at_frame;
   }
 
-  std::int64_t silence() override {
+  std::int64_t silence(bool) override {
     const auto from = stream_->earliest_frame();
     std::erase_if(unheard_, [from](const Presented& interval) { return interval.start_frame >= from; });
     for (auto& interval : unheard_)
@@ -194,6 +197,9 @@ class VirtualStage : public Stage {
   }
   std::optional<sensing::FingerNow> finger_now() override {
     return watch_ ? watch_->finger_now() : std::nullopt;
+  }
+  std::optional<sensing::RawCapture> raw_capture() const override {
+    return watch_ ? std::optional(watch_->raw()) : std::nullopt;
   }
   std::optional<ClockFit> clock_fit() override { return fit_of(*stream_); }
   std::string realtime_rights() const override { return describe(stream_->rights()); }
@@ -279,7 +285,7 @@ class VirtualStage : public Stage {
   std::deque<Input> script_;   ///< what the simulated observer will do, in order of time
   std::vector<Presented> presented_, unheard_;
   // The plate goes on moving for some time after the drive stops, so simulate it from this many frames before
-  // the measurement.
+  // the measurement, and for as many frames after it.
   static constexpr std::int64_t kLead_frames = 9600;
   std::unique_ptr<SimulatedRoom> room_;  ///< the simulated surface and finger; null if nothing is captured
   std::optional<VibrationWatch> watch_;

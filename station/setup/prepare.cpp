@@ -3,8 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 #include <ostream>
 #include <regex>
+#include <utility>
 
 #include "station/calibration/apply.hpp"
 #include "station/limits/exposure.hpp"
@@ -22,6 +24,7 @@ namespace turnpoint::setup {
 namespace {
 
 using text::Problem;
+using texts::phrase, texts::plain;
 
 const std::string kLiveOption = "--mode live: ";
 
@@ -53,51 +56,59 @@ bool has_response(const session::Setup& setup) {
          !calibration::parse(setup.calibration_text, "calibration").transducers.empty();
 }
 
+/// A problem of a session, and what a page says about it.
+struct Refusal {
+  Problem problem;
+  texts::Phrase reason;
+};
+
 /// Returns a problem if some tones have no measured sound level and their computed bound is unknown or
-/// exceeds the recommended limit. Otherwise returns "".
-std::string unmeasured_sound(const session::Setup& setup, const protocol::Sight& sight) {
+/// exceeds the recommended limit.
+std::optional<texts::Phrase> unmeasured_sound(const session::Setup& setup, const protocol::Sight& sight) {
   const auto measured = [&](const physics::Tone& tone) {
     return limits::sound_measured(tone.frequency_Hz, setup.sound);
   };
-  if (std::all_of(sight.tones.begin(), sight.tones.end(), measured)) return "";
+  if (std::all_of(sight.tones.begin(), sight.tones.end(), measured)) return std::nullopt;
   const auto bound = scene::sound_bound(setup.rig, sight.tones, sight.field_model);
-  if (bound && bound->level_dB <= bound->allowed_dB) return "";
-  if (!bound) return "no bound is known for the airborne sound of this surface";
-  return fmt::format(
-      "at {:.1f} kHz the airborne sound may reach {:.0f} dB {} m away; recommended: at most {} dB",
-      1e-3 * bound->frequency_Hz, bound->level_dB, scene::kEarDistance_m, bound->allowed_dB);
+  if (bound && bound->level_dB <= bound->allowed_dB) return std::nullopt;
+  if (!bound) return phrase("refusal.sound_unknown");
+  return phrase("refusal.sound_bound", {plain(fmt::format("{:.1f}", 1e-3 * bound->frequency_Hz)),
+                                        plain(fmt::format("{:.0f}", bound->level_dB)),
+                                        plain(fmt::format("{}", scene::kEarDistance_m)),
+                                        plain(fmt::format("{}", bound->allowed_dB))});
 }
 
 /// Checks what only a live session requires: a measured friction table, a rig that is not the reproduction of
 /// a historical one, a calibration and, for every scene, airborne sound that was measured or whose
 /// computed bound is within the recommended limit.
-void check_live(const session::Setup& setup, const protocol::Survey& survey, std::vector<Problem>& problems) {
+std::vector<Refusal> check_live(const session::Setup& setup, const protocol::Survey& survey) {
   const auto& rig = setup.rig;
-  const auto add = [&](const std::string& what, const std::string& allowed) {
-    problems.push_back({{rig.path, 0, 0}, kLiveOption + what, allowed});
+  std::vector<Refusal> refusals;
+  const auto add = [&](const texts::Phrase& reason, const std::string& allowed) {
+    refusals.push_back({{{rig.path, 0, 0}, kLiveOption + texts::say(reason, "en"), allowed}, reason});
   };
   const auto measures = [](const auto& part) {
     const auto& block = protocol::block_of(part);
     return block.kind == protocol::BlockKind::friction_table && block.strokes.used;
   };
   if (!rig.friction.measured && !std::ranges::any_of(setup.protocol.plan, measures))
-    add("the rig uses the illustrative friction curve, which was not measured",
+    add(phrase("refusal.friction"),
         "set table_csv in [friction] to a measured table, or run with --mode pilot");
   if (rig.reproduction)
-    add("this rig is marked as the reproduction of a historical one",
-        "live sessions need a rig with reproduction = false");
+    add(phrase("refusal.reproduction"), "live sessions need a rig with reproduction = false");
   if (!has_response(setup) && rig.amplifier_uri != "sim:")
-    add("the rig has no valid calibration", "turnpoint calibrate --rig " + rig.path + " makes one");
+    add(phrase("refusal.no_calibration"), "turnpoint calibrate --rig " + rig.path + " makes one");
   for (const auto& sight : survey.sights) {
     // Use an amplitude near 0, so that this checks only whether the level was measured. Whether the sound is
     // too loud depends on each tone's amplitude and is checked in the trial.
     auto problem = limits::sound_problem(sight.lowest_Hz, 1e-9, setup.sound);
-    if (problem.empty()) problem = unmeasured_sound(setup, sight);
-    if (problem.empty()) continue;
-    add("scene \"" + sight.scene + "\": " + problem,
+    if (!problem) problem = unmeasured_sound(setup, sight);
+    if (!problem) continue;
+    add(phrase("refusal.scene", {plain(sight.scene), *problem}),
         "the calibration needs sound levels measured below and above these tones");
     break;
   }
+  return refusals;
 }
 
 void check_buttons_only(const session::Setup& setup, std::vector<Problem>& problems) {
@@ -108,6 +119,10 @@ void check_buttons_only(const session::Setup& setup, std::vector<Problem>& probl
   if (task.device == protocol::Device::touch)
     problems.push_back({task.device_place, "--buttons-only: the task is answered by touch",
                         "set device to \"buttons\" or \"either\""});
+  if (const auto& signal = setup.protocol.timing.signal; signal && !protocol::in_stimulus(*signal))
+    problems.push_back({signal->by_place,
+                        "--buttons-only: the response signal is on the screen, which shows nothing",
+                        "by = \"tone\" or by = \"buzz\", or a session on the screen of turnpoint-ui"});
 }
 
 }  // namespace
@@ -121,25 +136,47 @@ void take_calibration(const std::string& source, const std::string& path, sessio
     setup.response_offset_s = calibration.panel->touch->median_s;
     setup.response_offset_quality = calibration.panel->quality;
   }
+  if (calibration.panel && calibration.panel->flash)
+    setup.display_latency_s = calibration.panel->flash->median_s;
   for (const auto& point : calibration.sound) setup.sound.push_back({point.frequency_Hz, point.level_dB});
 }
 
 namespace {
 
 /// Loads the calibration that was named, or the newest one beside the rig file.
-void find_calibration(const RunRequest& request, session::Setup& setup, std::vector<Problem>& problems) {
+std::vector<Refusal> find_calibration(const RunRequest& request, session::Setup& setup) {
   const auto path =
       request.calibration.empty() ? calibration::newest_for(setup.rig.path) : request.calibration;
-  if (path.empty()) return;
+  if (path.empty()) return {};
   const auto source = text::read_text_file(path);
   const auto faults =
       calibration::problems(calibration::parse(source, path), setup.rig.sha256, calibration::today());
   const bool live = request.observer.empty() && request.mode == "live";
-  if (faults.empty()) return take_calibration(source, path, setup);
-  if (request.calibration.empty() && !live) return;
+  if (faults.empty()) take_calibration(source, path, setup);
+  if (request.calibration.empty() && !live) return {};
+  std::vector<Refusal> refusals;
   for (const auto& fault : faults)
-    problems.push_back({{path, 0, 0}, fault, "calibrate again, or name another file with --calibration"});
+    refusals.push_back(
+        {{{path, 0, 0}, texts::say(fault, "en"), "calibrate again, or name another file with --calibration"},
+         fault});
+  return refusals;
 }
+
+/// The problems of a session, with the reasons of those that a page says in its own words.
+class Refused : public text::BadInput {
+ public:
+  using Reasons = std::map<std::string, texts::Phrase>;
+  Refused(std::vector<Problem> problems, Reasons reasons)
+      : BadInput(std::move(problems)), reasons_(std::move(reasons)) {}
+  /// What a page says about a problem.
+  texts::Phrase reason(const Problem& problem) const {
+    const auto known = reasons_.find(problem.what);
+    return known == reasons_.end() ? plain(problem.what) : known->second;
+  }
+
+ private:
+  Reasons reasons_;
+};
 
 }  // namespace
 
@@ -149,7 +186,8 @@ rig::Rig calibrated_rig(const std::string& rig_path, const std::string& named, s
   if (path.empty()) return rig;
   const auto calibration = calibration::load(path);
   const auto faults = calibration::problems(calibration, rig.sha256, calibration::today());
-  if (!faults.empty() && !named.empty()) throw terms::UsageError(path + ": " + faults.front());
+  if (!faults.empty() && !named.empty())
+    throw terms::UsageError(path + ": " + texts::say(faults.front(), "en"));
   if (!faults.empty()) return rig;
   messages << "calibration " << path << "\n";
   return calibration::applied(calibration, std::move(rig));
@@ -158,6 +196,13 @@ rig::Rig calibrated_rig(const std::string& rig_path, const std::string& named, s
 session::Setup prepare(const RunRequest& request, const std::stop_token& stop) {
   session::Setup setup;
   std::vector<Problem> problems;
+  Refused::Reasons reasons;
+  const auto refuse = [&](const std::vector<Refusal>& refusals) {
+    for (const auto& [problem, reason] : refusals) {
+      problems.push_back(problem);
+      reasons[problem.what] = reason;
+    }
+  };
   const auto gather = [&problems](auto&& load) {
     try {
       load();
@@ -171,10 +216,10 @@ session::Setup prepare(const RunRequest& request, const std::stop_token& stop) {
   if (!problems.empty()) throw text::BadInput(problems);
 
   setup.language = choose_language(request.language, setup.protocol, problems);
-  gather([&] { find_calibration(request, setup, problems); });
+  gather([&] { refuse(find_calibration(request, setup)); });
   const auto survey = protocol::survey(setup.protocol, setup.rig, stop);
   problems.insert(problems.end(), survey.problems.begin(), survey.problems.end());
-  if (request.observer.empty() && request.mode == "live") check_live(setup, survey, problems);
+  if (request.observer.empty() && request.mode == "live") refuse(check_live(setup, survey));
   if (request.observer.empty() && request.buttons_only) check_buttons_only(setup, problems);
   setup.participant = request.participant;
   setup.database = request.database;
@@ -200,20 +245,20 @@ session::Setup prepare(const RunRequest& request, const std::stop_token& stop) {
         {{}, refused.what(), "use the file with that version for the participant's other sessions"});
   }
   if (problems.empty()) problems = programs::problems_of(setup.protocol);
-  if (problems.empty() && next.too_early) throw TooEarly({{}, next.problem, next.allowed});
+  if (problems.empty() && next.too_early) throw TooEarly({{}, next.problem, next.allowed}, *next.too_early);
   if (next.too_early) problems.push_back({{}, next.problem, next.allowed});
-  if (!problems.empty()) throw text::BadInput(problems);
+  if (!problems.empty()) throw Refused(std::move(problems), std::move(reasons));
   return setup;
 }
 
-std::vector<std::string> live_problems(const RunRequest& request, const std::stop_token& stop) {
-  std::vector<std::string> reasons;
+std::vector<texts::Phrase> live_problems(const RunRequest& request, const std::stop_token& stop) {
+  std::vector<texts::Phrase> reasons;
   try {
     prepare(request, stop);
+  } catch (const Refused& refused) {
+    for (const auto& problem : refused.problems()) reasons.push_back(refused.reason(problem));
   } catch (const text::BadInput& bad) {
-    for (const auto& problem : bad.problems())
-      reasons.push_back(problem.what.starts_with(kLiveOption) ? problem.what.substr(kLiveOption.size())
-                                                              : problem.what);
+    for (const auto& problem : bad.problems()) reasons.push_back(plain(problem.what));
   }
   return reasons;
 }

@@ -6,8 +6,10 @@
 #include <string>
 #include <utility>
 
+#include "station/session/planned_session.hpp"
 #include "station/session/session.hpp"
 #include "station/text/problem.hpp"
+#include "station/texts/texts.hpp"
 
 namespace turnpoint::setup {
 
@@ -40,7 +42,12 @@ struct RunRequest {
 /// last one. RunRequest::early overrules that.
 class TooEarly : public text::BadInput {
  public:
-  explicit TooEarly(text::Problem problem) : BadInput({std::move(problem)}) {}
+  TooEarly(text::Problem problem, session::EarlySession early)
+      : BadInput({std::move(problem)}), early_(std::move(early)) {}
+  const session::EarlySession& early() const { return early_; }
+
+ private:
+  session::EarlySession early_;
 };
 
 /// Loads and checks everything that a session needs, and applies the calibration to the rig. Throws
@@ -52,7 +59,7 @@ session::Setup prepare(const RunRequest& request, const std::stop_token& stop = 
 
 /// Returns the reasons why the live session of this request cannot run; empty if it can. The reasons name no
 /// option of the command line, so a page can show them. Throws like prepare(), except text::BadInput.
-std::vector<std::string> live_problems(const RunRequest& request, const std::stop_token& stop = {});
+std::vector<texts::Phrase> live_problems(const RunRequest& request, const std::stop_token& stop = {});
 
 /// Applies the text of a calibration file to the rig, to the sound levels, and to the values that are stored
 /// with the session. Throws text::BadInput or terms::UsageError.

@@ -78,8 +78,13 @@ Estimate simulate(const Protocol& protocol, const protocol::Visit& visit, std::u
   for (const auto& [start, trials] : rehearsal.blocks) {
     // Repeated practice is listed as one block. Its number of trials is the sum over all attempts.
     if (start.attempt == 0) {
-      estimate.blocks.push_back(
-          {protocol::in_words(protocol, visit), start.name, start.instruction, start.practice, {}});
+      estimate.blocks.push_back({protocol::in_words(protocol, visit),
+                                 protocol.sessions ? visit.session : 0,
+                                 protocol::group_name(protocol, visit),
+                                 start.name,
+                                 start.instruction,
+                                 start.practice,
+                                 {}});
       estimate.trials.push_back(0);
     }
     estimate.trials.back() += static_cast<double>(trials.size());
@@ -168,7 +173,7 @@ std::vector<text::Problem> language_notes(const Protocol& protocol) {
   std::vector<text::Problem> notes;
   for (const auto& language : protocol.languages) {
     const auto translation = texts::translation(language);
-    if (translation == texts::Translation::read) continue;
+    if (translation >= texts::Translation::participant_read) continue;
     notes.push_back({{protocol.path, 0, 0},
                      translation == texts::Translation::none
                          ? "the station does not speak \"" + language +

@@ -35,6 +35,8 @@ int usual_sessions(const protocol::Protocol& protocol);
 /// A block as a participant will run it.
 struct CheckedBlock {
   std::string visit;  ///< such as "session 2, group trained"; "" if there is only one session and no group
+  int session = 0;    ///< number of the planned session; 0 if the protocol plans none
+  std::string group;  ///< "" if the protocol has no groups
   std::string name, instruction;
   bool practice = false;
   Spread trials;

@@ -30,6 +30,8 @@ struct Reached {
   /// three standard errors of `accuracy` or of `chance`, whichever is larger, or half the range of accuracies
   /// over the levels; 0 if the accuracy is exact
   double error = 0;
+
+  double gain() const { return accuracy - chance; }
 };
 
 /// The accuracy of an observer who uses only one cue. If a cue gives far more right answers than chance,
@@ -39,10 +41,10 @@ struct CueReport {
   double low = 0, high = 0;  ///< lowest and highest value of the cue in the main trials, in `unit`
   std::string unit;
   double accuracy = 0, chance = 0.5, error = 0;  ///< see the members of Reached
-  /// The result of simulated sessions in which this observer's answers set the levels; empty unless a
-  /// procedure chooses levels by whether answers are right. `accuracy`, `chance` and `error` above are taken
-  /// either from this result or from presenting all levels equally often, whichever gives the larger gain
-  /// over chance.
+  /// The result of simulated sessions in which this observer's answers set the levels; empty if they would
+  /// say nothing (see cue_guard()). `accuracy`, `chance` and `error` above are taken either from this result
+  /// or from presenting all levels equally often, whichever gives the larger gain over chance. For the
+  /// observer without a cue, they are taken from this result.
   std::optional<Reached> whole_sessions = {};
 
   /// True if the cue clearly helps. A gain of 0.1 over a chance of 0.5 is two standard errors in 100 trials.
@@ -78,12 +80,20 @@ struct CueGuard {
 /// observer without a cue, who always presses the key that is right most often.
 ///
 /// If a procedure chooses levels from the answers, each level that the procedure can present counts equally
-/// often. If the procedure follows right answers, the observer also does simulated sessions with the same
-/// rule, so that the observer's own answers set the levels. Sessions are added until three standard errors
-/// are at most 1 %, up to 1000 sessions. A rule that is equally good at every level, within 2 %, needs no
-/// sessions, because its accuracy does not depend on the levels. The larger gain over chance is reported. If
-/// the procedure follows one of two answers (`tracks`), no sessions are simulated: the share of that answer
-/// would always converge on the target and reveal nothing.
+/// often. In two cases the observer also does simulated sessions with the same rule, so that the observer's
+/// own answers set the levels, and the larger gain over chance is reported:
+/// - The procedure follows right answers.
+/// - The procedure follows the answer "yes" and chooses between levels with a signal and levels without.
+///   There the answers also decide how often each answer is right, so the best rule is not known beforehand.
+///   Many rules compete in such sessions (see cue_search.hpp), and the winner is judged in other sessions.
+/// If the procedure follows one of two answers of another kind (`tracks`), no sessions are simulated: the
+/// share of that answer would always converge on the target and reveal nothing. The observer without a cue
+/// has sessions of its own for every procedure that follows answers, one set for each key, and only they
+/// count.
+///
+/// Sessions are added until three standard errors are at most 1 %, up to 1000 sessions (6000 in a task with
+/// one interval). A rule that is equally good at every level, within 2 %, needs no sessions, because its
+/// accuracy does not depend on the levels.
 ///
 /// Duration is measured at half the amplitude: of two equally long intervals, the one with the longer ramps
 /// is shorter.

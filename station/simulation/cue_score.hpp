@@ -16,6 +16,7 @@ struct Score {
     trials += times * other.trials, right += times * other.right;
     for (std::size_t i = 0; i < keys.size(); ++i) keys[i] += times * other.keys[i];
   }
+  bool operator==(const Score&) const = default;
   double accuracy() const { return trials > 0 ? right / trials : 0; }
   std::size_t best_key() const {
     return static_cast<std::size_t>(std::max_element(keys.begin(), keys.end()) - keys.begin());

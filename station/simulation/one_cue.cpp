@@ -102,6 +102,18 @@ double accuracy(const Rule& rule, const Asked& asked, const std::vector<Look>& l
   return all > 0 ? right / all : 0;
 }
 
+void weight_by_answer(std::vector<Look>& looks) {
+  Shares sums{};
+  for (const auto& look : looks) sums[static_cast<std::size_t>(look.correct)] += look.weight;
+  for (auto& look : looks) look.weight /= sums[static_cast<std::size_t>(look.correct)];
+}
+
+Rule always(int answer) {
+  Rule rule;
+  rule.ranges = {{std::numeric_limits<double>::infinity(), answer}};
+  return rule;
+}
+
 Rule best_rule(const Asked& asked, const std::vector<Look>& looks, const Grain& grain) {
   Rule best;
   best.grain = grain;
@@ -122,6 +134,29 @@ Rule best_rule(const Asked& asked, const std::vector<Look>& looks, const Grain& 
     if (right > most + 1e-9) most = right, best = rule;
   }
   return best;
+}
+
+std::vector<double> places(const std::vector<Look>& looks, const Grain& grain, int count) {
+  std::vector<std::pair<double, double>> values;
+  for (const auto& look : looks) values.emplace_back(look.x[0], look.weight);
+  std::sort(values.begin(), values.end());
+  std::vector<std::pair<double, double>> gaps;  // a place, and the weight of the trials below it
+  double below = 0, first = 0, before = 0;
+  for (const auto& [value, weight] : values) {
+    if (below > 0 && value - first > grain.absolute) gaps.emplace_back(0.5 * (before + value), below);
+    if (below == 0 || value - first > grain.absolute) first = value;
+    below += weight, before = value;
+  }
+  const double step = gaps.size() > static_cast<std::size_t>(count) ? below / (count + 1) : 0;
+  std::vector<double> places;
+  double wanted = step;
+  for (std::size_t k = 0; k < gaps.size(); ++k) {
+    const auto [place, weight] = gaps[k];
+    const double up_to_next = (k + 1 < gaps.size() ? gaps[k + 1].second : below) - weight;
+    if (weight >= wanted || up_to_next >= step) places.push_back(place);
+    while (step > 0 && wanted <= weight) wanted += step;
+  }
+  return places;
 }
 
 }  // namespace turnpoint::simulation

@@ -51,6 +51,7 @@ struct Grain {
 struct CueRange {
   double end = 0;  ///< upper end of the range; infinity for the last range
   int answer = 0;
+  bool operator==(const CueRange&) const = default;
 };
 
 struct Rule {
@@ -69,7 +70,19 @@ Shares shares(const Rule& rule, const Asked& asked, const CueValues& x);
 /// Returns the proportion correct of an observer who uses `rule` in the trials `looks`; 0 if there are none.
 double accuracy(const Rule& rule, const Asked& asked, const std::vector<Look>& looks);
 
+/// Weights the trials so that each answer is right equally often.
+void weight_by_answer(std::vector<Look>& looks);
+
+/// The rule of an observer who always gives the same answer.
+Rule always(int answer);
+
 /// Returns the rule with the highest proportion correct in the trials `looks`.
 Rule best_rule(const Asked& asked, const std::vector<Look>& looks, const Grain& grain);
+
+/// Returns the places at which a range of the cue may end, in ascending order, for one interval. They lie
+/// between different values of the cue. If there are more than `count` such places, those are returned that
+/// divide the weight of the trials `looks` about equally, and those on both sides of a value that has as much
+/// weight by itself.
+std::vector<double> places(const std::vector<Look>& looks, const Grain& grain, int count);
 
 }  // namespace turnpoint::simulation

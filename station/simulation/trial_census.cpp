@@ -4,6 +4,7 @@
 
 #include "station/procedure/description.hpp"
 #include "station/procedure/program.hpp"
+#include "station/protocol/answers.hpp"
 #include "station/protocol/sources.hpp"
 #include "station/protocol/visits.hpp"
 
@@ -42,6 +43,11 @@ bool begins_unlike_it_goes_on(const Protocol& protocol, const Block& block) {
     unlike = unlike || spec->shuffle == procedure::Shuffle::none || spec->max_run;
   }
   return unlike;
+}
+
+// True if a procedure outside practice chooses the levels from the answers.
+bool sets_levels(const protocol::Source& source) {
+  return source.spec && !source.block->practice && follows_answers(*source.spec);
 }
 
 // Calls count(block, trial) for each trial of a session.
@@ -134,12 +140,18 @@ std::vector<protocol::Factors> TrialCensus::combinations(const protocol::Factors
   return all;
 }
 
-bool levels_follow_right_answers(const Protocol& protocol) {
-  for (const auto& source : protocol::sources_of(protocol))
-    if (source.spec && !source.block->practice && follows_answers(*source.spec) &&
-        source.spec->tracks.empty())
-      return true;
-  return false;
+bool levels_follow_answers(const Protocol& protocol) {
+  const auto sources = protocol::sources_of(protocol);
+  return std::any_of(sources.begin(), sources.end(), sets_levels);
+}
+
+bool needs_own_sessions(const Protocol& protocol) {
+  const auto sources = protocol::sources_of(protocol);
+  return std::any_of(sources.begin(), sources.end(), [&](const protocol::Source& source) {
+    return sets_levels(source) &&
+           (source.spec->tracks.empty() ||
+            protocol::answer_rule(protocol, source.level).kind == protocol::AnswerKind::presence);
+  });
 }
 
 TrialCensus census_of_session(const Protocol& protocol, std::uint64_t seed, const Answers& answers) {

@@ -40,8 +40,14 @@ class TrialCensus {
   std::map<protocol::Factors, double> cells_;
 };
 
-/// True if, outside practice, a procedure chooses levels depending on whether answers are right.
-bool levels_follow_right_answers(const protocol::Protocol& protocol);
+/// True if, outside practice, a procedure chooses levels depending on the answers.
+bool levels_follow_answers(const protocol::Protocol& protocol);
+
+/// True if, in addition, the proportion correct over all levels says little about an observer whose own
+/// answers set the levels: because the procedure follows right answers, or because it follows the answer
+/// "yes" and chooses between levels with a signal and levels without. If a procedure follows one of two
+/// answers of another kind, the share of that answer converges on the target and reveals nothing.
+bool needs_own_sessions(const protocol::Protocol& protocol);
 
 /// Simulates one session in which the participant passes practice, and counts its trials.
 TrialCensus census_of_session(const protocol::Protocol& protocol, std::uint64_t seed, const Answers& answers);

@@ -14,7 +14,7 @@ namespace turnpoint::store {
 /// Version of the rule that turns rows into the bytes to be hashed. The bytes of a version never change. A
 /// later release that adds columns or tables adds a version; older links are still checked with the version
 /// with which they were made.
-constexpr int kEncoding = 5;
+constexpr int kEncoding = 6;
 
 /// The keys of a session's last row in each table. If a table has no rows, its value is below the first key.
 struct Extent {

@@ -83,6 +83,8 @@ void export_bids_signals(Database& database, const BidsRun& run, const std::stri
                          std::vector<ExportedFile>& files) {
   const auto& session_id = run.session_id;
   for (const auto& stream : signal_streams(database, session_id)) {
+    // A recording of BIDS has no gaps. Between two void trials, hours of samples would be missing.
+    if (stream == records::kRawStream) continue;
     SignalReader reader(database, session_id, stream, run.segment);
     std::optional<Recording> recording;
     while (const auto stored = reader.next()) {

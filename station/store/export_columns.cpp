@@ -237,7 +237,9 @@ ExportColumns trial_columns(const std::vector<std::string>& factors) {
        "boundary_se_mm",
        "lag_mm",
        "tare_mn",
-       "mu"});
+       "mu",
+       "silence_db",
+       "silence_tone_db"});
   columns.push_back(columns_version());
   add_factors(columns, at, factors);
   return columns;

@@ -29,7 +29,9 @@ std::vector<Column> list_columns() {
       {"run_mode", "Kind of session: only live sessions are data of a study", "", "live | pilot | simulated"},
       {"segment_id", "Run of the program within the session, from 1", "", ""},
       {"trial_index", "Index of the trial among all trials presented in the session, from 0", "", ""},
-      {"stream", "What recorded the signal: finger means the force cells", "", ""},
+      {"stream",
+       "What recorded the signal: finger means the force cells, raw all captured channels of the sound card",
+       "", "finger | raw"},
       {"onset", "Time of the signal's first point, from the start of the segment", "s", ""},
       {"start_frame", "Playback frame of the signal's first point", "", ""},
       {"rate_hz", "Points per second", "Hz", ""},
@@ -121,7 +123,7 @@ void keep_with_signals(Database& database, std::vector<ProtocolSelection>& selec
   if (selections.empty())
     throw StoreError(ErrorKind::missing,
                      "export: the sessions that these options choose have no signals; a rig with force cells "
-                     "records them");
+                     "records them, and a rig with [capture] keeps what was captured in void trials");
 }
 
 void export_signals(Database& database, const ProtocolSelection& selection, const TableStyle& style,

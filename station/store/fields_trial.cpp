@@ -167,7 +167,17 @@ const Table<TrialRow>& trial_table() {
        since(5, field<&T::finger, &F::mu>(
                     {"mu", "mu",
                      "Measured coefficient of friction over all strokes during the interval presented last; "
-                     "in a block that measures a friction table, over its part of the surface"}))}};
+                     "in a block that measures a friction table, over its part of the surface"})),
+       since(6,
+             field<&T::silence_dB>({"silence_dB", "silence_db",
+                                    "Level of the pick-up in the silence before the first stimulus (rms of "
+                                    "the loudest 50 ms), relative to the planned vibration",
+                                    "dB"})),
+       since(6, field<&T::silence_tone_dB>(
+                    {"silence_tone_dB", "silence_tone_db",
+                     "Level of the strongest tone in this silence, relative to the planned vibration; n/a if "
+                     "no tone stands out of the noise",
+                     "dB"}))}};
   return table;
 }
 

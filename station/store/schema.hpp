@@ -10,6 +10,9 @@ namespace turnpoint::store {
 /// that it cannot differ from a migrated one. Never edit a step that was released.
 const std::vector<std::string>& schema_steps();
 
+/// The first of these steps.
+const char* schema_version_1();
+
 /// The schema version that this program writes. Databases have it as PRAGMA user_version.
 int schema_version();
 

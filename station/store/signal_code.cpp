@@ -32,28 +32,18 @@ double multiple(std::int32_t whole, double resolution) {
   return 1 / parts == resolution ? whole / parts : whole * resolution;
 }
 
-[[noreturn]] void damaged(const SignalRow& signal, const std::string& why) {
-  throw StoreError(ErrorKind::corrupt, fmt::format("signal \"{}\": {}", signal.stream, why));
-}
-
-}  // namespace
-
-void encode(SignalRow& signal, std::span<const std::vector<double>> values) {
-  if (values.size() != signal.channels.size())
-    throw std::logic_error("signal " + signal.stream + ": the number of channels does not match");
-  const std::size_t points = values.empty() ? 0 : values.front().size();
-  const std::size_t numbers = points * values.size();
+/// Fills points, encoding and data of a signal from `number_at(channel, point)`.
+template <class NumberAt>
+void pack(SignalRow& signal, std::size_t points, const NumberAt& number_at) {
+  const std::size_t channels = signal.channels.size(), numbers = points * channels;
   std::string shuffled(4 * numbers, '\0');
-  for (std::size_t c = 0, at = 0; c < values.size(); ++c) {
-    if (values[c].size() != points)
-      throw std::logic_error("signal " + signal.stream + ": channels of different lengths");
+  for (std::size_t c = 0, at = 0; c < channels; ++c) {
     std::uint32_t before = 0;
-    for (const double value : values[c]) {
-      const auto number = static_cast<std::uint32_t>(whole(value, signal.channels[c]));
+    for (std::size_t k = 0; k < points; ++k, ++at) {
+      const auto number = static_cast<std::uint32_t>(number_at(c, k));
       const std::uint32_t difference = number - std::exchange(before, number);
       for (std::size_t byte = 0; byte < 4; ++byte)
         shuffled[byte * numbers + at] = static_cast<char>(difference >> (8 * byte) & 0xFFU);
-      ++at;
     }
   }
   auto size = compressBound(shuffled.size());
@@ -65,6 +55,30 @@ void encode(SignalRow& signal, std::span<const std::vector<double>> values) {
   signal.points = static_cast<std::int64_t>(points);
   signal.encoding = kSignalEncoding;
   signal.data.bytes = std::move(packed);
+}
+
+[[noreturn]] void damaged(const SignalRow& signal, const std::string& why) {
+  throw StoreError(ErrorKind::corrupt, fmt::format("signal \"{}\": {}", signal.stream, why));
+}
+
+}  // namespace
+
+void encode(SignalRow& signal, std::span<const std::vector<double>> values) {
+  if (values.size() != signal.channels.size())
+    throw std::logic_error("signal " + signal.stream + ": the number of channels does not match");
+  const std::size_t points = values.empty() ? 0 : values.front().size();
+  for (const auto& channel : values)
+    if (channel.size() != points)
+      throw std::logic_error("signal " + signal.stream + ": channels of different lengths");
+  pack(signal, points, [&](std::size_t c, std::size_t k) { return whole(values[c][k], signal.channels[c]); });
+}
+
+void encode(SignalRow& signal, std::span<const std::int32_t> numbers) {
+  const std::size_t channels = signal.channels.size();
+  if (channels == 0 || numbers.size() % channels != 0)
+    throw std::logic_error("signal " + signal.stream + ": the number of channels does not match");
+  pack(signal, numbers.size() / channels,
+       [&](std::size_t c, std::size_t k) { return numbers[k * channels + c]; });
 }
 
 std::vector<std::vector<double>> decode(const SignalRow& signal) {

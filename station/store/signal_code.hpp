@@ -18,6 +18,9 @@ inline constexpr const char* kSignalEncoding = "int32 delta shuffle zlib";
 /// Fills points, encoding and data of a signal from `values`: one list per channel, all of the same length.
 /// Throws std::logic_error for lists of different lengths, and for a value that does not fit into 32 bits.
 void encode(SignalRow& signal, std::span<const std::vector<double>> values);
+/// The same for whole numbers, interleaved: the first point of all channels, then the second, and so on. The
+/// resolution of the channels must be 1. A missing number is -2^31.
+void encode(SignalRow& signal, std::span<const std::int32_t> numbers);
 
 /// Returns the values that encode() received, rounded to the resolution of their channel: one list per
 /// channel. Throws StoreError (corrupt) if the data do not have this encoding or these channels.

@@ -24,6 +24,9 @@ const char* meaning_of(const std::string& channel) {
        "Position of the finger from the wide end of the surface; missing if the finger does not press"},
       {"speed",
        "Speed of the finger, positive towards larger positions; missing if the position is missing"}};
+  if (channel.starts_with("channel_"))
+    return "What was captured on this channel, as it came from the converter: 2147483648 is full scale; a "
+           "sample of -2147483648 is stored as -2147483647";
   const auto found = meanings.find(channel);
   return found == meanings.end() ? "Channel of this name" : found->second;
 }

@@ -32,7 +32,8 @@ class FileWriter {
 /// Writes a file as FileWriter does. Use this if all bytes are already in memory.
 void write_file(const std::string& path, std::string_view bytes, mode_t mode = 0666);
 
-/// Makes a folder and the folders above it, unless they exist. Throws std::system_error with the folder's name.
+/// Makes a folder and the folders above it, unless they exist. Throws std::system_error with the folder's
+/// name.
 void make_folder(const std::string& path);
 
 }  // namespace turnpoint::system

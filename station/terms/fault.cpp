@@ -31,6 +31,7 @@ constexpr Entry entries[] = {
     {FaultKind::stimulus_missed, "stimulus_missed", "stimulus incomplete"},
     {FaultKind::vibration, "vibration", "the surface did not move as planned"},
     {FaultKind::capture, "capture", "the surface cannot be measured"},
+    {FaultKind::sounding, "sounding", "the surface vibrates although the amplifier is off"},
     {FaultKind::self_test, "self_test", "the self-test failed"},
     {FaultKind::program, "program", "the program of a procedure failed"},
 };

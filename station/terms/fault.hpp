@@ -29,6 +29,7 @@ enum class FaultKind {
   stimulus_missed,  ///< frames were lost during a stimulus, or a stimulus came too late
   vibration,        ///< the pick-up says that the surface did not move as planned
   capture,          ///< what the surface does cannot be measured: no capture device, or no pilot heard
+  sounding,         ///< the pick-up hears a vibration although the amplifier is off
   self_test,        ///< a check of the self-test before the session failed
   program,          ///< the program of a procedure died, was late, or wrote what it must not write
 };
@@ -42,8 +43,8 @@ inline constexpr std::array fault_kinds{FaultKind::other,           FaultKind::c
                                         FaultKind::touch_gone,      FaultKind::disk_full,
                                         FaultKind::disarmed,        FaultKind::limits,
                                         FaultKind::stimulus_missed, FaultKind::vibration,
-                                        FaultKind::capture,         FaultKind::self_test,
-                                        FaultKind::program};
+                                        FaultKind::capture,         FaultKind::sounding,
+                                        FaultKind::self_test,       FaultKind::program};
 
 /// Returns the kind's name for the log: "converter_gone", ...
 const char* name(FaultKind kind);

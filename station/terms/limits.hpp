@@ -25,4 +25,17 @@ inline constexpr std::int64_t kTouchToAnswer_ns = 60'000'000;
 inline constexpr std::int64_t kWatermark_ns = 80'000'000;
 static_assert(kOneTouch_ns < kTouchToAnswer_ns && kTouchToAnswer_ns < kWatermark_ns);
 
+/// Length of the tone that asks for an answer (a response signal on headphones).
+inline constexpr double kSignal_s = 0.05;
+/// Length of a frame of an ordinary screen, which shows 60 of them in a second.
+inline constexpr double kFrame_s = 1.0 / 60;
+/// A flash (a response signal on the screen) is late if its frame comes longer than this after its time. One
+/// or two frames of the screen are normal.
+inline constexpr double kSignalLate_s = 3 * kFrame_s;
+/// How long the surface takes to change to a buzz (a response signal on the surface), and back.
+inline constexpr double kBuzzRamp_s = 0.005;
+/// A part of a stimulus in which nothing changes is measured if it lasts this long; see
+/// sensing/interval_state.hpp.
+inline constexpr double kBetweenChanges_s = 0.02;
+
 }  // namespace turnpoint::terms

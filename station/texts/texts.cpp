@@ -1,5 +1,8 @@
 #include "station/texts/texts.hpp"
 
+#include <array>
+#include <iterator>
+#include <mutex>
 #include <stdexcept>
 
 #include "catalogues.hpp"
@@ -9,60 +12,89 @@ namespace turnpoint::texts {
 
 namespace {
 
-using Texts = std::map<std::string, std::string>;
+using Texts = std::map<std::string, std::string, std::less<>>;
 
 struct Spoken {
   Texts texts;
-  bool read_by_native_speaker = false;
+  Translation translation = Translation::unread;
 };
 
 void read(const text::Value& table, const std::string& above, Spoken& spoken) {
   for (const auto& [key, place, value] : table.entries) {
     if (value.kind == text::Value::Kind::table)
       read(value, above + key + ".", spoken);
-    else if (value.kind == text::Value::Kind::boolean)
-      spoken.read_by_native_speaker = value.boolean;
-    else
+    else if (above + key != "read_by_native_speaker")
       spoken.texts[above + key] = value.string;
+    else if (value.string == "all")
+      spoken.translation = Translation::read;
+    else if (value.string == "participant")
+      spoken.translation = Translation::participant_read;
   }
 }
 
-const std::map<std::string, Spoken>& all() {
-  static const auto read_once = [] {
-    std::map<std::string, Spoken> all;
-    for (const auto& [language, toml] : catalogues)
-      read(text::parse_toml(toml, std::string(language) + ".toml"), "", all[language]);
-    return all;
-  }();
-  return read_once;
+/// Returns the catalogue of a language ("de", "de-CH"), or null if the station does not speak it. Each
+/// catalogue is parsed when it is asked for the first time.
+const Spoken* find(std::string_view language) {
+  static std::array<Spoken, std::size(catalogues)> spoken;
+  static std::array<std::once_flag, std::size(catalogues)> parsed;
+  for (std::size_t i = 0; i < spoken.size(); ++i) {
+    if (language.substr(0, 2) != catalogues[i].language) continue;
+    std::call_once(parsed[i], [i] {
+      const auto& [code, toml] = catalogues[i];
+      read(text::parse_toml(toml, std::string(code) + ".toml"), "", spoken[i]);
+    });
+    return &spoken[i];
+  }
+  return nullptr;
 }
 
-const Texts& in(const std::string& language) {
-  const auto spoken = all().find(language.substr(0, 2));
-  return (spoken == all().end() ? all().at("en") : spoken->second).texts;
+const Texts& in(std::string_view language) {
+  const auto* spoken = find(language);
+  return (spoken == nullptr ? find("en") : spoken)->texts;
 }
 
 }  // namespace
 
 std::vector<std::string> languages() {
   std::vector<std::string> codes;
-  for (const auto& [language, spoken] : all()) codes.push_back(language);
+  for (const auto& one : catalogues) codes.emplace_back(one.language);
   return codes;
 }
 
-const Texts& catalogue(const std::string& language) { return all().at(language).texts; }
-
-Translation translation(const std::string& language) {
-  const auto spoken = all().find(language.substr(0, 2));
-  if (spoken == all().end()) return Translation::none;
-  return spoken->second.read_by_native_speaker ? Translation::read : Translation::unread;
+const Texts& catalogue(std::string_view language) {
+  const auto* spoken = find(language);
+  if (spoken == nullptr) throw std::logic_error("no texts in the language \"" + std::string(language) + "\"");
+  return spoken->texts;
 }
 
-const std::string& text(const std::string& key, const std::string& language) {
+Translation translation(const std::string& language) {
+  const auto* spoken = find(language);
+  return spoken == nullptr ? Translation::none : spoken->translation;
+}
+
+const std::string& text(std::string_view key, std::string_view language) {
   const auto& texts = in(language);
   const auto found = texts.find(key);
-  if (found == texts.end()) throw std::logic_error("no text has the key \"" + key + "\"");
+  if (found == texts.end()) throw std::logic_error("no text has the key \"" + std::string(key) + "\"");
   return found->second;
+}
+
+std::string say(const Phrase& phrase, std::string_view language) {
+  auto said = phrase.key.empty() ? phrase.words : std::string();
+  if (phrase.key.empty()) {
+    for (const auto& value : phrase.values) said += say(value, language);
+    return said;
+  }
+  const auto& pattern = text(phrase.key, language);
+  for (std::size_t i = 0; i < pattern.size(); ++i) {
+    const bool place = pattern[i] == '%' && i + 1 < pattern.size() && pattern[i + 1] >= '1' &&
+                       pattern[i + 1] < '1' + static_cast<int>(phrase.values.size());
+    if (place)
+      said += say(phrase.values[static_cast<std::size_t>(pattern[++i] - '1')], language);
+    else
+      said += pattern[i];
+  }
+  return said;
 }
 
 FaultText fault_text(terms::FaultKind kind, const std::string& language) {
@@ -71,5 +103,13 @@ FaultText fault_text(terms::FaultKind kind, const std::string& language) {
   return {text(key + ".happened", language), text(own ? key + ".safe" : "fault.safe", language),
           text(key + ".to_do", language)};
 }
+
+Phrase phrase_of(const terms::Fault& fault) {
+  auto called = phrase(std::string("fault.") + terms::name(fault.kind) + ".called");
+  if (fault.detail.empty()) return called;
+  return {"", "", {std::move(called), plain(": " + fault.detail)}};
+}
+
+Phrase phrase_of(terms::ProofCause cause) { return phrase(std::string("proof_cause.") + terms::name(cause)); }
 
 }  // namespace turnpoint::texts

@@ -1,9 +1,13 @@
 #pragma once
+#include <functional>
 #include <map>
 #include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 #include "station/terms/fault.hpp"
+#include "station/terms/proof.hpp"
 
 namespace turnpoint::texts {
 
@@ -12,21 +16,43 @@ std::vector<std::string> languages();
 
 /// Returns all texts of the station in one of these languages, by key. The key of a text in a table has dots:
 /// "fault.disk_full.happened".
-const std::map<std::string, std::string>& catalogue(const std::string& language);
+const std::map<std::string, std::string, std::less<>>& catalogue(std::string_view language);
 
 /// Says whether the station speaks a language ("de", "de-CH"), and whether a native speaker has read its
-/// texts.
-enum class Translation { none, unread, read };
+/// texts: none of them, those on the participant's pages, or all of them.
+enum class Translation { none, unread, participant_read, read };
 Translation translation(const std::string& language);
 
 /// Returns one text in the given language ("de", "de-CH"), or in English if the station does not speak that
 /// language. Throws std::logic_error for a key that no catalogue has.
-const std::string& text(const std::string& key, const std::string& language);
+const std::string& text(std::string_view key, std::string_view language);
+
+/// What somebody is to be told, in a language that is chosen later: the text with this key, with `values` in
+/// its places %1, %2 and so on. Without a key: `words`, which are the same in every language (a number, a
+/// name from a protocol), and then all `values` one after another.
+struct Phrase {
+  std::string key, words;
+  std::vector<Phrase> values;
+  bool operator==(const Phrase&) const = default;
+};
+/// A phrase that is the same in every language.
+inline Phrase plain(std::string words) { return {"", std::move(words), {}}; }
+/// The text with this key, with `values` in its places.
+inline Phrase phrase(std::string key, std::vector<Phrase> values = {}) {
+  return {std::move(key), "", std::move(values)};
+}
+/// Returns the phrase in the given language. Throws std::logic_error for a key that no catalogue has.
+std::string say(const Phrase& phrase, std::string_view language);
 
 /// The explanation of a fault for the person in front of the screen: what happened, what is safe, what to do.
 struct FaultText {
   std::string happened, safe, to_do;
 };
 FaultText fault_text(terms::FaultKind kind, const std::string& language);
+
+/// Says what a fault or a cause is. In English, these are the words of terms::describe(); the detail of a
+/// fault is the same in every language.
+Phrase phrase_of(const terms::Fault& fault);
+Phrase phrase_of(terms::ProofCause cause);
 
 }  // namespace turnpoint::texts

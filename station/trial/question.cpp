@@ -80,6 +80,10 @@ observer::Question question_of(const TrialSpec& spec, const protocol::Protocol& 
     question.rating = task.rating;
     question.middle = !question.decibel && protocol::two_sided(protocol, level) ? observer::Middle::bias
                                                                                 : observer::Middle::threshold;
+    if (task.present) {
+      question.middle = observer::Middle::criterion;
+      question.absent = !protocol::holds(*task.present, spec.factors);
+    }
     if (const auto& value = task.value)
       question.value = {value->typed, value->low, value->high, value->decimals,
                         task.modulus.value_or(std::sqrt(std::max(value->low, 1e-3) * value->high))};

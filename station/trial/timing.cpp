@@ -11,12 +11,10 @@ namespace {
 
 std::int64_t ns(double s) { return std::llround(s * 1e9); }
 
-}  // namespace
-
-std::vector<IntervalTimes> interval_times(const protocol::Protocol& protocol, const TrialSpec& spec) {
+/// The times of the scenes that the task names; a buzz, if there is one, is not among them.
+std::vector<IntervalTimes> task_times(const protocol::Protocol& protocol, const TrialSpec& spec) {
   const auto& task = protocol.task;
   std::vector<IntervalTimes> times;
-  if (spec.strokes) return {{spec.strokes->duration_s, {}}};
   for (const auto& scenes : spec.intervals) {
     IntervalTimes interval;
     // An explored interval lasts until the answer, but at most explore_s or, if that is not set, until the
@@ -27,11 +25,50 @@ std::vector<IntervalTimes> interval_times(const protocol::Protocol& protocol, co
     interval.length_s = spec.length_s.value_or(whole);
     const double step =
         scenes.size() > 1 ? (task.foreperiod_s ? spec.foreperiod_s : whole / scenes.size()) : 0;
-    for (std::size_t i = 1; i < scenes.size(); ++i)
+    for (std::size_t i = 1; i < scenes.size(); ++i) {
       interval.starts_s.push_back(step * static_cast<double>(i));
+      interval.transitions_s.push_back(task.transition_ms.value_or(50) * 1e-3);
+    }
     times.push_back(std::move(interval));
   }
   return times;
+}
+
+/// The response signal of this trial if it is a buzz of the surface; otherwise null.
+const protocol::ResponseSignal* buzz_of(const protocol::Protocol& protocol, const TrialSpec& spec) {
+  const auto& signal = protocol.timing.signal;
+  return spec.signal_s && signal && signal->by == protocol::ResponseSignal::By::buzz ? &*signal : nullptr;
+}
+
+}  // namespace
+
+std::vector<IntervalTimes> interval_times(const protocol::Protocol& protocol, const TrialSpec& spec) {
+  if (spec.strokes) return {{spec.strokes->duration_s, {}, {}}};
+  auto times = task_times(protocol, spec);
+  if (const auto* buzz = buzz_of(protocol, spec)) {
+    const double at_s = *signal_in_stimulus_s(protocol, spec);
+    auto& last = times.back();
+    last.starts_s.insert(last.starts_s.end(), {at_s, at_s + buzz->length_s});
+    last.transitions_s.insert(last.transitions_s.end(), 2, terms::kBuzzRamp_s);
+  }
+  return times;
+}
+
+std::vector<std::vector<std::string>> presented_scenes(const protocol::Protocol& protocol,
+                                                       const TrialSpec& spec) {
+  auto scenes = spec.intervals;
+  if (const auto* buzz = buzz_of(protocol, spec)) {
+    auto& last = scenes.back();
+    last.insert(last.end(), {buzz->scene, std::string(last.back())});
+  }
+  return scenes;
+}
+
+std::optional<double> signal_in_stimulus_s(const protocol::Protocol& protocol, const TrialSpec& spec) {
+  const auto& signal = protocol.timing.signal;
+  if (!spec.signal_s || !signal || !protocol::in_stimulus(*signal)) return std::nullopt;
+  const bool at_change = zero_of(protocol, spec) == terms::ResponseZero::change;
+  return *spec.signal_s + (at_change ? task_times(protocol, spec).back().starts_s.front() : 0);
 }
 
 terms::ResponseZero zero_of(const protocol::Protocol& protocol, const TrialSpec& spec) {

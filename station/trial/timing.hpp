@@ -1,4 +1,8 @@
 #pragma once
+#include <optional>
+#include <string>
+#include <vector>
+
 #include "station/protocol/protocol.hpp"
 #include "station/trial/director.hpp"
 #include "station/trial/machine.hpp"
@@ -14,11 +18,22 @@ terms::ResponseZero zero_of(const protocol::Protocol& protocol, const TrialSpec&
 
 Timing timing_of(const protocol::Protocol& protocol, const protocol::Block& block, const TrialSpec& spec);
 
-/// Length of an interval (s), and the times from its onset at which its second and later scenes begin.
+/// Length of an interval (s), and the times from its onset at which its second and later scenes begin, each
+/// with a transition from the scene before. A buzz (a response signal on the surface) counts as a scene;
+/// after it, the scene before it begins again.
 struct IntervalTimes {
   double length_s = 0;
-  std::vector<double> starts_s;
+  std::vector<double> starts_s, transitions_s;
 };
 std::vector<IntervalTimes> interval_times(const protocol::Protocol& protocol, const TrialSpec& spec);
+
+/// Returns the scenes of each interval as they are presented: those of the trial, with its buzz if it has
+/// one.
+std::vector<std::vector<std::string>> presented_scenes(const protocol::Protocol& protocol,
+                                                       const TrialSpec& spec);
+
+/// Returns the time from the onset of the last interval to the response signal, if the signal is part of the
+/// stimulus (a tone or a buzz).
+std::optional<double> signal_in_stimulus_s(const protocol::Protocol& protocol, const TrialSpec& spec);
 
 }  // namespace turnpoint::trial

@@ -11,7 +11,8 @@ Q_IMPORT_QML_PLUGIN(TurnpointPlugin)
 
 int main(int argc, char** argv) {
   using namespace turnpoint;
-  const cli::Screens screens{ui::run_on_screen, ui::run_station, ui::show_preview, ui::show_design, ui::measure_latency};
+  const cli::Screens screens{ui::run_on_screen, ui::run_station, ui::show_preview, ui::show_design,
+                             ui::measure_latency};
   char station[] = "station";
   char* start_page[] = {argv[0], station, nullptr};
   const bool alone = argc <= 1;

@@ -196,3 +196,30 @@ TEST_CASE(
   CHECK_THROWS_AS(roc({1}, {1}), std::invalid_argument);
   CHECK_THROWS_AS(roc({1, 2}, {1, -2}), std::invalid_argument);
 }
+
+TEST_CASE("Answers with confidence are the ratings of a ROC, and all levels share the noise", "[analysis]") {
+  std::vector<TrialRecord> trials;
+  const auto add = [&](double level, bool yes, int confidence, int count) {
+    TrialRecord trial;
+    trial.level = level, trial.right_choice = level > 0, trial.response = yes, trial.confidence = confidence;
+    trials.insert(trials.end(), static_cast<std::size_t>(count), trial);
+  };
+  // from the surest no to the surest yes: noise 6 2 1 1, level 1: 1 2 2 5, level 2: 0 0 0 10
+  add(0, false, 2, 6), add(0, false, 1, 2), add(0, true, 1, 1), add(0, true, 2, 1);
+  add(1, false, 2, 1), add(1, false, 1, 2), add(1, true, 1, 2), add(1, true, 2, 5), add(2, true, 2, 10);
+  auto without = trials.front();
+  without.confidence.reset();
+  trials.push_back(without);  // a trial without confidence is left out
+  const auto curves = rocs(trials, {}, 1);
+  REQUIRE(curves.size() == 3);
+  CHECK(curves[0].noise == std::vector<int>{6, 2, 1, 1});
+  CHECK(curves[0].signal == std::vector<int>{1, 2, 2, 5});
+  CHECK(curves[0].roc.area.value == roc({6, 2, 1, 1}, {1, 2, 2, 5})->area.value);
+  CHECK(curves[1].level == 2.0);
+  CHECK(curves[1].roc.area.value == roc({6, 2, 1, 1}, {0, 0, 0, 10})->area.value);
+  CHECK_FALSE(curves[2].level);
+  CHECK(curves[2].signal == std::vector<int>{1, 2, 2, 15});
+  CHECK(rocs(trials, {}, 1, 1).size() == 1);  // too many levels: only all of them together
+  std::erase_if(trials, [](const auto& trial) { return *trial.level == 0; });
+  CHECK(rocs(trials, {}, 1).empty());  // without noise there is no curve
+}

@@ -315,6 +315,10 @@ class Mistakes(Folder):
         self.refused_in_one_sentence(["field", "--tone", "30000", "--points", "3", "--rig", "simulatd"], "did you mean simulated?")
         self.assertEqual(self.before(), before, "a refused command left files behind")
 
+    def test_a_signal_on_the_screen_of_a_session_without_a_screen(self):
+        self.refused(["run", "response-signal", "--rig", "simulated", "--db", "x.sqlite", "--participant", "P01", "--buttons-only"],
+                     "response-signal.toml:51:", "--buttons-only: the response signal is on the screen")
+
     def test_every_protocol_and_rig_option_is_tried(self):
         self.assertEqual({n for n in self.names if re.search(r"^  protocol ", self.helps[n], re.MULTILINE)}, set(WITH_PROTOCOL))
         self.assertEqual({n for n in self.names if "--rig" in self.options(n)}, {*WITH_RIG, "station"})
@@ -384,6 +388,21 @@ class Report(Folder):
         _, out, _ = run(["report", "--db", "lab.sqlite"], self.folder)
         self.assertRegex(out, r"\n  threshold: threshold -?[0-9.]+ \(SD [0-9.]+\), 95 % -?[0-9.]+ to -?[0-9.]+\n")
 
+    def test_an_estimator_is_found_by_a_relative_path(self):
+        self.add_sessions()
+        os.mkdir(os.path.join(self.folder, "programs"))
+        for place in ("mine.py", "programs/mine.py"):
+            shutil.copy(os.path.join(SOURCE, "protocols/programs/right_answers.py"), os.path.join(self.folder, place))
+            status, out, err = run(["report", "--db", "lab.sqlite", "--estimator", f"program:{place},limit_s=60", "--json"], self.folder)
+            self.assertEqual(status, 0, err)
+            document = json.loads(out)
+            share = [e["mean"] for e in document["estimates"] if (e["procedure"], e["parameter"]) == ("right-answers", "proportion right")]
+            self.assertEqual(len(share), 1)
+            self.assertTrue(0 < share[0] <= 1, share)
+            self.assertIn("right-answers", document["facts"]["Estimator"])
+        for wrong, why in (("program:absent.py", "absent.py"), ("program:mine.py,limit_s=0", "limit_s must be above 0"), ("mine.py", "no program")):
+            self.refused_in_one_sentence(["report", "--db", "lab.sqlite", "--estimator", wrong], why)
+
 
 class Readme(Folder):
     def test_the_tour_of_the_readme_runs_as_it_stands(self):
@@ -448,9 +467,12 @@ class Sensors(Folder):
         return document, err
 
     def test_dead_weights(self):
-        document, asked = self.calibrated("--forces", "\n" * 39)
+        document, asked = self.calibrated("--forces", "\n" * 41)
         self.assertEqual(len(document["weights"]), 32)
         self.assertEqual(document["repeated"], [])
+        # the simulated plate rings at 60 Hz on its cells, and at 180 Hz along them
+        self.assertAlmostEqual(document["resonance_Hz"], 60, delta=1.2)
+        self.assertAlmostEqual(document["usable_Hz"], document["resonance_Hz"] / 3, places=6)
         self.assertEqual(asked.count("Take everything off the surface."), 7)
         self.assertEqual(asked.count("hang 100 g on the string that pulls towards the wide edge."), 2)
         self.assertLess(max(abs(weight["residual_position_mm"]) for weight in document["weights"]), 0.2)
@@ -463,7 +485,17 @@ class Sensors(Folder):
         document, _ = self.calibrated("--pickup")
         self.assertEqual([pick_up["channel"] for pick_up in document["pick_ups"]], [5, 6])
         with open(os.path.join(self.folder, "made.toml"), encoding="utf-8") as made:
-            self.assertIn("\n[forces] ", made.read())
+            self.assertRegex(made.read(), r"(?s)\n\[forces\] .*\nusable_Hz = (19\.\d+|20(\.\d+)?) ")
+
+    def test_the_doctor_weighs_under_drive(self):
+        self.calibrated("--forces", "\n" * 41)
+        os.rename(os.path.join(self.folder, "made.toml"), os.path.join(self.folder, "plate.calibration-" + TODAY + ".toml"))
+        command = ["doctor", "--rig", "plate.toml", "--weight", "--data", "."]
+        _, out, err = run([*command, "--json"], self.folder, "\n")
+        self.assertIn("Rest 50 g on the middle of the plate", err)
+        check = json.loads(out)["checks"][0]
+        self.assertEqual((check["name"], check["status"]), ("force under main", "ok"))
+        self.assertEqual(run(command, self.folder, "")[0], 2)
 
     def test_dead_weights_with_mistakes(self):
         forces = ["calibrate", "--rig", "plate.toml", "--forces"]
@@ -750,6 +782,10 @@ class Screen(Folder):
             self.refused_in_one_sentence(words, "no screen: no DISPLAY", advice, QT_QPA_PLATFORM=None)
             for option in re.findall(r"--[a-z-]+", advice):
                 self.assertIn(option, self.helps[words[0]])
+
+    def test_a_panel_that_cannot_be_turned_so(self):
+        self.refused_in_one_sentence(["station", "--db", "lab.sqlite"], 'TURNPOINT_ROTATION: "45"; allowed are 0, 90, 180 and 270 degrees',
+                                     QT_QPA_PLATFORM="offscreen", TURNPOINT_ROTATION="45", XDG_RUNTIME_DIR=self.folder)
 
     def test_the_station_opens_its_window(self):
         with self.assertRaises(subprocess.TimeoutExpired):

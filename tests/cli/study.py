@@ -19,8 +19,14 @@ PROGRAM = os.path.realpath(sys.argv.pop(1))
 OBSERVERS = [(-0.12, 0.10), (0.05, 0.14), (0.12, 0.08), (-0.03, 0.18), (0.0, 0.12), (0.09, 0.22), (-0.08, 0.09), (0.0, 40)]
 
 
-def has(command):
-    return subprocess.run(command, capture_output=True, check=False).returncode == 0
+def has(what):
+    """True if pandas or lme4 is installed. A machine that declares it in TURNPOINT_READERS must have it: there a missing
+    one is a failure, because its tests would be skipped for ever without anybody noticing."""
+    command = {"lme4": ["Rscript", "-e", "library(lme4)"], "pandas": [sys.executable, "-c", "import pandas"]}[what]
+    found = shutil.which(command[0]) is not None and subprocess.run(command, capture_output=True, check=False).returncode == 0
+    if not found and what in os.environ.get("TURNPOINT_READERS", "").split():
+        raise AssertionError(f"TURNPOINT_READERS says that {what} is installed here, but it is not")
+    return found
 
 
 class Study(unittest.TestCase):
@@ -104,11 +110,11 @@ class Study(unittest.TestCase):
             self.assertNotIn(word, page.lower().replace("confidence", ""))
 
     def test_pandas_finds_the_same_effects(self):
-        if not has([sys.executable, "-c", "import pandas"]):
+        if not has("pandas"):
             self.skipTest("needs pandas")
         out = subprocess.run([sys.executable, os.path.join(SCRIPTS, "study.py"), "tables"], cwd=self.folder, capture_output=True, text=True,
                              check=True).stdout
-        found = {tuple(line.split(",")[:3]): line.split(",")[3:] for line in out.splitlines()}
+        found = {tuple(line[:3]): line[3:] for line in csv.reader(out.splitlines())}
         for effect in self.study["effects"]:
             key = (effect["measure"], effect["first"], effect["second"])
             # pandas sorts the conditions, so the difference may have the opposite sign
@@ -118,11 +124,11 @@ class Study(unittest.TestCase):
             self.assertEqual(int(persons), effect["participants"])
 
     def test_lme4_finds_the_same_groups(self):
-        if not has(["Rscript", "-e", "library(lme4)"]):
+        if not has("lme4"):
             self.skipTest("needs R and lme4")
         out = subprocess.run(["Rscript", os.path.join(SCRIPTS, "study.R"), "tables"], cwd=self.folder, capture_output=True, text=True,
                              check=True).stdout
-        found = [line.split(",") for line in out.splitlines()]
+        found = list(csv.reader(out.splitlines()))
         errors = {}
         for row in self.rows("groups.csv"):
             errors["rate", row["condition"]] = float(row["rate_se"])
@@ -191,6 +197,146 @@ class Groups(unittest.TestCase):
         half = (found["interval"]["high"] - found["interval"]["low"]) / 2
         self.assertGreater(half / error, 2.4)
         self.assertLess(half / error, 3.3)
+
+
+class OwnEstimates(unittest.TestCase):
+    """What adaptive procedures estimate themselves, session by session."""
+
+    def setUp(self):
+        self.folder = tempfile.mkdtemp()
+        self.addCleanup(shutil.rmtree, self.folder)
+        for person, seed in (("P01", 3), ("P01", 4), ("P02", 5)):
+            self.call("run", "friction-staircase", "--participant", person, "--db", "lab.sqlite", "--headless",
+                      "--observer", "sim", "--seed", str(seed))
+
+    def call(self, *words):
+        return subprocess.run([PROGRAM, *words], cwd=self.folder, check=True, capture_output=True, text=True).stdout
+
+    def test_a_study_has_the_estimates_that_the_reports_of_its_sessions_have(self):
+        study = json.loads(self.call("report", "--study", "--db", "lab.sqlite", "--json"))
+        sessions = 0
+        for person in study["participants"]:
+            of_sessions = []
+            for session in person["sessions"]:
+                report = json.loads(self.call("report", "--db", "lab.sqlite", "--session", session, "--json"))
+                self.assertTrue(report["estimates"])
+                of_sessions += [{"session": session, **estimate} for estimate in report["estimates"]]
+                sessions += 1
+            self.assertEqual(person["estimates"], of_sessions)
+        self.assertEqual(sessions, 3)
+        self.call("report", "--study", "--db", "lab.sqlite", "--out", "study.html", "--tables", "tables")
+        with open(os.path.join(self.folder, "tables/estimates.csv"), encoding="utf-8", newline="") as table:
+            rows = [(row["participant"], row["session"], row["procedure"], row["parameter"], float(row["mean"]))
+                    for row in csv.DictReader(table)]
+        expected = [(person["participant"], own["session"], own["procedure"], own["parameter"], own["mean"])
+                    for person in study["participants"] for own in person["estimates"]]
+        self.assertEqual([row[:4] for row in rows], [row[:4] for row in expected])
+        for row, own in zip(rows, expected):
+            self.assertAlmostEqual(row[4], own[4], delta=1e-9 * abs(own[4]))
+        with open(os.path.join(self.folder, "study.html"), encoding="utf-8") as file:
+            page = file.read()
+        self.assertIn("<h2>The procedures\u2019 own estimates</h2>", page)
+        for _, session, *_ in expected:
+            self.assertIn(f"<td>{session}</td>", page)
+
+
+class Measures(unittest.TestCase):
+    """Measures of other tasks than speed and accuracy are those of the sessions' own reports."""
+
+    def setUp(self):
+        self.folder = tempfile.mkdtemp()
+        self.addCleanup(shutil.rmtree, self.folder)
+
+    def call(self, *words):
+        return subprocess.run([PROGRAM, *words], cwd=self.folder, check=True, capture_output=True, text=True).stdout
+
+    def both(self, protocol):
+        """The measures of a participant in the report of a study, and the report of the participant's session."""
+        database = protocol + ".sqlite"
+        for person in ("P01", "P02"):
+            self.call("run", protocol, "--participant", person, "--db", database, "--headless", "--observer", "sim",
+                      "--seed", person[1:])
+        self.call("report", "--study", "--db", database, "--out", "study.html", "--tables", protocol + ".tables")
+        with open(os.path.join(self.folder, protocol + ".tables", "measures.csv"), encoding="utf-8", newline="") as table:
+            found = {row["measure"]: float(row["value"]) for row in csv.DictReader(table) if row["participant"] == "P02"}
+        return found, json.loads(self.call("report", "--db", database, "--participant", "P02", "--json"))
+
+    def equal(self, found, wanted):
+        self.assertAlmostEqual(found, wanted, delta=1e-9 * abs(wanted))
+
+    def test_ratings_have_their_mean_at_each_level(self):
+        found, report = self.both("smoothness-points")
+        levels = report["judgements"][0]["levels"]
+        self.assertEqual(len(levels), 5)
+        for level in levels:
+            self.equal(found[f"mean rating at {level['level']:g} \u00b5m"], level["mean"]["value"])
+
+    def test_numbers_have_their_geometric_mean_at_each_level(self):
+        found, report = self.both("magnitude-free")
+        for level in report["judgements"][0]["levels"]:
+            self.equal(found[f"geometric mean at {level['level']:g} \u00b5m"], level["mean"]["value"])
+
+    def test_abx_has_d_prime_by_both_models(self):
+        found, report = self.both("friction-abx")
+        d_primes = report["discrimination"][-1]["d_prime"]
+        self.assertEqual(len(d_primes), 2)
+        for d_prime in d_primes:
+            self.equal(found[f"d' ({d_prime['model']})"], d_prime["value"])
+
+    def test_a_response_signal_has_the_curve_of_sensitivity(self):
+        found, report = self.both("response-signal")
+        curve = report["response_signal"][0]
+        names = (("asymptote of d'", "asymptote"), ("rate of d'", "rate_per_s"), ("intercept of d'", "intercept_s"))
+        for name, key in names:
+            if curve[key] is None:
+                self.assertNotIn(name, found)
+            else:
+                self.equal(found[name], curve[key]["value"])
+        self.assertTrue(any(curve[key] for _, key in names))
+
+    def test_detection_with_confidence_has_the_area_under_the_roc(self):
+        found, report = self.both("friction-detection")
+        self.assertIsNone(report["roc"][-1]["level"])
+        self.assertEqual(len(report["roc"]), 4)
+        self.equal(found["area under the ROC"], report["roc"][-1]["area"]["value"])
+        self.assertGreater(report["catch"]["trials"], 0)
+
+    def test_ratings_of_a_signal_have_the_area_d_prime_and_d_a(self):
+        with open(os.path.join(SOURCE, "protocols/smoothness-points.toml"), encoding="utf-8") as file:
+            source = file.read().replace('device = "touch"', 'device = "touch"\npresent = "strength_um > 0.3"', 1)
+        with open(os.path.join(self.folder, "rated.toml"), "w", encoding="utf-8") as file:
+            file.write(source.replace("repeats = 8", "repeats = 20"))
+        found, report = self.both("rated.toml")
+        all_levels = report["roc"][-1]
+        self.assertIsNone(all_levels["level"])
+        self.equal(found["area under the ROC"], all_levels["area"]["value"])
+        self.equal(found["d' of ratings"], all_levels["equal_variances"]["sensitivity"]["value"])
+        self.equal(found["d_a of ratings"], all_levels["unequal_variances"]["sensitivity"]["value"])
+        self.equal(found["SD with a signal"], all_levels["unequal_variances"]["sd"]["value"])
+
+    def test_the_scripts_quote_conditions_of_two_factors(self):
+        with open(os.path.join(SOURCE, "protocols/demo.toml"), encoding="utf-8") as file:
+            source = file.read().replace("repeats = 2", "repeats = 12") + '\n[analysis]\nby = ["finger", "mark_mm"]\n'
+        finger = '[[factor]]\nname = "finger"\nlevels = ["wet", "dry"]\n\n[scene.edge]'
+        with open(os.path.join(self.folder, "two.toml"), "w", encoding="utf-8") as file:
+            file.write(source.replace("[scene.edge]", finger, 1))
+        for person in ("1", "2", "3"):
+            self.call("run", "two.toml", "--participant", "P" + person, "--db", "two.sqlite", "--headless",
+                      "--observer", "sim:threshold=12", "--seed", person)
+        self.call("report", "--study", "--db", "two.sqlite", "--out", "two.html", "--tables", "two")
+        scripts = [("lme4", ["Rscript", "study.R"], 4), ("pandas", [sys.executable, "study.py"], 6)]
+        for needed, (program, script), fields in scripts:
+            if not has(needed):
+                continue
+            out = subprocess.run([program, os.path.join(SCRIPTS, script), "two"], cwd=self.folder, check=True,
+                                 capture_output=True, text=True).stdout
+            lines = list(csv.reader(out.splitlines()))
+            self.assertIn("wet, mark 150 mm", [line[1] for line in lines])
+            self.assertEqual({len(line) for line in lines}, {fields})
+
+    def test_settings_have_the_difference_of_their_sides(self):
+        found, report = self.both("boundary-adjustment")
+        self.equal(found["settings from below minus from above"], report["settings"][0]["side_difference"]["value"])
 
 
 if __name__ == "__main__":

@@ -19,7 +19,7 @@ class Run(unittest.TestCase):
         self.write("deploy/install", NOTE)
         self.write("tools/cmake", NOTE)
         self.write("build/release/bin/turnpoint", NOTE + '[ "$1" != export ] || mkdir -p "$5"\n')
-        for path in ("protocols/demo.toml", "deploy/rigs/simulated.toml", "build/release/build.ninja", "mine.toml"):
+        for path in ("protocols/demo.toml", "deploy/rigs/simulated-forces.toml", "build/release/build.ninja", "mine.toml"):
             self.write(path, "")
         shutil.copy(os.path.join(SOURCE, "deploy/run"), os.path.join(self.folder, "deploy"))
 
@@ -81,8 +81,8 @@ class Run(unittest.TestCase):
         status, errors, calls = self.run_it("--mode", "pilot", "mine.toml", "--seed=3", "--json", "--headless")
         self.assertEqual((status, errors), (0, ""))
         self.assertEqual(calls.splitlines()[0], "install build run")
-        self.assertIn(f"turnpoint run mine.toml --rig {self.folder}/deploy/rigs/simulated.toml --participant demo --db "
-                      f"{self.folder}/.local/share/turnpoint/turnpoint.sqlite "
+        self.assertIn(f"turnpoint run mine.toml --rig {self.folder}/deploy/rigs/simulated-forces.toml --participant demo "
+                      f"--db {self.folder}/.local/share/turnpoint/turnpoint.sqlite "
                       "--mode pilot --seed 3 --json --headless --observer sim\n", calls)
 
     def test_help_names_each_option(self):

@@ -1,7 +1,5 @@
 #include <sys/stat.h>
 
-#include <unistd.h>
-
 #include <chrono>
 #include <condition_variable>
 #include <filesystem>
@@ -10,35 +8,19 @@
 
 #include "station/desk/choices.hpp"
 #include "station/desk/live_view.hpp"
-#include "station/desk/report_pages.hpp"
 #include "station/plot/svg.hpp"
 #include "station/setup/prepare.hpp"
 #include "station/store/read.hpp"
+#include "station/terms/proof.hpp"
 #include "station/text/number.hpp"
+#include "station/texts/texts.hpp"
+#include "tests/desk/demo.hpp"
 #include "tests/support/catch.hpp"
 
 using namespace turnpoint;
 namespace fs = std::filesystem;
 
 namespace {
-
-const std::string kSource = TURNPOINT_SOURCE_DIR;
-
-struct Folder {
-  fs::path path = fs::temp_directory_path() / ("turnpoint-operator-" + std::to_string(::getpid()));
-  Folder() {
-    fs::remove_all(path);
-    fs::create_directories(path);
-  }
-  ~Folder() { fs::remove_all(path); }
-};
-
-std::string value_of(const std::vector<std::pair<std::string, std::string>>& facts,
-                     const std::string& label) {
-  for (const auto& [name, value] : facts)
-    if (name == label) return value;
-  return "";
-}
 
 desk::LiveTrial answered(bool correct, double response_time_s) {
   desk::LiveTrial trial;
@@ -72,17 +54,6 @@ std::vector<std::string> drives_shown(const desk::LiveState& state) {
     drives.push_back(value.substr(from, value.find(" on ") + 3 - from));
   }
   return drives;
-}
-
-setup::RunRequest demo_in(const Folder& folder) {
-  setup::RunRequest request;
-  request.protocol = kSource + "/protocols/demo.toml";
-  request.rig = kSource + "/tests/support/thin_plate.toml";
-  request.participant = "P09";
-  request.database = (folder.path / "a.sqlite").string();
-  request.observer = "sim";
-  request.seed = 4;
-  return request;
 }
 
 }  // namespace
@@ -120,15 +91,21 @@ TEST_CASE("the progress of a session shows each procedure's latest estimate with
 
 TEST_CASE("the progress of a session shows what the pick-up measured in the last trial", "[operator]") {
   std::vector<desk::LiveTrial> trials(2);
-  const auto shown = [&] {
-    for (const auto& [label, value] : desk::course_of(trials))
-      if (label == "Vibration, last trial") return value;
-    return std::string();
+  const auto shown = [&](const std::string& language) {
+    const auto label = texts::say({"live.vibration", "", {}}, language);
+    return value_of(desk::course_of(trials, language), label);
   };
-  CHECK(shown() == "unproven");
+  CHECK(shown("en") == "not measured");
   trials.back().proof = records::Proof::refused;
-  trials.back().measured = "the surface does not move; level -62.0 dB";
-  CHECK(shown() == "refused: the surface does not move; level -62.0 dB");
+  trials.back().proof_cause = records::ProofCause::dead;
+  CHECK(shown("en") == "too far off: the trial is repeated; the surface does not move");
+  CHECK(shown("de") == "zu weit daneben: der Durchgang wird wiederholt; die Oberfläche bewegt sich nicht");
+  for (const char* language : {"en", "de", "es", "ja", "zh", "ar"})
+    for (const auto verdict : terms::proofs)
+      for (const auto cause : terms::proof_causes) {
+        trials.back().proof = verdict, trials.back().proof_cause = cause;
+        CHECK_FALSE(shown(language).empty());
+      }
 }
 
 TEST_CASE("the used part of the limits is computed from the last minute", "[operator]") {
@@ -147,7 +124,7 @@ TEST_CASE("the used part of the limits is computed from the last minute", "[oper
 }
 
 TEST_CASE("the live view follows a session trial by trial and draws what is on the surface", "[operator]") {
-  const Folder folder;
+  const TemporaryFolder folder;
   const auto setup = setup::prepare(demo_in(folder));
   std::mutex mutex;
   std::condition_variable told;
@@ -178,7 +155,7 @@ TEST_CASE("the live view shows what is played: each scene of each interval, with
   const auto* protocol = GENERATE("demo", "speed-accuracy", "two-spots-oddity");
   CAPTURE(protocol);
   constexpr int trials = 6;
-  const Folder folder;
+  const TemporaryFolder folder;
   auto request = demo_in(folder);
   request.protocol = kSource + "/protocols/" + protocol + ".toml";
   const auto setup = setup::prepare(request);
@@ -221,7 +198,7 @@ TEST_CASE("the live view shows what is played: each scene of each interval, with
 
 TEST_CASE("a slider that moves fast is shown a few times a second, and finally at its last position",
           "[operator]") {
-  const Folder folder;
+  const TemporaryFolder folder;
   auto request = demo_in(folder);
   request.protocol = kSource + "/protocols/boundary-adjustment.toml";
   const auto setup = setup::prepare(request);
@@ -255,44 +232,13 @@ TEST_CASE("a slider that moves fast is shown a few times a second, and finally a
   CHECK(states.back().surfaces.size() == 1);
 }
 
-TEST_CASE("the report on the screen has the numbers and figures of the speed-accuracy trade-off",
-          "[operator]") {
-  const Folder folder;
-  session::Inputs inputs;
-  const auto summary = session::run(setup::prepare(demo_in(folder)), nullptr, inputs);
-  const auto pages = desk::report_pages(summary.database, summary.session_id);
-  CHECK(value_of(pages.outcomes, "Presented") == "10");
-  CHECK_FALSE(value_of(pages.speed_accuracy, "proportion right").empty());
-  CHECK(pages.levels);
-  CHECK_FALSE(pages.health.empty());
-}
-
-TEST_CASE("the report on the screen has the finger's forces and friction, if force cells recorded",
-          "[operator]") {
-  report::Summary summary;
-  summary.data.design = report::Design::ratings;
-  CHECK(desk::report_pages(summary).forces.empty());
-  CHECK_FALSE(desk::report_pages(summary).finger);
-  std::vector<analysis::FingerTrial> trials;
-  for (int i = 0; i < 4; ++i) {
-    analysis::FingerTrial trial{i, "speed", true, 0.5, 80.0 + i, 0.3, 0.8, 150.0, 150.5 + 0.1 * i, 0.2};
-    trials.push_back(trial);
-  }
-  summary.finger = analysis::finger(trials, {});
-  const auto pages = desk::report_pages(summary);
-  CHECK(value_of(pages.forces, "speed: speed").find("81.5 [") == 0);
-  CHECK(value_of(pages.forces, "speed: felt \u2212 planned boundary").find(" mm") != std::string::npos);
-  CHECK(pages.finger);
-  CHECK(pages.friction);
-}
-
 TEST_CASE("new studies are saved with the protocols or, if that is not possible, beside the database",
           "[desk]") {
-  const Folder folder;
-  const auto database = (folder.path / "data/lab.sqlite").string();
-  const auto own = (folder.path / "data/protocols").string(), shipped = (folder.path / "shipped").string();
-  CHECK(desk::folder_for_studies(folder.path.string(), database) == folder.path.string());
-  CHECK(desk::folder_for_studies((folder.path / "none").string(), database) == own);
+  const TemporaryFolder folder;
+  const auto database = folder / "data/lab.sqlite";
+  const auto own = folder / "data/protocols", shipped = folder / "shipped";
+  CHECK(desk::folder_for_studies(folder.path, database) == folder.path);
+  CHECK(desk::folder_for_studies(folder / "none", database) == own);
   std::filesystem::create_directories(own);
   std::filesystem::create_directories(shipped);
   std::filesystem::copy_file(TURNPOINT_SOURCE_DIR "/protocols/demo.toml", own + "/mine.toml");
@@ -306,11 +252,11 @@ TEST_CASE("new studies are saved with the protocols or, if that is not possible,
 }
 
 TEST_CASE("the list of protocol files in a folder includes those that cannot be used", "[operator]") {
-  const Folder folder;
-  fs::copy_file(kSource + "/protocols/demo.toml", folder.path / "a.toml");
-  std::ofstream(folder.path / "b.toml") << "format = 3\n";
-  std::ofstream(folder.path / "notes.txt") << "no protocol\n";
-  const auto list = desk::list_protocols(folder.path.string());
+  const TemporaryFolder folder;
+  fs::copy_file(kSource + "/protocols/demo.toml", folder / "a.toml");
+  std::ofstream(folder / "b.toml") << "format = 3\n";
+  std::ofstream(folder / "notes.txt") << "no protocol\n";
+  const auto list = desk::list_protocols(folder.path);
   REQUIRE(list.size() == 2);
   CHECK(list[0].id == "demo");
   CHECK(list[0].languages.size() == 3);
@@ -319,14 +265,14 @@ TEST_CASE("the list of protocol files in a folder includes those that cannot be 
 }
 
 TEST_CASE("an unusable entry among the protocols has a message and does not hide the others", "[operator]") {
-  const Folder folder;
+  const TemporaryFolder folder;
   const auto shipped = std::string(TURNPOINT_SOURCE_DIR) + "/protocols/demo.toml";
-  fs::copy_file(shipped, folder.path / "demo.toml");
-  fs::create_symlink("/nowhere/at/all", folder.path / "dangling.toml");
-  fs::create_symlink("anna@host.1234", folder.path / ".#demo.toml");
-  fs::create_directory(folder.path / "folder.toml");
-  REQUIRE(::mkfifo((folder.path / "pipe.toml").c_str(), 0600) == 0);
-  const auto list = desk::list_protocols(folder.path.string());
+  fs::copy_file(shipped, folder / "demo.toml");
+  fs::create_symlink("/nowhere/at/all", folder / "dangling.toml");
+  fs::create_symlink("anna@host.1234", folder / ".#demo.toml");
+  fs::create_directory(folder / "folder.toml");
+  REQUIRE(::mkfifo((folder / "pipe.toml").c_str(), 0600) == 0);
+  const auto list = desk::list_protocols(folder.path);
   REQUIRE(list.size() == 4);
   for (const auto& entry : list) {
     INFO(entry.path);
@@ -336,7 +282,7 @@ TEST_CASE("an unusable entry among the protocols has a message and does not hide
 
 TEST_CASE("participants are listed once they have a stored session, and an interrupted session is offered",
           "[operator]") {
-  const Folder folder;
+  const TemporaryFolder folder;
   const auto request = demo_in(folder);
   CHECK(desk::known_participants(request.database).empty());
   CHECK_FALSE(desk::interrupted_note(request.database).has_value());
@@ -362,12 +308,32 @@ TEST_CASE("the description of a check begins with the cues that could give answe
   check.cues.reports = {{"pitch", 0, 0, "Hz", 0.5, 0.5}, {"loudness", 0, 1, "dB", 0.9, 0.5}};
   const auto words = desk::words_of(check);
   REQUIRE(words.cues.size() == 2);
-  CHECK(words.cues[0].name == "loudness");
+  CHECK(texts::say(words.cues[0].name, "en") == "loudness");
+  CHECK(texts::say(words.cues[0].says, "en") == "90 % right with this cue alone (chance 50 %)");
+  CHECK(texts::say(words.cues[0].says, "de") == "90 % richtig nur mit diesem Hinweisreiz (Zufall 50 %)");
   CHECK(words.cues[0].leaks);
   CHECK_FALSE(words.cues[1].leaks);
   check.problems.push_back({{"a.toml", 3, 1}, "what", "allowed"});
   CHECK(desk::words_of(check).facts.empty());
   CHECK(desk::words_of(check).problems.front() == "a.toml:3:1: what; allowed");
+}
+
+TEST_CASE("the facts of a check are said in each language, with the names from the protocol", "[operator]") {
+  simulation::Check check;
+  check.rig_name = "plate";
+  check.duration_s = {300, 360, 480};
+  check.blocks = {{"session 2, group trained", 2, "trained", "main", "speed", false, {20, 20, 20}}};
+  const auto said = [&](const char* language) {
+    std::vector<std::string> lines;
+    for (const auto& [label, value] : desk::words_of(check).facts)
+      lines.push_back(texts::say(label, language) + ": " + texts::say(value, language));
+    return lines;
+  };
+  using Lines = std::vector<std::string>;
+  CHECK(said("en") == Lines{"Rig: plate", "Trials: 0", "Duration: 6 (5 to 8) min",
+                            "Block: session 2, group trained: main (speed), trials: 20"});
+  CHECK(said("de") == Lines{"Aufbau: plate", "Durchgänge: 0", "Dauer: 6 (5 bis 8) min",
+                            "Block: Sitzung 2, Gruppe trained: main (speed), Durchgänge: 20"});
 }
 
 TEST_CASE("a check that is no longer wanted is abandoned before it plans anything", "[operator]") {
@@ -383,7 +349,7 @@ TEST_CASE("a check that is no longer wanted is abandoned before it plans anythin
 
 TEST_CASE("preparing a session that is no longer wanted is abandoned before it plans anything",
           "[operator]") {
-  const Folder folder;
+  const TemporaryFolder folder;
   std::stop_source stop;
   CHECK(setup::prepare(demo_in(folder), stop.get_token()).participant == "P09");
   stop.request_stop();

@@ -1,6 +1,8 @@
 #include <algorithm>
 #include <cmath>
+#include <set>
 #include <stdexcept>
+#include <string>
 
 #include "station/desk/preview.hpp"
 #include "station/desk/scene_figures.hpp"
@@ -59,6 +61,9 @@ TEST_CASE("the chart of friction under a fingertip shows the loaded surface", "[
     return *std::min_element(y.begin(), y.end());
   };
   CHECK(figure.charts.at(1).title == "Friction under a fingertip");
+  const auto german = desk::profile_figure({look}, "de");
+  CHECK(german.charts.at(1).title == "Reibung unter einer Fingerkuppe");
+  CHECK(german.charts.at(0).x.label == "Abstand vom breiten Ende (mm)");
   CHECK(lowest(1) == look.under.lowest_friction);
   const auto& free = look.profile.friction;
   CHECK(lowest(1) > *std::min_element(free.begin(), free.end()) + 0.1);
@@ -91,8 +96,31 @@ TEST_CASE("a preview has its boundary where the factors put it, and the displace
   // The boundary is that of the lossless first mode. The profile includes loss and is sampled every 0.75 mm,
   // so the two agree only roughly.
   CHECK(profile.displacement_m[at] / *last_peak == Approx(0.5).margin(0.05));
-  CHECK(look.facts.front().second.find("159 mm") != std::string::npos);
+  CHECK(texts::say(look.facts.front().second, "en").find("159 mm") != std::string::npos);
   CHECK_FALSE(look.cues.empty());
+}
+
+TEST_CASE("the plan and the cues of a scene are said in the language of the screen", "[preview]") {
+  auto preview = preview_of("demo");
+  const auto look = preview.look("edge", factors(preview, {"offset_mm=9"}));
+  const auto said = [](const auto& facts, const char* language) {
+    std::string all;
+    for (const auto& [label, value] : facts)
+      all += texts::say(label, language) + ": " + texts::say(value, language) + "\n";
+    return all;
+  };
+  CHECK(said(look.facts, "en").find("Model error: at most ") != std::string::npos);
+  CHECK(said(look.facts, "de").find("Modellfehler: h\u00f6chstens ") != std::string::npos);
+  CHECK(said(look.facts, "de").find("\nOberfl\u00e4che: h\u00f6chstens ") != std::string::npos);
+  CHECK(said(look.cues, "en").find("Stripes at the wide end: ") != std::string::npos);
+  // These are the same in both languages.
+  const std::set<std::string> same{"de preview.mm_sd", "es preview.inaudible"};
+  for (const std::string language : {"de", "es", "ja", "zh", "ar"})
+    for (const auto* facts : {&look.facts, &look.cues})
+      for (const auto& [label, value] : *facts)
+        if (!value.key.empty() && same.count(language + " " + value.key) == 0)
+          CHECK(texts::say(value, language) != texts::say(value, "en"));
+  CHECK(desk::spectrum_figure(look, "de").charts.front().title == "Ansteuerung");
 }
 
 TEST_CASE("what a rig cannot present is reported as a problem of the preview, in words", "[preview]") {

@@ -31,11 +31,11 @@ struct Card {
 
   /// Takes all blocks that are waiting, and checks that they are in order.
   void take() {
-    while (capture->take(block)) {
-      CHECK(block.first_frame >= next);
-      next = block.first_frame + block.count / channels;
-      numbering = block.numbering;
-      const auto used = block.used();
+    while (const auto* block = capture->take()) {
+      CHECK(block->first_frame >= next);
+      next = block->first_frame + block->count / channels;
+      numbering = block->numbering;
+      const auto used = block->used();
       for (std::size_t n = 0; n < used.size(); n += static_cast<std::size_t>(channels))
         times.push_back(used[n]), last.push_back(used[n + static_cast<std::size_t>(channels) - 1]);
     }
@@ -43,7 +43,6 @@ struct Card {
 
   int channels;
   std::unique_ptr<DeviceCapture> capture;
-  CapturedBlock block;
   std::int64_t next = 0;
   std::uint32_t numbering = 0;
   std::vector<std::int32_t> times, last;

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cerrno>
 #include <cstddef>
 #include <cstdio>
 
@@ -82,6 +83,11 @@ void* realloc(void* memory, std::size_t size) {
 }
 void* aligned_alloc(std::size_t alignment, std::size_t size) {
   return note_taken(__libc_memalign(alignment, size), size);
+}
+// used by aligned operator new of libstdc++ 14, where that of libstdc++ 12 uses aligned_alloc()
+int posix_memalign(void** memory, std::size_t alignment, std::size_t size) noexcept {
+  *memory = note_taken(__libc_memalign(alignment, size), size);
+  return *memory ? 0 : ENOMEM;
 }
 void free(void* memory) {
   note_given_back(memory);

@@ -124,8 +124,8 @@ std::vector<session::Onset> Room::present(std::span<const drive::PreparedBurst> 
   return onsets;
 }
 
-std::int64_t Room::silence() {
-  quiet_ns_ = inner_->silence();
+std::int64_t Room::silence(bool awaits_heard) {
+  quiet_ns_ = inner_->silence(awaits_heard);
   for (auto& [from_ns, until_ns] : stimuli_) until_ns = std::min(until_ns, quiet_ns_);
   return quiet_ns_;
 }

@@ -70,7 +70,7 @@ class Room : public turnpoint::session::Stage, public turnpoint::session::Displa
   std::optional<std::int64_t> glide(const turnpoint::drive::ToneSet& to, double seconds) override {
     return inner_->glide(to, seconds);
   }
-  std::int64_t silence() override;
+  std::int64_t silence(bool awaits_heard) override;
   Refusal arm() override;
   void disarm() override;
   Refusal clear() override;

@@ -9,6 +9,7 @@
 //   FAULT_LOG=FILE       gets a line "N CALL r|w|a PATH" for each call: r reads, w needs space, a changes
 //                        something else
 //   CLOCK_OFFSET_S=S     the wall clock is ahead by S seconds (negative: behind)
+//   CLOCK_SET_AFTER=N    this begins after the program has read the wall clock N times, as if it was set then
 #include <dirent.h>
 #include <dlfcn.h>
 #include <fcntl.h>
@@ -36,7 +37,7 @@ struct Settings {
   long at = 0;
   bool kills = false, fills = false;
   int log = -1;
-  long clock_offset_s = 0;
+  long clock_offset_s = 0, clock_set_after = 0;
 };
 
 std::string variable(const char* name) {
@@ -51,6 +52,7 @@ Settings read_settings() {
   settings.kills = variable("FAULT_KIND") == "kill";
   settings.fills = variable("FAULT_KIND") == "ENOSPC";
   settings.clock_offset_s = std::atol(variable("CLOCK_OFFSET_S").c_str());
+  settings.clock_set_after = std::atol(variable("CLOCK_SET_AFTER").c_str());
   if (const auto log = variable("FAULT_LOG"); !log.empty())
     settings.log = static_cast<int>(
         ::syscall(SYS_openat, AT_FDCWD, log.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0600));
@@ -292,7 +294,9 @@ int gethostname(char* name, size_t size) noexcept {
 
 int clock_gettime(clockid_t clock, struct timespec* time) {
   const int result = static_cast<int>(::syscall(SYS_clock_gettime, clock, time));
-  if (result == 0 && clock == CLOCK_REALTIME) time->tv_sec += settings().clock_offset_s;
+  static std::atomic<long> readings = 0;
+  if (result == 0 && clock == CLOCK_REALTIME && readings++ >= settings().clock_set_after)
+    time->tv_sec += settings().clock_offset_s;
   return result;
 }
 

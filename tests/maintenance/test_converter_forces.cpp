@@ -246,7 +246,7 @@ TEST_CASE("the calibration of cells on a converter names a wire that is off and 
     room.converter->step_ns = 1'100'000;
     CHECK_THROWS_WITH(reader.read(weight),
                       "iio:cells sends 909.1 samples a second, and rate_Hz in [force_cells] is 1000");
-    CHECK(session::wrong_rate("cells", 1000, 1010).empty());
+    CHECK_FALSE(session::wrong_rate("cells", 1000, 1010));
   }
 }
 

@@ -1,4 +1,5 @@
 #include <fstream>
+#include <regex>
 
 #include "station/maintenance/doctor.hpp"
 #include "tests/support/catch.hpp"
@@ -6,6 +7,50 @@
 
 using namespace turnpoint;
 using Status = lines::Finding::Status;
+
+namespace {
+
+std::string english(const texts::Phrase& phrase) { return texts::say(phrase, "en"); }
+
+/// Parts of a phrase that are the same in every language although they are several words in a row.
+std::vector<std::string> untranslated(const texts::Phrase& phrase) {
+  static const std::regex words("[A-Za-z]{2,} [a-z]{2,} [a-z]{2,}");
+  std::vector<std::string> found;
+  if (phrase.key.empty() && std::regex_search(phrase.words, words)) found.push_back(phrase.words);
+  // What the system reported stays as it is.
+  if (phrase.key != "doctor.reported" && phrase.key != "doctor.touch_missing")
+    for (const auto& value : phrase.values)
+      for (auto& part : untranslated(value)) found.push_back(std::move(part));
+  return found;
+}
+
+}  // namespace
+
+TEST_CASE("each finding of the doctor is said in the language of the screen, and as before in English",
+          "[maintenance][doctor]") {
+  const TemporaryFolder folder;
+  auto rig = rig::load(TURNPOINT_SOURCE_DIR "/deploy/rigs/simulated-forces.toml");
+  rig.amplifier_uri = "gpio:enable=no-such-line,heartbeat=neither";
+  rig.buttons_uri = "gpio:left=nor-this";
+  rig.contact_uri = "evdev:no such sensor";
+  rig.output.uri = "alsa:hw:CARD=nosuchcard";
+  const auto findings = maintenance::examine(rig, folder.path);
+  CHECK(findings.size() > 12);
+  for (const auto& finding : findings)
+    for (const auto* part : {&finding.name, &finding.what, &finding.mend}) {
+      INFO(english(*part));
+      CHECK(untranslated(*part) == std::vector<std::string>());
+    }
+  const auto said = [&](const std::string& name, const char* language) {
+    for (const auto& finding : findings)
+      if (english(finding.name) == name) return texts::say(finding.what, language);
+    return "no finding " + name;
+  };
+  CHECK(said("amplifier enable", "en") == "no GPIO chip has a line named no-such-line");
+  CHECK(said("amplifier enable", "de") == "kein GPIO-Baustein hat eine Leitung namens no-such-line");
+  CHECK(said("contact", "en") == "input device 'no such sensor': No such file or directory");
+  CHECK(said("converter", "de") == "Meldung: " + said("converter", "en"));
+}
 
 TEST_CASE("the doctor fails if the machine swaps, and says how to switch swapping off",
           "[maintenance][doctor]") {
@@ -18,8 +63,9 @@ TEST_CASE("the doctor fails if the machine swaps, and says how to switch swappin
                       << "/dev/zram0                              partition\t2097136\t\t0\t\t100\n";
   const auto found = maintenance::check_swap(file);
   CHECK(found.status == Status::failed);
-  CHECK(found.what == "on: /var/swap, /dev/zram0");
-  CHECK(found.mend.find("sudo swapoff -a") != std::string::npos);
+  CHECK(english(found.what) == "on: /var/swap, /dev/zram0");
+  CHECK(texts::say(found.what, "de") == "an: /var/swap, /dev/zram0");
+  CHECK(english(found.mend).find("sudo swapoff -a") != std::string::npos);
   CHECK_FALSE(maintenance::fit_for_use({found}));
   // an unreadable file must not count as "off"
   CHECK(maintenance::check_swap(folder / "nothing").status == Status::warning);
@@ -32,7 +78,7 @@ TEST_CASE("the doctor says whether the hardware watchdog is in use", "[maintenan
   std::ofstream(folder / "watchdog0/state") << "inactive\n";
   const auto idle = maintenance::check_watchdog(folder.path);
   CHECK(idle.status == Status::warning);
-  CHECK(idle.mend.find("watchdog.conf") != std::string::npos);
+  CHECK(english(idle.mend).find("watchdog.conf") != std::string::npos);
   std::ofstream(folder / "watchdog0/state") << "active\n";
   CHECK(maintenance::check_watchdog(folder.path).status == Status::ok);
 }

@@ -92,6 +92,31 @@ TEST_CASE("dead weights in the simulated room calibrate forces to 0.1 % and posi
   CHECK(again.matrix == result.cells.matrix);
   CHECK(again.changes == result.cells.changes);
   CHECK(again.rated_ratio == result.cells.rated_ratio);
+  CHECK(again.usable_Hz == result.cells.usable_Hz);
+}
+
+TEST_CASE("taps on the plate show up to which frequency forces are right", "[maintenance][forces][tap]") {
+  const TemporaryFolder folder;
+  const auto rig = rig::load(measured::with_capture(folder, measured::kCells));
+  const auto with = [&](double normal_Hz, double lateral_Hz, double damping) {
+    const auto laboratory = [&](plant::Setup& room) {
+      room.cells.normal_Hz = normal_Hz, room.cells.lateral_Hz = lateral_Hz, room.cells.damping = damping;
+    };
+    return weigh(rig, *open_bridges(rig, laboratory), kReady, [](const std::string&) { return true; });
+  };
+  const auto usual = with(56, 180, 0.05);
+  CHECK(usual.resonance_Hz.value() == Approx(56).epsilon(0.02));
+  CHECK(usual.cells.usable_Hz.value() == Approx(usual.resonance_Hz.value() / 3));
+  CHECK(with(150, 90, 0.02).cells.usable_Hz.value() == Approx(30).epsilon(0.02));
+  CHECK_FALSE(with(56, 180, 2).cells.usable_Hz);
+
+  int asked = 0;
+  const auto without_taps = [&](const WeightStep& step) {
+    asked += step.tap == maintenance::Tap::none ? 0 : 1;
+    return step.tap == maintenance::Tap::none;
+  };
+  CHECK_FALSE(weigh(rig, *open_bridges(rig), without_taps, kGiveUp).cells.usable_Hz);
+  CHECK(asked == 2);
 }
 
 TEST_CASE("what is wrong with the cells or their wires is named", "[maintenance][forces]") {
@@ -126,7 +151,7 @@ TEST_CASE("a failed reading can be repeated, steps can be left out, and a moving
   CHECK(repeated.steps.size() == 32);
   for (const auto& rest : repeated.residuals) CHECK(std::abs(rest.normal_N) < 1e-9);
   bridges.reads = 0;
-  CHECK_THROWS_WITH(weigh(rig, bridges, kReady, kGiveUp), Catch::Contains("cell b"));
+  CHECK_THROWS_WITH(weigh(rig, bridges, kReady, kGiveUp), Catch::Matchers::ContainsSubstring("cell b"));
   bridges.fails_at = -1;
   const auto some = [](const WeightStep& step) { return step.tare || step.mass_g == 200; };
   CHECK(weigh(rig, bridges, some, kGiveUp).steps.size() == 17);
@@ -134,7 +159,8 @@ TEST_CASE("a failed reading can be repeated, steps can be left out, and a moving
                       rig, bridges, [](const WeightStep& step) { return step.tare; }, kGiveUp),
                   terms::UsageError);
   bridges.creep_N = 5e-3;
-  CHECK_THROWS_WITH(weigh(rig, bridges, kReady, kGiveUp), Catch::Contains("the zero of the cells moved"));
+  CHECK_THROWS_WITH(weigh(rig, bridges, kReady, kGiveUp),
+                    Catch::Matchers::ContainsSubstring("the zero of the cells moved"));
 }
 
 TEST_CASE("a weight that does not agree with the others is named and weighed again",
@@ -161,7 +187,7 @@ TEST_CASE("a weight that does not agree with the others is named and weighed aga
   };
   const auto why = "50 g at 90 mm does not agree with the other weights: " + said;
   if (always) {
-    CHECK_THROWS_WITH(weigh(rig, bridges, asked, kGiveUp), Catch::StartsWith(why));
+    CHECK_THROWS_WITH(weigh(rig, bridges, asked, kGiveUp), Catch::Matchers::StartsWith(why));
   } else {
     const auto made = weigh(rig, bridges, asked, kGiveUp);
     REQUIRE(made.repeated.size() == 1);
@@ -170,7 +196,7 @@ TEST_CASE("a weight that does not agree with the others is named and weighed aga
     for (const auto& rest : made.residuals) CHECK(std::abs(rest.position_mm) < 1e-6);
   }
   REQUIRE(remarks.size() == 1);
-  CHECK_THAT(remarks[0], Catch::StartsWith(why));
+  CHECK_THAT(remarks[0], Catch::Matchers::StartsWith(why));
 }
 
 TEST_CASE("a forgotten string, a swinging weight and a shaken table are refused", "[maintenance][forces]") {
@@ -179,15 +205,16 @@ TEST_CASE("a forgotten string, a swinging weight and a shaken table are refused"
   ExactBridges bridges;
   bridges.room.cells.span_m = rig.surface.length_m;
   bridges.mistake = [](WeightStep& step, int) { step.pull_g = 0; };
-  CHECK_THROWS_WITH(weigh(rig, bridges, kReady, kGiveUp), Catch::Contains("string"));
+  CHECK_THROWS_WITH(weigh(rig, bridges, kReady, kGiveUp), Catch::Matchers::ContainsSubstring("string"));
   bridges.mistake = [](auto&, int) {};
   bridges.reads = 0;
   bridges.noise = [](int read) { return read == 7 ? 1.2e-4 : 1e-5; };
   CHECK_THROWS_WITH(weigh(rig, bridges, kReady, kGiveUp),
-                    Catch::Contains("cell a did not rest: it varied 12 times"));
+                    Catch::Matchers::ContainsSubstring("cell a did not rest: it varied 12 times"));
   bridges.reads = 0;
   bridges.noise = [](int) { return 2.5e-3 * 0.057; };
-  CHECK_THROWS_WITH(weigh(rig, bridges, kReady, kGiveUp), Catch::Contains("are not steady without a weight"));
+  CHECK_THROWS_WITH(weigh(rig, bridges, kReady, kGiveUp),
+                    Catch::Matchers::ContainsSubstring("are not steady without a weight"));
 }
 
 TEST_CASE("the stated uncertainty is that of the places, the masses and the pulley",

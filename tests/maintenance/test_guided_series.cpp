@@ -5,7 +5,11 @@
 
 #include "station/calibration/apply.hpp"
 #include "station/maintenance/guided_series.hpp"
+#include "station/maintenance/panel_latency.hpp"
+#include "station/sensing/pick_up.hpp"
+#include "station/session/simulated_room.hpp"
 #include "station/system/read_file.hpp"
+#include "station/system/write_file.hpp"
 #include "station/terms/usage_error.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/temporary_folder.hpp"
@@ -15,10 +19,10 @@ using maintenance::Series;
 
 namespace {
 
-rig::Rig rig_in(const TemporaryFolder& folder) {
+rig::Rig rig_in(const TemporaryFolder& folder, const std::string& name = "simulated") {
   const auto path = folder / "plate.toml";
   if (!std::filesystem::exists(path))
-    std::filesystem::copy_file(std::string(TURNPOINT_SOURCE_DIR) + "/deploy/rigs/simulated.toml", path);
+    std::filesystem::copy_file(std::string(TURNPOINT_SOURCE_DIR) + "/deploy/rigs/" + name + ".toml", path);
   return rig::load(path);
 }
 
@@ -84,4 +88,61 @@ TEST_CASE("boundaries that the physics predicts are fitted without a large chang
   REQUIRE(result.made.boundary.has_value());
   CHECK(result.made.boundary->points.size() == points.size());
   CHECK(result.figure.charts.size() == 2);
+}
+
+TEST_CASE("while a tone of a series plays, the pick-ups are read, in um once their scale is calibrated",
+          "[maintenance]") {
+  const TemporaryFolder folder;
+  const auto rig = rig_in(folder, "simulated-forces");
+  REQUIRE(maintenance::reads_tones(rig));
+  const auto points = maintenance::series_points(rig, Series::response);
+  const auto& point = points[points.size() / 2];
+  std::vector<std::vector<maintenance::ToneReading>> seen;
+  const auto play = [&] {
+    seen.clear();
+    maintenance::play_point(rig, point, {}, [&](const auto& readings) { seen.push_back(readings); });
+  };
+  play();
+  CHECK(seen.size() >= 15);  // five a second, for 4 s
+  const auto plate = session::SimulatedRoom(rig).capture();
+  for (std::size_t k = 0; k < rig.capture->pick_ups.size(); ++k) {
+    const auto& reading = seen.at(seen.size() / 2).at(k);
+    CHECK(reading.channel == rig.capture->pick_ups[k]);
+    CHECK_FALSE(reading.displacement_um.has_value());
+    const auto response = sensing::response(plate.pick_ups[k], 0, point.frequency_Hz);
+    CHECK(std::abs(reading.amplitude / (point.full_scale * std::abs(response.value())) - 1) < 0.01);
+  }
+
+  auto made = maintenance::known_calibration(rig);
+  calibration::PickUp pick_up;
+  pick_up.response.channel = rig.capture->pick_ups[0];
+  pick_up.response.points = {{30e3, 0.1, 0}, {31e3, 0.1, 0}};
+  pick_up.scale = calibration::PickUpScale{calibration::PickUpSensor::patch, 10, 30e3, 0, 0.02};
+  made.pick_ups = {pick_up};
+  system::write_file(calibration::file_for(rig.path, calibration::today()), calibration::to_toml(made));
+  play();
+  const auto& reading = seen.at(seen.size() / 2).at(0);
+  CHECK(std::abs(reading.displacement_um.value() / (10 * reading.amplitude) - 1) < 1e-9);
+}
+
+TEST_CASE("a tone of a series can be stopped", "[maintenance]") {
+  const TemporaryFolder folder;
+  const auto rig = rig_in(folder, "simulated-forces");
+  std::stop_source stop;
+  int readings = 0;
+  maintenance::play_point(rig, maintenance::series_points(rig, Series::sound).front(), stop.get_token(),
+                          [&](const auto&) {
+                            if (++readings == 2) stop.request_stop();
+                          });
+  CHECK(readings <= 3);
+}
+
+TEST_CASE("a rig without pick-ups only plays, and reads nothing", "[maintenance]") {
+  const TemporaryFolder folder;
+  const auto rig = rig_in(folder);
+  CHECK_FALSE(maintenance::reads_tones(rig));
+  int readings = 0;
+  maintenance::play_point(rig, maintenance::series_points(rig, Series::sound).front(), {},
+                          [&](const auto&) { ++readings; });
+  CHECK(readings == 0);
 }

@@ -178,6 +178,26 @@ TEST_CASE("ratings of signal and noise overlap as d' predicts", "[observer]") {
   CHECK(area > whole - 0.02);
 }
 
+TEST_CASE(
+    "confidence rests on the same evidence as the answer, so that the least sure are right by chance or more",
+    "[observer]") {
+  const Observer observer(parse("sim:threshold=1,lapse=0"));
+  auto question = at_level(1);
+  question.confidence = 4;
+  std::vector<int> right(5), all(5);
+  for (int trial = 0; trial < 20'000; ++trial) {
+    question.key.trial = trial;
+    const auto reply = observer.answer(question);
+    const auto degree = static_cast<std::size_t>(*reply.confidence);
+    ++all[degree], right[degree] += *reply.choice == 0;
+  }
+  // The evidence has mean z(.75) = .674 and SD 1. Answers are right if it is positive; degrees are .5 apart.
+  // For example, the least sure have evidence between -.5 and .5, and between 0 and .5 if they are right.
+  const double expected[]{0.582, 0.729, 0.839, 0.932};
+  for (std::size_t degree = 1; degree <= 4; ++degree)
+    CHECK(static_cast<double>(right[degree]) / all[degree] == Approx(expected[degree - 1]).margin(0.03));
+}
+
 TEST_CASE("a deadline lowers the bound so that few decisions come too late", "[observer]") {
   const Observer observer(parse("sim:threshold=1,lapse=0"));
   auto question = at_level(0);

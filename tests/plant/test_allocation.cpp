@@ -30,10 +30,10 @@ TEST_CASE("advancing allocates no memory, whatever fails", "[plant]") {
   Plant plant(setup);
   plant.set_tones({30e3, 36e3});
   std::int64_t from = 1000;
-  for (const auto kind :
-       {FaultKind::transducer_dead, FaultKind::transducer_half, FaultKind::resonance_off,
-        FaultKind::frequency_off, FaultKind::drive_late, FaultKind::clip, FaultKind::broken_bridge,
-        FaultKind::no_reference, FaultKind::finger_lifts, FaultKind::gap, FaultKind::warmer}) {
+  for (const auto kind : {FaultKind::transducer_dead, FaultKind::transducer_half, FaultKind::resonance_off,
+                          FaultKind::frequency_off, FaultKind::drive_late, FaultKind::clip,
+                          FaultKind::broken_bridge, FaultKind::no_reference, FaultKind::finger_lifts,
+                          FaultKind::gap, FaultKind::warmer, FaultKind::sounding}) {
     plant.add({kind, from, from + 2500});
     from += 1000;
   }

@@ -38,7 +38,8 @@ TEST_CASE("each kind of fault has a name", "[plant]") {
   CHECK(name(FaultKind::transducer_dead) == "transducer dead");
   CHECK(name(FaultKind::broken_bridge) == "broken bridge");
   CHECK(name(FaultKind::warmer) == "warmer");
-  for (int k = 0; k <= static_cast<int>(FaultKind::warmer); ++k)
+  CHECK(name(FaultKind::sounding) == "sounding");
+  for (int k = 0; k <= static_cast<int>(FaultKind::sounding); ++k)
     CHECK(find_fault(name(static_cast<FaultKind>(k))) == static_cast<FaultKind>(k));
   CHECK_FALSE(find_fault("dead"));
 }
@@ -127,6 +128,16 @@ TEST_CASE("a late drive comes 5 ms later, and the carrier does not", "[plant]") 
   };
   CHECK(first(false) == std::pair(1000 + kDelay, 1000 + kDelay));
   CHECK(first(true) == std::pair(1000 + kDelay + 960, 1000 + kDelay));
+}
+
+TEST_CASE("a drive that sounds by itself moves the edge at its own frequency, beside what is played",
+          "[plant]") {
+  Setup setup = quiet_setup();
+  setup.pickups = {{5, 0, 0.1, 0}};
+  const Trial trial({FaultKind::sounding, kAt, kNever, 0.02}, setup);
+  CHECK(trial.before(kPickup, 27e3) < 1e-7);
+  CHECK(trial.after(kPickup, 27e3) == Approx(0.02 * 0.1).epsilon(1e-3));
+  CHECK(std::abs(trial.change_dB(kPickup, 30e3)) < 1e-3);
 }
 
 TEST_CASE("clipping limits the drive and adds a third harmonic", "[plant]") {

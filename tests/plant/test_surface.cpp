@@ -191,3 +191,16 @@ TEST_CASE("warmth lowers the pick-ups' resonances by the closed form", "[plant]"
     CHECK(std::abs(warm.pickup_response(1, f * scale) - cold.pickup_response(1, f)) < 2e-3);
   }
 }
+
+TEST_CASE("a surface that nothing drives comes to rest, instead of moving by the smallest numbers for ever",
+          "[plant]") {
+  const Setup setup = quiet_setup();
+  const std::vector<double> x_m{0.003, 0.009};
+  PickupFilter filter(surface_response(setup.surface, x_m, setup.band_low_Hz, setup.band_high_Hz), kRate_Hz,
+                      1);
+  for (std::int64_t n = 0; n < 1000; ++n) filter.step(cosine(31e3, n));
+  CHECK(filter.output(0) != 0);
+  for (int n = 0; n < 192000; ++n) filter.step(0);
+  CHECK(filter.output(0) == 0);
+  CHECK(filter.output(1) == 0);
+}

@@ -10,7 +10,7 @@
 #include "tests/support/catch.hpp"
 
 using namespace turnpoint;
-using Catch::Matchers::Contains;
+using Catch::Matchers::ContainsSubstring;
 
 namespace {
 
@@ -54,9 +54,10 @@ TEST_CASE("the argument of --observer names a program, its limit and its setting
     CHECK_THROWS_AS(programs::parse_program("--observer", wrong), terms::UsageError);
   const TemporaryFolder folder;
   CHECK(programs::located("sim:slope=2") == "sim:slope=2");
-  CHECK_THROWS_WITH(programs::located("program:" + (folder / "absent")), Contains("there is no such file"));
+  CHECK_THROWS_WITH(programs::located("program:" + (folder / "absent")),
+                    ContainsSubstring("there is no such file"));
   std::ofstream(folder / "plain") << "";
-  CHECK_THROWS_WITH(programs::located("program:" + (folder / "plain")), Contains("not executable"));
+  CHECK_THROWS_WITH(programs::located("program:" + (folder / "plain")), ContainsSubstring("not executable"));
   const auto here = std::filesystem::current_path();
   written_program(folder / "observer", shell_observer());
   std::filesystem::current_path(folder.path);
@@ -116,7 +117,7 @@ TEST_CASE("a reply that no participant could give is refused, and the next quest
           std::string(reply) + "}\"; }"));
   std::ofstream(folder / "bad") << "";
   const auto observer = programs.respondent("program:" + path);
-  CHECK_THROWS_WITH(observer.answer(question()), Contains(says));
+  CHECK_THROWS_WITH(observer.answer(question()), ContainsSubstring(says));
   CHECK(observer.answer(question()).choice == 0);
 }
 
@@ -147,12 +148,13 @@ TEST_CASE("numbers, confidence and settings of a slider come from a program too"
   CHECK(reply.confidence == 3);
   CHECK(reply.confidence_time_s == 0.25);
   number.value->high = 12;
-  CHECK_THROWS_WITH(observer.answer(number), Contains("\"value\" is 12.5; allowed are 0 to 12"));
+  CHECK_THROWS_WITH(observer.answer(number), ContainsSubstring("\"value\" is 12.5; allowed are 0 to 12"));
   const auto setting = observer.adjust({1, 0, 5, {}});
   REQUIRE(setting.moves.size() == 2);
   CHECK(setting.moves[1].value == 3);
   CHECK(setting.done_s == 2);
-  CHECK_THROWS_WITH(observer.adjust({1, 0, 2.5, {}}), Contains("\"value\" is 3; allowed are 0 to 2.5"));
+  CHECK_THROWS_WITH(observer.adjust({1, 0, 2.5, {}}),
+                    ContainsSubstring("\"value\" is 3; allowed are 0 to 2.5"));
 }
 
 TEST_CASE("a program answers a whole session; if it dies, the session is interrupted and continues later",
@@ -174,7 +176,7 @@ TEST_CASE("a program answers a whole session; if it dies, the session is interru
     session.setup.observer = "program:" + (session.folder / "o");
     const auto broken = session.run();
     CHECK(broken.status == records::SessionStatus::interrupted);
-    CHECK_THAT(broken.reason, Contains("ended with status 2"));
+    CHECK_THAT(broken.reason, ContainsSubstring("ended with status 2"));
     CHECK(session.rows(broken.session_id).size() == static_cast<std::size_t>(at - 2));
     CHECK(session.resume(broken.session_id).status == records::SessionStatus::completed);
     CHECK(session.rows(broken.session_id) == whole);

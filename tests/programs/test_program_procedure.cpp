@@ -17,7 +17,7 @@ using procedure::Answer;
 namespace {
 
 const std::string kSource = TURNPOINT_SOURCE_DIR;
-using Catch::Matchers::Contains;
+using Catch::Matchers::ContainsSubstring;
 
 /// Answers a procedure until it is done; every `nth` answer is wrong, and one in 13 is missing.
 std::vector<double> levels_of(procedure::Procedure& procedure, int nth, int most = 1000) {
@@ -100,7 +100,7 @@ TEST_CASE("a program that is killed and started again continues with the same le
         const auto i = static_cast<int>(levels.size());
         procedure->record(i % 13 == 0 ? Answer::none : i % 4 == 0 ? Answer::zero : Answer::one);
       } catch (const terms::ProgramFailed& failed) {
-        CHECK_THAT(failed.what(), Contains("killed by signal 9"));
+        CHECK_THAT(failed.what(), ContainsSubstring("killed by signal 9"));
         REQUIRE(++failures == 1);
       }
     CHECK(failures == 1);
@@ -151,7 +151,7 @@ TEST_CASE("whatever else a program does is refused with its reason", "[programs]
   programs::Programs programs(folder / "protocol.toml");
   const auto procedure =
       programs.procedure(program_spec(written_program(folder / "p", shell_procedure(before)), 40), {});
-  CHECK_THROWS_WITH(levels_of(*procedure, 4), Contains(says) && Contains(folder / "p"));
+  CHECK_THROWS_WITH(levels_of(*procedure, 4), ContainsSubstring(says) && ContainsSubstring(folder / "p"));
 }
 
 TEST_CASE("a reply to another question is refused", "[programs]") {
@@ -161,11 +161,12 @@ TEST_CASE("a reply to another question is refused", "[programs]") {
   const auto path = written_program(
       folder / "p", shell_procedure("[ $n = 4 ] && echo '{\"id\":2,\"type\":\"level\",\"level\":-5}'"));
   const auto procedure = programs.procedure(program_spec(path, 40), {});
-  CHECK_THROWS_WITH(levels_of(*procedure, 4), Contains("to question 3; \"id\" must be that of the question"));
+  CHECK_THROWS_WITH(levels_of(*procedure, 4),
+                    ContainsSubstring("to question 3; \"id\" must be that of the question"));
   const auto without = written_program(
       folder / "q", shell_procedure("[ $n = 4 ] && echo '{\"type\":\"level\",\"level\":-5}'"));
   CHECK_THROWS_WITH(levels_of(*programs.procedure(program_spec(without, 40), {}), 4),
-                    Contains("\"id\" must be a finite number"));
+                    ContainsSubstring("\"id\" must be a finite number"));
 }
 
 TEST_CASE("a program that is late is refused with the limit of the protocol", "[programs]") {
@@ -174,7 +175,7 @@ TEST_CASE("a program that is late is refused with the limit of the protocol", "[
   const auto path = written_program(folder / "p", shell_procedure("[ $n = 2 ] && sleep 1000"));
   const auto procedure = programs.procedure(program_spec(path, 40, 0.05), {});
   CHECK_FALSE(procedure->ready());
-  CHECK_THROWS_WITH(procedure->next(), Contains("did not reply within 0.05 s"));
+  CHECK_THROWS_WITH(procedure->next(), ContainsSubstring("did not reply within 0.05 s"));
 }
 
 TEST_CASE("a program that gives other levels when it is started again is refused", "[programs]") {
@@ -185,10 +186,10 @@ TEST_CASE("a program that gives other levels when it is started again is refused
       folder / "p", shell_procedure("[ $n = 1 ] && { echo >> starts; right=$(($(wc -l < starts) - 1)); }\n"
                                     "  [ $n = 8 ] && [ $(wc -l < starts) = 1 ] && exit 1"));
   const auto procedure = programs.procedure(program_spec(path, 40), {});
-  CHECK_THROWS_WITH(levels_of(*procedure, 4), Contains("ended with status 1"));
+  CHECK_THROWS_WITH(levels_of(*procedure, 4), ContainsSubstring("ended with status 1"));
   CHECK_THROWS_WITH(
       procedure->next(),
-      Contains("was started again and now gives level -6 in trial 1, in which it gave level -5"));
+      ContainsSubstring("was started again and now gives level -6 in trial 1, in which it gave level -5"));
 }
 
 TEST_CASE("the problems of a protocol's programs stand at their places", "[programs]") {
@@ -202,11 +203,12 @@ TEST_CASE("the problems of a protocol's programs stand at their places", "[progr
   CHECK(
       problems[0].place.line ==
       1 + std::count(source.begin(), source.begin() + static_cast<long>(source.find("program = \"")), '\n'));
-  CHECK_THAT(problems[0].what, Contains("/nowhere/programs/one_up_two_down.py: there is no such file"));
+  CHECK_THAT(problems[0].what,
+             ContainsSubstring("/nowhere/programs/one_up_two_down.py: there is no such file"));
   const auto wrong =
       protocol::parse(replaced(source, "start = -5.0", "begin = -5.0"), kSource + "/protocols/p.toml");
   REQUIRE(programs::problems_of(wrong).size() == 1);
-  CHECK_THAT(programs::problems_of(wrong)[0].what, Contains("KeyError: 'start'"));
+  CHECK_THAT(programs::problems_of(wrong)[0].what, ContainsSubstring("KeyError: 'start'"));
 }
 
 TEST_CASE("without somebody who starts programs, a program cannot be a procedure", "[programs]") {

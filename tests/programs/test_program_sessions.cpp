@@ -12,7 +12,7 @@
 #include "tests/support/catch.hpp"
 
 using namespace turnpoint;
-using Catch::Matchers::Contains;
+using Catch::Matchers::ContainsSubstring;
 
 namespace {
 
@@ -70,8 +70,9 @@ TEST_CASE("a session takes its levels from a program, and stores which program i
   }));
   store::export_data(session.setup.database, session.folder / "csv", {});
   CHECK_THAT(system::read_file(session.folder / "csv/live/programs.csv"),
-             Contains(",procedure,levels,shell,1,"));
-  CHECK_THAT(system::read_file(session.folder / "csv/live/estimates.csv"), Contains(",levels,threshold,-"));
+             ContainsSubstring(",procedure,levels,shell,1,"));
+  CHECK_THAT(system::read_file(session.folder / "csv/live/estimates.csv"),
+             ContainsSubstring(",levels,threshold,-"));
 }
 
 TEST_CASE("an estimator gets the trials of a session, and only those that count", "[programs][session]") {
@@ -101,7 +102,7 @@ TEST_CASE("an estimator gets the trials of a session, and only those that count"
             .estimates.empty());
   CHECK_THROWS_WITH(programs::estimated_by("program:" + (session.folder / "p") + ",limit_s=0.1",
                                            session.setup.protocol, blocks),
-                    Contains("did not reply within"));
+                    ContainsSubstring("did not reply within"));
 }
 
 TEST_CASE("a session is resumed as if its program had never failed, whenever that was",
@@ -116,7 +117,7 @@ TEST_CASE("a session is resumed as if its program had never failed, whenever tha
     std::ofstream(session.folder / "flag") << "";
     const auto broken = session.run();
     CHECK(broken.status == records::SessionStatus::interrupted);
-    CHECK_THAT(broken.reason, Contains("killed by signal 9"));
+    CHECK_THAT(broken.reason, ContainsSubstring("killed by signal 9"));
     const auto before = session.rows(broken.session_id);
     CHECK(before.size() == static_cast<std::size_t>(at < 3 ? 0 : (at - 1) / 2));  // every answer was kept
     if (before.empty()) continue;  // there is nothing to resume
@@ -144,7 +145,7 @@ TEST_CASE(
   std::ofstream(session.folder / "flag") << "";
   const auto broken = session.run();
   CHECK(broken.status == records::SessionStatus::interrupted);
-  CHECK_THAT(broken.reason, Contains(says));
+  CHECK_THAT(broken.reason, ContainsSubstring(says));
   CHECK(session.rows(broken.session_id).size() == 3);
   CHECK(session.resume(broken.session_id).status == records::SessionStatus::completed);
   CHECK(session.rows(broken.session_id) == whole);
@@ -165,7 +166,7 @@ TEST_CASE("a changed program may continue a session only if it gives the stored 
     const auto stored = session.stored(broken.session_id);
     REQUIRE(stored.session.annotations.size() == 1);
     CHECK_THAT(stored.session.annotations[0],
-               Contains("has changed since the session was interrupted: version 1"));
+               ContainsSubstring("has changed since the session was interrupted: version 1"));
     const auto programs = programs_in(stored);
     REQUIRE(programs.size() == 2);
     CHECK(programs[0].sha256 != programs[1].sha256);
@@ -175,9 +176,10 @@ TEST_CASE("a changed program may continue a session only if it gives the stored 
     session.write(replaced(shell_procedure("", "2"), "5 + right", "6 + right"));
     const auto before = session.stored(broken.session_id).session;
     CHECK_THROWS_WITH(session.resume(broken.session_id),
-                      Contains("stored trial 0 cannot be replayed") && Contains("now gives level -6") &&
-                          Contains("has changed since it was stored: its version was 1") &&
-                          Contains("and is 2"));
+                      ContainsSubstring("stored trial 0 cannot be replayed") &&
+                          ContainsSubstring("now gives level -6") &&
+                          ContainsSubstring("has changed since it was stored: its version was 1") &&
+                          ContainsSubstring("and is 2"));
     const auto after = session.stored(broken.session_id).session;
     CHECK(after.status == records::SessionStatus::interrupted);
     CHECK(after.checksum == before.checksum);
@@ -186,12 +188,12 @@ TEST_CASE("a changed program may continue a session only if it gives the stored 
   SECTION("the same file, but other levels") {
     std::ofstream(session.folder / "again") << "";
     CHECK_THROWS_WITH(session.resume(broken.session_id),
-                      Contains("now gives level -8, but level -5 is stored") &&
-                          Contains("does not give the same levels for the same seed and answers"));
+                      ContainsSubstring("now gives level -8, but level -5 is stored") &&
+                          ContainsSubstring("does not give the same levels for the same seed and answers"));
   }
   SECTION("no file: it is refused, and nothing changes") {
     std::filesystem::remove(session.folder / "p");
-    CHECK_THROWS_WITH(session.resume(broken.session_id), Contains("there is no such file"));
+    CHECK_THROWS_WITH(session.resume(broken.session_id), ContainsSubstring("there is no such file"));
     CHECK(session.stored(broken.session_id).session.segments == 1);
   }
 }
@@ -213,7 +215,7 @@ TEST_CASE("a session with people pauses when its program dies, and Continue star
   for (const auto& page : room.pages)
     if (page.kind == PageKind::fault && page.fault == terms::FaultKind::program) faults.push_back(page);
   REQUIRE(faults.size() == 1);
-  CHECK_THAT(faults[0].detail, Contains("ended with status 4: \"out of paper\""));
+  CHECK_THAT(faults[0].detail, ContainsSubstring("ended with status 4: \"out of paper\""));
   // Every answer is "left", which is right for levels below 0, so each level is 1 lower than the one before.
   const auto stored = session.stored(summary.session_id);
   double level = -5;

@@ -71,6 +71,38 @@ TEST_CASE("a protocol that watches the finger needs force cells, and real ones n
   CHECK(contains(found(rig), "the rig has no force cells"));
 }
 
+TEST_CASE("tones whose products come near the carrier of the force cells give a warning with the figures",
+          "[protocol]") {
+  const auto warnings = [](const rig::Rig& rig, const std::string& second_Hz) {
+    const auto text = replaced(
+        source("demo.toml"), "boundary_mm = \"mark_mm + offset_mm\"\nedge = \"p50\"\ndisplacement_um = 1.0\n",
+        "tones = [{ frequency_Hz = 30000, displacement_um = 0.5 }, { frequency_Hz = " + second_Hz +
+            ", displacement_um = 0.5 }]\n");
+    return all_of(
+        protocol::survey(protocol::parse(replaced(text, "boundary_mm = 0.5, ", ""), "p.toml"), rig).warnings);
+  };
+  auto rig = with_cells(quick_rig());
+  const auto told = warnings(rig, "33400");
+  CAPTURE(told);
+  CHECK(contains(told, "p.toml:24:"));
+  CHECK(contains(
+      told,
+      "scene \"edge\" in block \"main\": 3 x 33400 Hz - 3 x 30000 Hz = 10200 Hz is only 325 Hz from the "
+      "carrier of the force cells (10525 Hz)"));
+  CHECK(contains(told, "an oscillation of the force"));
+  CHECK(contains(told, "that of 33400 Hz to 33308 Hz or lower"));
+  CHECK_FALSE(contains(warnings(rig, "33308"), "carrier"));
+  // 3 x 3376 Hz is 397 Hz from the carrier, 3 x 3374 Hz is 403 Hz from it
+  CHECK(contains(warnings(rig, "33376"), "carrier"));
+  CHECK_FALSE(contains(warnings(rig, "33374"), "carrier"));
+  CHECK_FALSE(contains(warnings(quick_rig(), "33400"), "carrier"));
+  rig.capture->forces = rig::ForceCells{};
+  rig.capture->forces->carrier_Hz = 8425;
+  CHECK_FALSE(contains(warnings(rig, "33400"), "carrier"));
+  rig.capture->bridges.clear();
+  CHECK_FALSE(contains(warnings(rig, "33400"), "carrier"));
+}
+
 TEST_CASE("every shipped protocol can be run on the simulated rig, without a warning", "[protocol]") {
   check_shipped(simulated());
 }
@@ -130,6 +162,16 @@ TEST_CASE("devices that the task needs and the rig lacks are named at the key th
   const auto headphones = rig::parse(
       replaced(quick_rig_source(), "[limits]", "[noise]\nchannel = 1\nrms = 0.05\n[limits]"), "r.toml");
   CHECK(problems(masked, headphones).empty());
+  const auto by_tone =
+      replaced(source("response-signal.toml"), "window_s = 0.4", "window_s = 0.4, by = \"tone\"");
+  CHECK(contains(problems(by_tone, headphones),
+                 "p.toml:51:61: the response signal is a tone, but the rig has none"));
+  const auto tone = rig::parse(
+      replaced(
+          quick_rig_source(), "[limits]",
+          "[noise]\nchannel = 1\nrms = 0.05\nsignal = { frequency_Hz = 1000, amplitude = 0.2 }\n[limits]"),
+      "r.toml");
+  CHECK(problems(by_tone, tone).empty());
 }
 
 TEST_CASE("tones that last longer than the rig allows are refused", "[protocol]") {
@@ -232,4 +274,10 @@ TEST_CASE("counts that balance cannot make equal are noted, for one factor and f
         "each of the 2250000 combinations of \"many\" and \"more\" 0 or 1 times; use fewer factors or "
         "fewer levels"));
   }
+}
+
+TEST_CASE("a level that is listed several times is noted once, with how often it comes", "[protocol]") {
+  const auto notes = all_of(protocol::notes(protocol::parse(source("friction-detection.toml"), "p.toml")));
+  CHECK(contains(notes, "the level 0 is listed 3 times, so it is presented 3 times as often"));
+  CHECK(notes.find("is listed") == notes.rfind("is listed"));
 }

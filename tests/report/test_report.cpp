@@ -23,7 +23,7 @@ SessionData head() {
   data.run_mode = "simulated";
   data.status = "completed";
   data.facts = {{"Protocol", "speed-accuracy-change 1.0.0"}};
-  data.health = {{"Underruns", "0"}};
+  data.health = {{texts::plain("Underruns"), texts::plain("0")}};
   data.level_label = "Change of friction";
   data.choices = {"Smoother", "Rougher"};
   data.replicates = 200;

@@ -4,9 +4,8 @@
 
 #include "station/protocol/conditions.hpp"
 #include "station/report/html.hpp"
-#include "station/simulation/rehearsal.hpp"
-#include "station/system/read_file.hpp"
 #include "station/text/toml.hpp"
+#include "tests/report/simulated_report.hpp"
 #include "tests/support/catch.hpp"
 
 // Tests how a protocol file and its stored rows become a report.
@@ -14,30 +13,6 @@
 using namespace turnpoint;
 
 namespace {
-
-std::string shipped(const std::string& name) {
-  return system::read_file(std::string(TURNPOINT_SOURCE_DIR) + "/protocols/" + name + ".toml");
-}
-
-std::string replaced(std::string text, const std::string& from, const std::string& to) {
-  REQUIRE(text.find(from) != std::string::npos);
-  return text.replace(text.find(from), from.size(), to);
-}
-
-report::SessionData data_of(const std::string& source, const std::string& observer = "sim",
-                            int sequence_index = 0) {
-  const auto protocol = protocol::parse(source, "p.toml");
-  const auto rehearsal = simulation::rehearse(
-      protocol, sequence_index, 5, simulation::rehearser(observer::Observer(observer::parse(observer))));
-  report::SessionData data;
-  report::add_trials(rehearsal.blocks, protocol, data);
-  data.replicates = 40;
-  return data;
-}
-
-nlohmann::json report_of(const report::SessionData& data) {
-  return nlohmann::json::parse(report::to_json(report::summarise(data)));
-}
 
 /// A yes/no protocol with a change of friction in half of the trials; `sign` -1 makes the change a decrease.
 std::string yes_no(const std::string& analysis, int sign = 1, int repeats = 40) {
@@ -133,6 +108,61 @@ TEST_CASE("yes/no is analysed as yes/no", "[report]") {
   }
 }
 
+TEST_CASE("yes/no with confidence has the ROC of these ratings, and its area follows from d'", "[report]") {
+  const auto text = [](const std::string& word) {
+    return "{ en = \"" + word + "\", de = \"" + word + "\" }";
+  };
+  const auto confident =
+      replaced(replaced(yes_no("", 1, 120), "device = \"buttons\"", "device = \"touch\""), "[timing]",
+               "[task.confidence]\nquestion = " + text("Sure?") + "\nlabels = [" + text("no") + ", " +
+                   text("fairly") + ", " + text("yes") + "]\n\n[timing]");
+  const auto data = data_of(confident, "sim:threshold=0.1,lapse=0,criterion=0.6745");
+  const auto report = report_of(data);
+  REQUIRE(report["roc"].size() == 4);
+  CHECK(report["roc"][1]["level"] == 0.1);
+  CHECK(report["roc"][1]["points"].size() == 7);
+  // d' is 1.349 at this level. The area under the whole curve is Phi(1.349 / sqrt 2) = 0.830; with few
+  // ratings it is slightly smaller.
+  CHECK(report["roc"][1]["area"]["value"].get<double>() == Approx(0.815).margin(0.06));
+  CHECK(report["roc"][3]["level"].is_null());
+  const auto html = report::to_html(report::summarise(data));
+  CHECK(html.find("Receiver operating characteristic") != std::string::npos);
+  CHECK(report_of(data_of(yes_no("", 1, 10)))["roc"].empty());
+  CHECK(report_of(data_of(shipped("friction-confidence")))["roc"].empty());  // no trial without a signal
+}
+
+TEST_CASE("one rating of how sure a person is of a signal has a ROC, d' and d_a", "[report]") {
+  auto source = shipped("friction-detection");
+  const auto choices = source.find("choices = [");
+  const auto confidence = source.find("[task.confidence]"), timing = source.find("[timing]");
+  source.replace(confidence, timing - confidence,
+                 "[task.rating]\npoints = 6\nlabels = [{ at = 1, text = { en = \"surely not\", de = \"sicher "
+                 "nicht\" } }, { at = 6, text = { en = \"surely\", de = \"sicher\" } }]\n\n");
+  source.replace(choices, confidence - choices, "present = \"step > 0\"\n\n");
+  source = replaced(replaced(source, "feedback = \"trial\"\n", ""), "repeats = 20", "repeats = 200");
+  source = replaced(source, "\"psychometric\", ", "");
+  const auto data = data_of(source, "sim:threshold=0.08,lapse=0");
+  CHECK(data.design == report::Design::ratings);
+  const auto report = report_of(data);
+  REQUIRE(report["roc"].size() == 4);
+  const auto& curve = report["roc"][1];  // d' is 1.349 at the threshold
+  CHECK(curve["level"] == 0.08);
+  CHECK(curve["points"].size() == 7);
+  CHECK(curve["equal_variances"]["sensitivity"]["value"].get<double>() == Approx(1.349).margin(0.15));
+  CHECK(curve["equal_variances"]["criteria"].size() == 5);
+  CHECK(curve["unequal_variances"]["sensitivity"]["value"].get<double>() == Approx(1.349).margin(0.2));
+  CHECK(curve["unequal_variances"]["sd"]["value"].get<double>() == Approx(1).margin(0.2));
+  CHECK(curve["area"]["value"].get<double>() == Approx(0.82).margin(0.04));
+  CHECK(report["roc"][0]["area"]["value"].get<double>() < curve["area"]["value"].get<double>());
+  CHECK(report["judgements"].size() == 1);  // the mean ratings are still there
+  const auto html = report::to_html(report::summarise(data));
+  CHECK(html.find("Receiver operating characteristic") != std::string::npos);
+  CHECK(html.find("Ratings go from the surest no") != std::string::npos);
+  auto hidden = replaced(source, "show = [\"dprime\"]", "show = [\"trace\"]");
+  CHECK(report_of(data_of(hidden))["roc"].empty());
+  CHECK(report_of(data_of(shipped("smoothness-points")))["roc"].empty());  // no signal is declared
+}
+
 TEST_CASE("same-different counts pairs that are the same as false alarms", "[report]") {
   const auto data = data_of(shipped("friction-same-different"), "sim:threshold=-14,lapse=0");
   const auto report = report_of(data);
@@ -174,49 +204,6 @@ TEST_CASE("each value of the key show adds a part to the report", "[report]") {
   }
 }
 
-TEST_CASE("a report has each procedure's own estimate, as it was at the end of the session", "[report]") {
-  for (const std::string name :
-       {"friction-2ifc", "friction-staircase", "boundary-adaptive", "two-spots-oddity"}) {
-    INFO(name);
-    const auto protocol = protocol::parse(shipped(name), "p.toml");
-    const auto rehearsal = simulation::rehearse(
-        protocol, 0, 5, simulation::rehearser(observer::Observer(observer::parse("sim"))));
-    report::SessionData data;
-    report::add_trials(rehearsal.blocks, protocol, data);
-    data.replicates = 40;
-    REQUIRE_FALSE(data.estimates.empty());
-    const auto html = report::to_html(report::summarise(data));
-    CHECK(html.find("The procedure's own estimate") != std::string::npos);
-    CHECK((html.find("staircase settles where") != std::string::npos) ==
-          (name == "friction-staircase" || name == "boundary-adaptive"));
-    CHECK((html.find("a posterior estimates") != std::string::npos) == (name != "friction-staircase"));
-    std::size_t same = 0;
-    for (const auto& mine : data.estimates)
-      for (const auto& theirs : rehearsal.estimates)
-        if (mine.procedure == theirs.procedure && mine.parameter == theirs.parameter &&
-            mine.mean == theirs.mean && mine.sd == theirs.sd)
-          ++same;
-    CHECK(same == data.estimates.size());
-  }
-}
-
-TEST_CASE("a report has the ids of answers, and the reversals that a staircase averaged", "[report]") {
-  const auto source = replaced(shipped("friction-staircase"), "initial_down = 1 ",
-                               "discard_reversals = 4\ninitial_down = 1 ");
-  const auto data = data_of(source, "sim:threshold=-16");
-  CHECK(data.choices == std::vector<std::string>{"first", "second"});
-  CHECK(data.level_label == "Contrast (dB)");
-  REQUIRE(data.estimates.size() == 2);
-  CHECK(data.estimates[0].basis == "reversals 5 to 10 of 10");
-  const auto html = report::to_html(report::summarise(data));
-  CHECK(html.find("reversals 5 to 10 of 10") != std::string::npos);
-  CHECK(html.find("Threshold (dB)") != std::string::npos);
-  CHECK(html.find("BIS") == std::string::npos);  // the balanced integration score needs two conditions
-  const auto demo =
-      data_of(replaced(shipped("demo"), "[\"en\", \"de\", \"ja\"]", "[\"en\", \"de\", \"ja\"]"));
-  CHECK(demo.choices == std::vector<std::string>{"left", "right"});
-}
-
 TEST_CASE("ratings and numbers are reported by level, and right and wrong are left out", "[report]") {
   const auto line = report_of(data_of(shipped("smoothness-line")));
   REQUIRE(line["judgements"].size() == 1);
@@ -233,6 +220,7 @@ TEST_CASE("ratings and numbers are reported by level, and right and wrong are le
   CHECK(html.find("Geometric mean") != std::string::npos);
   CHECK(html.find("Exponent of Stevens") != std::string::npos);
   CHECK(html.find("Proportion correct") == std::string::npos);
+  CHECK(html.find("Trend of accuracy") == std::string::npos);
 }
 
 TEST_CASE("identification is reported as a confusion matrix, without a curve and without d'", "[report]") {
@@ -317,38 +305,6 @@ TEST_CASE("what force cells measured is taken from answered trials, with their c
   }
 }
 
-TEST_CASE("the report recomputes the estimates of the method of limits from the stored trials", "[report]") {
-  auto source = replaced(shipped("limits-boundary"), "procedures = [\"series\"]",
-                         "procedures = [\"series\", \"drawn\"]\ninterleave = \"random\"");
-  source = replaced(source, "[[block]]",
-                    "[[procedure]]\nname = \"drawn\"\ncopy = \"series\"\n"
-                    "start_ascending = { uniform = [-30.0, -20.0] }\n\n[[block]]");
-  const auto protocol = protocol::parse(source, "p.toml");
-  // many trials without an answer: some series end without a midpoint
-  const observer::Observer observer(observer::parse("sim:threshold=5,anticipation=0.4"));
-  for (const std::uint64_t seed : {1, 2, 3}) {
-    const auto rehearsal = simulation::rehearse(protocol, 0, seed, simulation::rehearser(observer));
-    report::SessionData data;
-    data.seed = seed;
-    report::add_trials(rehearsal.blocks, protocol, data);
-    REQUIRE(rehearsal.estimates.size() == 8);
-    REQUIRE(data.estimates.size() == 8);
-    for (std::size_t i = 0; i < 8; ++i) {
-      const auto& stored = data.estimates[i];
-      const auto& made = rehearsal.estimates[i];
-      CHECK(stored.procedure == made.procedure);
-      CHECK(stored.parameter == made.parameter);
-      CHECK(stored.mean == made.mean);
-      CHECK(stored.sd == made.sd);
-      CHECK(stored.basis == made.basis);
-    }
-    const auto html = report::to_html(report::summarise(data));
-    CHECK(html.find("habituation") != std::string::npos);
-    CHECK(html.find("threshold ascending (mm)") != std::string::npos);
-    CHECK(html.find("A staircase") == std::string::npos);
-  }
-}
-
 TEST_CASE("settings are reported by the side from which the slider started", "[report]") {
   const auto sides = [](const std::string& source) {
     const auto json = report_of(data_of(source, "sim:threshold=4,bias=3"));
@@ -369,54 +325,4 @@ TEST_CASE("settings are reported by the side from which the slider started", "[r
   CHECK(sides(replaced(one, "start_above", "# start_above"))["from_below"]["settings"] == 0);
   const auto html = report::to_html(report::summarise(data_of(shipped_file)));
   CHECK(html.find("from below (9 settings)") != std::string::npos);
-}
-
-TEST_CASE("the threshold along the second dimension is reported, and no curve over all trials", "[report]") {
-  const auto source = shipped("friction-boundary-2d");
-  const auto data = data_of(source, "sim:threshold=-16,gradient=0.1,lapse=0");
-  CHECK(data.thresholds_differ);
-  REQUIRE(data.threshold_curves.size() == 1);
-  const auto& curve = data.threshold_curves[0];
-  CHECK(curve.label == "End (mm)");
-  CHECK(curve.trials.size() == 96);
-  REQUIRE(curve.points.size() == 7);
-  CHECK(curve.points.front().second == 120);
-  const double rise = curve.points.back().threshold - curve.points.front().threshold;
-  for (const auto& point : curve.points)
-    CHECK((point.interval.low < point.threshold && point.threshold < point.interval.high));
-  const auto json = report_of(data);
-  CHECK(json["fits"].empty());
-  CHECK(json["threshold_curves"][0]["points"].size() == 7);
-  bool gradient = false;
-  for (const auto& estimate : json["estimates"])
-    if (estimate["parameter"] == "gradient") {
-      gradient = true;
-      CHECK(estimate["unit"] == "dB/mm");
-      CHECK(estimate["interval"]["low"] < estimate["mean"]);
-      CHECK(estimate["interval"]["high"] > estimate["mean"]);
-      // without a floor, the mean threshold rises by the mean gradient, over 60 mm
-      CHECK(rise == Approx(60 * estimate["mean"].get<double>()).margin(1e-9));
-    }
-  CHECK(gradient);
-  const auto html = report::to_html(report::summarise(data));
-  CHECK(html.find("Threshold along the second dimension") != std::string::npos);
-  CHECK(html.find("gradient (dB/mm)") != std::string::npos);
-  CHECK(html.find("<h2>Psychometric function</h2>") == std::string::npos);
-  // by the levels of the second factor there is one curve for each of them
-  const auto by = data_of(source + "\n[analysis]\nby = \"end_mm\"\n");
-  CHECK_FALSE(by.thresholds_differ);
-  CHECK(report_of(by)["fits"].size() > 1);
-}
-
-TEST_CASE("a procedure with a criterion is reported with it, beside the analysis of yes and no", "[report]") {
-  const auto data = data_of(shipped("friction-yes-no"), "sim:threshold=0.1,criterion=1,lapse=0");
-  CHECK(data.design == report::Design::yes_no);
-  CHECK(data.function == terms::Function::weibull);
-  const auto json = report_of(data);
-  REQUIRE(json["fits"].size() == 1);
-  double criterion = -10;
-  for (const auto& estimate : json["estimates"])
-    if (estimate["parameter"] == "criterion") criterion = estimate["mean"];
-  CHECK(criterion == Approx(1).margin(0.6));
-  CHECK_FALSE(json["detection"].empty());
 }

@@ -2,7 +2,6 @@
 #include <random>
 #include <vector>
 
-#include "station/sensing/silence_proof.hpp"
 #include "tests/sensing/proofs.hpp"
 #include "tests/support/catch.hpp"
 
@@ -279,28 +278,4 @@ TEST_CASE("both sets of tones of a burst with a change are proven as the synthes
   }
   plan.burst.changes[0].frames += 1;  // one more frame turns the phase after the glide by 0.6 degrees
   CHECK(std::fabs(run().tones[2].phase_error_deg) > 0.5);
-}
-
-TEST_CASE("silence is measured against the plan", "[sensing][proof]") {
-  Room room;
-  room.noise = 1e-6;
-  const auto burst = three_tones();
-  const auto level_of = [&](double amplitude) {
-    SilenceProof proof(plan_of(room, burst));
-    room.extra = [amplitude](double t) {
-      return t > -0.3 && t < -0.2 ? amplitude * std::sin(2 * M_PI * 30000 * t) : 0;
-    };
-    const std::int64_t first = burst.start_frame - 60'000;
-    const auto samples = captured(room, burst, first, 55'000);
-    in_blocks(room, samples, first, {384}, [&](const CaptureBlock& block) { proof.push(block); });
-    return proof.result();
-  };
-  // The rms of the plan is 0.5 sqrt(0.3^2 + 0.25^2 + 0.2^2) / sqrt(2) = 0.155, with a pick-up gain of 0.5.
-  CHECK(level_of(0).verdict == Proof::ok);
-  CHECK(level_of(0.155 * std::sqrt(2) * 1e-3).level_dB == Approx(-60).margin(1));
-  CHECK(level_of(0.155 * std::sqrt(2) * 1e-3).verdict == Proof::flagged);
-  CHECK(level_of(0.155 * std::sqrt(2) * 1e-3).cause == ProofCause::noisy);
-  CHECK(level_of(0.01).verdict == Proof::refused);
-  SilenceProof nothing(plan_of(room, burst));
-  CHECK(nothing.result().verdict == Proof::unproven);
 }

@@ -2,6 +2,7 @@
 #include "station/sensing/interval_proof.hpp"
 #include "station/sensing/lock_in.hpp"
 #include "station/sensing/pilot.hpp"
+#include "station/sensing/raw_ring.hpp"
 #include "station/sensing/silence_proof.hpp"
 #include "tests/drive/watch.hpp"
 #include "tests/sensing/room.hpp"
@@ -10,8 +11,9 @@
 using namespace turnpoint;
 using namespace turnpoint::sensing;
 
-TEST_CASE("the proof of an interval, silence, pilot and lock-in allocate nothing while they take frames",
-          "[sensing]") {
+TEST_CASE(
+    "the proof of an interval, silence, pilot, lock-in and raw ring allocate nothing while they take frames",
+    "[sensing]") {
   Room room;
   drive::Burst burst;
   burst.start_frame = 100'000;
@@ -28,12 +30,14 @@ TEST_CASE("the proof of an interval, silence, pilot and lock-in allocate nothing
   SilenceProof silence(plan);
   PilotListener pilot({}, 90'000, room.channels, 0);
   LockIn lock_in(room.rate_Hz, room.channels, {4}, {{{0, 1ULL << 61}, 0}}, 0);
+  RawRing raw(room.rate_Hz, room.channels, 0.5);
   double sum = 0;
   CHECK(drive::violations_in([&] {
           const CaptureBlock block{samples, room.channels, 90'000, room.rate_Hz};
           proof.push(block);
           silence.push(block);
           pilot.push(block);
+          raw.push(block);
           lock_in.push(block, [&](double frame, std::span<const std::complex<double>>) { sum += frame; });
         }) == 0);
   CHECK(proof.complete());

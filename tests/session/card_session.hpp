@@ -78,10 +78,10 @@ struct SteppedCapture : drive::DeviceCapture {
     }
     while (put - got > backlog_frames) std::this_thread::yield();
   }
-  bool take(drive::CapturedBlock& block) noexcept override {
-    if (!DeviceCapture::take(block)) return false;
-    got = block.first_frame + block.count / fake_pcm().capture_channels;
-    return true;
+  const drive::CapturedBlock* take() noexcept override {
+    const auto* block = DeviceCapture::take();
+    if (block != nullptr) got = block->first_frame + block->count / fake_pcm().capture_channels;
+    return block;
   }
 
   std::int64_t backlog_frames = 20'000;  ///< most frames that may wait for the sensing thread
@@ -99,17 +99,21 @@ struct RuledAmplifier : drive::Amplifier {
   void disarm() noexcept override { guard.disarm(); }
   Refusal enable() override { return refusal(guard.enable(system::monotonic_ns())); }
   void disable() noexcept override { guard.disable(); }
-  void trip(FaultKind kind, std::string_view) noexcept override { guard.trip(system::monotonic_ns(), kind); }
+  void trip(FaultKind kind, std::string_view why) noexcept override {
+    guard.trip(system::monotonic_ns(), kind);
+    detail = why;
+  }
   Refusal clear() override { return refusal(guard.clear()); }
   void audio_alive() noexcept override { guard.audio_alive(system::monotonic_ns()); }
   void session_alive() noexcept override { guard.session_alive(system::monotonic_ns()); }
   void page_alive(std::int64_t time_ns) noexcept override { guard.page_alive(time_ns); }
   drive::AmplifierState state() const noexcept override { return guard.state(); }
   drive::AmplifierFault fault() const override {
-    return {{guard.fault().kind, guard.fault().detail}, guard.fault().time_ns};
+    return {{guard.fault().kind, detail}, guard.fault().time_ns};
   }
   std::int64_t reaction_ns() const noexcept override { return -1; }
   lines::Guard guard;
+  std::string detail;  ///< of the last call of trip()
 };
 
 /// Runs a live session of two trials on the card. The participant answers 0.3 s after an onset.
@@ -120,6 +124,7 @@ struct CardSession {
   bool holding = false;
   bool first_answered = true;  ///< whether the participant answers the first stimulus
   double repair_s = 0;         ///< time that the operator takes before clearing a fault
+  double reading_s = 0;        ///< time for which other pages than a stimulus are read
   std::vector<std::pair<std::int64_t, std::function<void()>>> agenda;
   std::function<void(const session::Page&)> reacts = [](const auto&) {};
   std::function<void()> stepped = [] {};  ///< called whenever the card's time has advanced
@@ -153,10 +158,13 @@ struct CardSession {
   double gain = 0.5;
   bool wired = true;
   SteppedCapture* capture = nullptr;
+  const RuledAmplifier* amplifier = nullptr;
 
   std::vector<records::TrialRow> runs() {
     session::Devices devices;
-    devices.amplifier = std::make_unique<RuledAmplifier>();
+    auto ruled = std::make_unique<RuledAmplifier>();
+    amplifier = ruled.get();
+    devices.amplifier = std::move(ruled);
     devices.clocks = [] {
       const auto now_ns = system::monotonic_ns();
       return system::Clocks{now_ns, now_ns, now_ns};
@@ -186,7 +194,9 @@ struct CardSession {
       if (page.kind == PageKind::stimulus && (first_answered || room.stimuli > 1))
         later(0.3, [this] { room.push(InputKind::answer); });
       if (page.kind == PageKind::fault) return later(repair_s, [this, page] { room.cooperate(page); });
-      if (page.kind != PageKind::stimulus) room.cooperate(page);
+      if (page.kind == PageKind::stimulus) return;
+      if (reading_s <= 0) return room.cooperate(page);
+      later(reading_s, [this, page] { room.cooperate(page); });
     };
     summary = session::run(setup, &room, room.inputs, std::move(devices));
     CHECK(summary.status == records::SessionStatus::completed);

@@ -14,6 +14,9 @@ struct Misfortunes {
   std::mutex mutex;
   std::optional<turnpoint::drive::Event> event;
   std::atomic<std::int64_t> clipped{0};
+  /// The audio thread has not rendered anything since the session started, so the drive has begun no
+  /// stimulus.
+  std::atomic<bool> stalled{false};
 
   void happen(turnpoint::drive::Event what) {
     const std::lock_guard lock(mutex);
@@ -30,7 +33,10 @@ class FaultyStream : public turnpoint::drive::Stream {
   std::optional<turnpoint::drive::Event> poll() override {
     const std::lock_guard lock(misfortunes_.mutex);
     if (auto event = std::exchange(misfortunes_.event, std::nullopt)) return event;
-    return real_->poll();
+    auto event = real_->poll();
+    while (event && event->kind == turnpoint::drive::EventKind::burst_heard && misfortunes_.stalled)
+      event = real_->poll();
+    return event;
   }
   turnpoint::drive::Counters counters() const override {
     auto counters = real_->counters();
@@ -50,7 +56,7 @@ class FaultyStream : public turnpoint::drive::Stream {
             std::optional<std::int64_t> frame) override {
     real_->stop(burst, ramp, frame);
   }
-  std::int64_t earliest_frame() const override { return real_->earliest_frame(); }
+  std::int64_t earliest_frame() const override { return misfortunes_.stalled ? 0 : real_->earliest_frame(); }
   turnpoint::drive::ClockFit clock() override { return real_->clock(); }
   std::optional<std::int64_t> time_of(std::int64_t frame) override { return real_->time_of(frame); }
   std::optional<std::int64_t> frame_at(std::int64_t time_ns) override { return real_->frame_at(time_ns); }

@@ -112,6 +112,14 @@ struct Room : session::Display {
   }
 };
 
+/// Says whether a machine that is too busy causes this fault by itself: it left one of the station's threads
+/// without processor time for 0.1 s or more.
+inline bool machine_was_busy(terms::FaultKind kind) {
+  using terms::FaultKind;
+  return kind == FaultKind::audio_silent || kind == FaultKind::session_silent ||
+         kind == FaultKind::stimulus_missed;
+}
+
 inline session::Setup live_setup(const std::string& database, const std::string& device = "buttons") {
   session::Setup setup;
   setup.rig = rig::load(std::string(TURNPOINT_SOURCE_DIR) + "/tests/support/thin_plate.toml");

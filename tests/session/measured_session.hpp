@@ -10,6 +10,7 @@
 #include "station/session/simulated_room.hpp"
 #include "station/setup/prepare.hpp"
 #include "station/store/read.hpp"
+#include "station/store/stored_signals.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 // Helpers for tests: simulated sessions on a rig with capture channels, and faults in the simulated room.
@@ -61,6 +62,7 @@ struct Ran {
   /// texts of the pages after a trial, except for those that say whether an answer was right
   std::vector<std::string> messages;
   std::vector<records::EventRow> events;
+  std::vector<store::StoredSignal> raw;  ///< what was captured in void trials
 };
 
 /// A function that changes the simulated laboratory before each trial, for example by adding faults.
@@ -73,16 +75,24 @@ struct How {
   std::function<void(plant::Setup&)> room = {};  ///< changes the simulated laboratory before the session
 };
 
+/// Asks for a simulated session of a protocol file on a rig with these capture channels.
+inline setup::RunRequest request_in(const TemporaryFolder& folder, const std::string& protocol,
+                                    const std::string& capture = kCells,
+                                    const std::string& observer = "sim") {
+  setup::RunRequest request;
+  request.protocol = protocol;
+  request.rig = with_capture(folder, capture);
+  request.participant = "P01";
+  request.database = folder / "a.sqlite";
+  request.observer = observer;
+  request.seed = 7;
+  return request;
+}
+
 /// Runs a session of a protocol file in a simulated room, in which `sabotage` causes faults.
 inline Ran run(const std::string& protocol, const Sabotage& sabotage, const How& how = {}) {
   TemporaryFolder folder;
-  setup::RunRequest request;
-  request.protocol = protocol;
-  request.rig = with_capture(folder, how.capture);
-  request.participant = "P01";
-  request.database = folder / "a.sqlite";
-  request.observer = how.observer;
-  request.seed = 7;
+  const auto request = request_in(folder, protocol, how.capture, how.observer);
   const auto setup = setup::prepare(request);
   auto room = std::make_unique<session::SimulatedRoom>(setup.rig, how.room);
   Saboteur saboteur;
@@ -97,6 +107,9 @@ inline Ran run(const std::string& protocol, const Sabotage& sabotage, const How&
   ran.summary = session::run(setup, &pages, inputs, std::move(room), &saboteur);
   const auto stored = store::read_session(request.database, ran.summary.session_id);
   ran.events = stored.events;
+  store::Database database(request.database, store::Database::Access::read_only);
+  store::SignalReader reader(database, ran.summary.session_id, records::kRawStream);
+  while (const auto signal = reader.next()) ran.raw.push_back(*signal);
   for (const auto& block : stored.blocks)
     ran.trials.insert(ran.trials.end(), block.trials.begin(), block.trials.end());
   ran.faults = pages.faults;

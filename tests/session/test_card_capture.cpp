@@ -157,3 +157,33 @@ TEST_CASE("trigger codes that the card plays are read back, and other codes on t
   REQUIRE(extra.size() == 1);
   CHECK(extra[0].value.find("77 frame") == 0);
 }
+
+TEST_CASE("a surface that vibrates while the amplifier is off trips the guard, and the page says why",
+          "[session][card][sounding]") {
+  const bool loud = GENERATE(true, false);
+  CardSession card;
+  card.add_capture(12'345);
+  card.reading_s = 1.2;
+  // An amplifier that stays on, and to which something else than the station sends a tone.
+  bool stays_on = true;
+  const double level = 0.5 * std::pow(10, (loud ? -46 : -54) / 20.0);
+  const auto wires = fake_pcm().wires;
+  fake_pcm().wires = [&, n = std::int64_t{0}](std::span<const std::int32_t> played,
+                                              std::span<std::int32_t> captured) mutable {
+    wires(played, captured);
+    const double cycles = 27e3 / kRate_Hz * static_cast<double>(n++ % kRate_Hz);
+    if (stays_on && card.amplifier->state() != drive::AmplifierState::enabled)
+      captured[1] += static_cast<std::int32_t>(0x1p31 * level * std::sin(2 * M_PI * cycles));
+  };
+  card.reacts = [&](const session::Page& page) {
+    if (page.kind == PageKind::fault && page.fault == FaultKind::sounding) stays_on = false;
+  };
+  const auto trials = card.runs();
+  CHECK(std::count(card.faults.begin(), card.faults.end(), FaultKind::sounding) == (loud ? 1 : 0));
+  for (std::size_t k = 0; k < card.faults.size(); ++k)
+    if (card.faults[k] == FaultKind::sounding)
+      CHECK(card.details[k] == "a tone of 27.0 kHz at -46 dB of full drive");
+  CHECK(std::count_if(trials.begin(), trials.end(), [](const auto& trial) {
+          return trial.outcome == terms::Outcome::answered && trial.proof == Proof::ok;
+        }) == 2);
+}

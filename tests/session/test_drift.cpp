@@ -98,11 +98,48 @@ TEST_CASE("a thermometer is found by its name, and by its device if the name is 
   CHECK(system::read_thermometer_C(system::find_thermometer("hwmon:lm75@1-0049/temp1", root)) == 25.5);
   CHECK(system::read_thermometer_C(system::find_thermometer("hwmon:cpu_thermal/temp1", root)) == 23);
   CHECK_THROWS_WITH(system::find_thermometer("hwmon:lm75/temp1", root),
-                    Catch::Contains("2 temperature sensors fit") && Catch::Contains("lm75@1-0048"));
-  CHECK_THROWS_WITH(system::find_thermometer("hwmon:tmp117/temp1", root), Catch::Contains("0 temperature"));
+                    Catch::Matchers::ContainsSubstring("2 temperature sensors fit") &&
+                        Catch::Matchers::ContainsSubstring("lm75@1-0048"));
+  CHECK_THROWS_WITH(system::find_thermometer("hwmon:tmp117/temp1", root),
+                    Catch::Matchers::ContainsSubstring("0 temperature"));
   sensors.set("hwmon1", 250);  // 250 degrees: a sensor that is not connected
   CHECK_FALSE(
       system::read_thermometer_C(system::find_thermometer("hwmon:lm75@1-0049/temp1", root)).has_value());
+}
+
+TEST_CASE("a thermometer of the subsystem IIO is read, whether or not the kernel computes the temperature",
+          "[session][drift]") {
+  TemporaryFolder folder;
+  const auto device = [&](const std::string& number, const std::string& parent, const std::string& name) {
+    const auto at = std::filesystem::path(folder / "devices") / parent / number;
+    std::filesystem::create_directories(at);
+    std::filesystem::create_directories(folder / "iio");
+    std::filesystem::create_directory_symlink(at, std::filesystem::path(folder / "iio") / number);
+    std::ofstream(at / "name") << name << "\n";
+    return at;
+  };
+  const auto ir = device("iio:device0", "1-005a", "mlx90614"),
+             plain = device("iio:device1", "1-0048", "tmp117"),
+             other = device("iio:device2", "1-0049", "tmp117");
+  std::ofstream(ir / "in_temp_object_raw") << 14908;
+  std::ofstream(ir / "in_temp_object_scale") << 20;
+  std::ofstream(ir / "in_temp_object_offset") << -13657.5;
+  std::ofstream(plain / "in_temp_input") << 23500;
+  std::ofstream(other / "in_temp_raw") << 3000;
+  std::ofstream(other / "in_temp_scale") << 7.8125;
+  const std::string root = folder / "iio";
+  const auto degrees = [&](const std::string& uri) {
+    return system::read_thermometer_C(system::find_thermometer(uri, "/nowhere", root)).value_or(-1);
+  };
+  CHECK(degrees("iio:mlx90614/temp_object") == Approx(25.01));
+  CHECK(degrees("iio:tmp117@1-0048/temp") == Approx(23.5));
+  CHECK(degrees("iio:tmp117@1-0049/temp") == Approx(23.4375));
+  CHECK_THROWS_WITH(degrees("iio:tmp117/temp"),
+                    Catch::Matchers::ContainsSubstring("2 temperature sensors fit") &&
+                        Catch::Matchers::ContainsSubstring("tmp117@1-0049"));
+  CHECK_THROWS_WITH(degrees("iio:mlx90614/temp"), Catch::Matchers::ContainsSubstring("0 temperature"));
+  std::ofstream(other / "in_temp_scale") << "?";
+  CHECK(degrees("iio:tmp117@1-0049/temp") == -1);
 }
 
 TEST_CASE("temperatures of plate and frame are logged, and a change of 3 K is flagged once",

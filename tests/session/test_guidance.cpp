@@ -1,5 +1,6 @@
 #include <array>
 #include <cmath>
+#include <set>
 
 #include "station/session/guidance.hpp"
 #include "station/store/open.hpp"
@@ -22,6 +23,7 @@ struct Watcher : session::Display {
     std::array<int, 2> looks{};
   };
   std::vector<Seen> trials;
+  std::set<std::optional<double>> paces;  ///< what the pacer showed
   session::Page page;
   int moved_in_stimulus = 0, moved = 0;
 
@@ -36,6 +38,7 @@ struct Watcher : session::Display {
     look(guidance);
   }
   void look(const session::Guidance& guidance) {
+    paces.insert(guidance.pace_mm_s);
     if (trials.empty() || !guidance.force || !guidance.force->value) return;
     // What the bars show in the pause counts as part of the first interval; what they show after the second
     // interval counts as part of the second.
@@ -121,13 +124,7 @@ std::array<double, 2> friction_of(const std::vector<double>& normal, const std::
 
 void run_guided(Session& made, const std::string& guidance) {
   TemporaryFolder folder;
-  setup::RunRequest request;
-  request.protocol = two_intervals(folder, guidance);
-  request.rig = with_capture(folder, kCells);
-  request.participant = "P01";
-  request.database = folder / "a.sqlite";
-  request.observer = "sim";
-  request.seed = 7;
+  const auto request = request_in(folder, two_intervals(folder, guidance));
   const auto setup = setup::prepare(request);
   session::Inputs inputs;
   const auto summary = session::run(setup, &made.watcher, inputs,
@@ -172,6 +169,8 @@ TEST_CASE("an observer who sees only the bars stays at chance; one who sees fric
   REQUIRE(made.friction.size() == 40);
   CHECK(made.watcher.moved > 200);
   CHECK((made.watcher.moved_in_stimulus > 0) == live);
+  // The pacer shows the same speed throughout the session, so it tells nothing about any trial.
+  CHECK(made.watcher.paces == std::set<std::optional<double>>{115.0});
   const auto mean = [&](auto member) {
     return [&made, member](std::size_t i) {
       const auto& seen = made.watcher.trials[i];
@@ -195,6 +194,7 @@ TEST_CASE(
   sensing.guidance = true;
   session::Guide guide(sensing);
   REQUIRE(guide.bars());
+  CHECK_FALSE(guide.bars()->pace_mm_s);
   CHECK_FALSE(guide.bars()->speed);  // there is no bar for the speed, because the protocol accepts any speed
   CHECK(guide.bars()->force->low == Approx(1.0 / 3));
   CHECK(guide.bars()->force->high == Approx(2.0 / 3));
@@ -215,6 +215,10 @@ TEST_CASE(
     sensing.guidance = false;
     CHECK_FALSE(session::Guide(sensing).bars());
     CHECK_FALSE(session::Guide(std::nullopt).bars());
+  }
+  SECTION("the pacer shows the middle of the range of speeds") {
+    sensing.speed_mm_s = std::pair(40.0, 120.0);
+    CHECK(session::Guide(sensing).bars()->pace_mm_s.value() == Approx(80));
   }
   SECTION("live guidance moves during a stimulus") {
     sensing.live_guidance = true;

@@ -157,7 +157,7 @@ TEST_CASE("on the virtual clock, a trial that follows an aborted one waits until
     REQUIRE(first.size() == 3);
     while (stage->wait_until(first[0].time_ns + static_cast<std::int64_t>(aborted_after_s * 1e9))) {
     }
-    const auto silent_ns = stage->silence();
+    const auto silent_ns = stage->silence(false);
     const auto second = stage->present(intervals, 0);
     REQUIRE(second.size() == 3);
     CHECK(second[0].time_ns >= silent_ns);

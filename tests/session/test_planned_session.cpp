@@ -110,6 +110,13 @@ TEST_CASE("a session that comes too early is refused with the date from which it
           "sessions: "
           "session 2 is allowed from 2024-02-29");
     CHECK(refused.allowed.find("--early") != std::string::npos);
+    REQUIRE(refused.too_early);
+    CHECK(refused.too_early->participant == setup.participant);
+    CHECK(refused.too_early->number == 2);
+    CHECK(refused.too_early->allowed_from == "2024-02-29");
+    CHECK(refused.too_early->last_number == 1);
+    CHECK(refused.too_early->last_day == "2024-02-27");
+    CHECK(refused.too_early->min_days == 2);
   }
   CHECK(next_session(setup, earlier, "2024-02-29").problem.empty());
   CHECK(next_session(setup, {on_day("2023-12-31", 1)}, "2024-01-01").problem.find("2024-01-02") !=
@@ -121,6 +128,7 @@ TEST_CASE("a session that comes too early is refused with the date from which it
   setup.early = "leaves the country";
   const auto overruled = next_session(setup, earlier, "2024-02-28");
   CHECK(overruled.problem.empty());
+  CHECK_FALSE(overruled.too_early);
   CHECK(overruled.overruled.find("allowed from 2024-02-29") != std::string::npos);
   CHECK(next_session(setup, earlier, "2024-02-29").overruled.empty());
 
@@ -138,6 +146,7 @@ TEST_CASE("the operator can choose another session", "[session]") {
   setup.planned_session = 4;
   CHECK(next_session(setup, {}, "2026-11-24").problem ==
         "--planned-session 4: the protocol plans 3 sessions");
+  CHECK_FALSE(next_session(setup, {}, "2026-11-24").too_early);
   setup.planned_session = 1;
   setup.protocol.sessions.reset();
   CHECK(next_session(setup, {}, "2026-11-24").problem == "the protocol friction-training plans no sessions");
@@ -195,7 +204,8 @@ TEST_CASE("a live session on the same day is refused, unless the operator gives 
   now = ::mktime(&tomorrow);
   char date[20];
   ::strftime(date, sizeof date, "%Y-%m-%d", &tomorrow);
-  CHECK_THROWS_WITH(meet(), Catch::Contains(std::string("session 2 is allowed from ") + date));
+  CHECK_THROWS_WITH(meet(),
+                    Catch::Matchers::ContainsSubstring(std::string("session 2 is allowed from ") + date));
   CHECK(store::list_sessions(setup.database).size() == 1);  // nothing was stored
 
   setup.early = "only in town today";
@@ -304,15 +314,17 @@ TEST_CASE("a procedure that continues goes on where the participant's last sessi
   }
   SECTION("another version of the protocol is refused, and nothing is stored") {
     request.protocol = continuing_study(folder, "1.1.0");
-    CHECK_THROWS_WITH(setup::prepare(request),
-                      Catch::Contains("participant P01 had session 1 with version 1.0.0") &&
-                          Catch::Contains("this file is version 1.1.0"));
+    CHECK_THROWS_WITH(
+        setup::prepare(request),
+        Catch::Matchers::ContainsSubstring("participant P01 had session 1 with version 1.0.0") &&
+            Catch::Matchers::ContainsSubstring("this file is version 1.1.0"));
     CHECK(store::list_sessions(request.database).size() == 1);
   }
   SECTION("a changed procedure of the same version is refused, and nothing is stored") {
     auto source = system::read_file(request.protocol);
     std::ofstream(request.protocol) << replaced(source, "start = -6.0", "start = -7.0");
-    CHECK_THROWS_WITH(run(request), Catch::Contains("would present level -7, but level -6 is stored"));
+    CHECK_THROWS_WITH(run(request),
+                      Catch::Matchers::ContainsSubstring("would present level -7, but level -6 is stored"));
     CHECK(store::list_sessions(request.database).size() == 1);
   }
 }

@@ -1,5 +1,8 @@
+#include <algorithm>
 #include <cmath>
+#include <complex>
 
+#include "station/store/signal_code.hpp"
 #include "tests/session/measured_session.hpp"
 #include "tests/support/catch.hpp"
 
@@ -8,14 +11,33 @@ using namespace measured;
 using terms::Proof;
 using terms::ProofCause;
 
+namespace {
+
+/// The verdict that the documented limits give for a tone of this level in the silence before a stimulus.
+Proof proof_of_silence(double tone_dB) {
+  if (tone_dB >= -50) return Proof::refused;
+  return tone_dB >= -70 ? Proof::flagged : Proof::ok;
+}
+
+/// The amplitude of a planned tone on channel 1 of the captured signal, in its second 100 ms, at the frames
+/// at which it was planned.
+double amplitude_in(const records::SignalRow& signal, const records::ToneRow& tone) {
+  const auto channel = store::decode(signal).at(1);
+  constexpr std::int64_t count = 19'200;
+  std::complex<double> sum = 0;
+  for (auto n = tone.onset_frame + count; n < tone.onset_frame + 2 * count; ++n)
+    sum +=
+        channel.at(static_cast<std::size_t>(n - signal.start_frame)) *
+        std::polar(1.0, -2 * M_PI * std::remainder(tone.frequency_Hz / 192000 * static_cast<double>(n), 1));
+  return std::abs(sum) * 2 / count * 0x1p-31;
+}
+
+}  // namespace
+
 TEST_CASE("without a pick-up a session runs, and each trial is unproven", "[session][proof]") {
   TemporaryFolder folder;
-  setup::RunRequest request;
-  request.protocol = kSource + "/protocols/demo.toml";
+  auto request = request_in(folder, shipped("demo"));
   request.rig = kSource + "/tests/support/thin_plate.toml";
-  request.participant = "P01";
-  request.database = folder / "a.sqlite";
-  request.observer = "sim";
   session::Inputs inputs;
   const auto summary = session::run(setup::prepare(request), nullptr, inputs);
   for (const auto& block : store::read_session(request.database, summary.session_id).blocks)
@@ -34,6 +56,8 @@ TEST_CASE("a pick-up proves each trial of a good session", "[session][proof]") {
     CHECK(trial.proof_cause == ProofCause::none);
     CHECK(std::abs(trial.drive_ratio_dB.value()) < 0.02);
     CHECK(std::abs(trial.onset_error_us.value()) < 150);
+    CHECK(trial.silence_dB.value() < -45);  // noise of the pick-up, 1e-4 of full scale
+    CHECK_FALSE(trial.silence_tone_dB.has_value());
     for (const auto& tone : trial.tones) CHECK(std::abs(tone.measured_dB.value()) < 0.02);
   }
 }
@@ -57,6 +81,52 @@ TEST_CASE("a stimulus that the surface did not follow is void, named, and presen
     } else {
       CHECK(trial.outcome == terms::Outcome::answered);
     }
+  }
+  CHECK(ran.summary.answered == 10);
+}
+
+TEST_CASE("what was captured in a void trial is kept with it, sample by sample", "[session][proof][raw]") {
+  const auto with = [](plant::FaultKind kind) {
+    const auto ran = run(shipped("demo"), [kind](int trial, plant::Plant& plant) {
+      if (trial == 3) plant.add({kind, plant.frames() + 1, plant::kNever, {}, 0});
+    });
+    REQUIRE(ran.raw.size() == 1);
+    CHECK(ran.raw[0].trial_index == 3);
+    const auto& signal = ran.raw[0].row;
+    const auto& tone = ran.trials.at(3).tones.at(0);
+    CHECK(signal.rate_Hz == 192000);
+    CHECK(signal.channels.size() == 4);
+    CHECK(signal.points <= 4 * 192000);
+    const auto stimulus = std::find_if(ran.events.begin(), ran.events.end(), [](const auto& event) {
+      return event.kind == "stimulus" && event.trial_index == 3;
+    });
+    CHECK(signal.start_s == Approx(1e-9 * static_cast<double>(stimulus->time_ns) +
+                                   static_cast<double>(signal.start_frame - tone.onset_frame) / 192000)
+                                .margin(1e-5));
+    return amplitude_in(signal, tone);
+  };
+  const double whole = with(plant::FaultKind::drive_late), half = with(plant::FaultKind::transducer_half);
+  CHECK(whole > 0.01);
+  CHECK(half / whole == Approx(0.5).epsilon(0.001));
+}
+
+TEST_CASE("a surface that moves before the stimulus makes the trial void, and the cause is named",
+          "[session][proof]") {
+  const auto [um, verdict] =
+      GENERATE(std::pair{0.02, Proof::refused}, std::pair{0.001, Proof::flagged}, std::pair{0.0, Proof::ok});
+  CAPTURE(um);
+  const auto ran = run(shipped("demo"), [um = um](int trial, plant::Plant& plant) {
+    if (trial == 3) plant.add({plant::FaultKind::sounding, plant.frames() + 1, plant::kNever, um, 0});
+  });
+  REQUIRE(ran.trials.size() == (verdict == Proof::refused ? 11 : 10));
+  for (const auto& trial : ran.trials) {
+    const bool sounding = trial.trial_index == 3;
+    CHECK(trial.proof == (sounding ? verdict : Proof::ok));
+    if (sounding && verdict != Proof::ok) CHECK(trial.proof_cause == ProofCause::noisy);
+    CHECK(trial.silence_tone_dB.has_value() == (sounding && um > 0));
+    if (sounding && um > 0) CHECK(proof_of_silence(trial.silence_tone_dB.value()) == verdict);
+    CHECK(trial.outcome ==
+          (trial.proof == Proof::refused ? terms::Outcome::fault : terms::Outcome::answered));
   }
   CHECK(ran.summary.answered == 10);
 }

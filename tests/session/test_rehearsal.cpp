@@ -11,9 +11,11 @@ using namespace turnpoint;
 
 TEST_CASE("a rehearsed session has the same trials, answers and times as a session that runs",
           "[session][rehearsal]") {
-  const auto* protocol = GENERATE("demo", "boundary-adjustment", "smoothness-points", "smoothness-line",
-                                  "magnitude-standard", "friction-confidence", "friction-identification",
-                                  "friction-3ifc", "friction-abx", "limits-boundary", "response-signal");
+  const auto* protocol =
+      GENERATE("demo", "boundary-adjustment", "smoothness-points", "smoothness-line", "magnitude-standard",
+               "friction-confidence", "friction-detection", "friction-identification", "friction-3ifc",
+               "friction-4ifc", "friction-time-limit", "friction-abx", "limits-boundary", "response-signal",
+               "response-signal-buzz", "friction-rating");
   const TemporaryFolder folder;
   session::Setup setup;
   setup.rig = rig::load(std::string(TURNPOINT_SOURCE_DIR) + "/tests/support/thin_plate.toml");

@@ -13,11 +13,11 @@ namespace {
 
 /// A rig on which everything is in order.
 struct GoodRig : SelfTestRig {
-  GateReading gate{"", true, 0.11};
-  PressReading stop{"", "", true, true};
-  std::vector<PressReading> buttons{{"", "left", true, true}, {"", "right", true, true}};
-  std::vector<ToneReading> tones{{"", "main", 30'000, -0.1, terms::Proof::ok, terms::ProofCause::none}};
-  std::vector<CellReading> cells{{"", "a", "", 0.1, 0.3}};
+  GateReading gate{{}, true, 0.11};
+  PressReading stop{{}, "", true, true};
+  std::vector<PressReading> buttons{{{}, "left", true, true}, {{}, "right", true, true}};
+  std::vector<ToneReading> tones{{{}, "main", 30'000, -0.1, 0.02, terms::Proof::ok, terms::ProofCause::none}};
+  std::vector<CellReading> cells{{{}, texts::plain("a"), {}, 0.1, 0.3}};
   std::optional<double> temperature_C = 50;
   ClockReading wall{{"tsc", true, true}, std::nullopt};
   system::Disk store{"/data", 5000, true, ""};
@@ -33,19 +33,24 @@ struct GoodRig : SelfTestRig {
 };
 
 /// The names of the checks with this verdict, separated by commas.
-std::string with(Verdict verdict, const std::vector<CheckRow>& checks) {
+std::string with(Verdict verdict, const std::vector<Check>& checks) {
   std::string names;
   for (const auto& check : checks)
-    if (check.verdict == verdict) names += (names.empty() ? "" : ", ") + check.name;
+    if (check.verdict == verdict) names += (names.empty() ? "" : ", ") + row_of(check).name;
   return names;
 }
 
-std::string failed(const std::vector<CheckRow>& checks) { return with(Verdict::failed, checks); }
+std::string failed(const std::vector<Check>& checks) { return with(Verdict::failed, checks); }
 
-const CheckRow& find(const std::vector<CheckRow>& checks, const std::string& name) {
+CheckRow find(const std::vector<CheckRow>& checks, const std::string& name) {
   for (const auto& check : checks)
     if (check.name == name) return check;
   throw std::logic_error("no check " + name);
+}
+CheckRow find(const std::vector<Check>& checks, const std::string& name) {
+  std::vector<CheckRow> rows;
+  for (const auto& check : checks) rows.push_back(row_of(check));
+  return find(rows, name);
 }
 
 rig::Rig simulated(const TemporaryFolder& folder, const std::string& capture = measured::kCells) {
@@ -57,7 +62,7 @@ rig::Rig simulated(const TemporaryFolder& folder, const std::string& capture = m
 TEST_CASE("a rig in order passes every check of the self-test", "[session][self-test]") {
   GoodRig rig;
   const auto checks = self_test(rig);
-  CHECK(checks.size() == 10);
+  CHECK(checks.size() == 11);
   CHECK(failed(checks).empty());
   CHECK(with(Verdict::not_possible, checks).empty());
   CHECK(passed(checks));
@@ -70,17 +75,20 @@ TEST_CASE("each fault fails its check of the self-test and no other", "[session]
     CHECK(failed(checks) == name);
     CHECK_FALSE(passed(checks));
   };
-  SECTION("gate that never opens") { rig.gate = {"", false, {}}, expect("gate"); }
-  SECTION("gate that never shuts") { rig.gate = {"", true, {}}, expect("gate"); }
-  SECTION("gate that shuts late") { rig.gate = {"", true, 0.3}, expect("gate"); }
+  SECTION("gate that never opens") { rig.gate = {{}, false, {}}, expect("gate"); }
+  SECTION("gate that never shuts") { rig.gate = {{}, true, {}}, expect("gate"); }
+  SECTION("gate that shuts late") { rig.gate = {{}, true, 0.3}, expect("gate"); }
   SECTION("stop without a wire") { rig.stop.pressed = false, expect("stop"); }
   SECTION("stop that is stuck") { rig.stop.released = false, expect("stop"); }
   SECTION("button without a wire") { rig.buttons[1].pressed = false, expect("button right"); }
   SECTION("pick-up without a signal") { rig.tones[0].proof = terms::Proof::refused, expect("tone main"); }
   SECTION("tone that was not captured") { rig.tones[0].proof = terms::Proof::lost, expect("tone main"); }
+  SECTION("overdriven preamplifier") { rig.tones[0].nonlinearity_dB = 0.5, expect("linearity main"); }
   SECTION("load on a cell") { rig.cells[0].zero_N = -1.01, expect("zero of cell a"); }
   SECTION("loose wire of a cell") { rig.cells[0].noise_mN = 2.1, expect("noise of cell a"); }
-  SECTION("cell that cannot be read") { rig.cells[0].fault = "a wire is off", expect("zero of cell a"); }
+  SECTION("cell that cannot be read") {
+    rig.cells[0].fault = texts::plain("a wire is off"), expect("zero of cell a");
+  }
   SECTION("hot machine") { rig.temperature_C = 80, expect("temperature"); }
   SECTION("clock that was set") { rig.wall.jump_s = -3600, expect("clock"); }
   SECTION("date that cannot be") { rig.wall.clock.plausible = false, expect("clock"); }
@@ -88,11 +96,62 @@ TEST_CASE("each fault fails its check of the self-test and no other", "[session]
   SECTION("disk that is write-protected") { rig.store.writable = false, expect("disk"); }
 }
 
+TEST_CASE("a check of the self-test is said in the language of the screen, and stored in English",
+          "[session][self-test]") {
+  GoodRig rig;
+  rig.gate = {{}, true, {}};
+  rig.tones[0].cause = terms::ProofCause::level;
+  rig.wall = {{"tsc", false, false}, -3600};
+  const auto checks = self_test(rig);
+  const auto german = [&](std::size_t k) {
+    return texts::say(checks.at(k).name, "de") + ": " + texts::say(checks.at(k).what, "de");
+  };
+  CHECK(find(checks, "tone main").what ==
+        "a quiet tone of 30.0 kHz was measured at -0.10 dB relative to its calibration: the surface moves "
+        "more or less than planned");
+  CHECK(find(checks, "clock").what ==
+        "source tsc, not synchronised, the date cannot be right, and the clock was set by -3600.000 s during "
+        "the self-test");
+  CHECK(german(0).starts_with("Gatter: das Gatter bleibt offen, obwohl"));
+  CHECK(german(2) == "Taste left: der Tastendruck ist angekommen");
+  CHECK(german(4) ==
+        "Ton main: ein leiser Ton von 30.0 kHz hatte -0.10 dB gegenüber seiner Kalibrierung: die Oberfläche "
+        "bewegt sich stärker oder schwächer als geplant");
+  CHECK(german(5) == "Linearität main: die Antwort ist bei drei Pegeln auf 0.02 dB gleich");
+  CHECK(german(6) == "Nullpunkt der Zelle a: die Zelle zeigt unbelastet +0.100 N");
+}
+
+TEST_CASE("a response that differs a little between levels is reported and passes", "[session][self-test]") {
+  GoodRig rig;
+  const auto linearity = [&](double off_dB) {
+    rig.tones[0].nonlinearity_dB = off_dB;
+    return find(self_test(rig), "linearity main");
+  };
+  CHECK(linearity(0.09).what == "the response is the same at three levels, to 0.09 dB");
+  for (const double off_dB : {0.1, 0.49}) {
+    CHECK(linearity(off_dB).verdict == Verdict::passed);
+    CHECK(linearity(off_dB).what.find("is near its limit") != std::string::npos);
+  }
+  CHECK(linearity(0.5).verdict == Verdict::failed);
+  CHECK(linearity(0.5).limit == 0.5);
+}
+
+TEST_CASE("a reading that rounds to zero has no minus sign", "[session][self-test]") {
+  GoodRig rig;
+  rig.tones.front().ratio_dB = -0.004;
+  rig.cells.front().zero_N = -0.0004;
+  std::string all;
+  for (const auto& check : self_test(rig)) all += row_of(check).what + "\n";
+  CHECK(all.find("at +0.00 dB") != std::string::npos);
+  CHECK(all.find("reads +0.000 N") != std::string::npos);
+}
+
 TEST_CASE("what a rig does not have is not possible to check, and does not fail", "[session][self-test]") {
   GoodRig rig;
   rig.gate.missing = rig.stop.missing = rig.buttons[0].missing = rig.tones[0].missing = rig.cells[0].missing =
-      "the rig has none";
-  rig.tones.push_back({"", "second", 30'000, 0, terms::Proof::unproven, terms::ProofCause::none});
+      texts::plain("the rig has none");
+  rig.tones[0].nonlinearity_dB.reset();
+  rig.tones.push_back({{}, "second", 30'000, 0, {}, terms::Proof::unproven, terms::ProofCause::none});
   rig.temperature_C.reset();
   const auto checks = self_test(rig);
   CHECK(with(Verdict::not_possible, checks) ==
@@ -120,11 +179,13 @@ TEST_CASE("the self-test measures the simulated rig and finds nothing wrong",
   none.sensors = folder / "nothing";
   const auto checks = simulated_self_test(simulated(folder), folder.path, none);
   for (const auto& check : checks)
-    UNSCOPED_INFO(check.name << ": " << name(check.verdict) << ", " << check.what);
+    UNSCOPED_INFO(row_of(check).name << ": " << name(check.verdict) << ", " << row_of(check).what);
   CHECK(failed(checks).empty());
   CHECK(with(Verdict::not_possible, checks) == "temperature");
   // The monostable of the simulated gate lasts 110 ms, and the heartbeat may have toggled 10 ms before.
   CHECK(find(checks, "gate").value.value() > 90);
+  CHECK(find(checks, "linearity main").value.value() < 0.01);
+  CHECK(find(checks, "tone main").what.find("the surface") == std::string::npos);  // names no deviation
   CHECK(find(checks, "zero of cell lateral").value.value() == Approx(0).margin(0.05));
   CHECK(find(checks, "noise of cell a").value.value() > 0.05);
 }
@@ -150,6 +211,12 @@ TEST_CASE("the self-test finds each fault of the simulated rig", "[session][self
   SECTION("the surface does not move") {
     faults.room = [](auto& room) { room.plant().add({plant::FaultKind::transducer_dead, 0, plant::kNever}); };
     wrong = "tone main";
+  }
+  SECTION("the preamplifier of the pick-ups is overdriven") {
+    faults.laboratory = [](auto& room) {
+      for (auto& pickup : room.pickups) pickup.cubic = -65;
+    };
+    wrong = "tone main, linearity main";
   }
   SECTION("a cell is bent") {
     faults.laboratory = [](auto& room) { room.cells.zero_N[1] = 1.5; };

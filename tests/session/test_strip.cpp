@@ -49,13 +49,7 @@ struct Sensors : session::Monitor {
 
 report::SessionData data_of(const std::string& sensing, Sensors& sensors) {
   TemporaryFolder folder;
-  setup::RunRequest request;
-  request.protocol = demo_with(folder, sensing);
-  request.rig = with_capture(folder, kCells);
-  request.participant = "P01";
-  request.database = folder / "a.sqlite";
-  request.observer = "sim:residual=10";
-  request.seed = 7;
+  const auto request = request_in(folder, demo_with(folder, sensing), kCells, "sim:residual=10");
   const auto setup = setup::prepare(request);
   sensors.asked = setup.protocol.sensing;
   session::Inputs inputs;

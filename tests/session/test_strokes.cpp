@@ -155,12 +155,7 @@ TEST_CASE("trials are planned with the measured table where the protocol asks fo
 TEST_CASE("a resumed session continues the table, and plans with the same table afterwards",
           "[session][strokes]") {
   TemporaryFolder folder;
-  setup::RunRequest request;
-  request.protocol = protocol_with(folder, std::string(kTable) + "true\n");
-  request.rig = with_capture(folder, kCells);
-  request.participant = "P01";
-  request.observer = "sim";
-  request.seed = 7;
+  auto request = request_in(folder, protocol_with(folder, std::string(kTable) + "true\n"));
   // Runs the session, and stops it before trial `stop_at`.
   const auto run_once = [&](session::Setup setup, int stop_at) {
     auto room = std::make_unique<session::SimulatedRoom>(setup.rig, with_finger(stiff_finger()).room);
@@ -176,7 +171,6 @@ TEST_CASE("a resumed session continues the table, and plans with the same table 
     return session::run(setup, &pages, inputs, std::move(room), &saboteur);
   };
   const auto stop_at = GENERATE(12, 26);
-  request.database = folder / "a.sqlite";
   CHECK(run_once(setup::prepare(request), stop_at).status == records::SessionStatus::interrupted);
   std::ostringstream messages;
   auto resumed = setup::prepare_resume({request.database, "", "resume", true}, messages);

@@ -69,7 +69,7 @@ Ran run(const std::string& protocol, const std::string& rig_tables,
     ran.trials.insert(ran.trials.end(), block.trials.begin(), block.trials.end());
   for (const auto& event : stored.events) ran.events[event.kind].push_back(event);
   for (const auto& [name, text] : desk::report_data(request.database, ran.summary.session_id).health)
-    if (name == "Trigger codes") ran.report = text;
+    if (texts::say(name, "en") == "Trigger codes") ran.report = texts::say(text, "en");
   return ran;
 }
 

@@ -13,30 +13,10 @@ double banded(const std::vector<double>& x, bool distance) {
   return distance ? std::fabs(x[1] - x[0]) : x[0];
 }
 
-Strategy band(double lowest, double highest, int inside, bool distance) {
-  return [=](const std::vector<double>& x) {
-    const double value = banded(x, distance);
-    return std::vector<int>{value >= lowest && value < highest ? inside : 1 - inside};
-  };
-}
-
-// Possible criteria for the cue: at most 80 places between different values, and one below and one above all
-// values.
-std::vector<double> cuts_of(const Shown& shown, double grain, bool distance) {
-  std::vector<double> values, between;
-  for (const auto& [trial, count] : shown) values.push_back(banded(trial.first, distance));
-  std::sort(values.begin(), values.end());
-  double from = values.front();
-  for (std::size_t i = 1; i < values.size(); ++i)
-    if (values[i] - from > grain) {
-      between.push_back(0.5 * (values[i] + values[i - 1]));
-      from = values[i];
-    }
-  std::vector<double> cuts{-1e300};
-  const std::size_t wanted = std::min<std::size_t>(80, between.size());
-  for (std::size_t i = 0; i < wanted; ++i) cuts.push_back(between[i * between.size() / wanted]);
-  cuts.push_back(1e300);
-  return cuts;
+std::vector<double> cuts_in(const Shown& shown, double grain, bool distance) {
+  std::vector<std::pair<double, double>> values;
+  for (const auto& [trial, count] : shown) values.emplace_back(banded(trial.first, distance), count);
+  return cuts_of(std::move(values), grain, 80);
 }
 
 std::vector<int> extremes(const std::vector<double>& score) {
@@ -93,6 +73,44 @@ std::vector<Strategy> likenesses(std::size_t cue, std::size_t x_at) {
 
 }  // namespace
 
+double grain_of(std::size_t cue, const std::vector<double>& values) {
+  double largest = 0;
+  for (const double value : values) largest = std::max(largest, std::fabs(value));
+  return cue == loudness ? 0.01 : 1e-3 * largest;
+}
+
+Strategy band(double lowest, double highest, int inside, bool distance) {
+  return [=](const std::vector<double>& x) {
+    const double value = banded(x, distance);
+    return std::vector<int>{value >= lowest && value < highest ? inside : 1 - inside};
+  };
+}
+
+std::vector<double> cuts_of(std::vector<std::pair<double, double>> values, double grain, std::size_t most) {
+  struct Group {
+    double first, last, weight;
+  };
+  std::sort(values.begin(), values.end());
+  std::vector<Group> groups;
+  double all = 0;
+  for (const auto& [value, weight] : values) {
+    if (groups.empty() || value - groups.back().first > grain) groups.push_back({value, value, 0});
+    groups.back().last = value, groups.back().weight += weight, all += weight;
+  }
+  const double step = all / static_cast<double>(most + 1);
+  std::vector<double> cuts{-1e300};
+  double below = 0, wanted = step;
+  for (std::size_t i = 1; i < groups.size(); ++i) {
+    below += groups[i - 1].weight;
+    const bool frequent = std::max(groups[i - 1].weight, groups[i].weight) >= step;
+    if (groups.size() <= most + 1 || frequent || below >= wanted)
+      cuts.push_back(0.5 * (groups[i - 1].last + groups[i].first));
+    while (wanted <= below) wanted += step;
+  }
+  cuts.push_back(1e300);
+  return cuts;
+}
+
 double expected(const Strategy& strategy, const Shown& shown) {
   double right = 0, all = 0;
   for (const auto& [trial, count] : shown) {
@@ -105,13 +123,16 @@ double expected(const Strategy& strategy, const Shown& shown) {
 }
 
 Strategy best_cuts(const Shown& shown, double grain, bool distance) {
-  const auto cuts = cuts_of(shown, grain, distance);
+  const auto cuts = cuts_in(shown, grain, distance);
   // For each criterion and each answer, the number of trials below the criterion for which the answer is
   // right.
   std::vector<std::array<double, 2>> below(cuts.size(), {0, 0});
-  for (std::size_t c = 0; c < cuts.size(); ++c)
-    for (const auto& [trial, count] : shown)
-      if (banded(trial.first, distance) < cuts[c]) below[c][static_cast<std::size_t>(trial.second)] += count;
+  for (const auto& [trial, count] : shown) {
+    const auto above = std::upper_bound(cuts.begin(), cuts.end(), banded(trial.first, distance));
+    below[static_cast<std::size_t>(above - cuts.begin())][static_cast<std::size_t>(trial.second)] += count;
+  }
+  for (std::size_t c = 1; c < cuts.size(); ++c)
+    for (const std::size_t answer : {0, 1}) below[c][answer] += below[c - 1][answer];
   double most = -1;
   std::size_t low = 0, high = cuts.size() - 1;
   int inside = 0;
@@ -127,7 +148,7 @@ Strategy best_cuts(const Shown& shown, double grain, bool distance) {
 }
 
 Strategy best_parts(const Shown& shown, double grain, int answers) {
-  const auto cuts = cuts_of(shown, grain, false);
+  const auto cuts = cuts_in(shown, grain, false);
   std::vector<std::vector<double>> below(cuts.size(), std::vector<double>(static_cast<std::size_t>(answers)));
   for (std::size_t c = 0; c < cuts.size(); ++c)
     for (const auto& [trial, count] : shown)

@@ -22,6 +22,8 @@ class Maker {
     if (seed_ % 4 == 3 && task_ == "same-different") task_ = seed_ % 8 == 3 ? "abx" : "match-to-sample";
     use("task " + task_);
     single_ = task_ == "single-interval";
+    // Decided by the seed alone, for the same reason.
+    yes_no_ = single_ && !three_answers() && seed_ % 2 == 1;
     two_scenes_ = single_ && chance(0.25);
     if (two_scenes_) use("an interval of two scenes");
     marks_ = below(3);  // number of marks; 0 means that the level is the only factor
@@ -45,7 +47,8 @@ class Maker {
   }
 
   std::string factors() {
-    std::string text = "[[factor]]\nname = \"level_mm\"\nrange = [-20.0, 20.0]\n";
+    std::string text =
+        "[[factor]]\nname = \"level_mm\"\nrange = [" + std::string(yes_no_ ? "0.0" : "-20.0") + ", 20.0]\n";
     if (marks_ > 0)
       text += std::string("[[factor]]\nname = \"mark_mm\"\nlevels = ") +
               (marks_ == 1 ? "[150.0, 158.0]" : "[146.0, 154.0, 159.0]") + "\n";
@@ -111,6 +114,7 @@ class Maker {
       use("three answers about one interval");
       return "correct = { a = \"level_mm < -7\", b = \"abs(level_mm) < 7\", c = \"level_mm > 7\" }\n";
     }
+    if (yes_no_) return "correct = { a = \"level_mm == 0\", b = \"level_mm > 0\" }\n";
     use("right answer by " + rule);
     if (rule == "side") return "correct = { a = \"level_mm < 0\", b = \"level_mm > 0\" }\n";
     if (rule == "criterion") return "correct = { a = \"level_mm <= 4\", b = \"level_mm > 4\" }\n";
@@ -120,6 +124,7 @@ class Maker {
   std::string procedures() {
     kind_ = pick({"constant-stimuli", "constant-stimuli", "constant-stimuli", "up-down", "weighted-up-down",
                   "quest-plus"});
+    if (yes_no_) kind_ = "quest-plus";
     use("procedure " + kind_);
     second_ = kind_ != "constant-stimuli" && chance(0.4);
     std::string text = "[[procedure]]\nname = \"p\"\nlevel = \"level_mm\"\nkind = " + quoted(kind_) + "\n";
@@ -129,7 +134,9 @@ class Maker {
       text += "tracks = \"b\"\n";
     }
     const std::string low = single_ ? "-20.0" : "1.0";
-    if (kind_ == "quest-plus")
+    if (yes_no_)
+      text += detection();
+    else if (kind_ == "quest-plus")
       text +=
           "function = \"normal\"\nstimuli = { from = " + low +
           ", to = 20.0, step = " + (single_ ? "4.0" : "2.375") + " }\ngrid.threshold = { from = " + low +
@@ -151,6 +158,15 @@ class Maker {
     return text;
   }
 
+  // QUEST+ with a free criterion, which chooses between levels with a signal and level 0.
+  std::string detection() {
+    use("yes or no with a free criterion");
+    return "function = \"signal-detection\"\nstimuli = { values = [0.0, 3.0, 6.0, 10.0, 16.0] }\n"
+           "grid.threshold = { from = 2.0, to = 16.0, count = 6 }\ngrid.slope = { values = [1.0, 2.0] }\n"
+           "grid.criterion = { from = -0.5, to = 2.5, step = 0.5 }\ngrid.lapse = { values = [0.02] }\n"
+           "stop = { trials = 40 }\n";
+  }
+
   std::string constant() {
     const auto values = single_ ? pick({"[-16.0, -6.0, 6.0, 16.0]", "[-12.0, -3.0, 3.0, 8.0, 12.0, 18.0]",
                                         "[-18.0, -7.0, 0.0, 5.0]"})
@@ -163,8 +179,13 @@ class Maker {
     return text;
   }
 
+  std::string caught() {
+    const auto levels = pick({"[-20.0, 20.0]", "[-20.0, 14.0, 20.0]"});
+    return yes_no_ ? "[0.0, 20.0]" : levels;
+  }
+
   std::string blocks() {
-    const std::string levels = single_ ? "[-16.0, 16.0]" : "[14.0, 20.0]";
+    const std::string levels = yes_no_ ? "[0.0, 16.0]" : single_ ? "[-16.0, 16.0]" : "[14.0, 20.0]";
     std::string text;
     if (chance(0.5)) {
       use("practice");
@@ -176,7 +197,7 @@ class Maker {
     if (chance(0.4)) {
       use("catch trials");
       block += ", catch = { rate = " + pick({"0.1", "0.3"}) +
-               ", level_mm = " + (single_ ? pick({"[-20.0, 20.0]", "[-20.0, 14.0, 20.0]"}) : "20.0") + " }";
+               ", level_mm = " + (single_ ? caught() : "20.0") + " }";
     }
     if (kind_ == "constant-stimuli" && chance(0.3)) {
       use("fewer trials than the procedure has");
@@ -210,7 +231,7 @@ class Maker {
   std::mt19937 random_;
   std::map<std::string, int>& features_;
   std::string task_, kind_;
-  bool single_ = false, two_scenes_ = false, standard_moves_ = false, second_ = false;
+  bool single_ = false, two_scenes_ = false, standard_moves_ = false, second_ = false, yes_no_ = false;
   int marks_ = 0;
 };
 

@@ -1,5 +1,7 @@
 #include "station/simulation/one_cue.hpp"
 
+#include <algorithm>
+
 #include "tests/support/catch.hpp"
 
 using namespace turnpoint;
@@ -77,4 +79,25 @@ TEST_CASE("of four intervals the one with the target is found; X is matched in a
   CHECK(best(abx, {{{1, 2, 2}, 1, 1}, {{1, 2, 1}, 0, 1}, {{2, 1, 2}, 0, 1}}) == 1);
   CHECK(best(sample, {{{2, 1, 2}, 1, 1}, {{1, 1, 2}, 0, 1}, {{2, 2, 1}, 0, 1}}) == 1);
   CHECK(best(abx, {{{1, 1, 1}, 1, 1}, {{1, 1, 1}, 0, 1}}) == Approx(0.5));
+}
+
+TEST_CASE("ranges of a cue may end between different values, at no more places than are asked for",
+          "[cues]") {
+  std::vector<Look> looks;
+  for (int k = 0; k < 10; ++k) looks.push_back(single(k, k >= 6 ? 0 : 1));
+  const auto all = simulation::places(looks, {1e-3, 0}, 96);
+  REQUIRE(all.size() == 9);  // one between each two neighbours
+  for (std::size_t k = 0; k < all.size(); ++k) CHECK(all[k] == Approx(static_cast<double>(k) + 0.5));
+  CHECK(simulation::places(looks, {1e-3, 0}, 3) == std::vector<double>{2.5, 4.5, 7.5});
+  CHECK(simulation::places(looks, {1.5, 0}, 96) == std::vector<double>{1.5, 3.5, 5.5, 7.5});
+  CHECK(simulation::places({single(5, 0), single(5, 1)}, {1e-3, 0}, 9).empty());
+}
+
+TEST_CASE("ranges of a cue may end on both sides of a value that occurs often", "[cues]") {
+  std::vector<Look> looks;
+  for (int k = 0; k < 100; ++k) looks.push_back(single(k, 1));
+  looks.push_back(single(41.5, 0, 100));
+  const auto some = simulation::places(looks, {1e-3, 0}, 5);
+  for (const double beside : {41.25, 41.75}) CHECK(std::count(some.begin(), some.end(), beside) == 1);
+  CHECK(some.size() <= 7);
 }

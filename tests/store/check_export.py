@@ -2,7 +2,7 @@
 """check_export.py pandas|signals|bids MAKE_SAMPLE README: reads exports with the programs for which they are made.
 
 `pandas` and `signals` run the Python examples from README; `bids` runs bids-validator-deno. The exit status is 77 (skipped) if the
-program is not installed. To install both: pip install pandas bids-validator-deno==3.0.2
+program is not installed, and 1 if the machine declares it in TURNPOINT_READERS. To install both: pip install pandas bids-validator-deno==3.0.2
 """
 import csv
 import glob
@@ -23,6 +23,8 @@ SKIPPED = 77
 
 
 def skip(what):
+    if what in os.environ.get("TURNPOINT_READERS", "").split():
+        sys.exit(f"TURNPOINT_READERS says that {what} is installed here, but it is not")
     print(f"skipped: {what} is not installed; pip install pandas bids-validator-deno==3.0.2")
     sys.exit(SKIPPED)
 

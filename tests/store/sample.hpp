@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <fstream>
 #include <limits>
+#include <span>
 #include <sstream>
 #include <string>
 
@@ -92,6 +93,20 @@ inline SignalRow finger_signal(int index) {
   return s;
 }
 
+/// Captured samples of two channels, with the extreme values and a sample that was lost.
+inline SignalRow raw_signal(int index) {
+  SignalRow s;
+  s.stream = kRawStream;
+  s.start_frame = 192000 * (1 + index);
+  s.start_s = 1.5 + index;
+  s.rate_Hz = 192000;
+  s.channels = {{"channel_0", "", 1}, {"channel_1", "", 1}};
+  constexpr auto most = std::numeric_limits<std::int32_t>::max(), least = -most;
+  const std::vector<std::int32_t> samples{0, most, -256, least, std::numeric_limits<std::int32_t>::min(), 77};
+  encode(s, std::span(samples));
+  return s;
+}
+
 inline TrialRow answered(int index, int tones = 2) {
   TrialRow t;
   t.trial_index = index;
@@ -121,6 +136,8 @@ inline TrialRow answered(int index, int tones = 2) {
   t.drive_ratio_dB = -0.75;
   t.drive_residual_dB = -55;
   t.onset_error_us = 12.5;
+  t.silence_dB = -57.5;
+  t.silence_tone_dB = -82.25;
   t.confidence = 1 + index % 4;
   t.confidence_time_s = 0.75;
   t.finger.sensing = "ok";
@@ -154,6 +171,14 @@ inline TrialRow timeout(int index) {
   t.response_time_quality = "n/a";
   t.confidence.reset();
   t.confidence_time_s.reset();
+  return t;
+}
+
+/// A void trial, with what was captured in it.
+inline TrialRow failed(int index) {
+  auto t = timeout(index);
+  t.outcome = Outcome::fault;
+  t.signal_rows.push_back(raw_signal(index));
   return t;
 }
 

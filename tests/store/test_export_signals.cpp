@@ -2,10 +2,12 @@
 
 #include <nlohmann/json.hpp>
 
+#include "station/store/backup.hpp"
 #include "station/store/export.hpp"
 #include "station/store/merge.hpp"
 #include "station/store/read.hpp"
 #include "station/store/text_table.hpp"
+#include "station/store/verify.hpp"
 #include "station/store/withdraw.hpp"
 #include "tests/store/sample.hpp"
 #include "tests/support/catch.hpp"
@@ -144,6 +146,49 @@ TEST_CASE("exported signals are the same after a merge, and gone after a withdra
   CHECK(sample::contains(message, id + "_finger.csv.gz"));
   CHECK(export_data(db, folder / "new", signals_only()).size() == 3);
   CHECK_FALSE(fs::exists(folder / "new" + table_of(id)));
+}
+
+TEST_CASE("what was captured in a void trial is exported sample by sample, merged, backed up and withdrawn",
+          "[store][signals][raw]") {
+  TemporaryFolder folder;
+  const auto db = folder / "a.sqlite", other = folder / "b.sqlite";
+  sample::session(other, 1);
+  auto start = sample::start("P07");
+  start.station_id = "bench-b";
+  auto log = SessionLog::begin(db, start, sample::segment());
+  log.begin_block(sample::block());
+  log.append(sample::answered(0));
+  log.append(sample::failed(1));
+  log.finish(SessionStatus::completed, "");
+  const auto id = log.session().session_id;
+  const auto raw_table = [&](const std::string& out) {
+    return folder / out + "/two-boundaries/signals/" + id + "_raw.csv.gz";
+  };
+  CHECK(export_data(db, folder / "out", signals_only()).size() == 4);
+  const auto rows = read_table(unpacked(raw_table("out")));
+  REQUIRE(rows.size() == 4);
+  CHECK(rows[0] ==
+        std::vector<std::string>{"trial_index", "segment_id", "time_s", "frame", "channel_0", "channel_1"});
+  CHECK(rows[1] == std::vector<std::string>{"1", "1", "2.5", "384000", "0", "2147483647"});
+  CHECK(rows[2] == std::vector<std::string>{"1", "1", "2.500005", "384001", "-256", "-2147483647"});
+  CHECK(rows[3] == std::vector<std::string>{"1", "1", "2.50001", "384002", "n/a", "77"});
+
+  const auto copy = backup(db, {folder / "backups", 9}).path;
+  merge(other, copy);
+  export_data(other, folder / "merged", signals_only());
+  CHECK(unpacked(raw_table("merged")) == unpacked(raw_table("out")));
+  CHECK(verify(other).good());
+
+  // BIDS has no place for signals with gaps.
+  ExportOptions bids;
+  bids.format = ExportFormat::bids;
+  for (const auto& file : export_data(db, folder / "bids", bids))
+    CHECK_FALSE(sample::contains(file.path, "raw"));
+
+  withdraw(other, {"P07", "", "", ""});
+  export_data(other, folder / "without", signals_only());
+  CHECK_FALSE(fs::exists(raw_table("without")));
+  CHECK(sample::raw(other).integer("SELECT count(*) FROM signal WHERE stream = 'raw'") == 0);
 }
 
 TEST_CASE("without signals there is nothing to export, and no folder is made", "[store][signals]") {

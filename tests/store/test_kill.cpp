@@ -5,6 +5,7 @@
 #include <random>
 
 #include "station/store/read.hpp"
+#include "tests/store/kept_signals.hpp"
 #include "tests/store/sample.hpp"
 #include "tests/support/catch.hpp"
 
@@ -39,7 +40,7 @@ constexpr std::size_t kHeldBack = 8;
 }
 
 struct Toll {
-  int kills = 0, acknowledged = 0, lost = 0, damaged = 0, repeated = 0;
+  int kills = 0, acknowledged = 0, lost = 0, damaged = 0, repeated = 0, wrong_signals = 0;
 };
 
 /// Kills a writing process at a random moment, then checks the database.
@@ -82,6 +83,7 @@ void kill_once(const std::string& db, Acknowledge when, std::mt19937& random, To
   auto raw = sample::raw(db);
   if (raw.text("PRAGMA integrity_check") != "ok") ++toll.damaged;
   const auto trials = raw.integer("SELECT count(*) FROM trial");
+  toll.wrong_signals += sample::wrong_signals(raw, last + 1);
   toll.lost += trials < last + 1 ? last + 1 - static_cast<int>(trials) : 0;
   toll.repeated += trials != raw.integer("SELECT coalesce(max(trial_index), -1) + 1 FROM trial") ? 1 : 0;
 }
@@ -99,13 +101,16 @@ Toll kill_many(int kills, Acknowledge when) {
 
 }  // namespace
 
-TEST_CASE("hundreds of writers killed at random moments lose no trial that they acknowledged", "[store]") {
+TEST_CASE(
+    "hundreds of writers killed at random moments lose no trial that they acknowledged, and no sample of one",
+    "[store]") {
   const auto toll = kill_many(300, Acknowledge::after_commit);
   CHECK(toll.kills == 300);
   CHECK(toll.acknowledged > 300);
   CHECK(toll.lost == 0);
   CHECK(toll.damaged == 0);
   CHECK(toll.repeated == 0);
+  CHECK(toll.wrong_signals == 0);
 }
 
 TEST_CASE("negative control: a writer that acknowledges before it commits loses trials", "[store]") {

@@ -77,7 +77,7 @@ TEST_CASE("migrating an older database keeps its rows, and a copy of the old fil
 TEST_CASE("checksums of an earlier encoding still hold after a migration, and find a change", "[store]") {
   TemporaryFolder folder;
   const auto db = folder / "old.sqlite";
-  make_old(db, GENERATE(4, 5, 6, 7), "linked_v");
+  make_old(db, GENERATE(4, 5, 6, 7, 8), "linked_v");
   CHECK(verify(db).good());
   sample::session(db, 1, sample::start("P09"));  // migrates the database
   auto database = sample::raw(db);

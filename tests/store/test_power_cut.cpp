@@ -1,6 +1,7 @@
 #include <random>
 
 #include "station/store/read.hpp"
+#include "tests/store/kept_signals.hpp"
 #include "tests/store/lossy_disk.hpp"
 #include "tests/store/sample.hpp"
 #include "tests/support/catch.hpp"
@@ -15,7 +16,7 @@ struct Cut {
 };
 
 struct Toll {
-  int cuts = 0, lost = 0, damaged = 0;
+  int cuts = 0, lost = 0, damaged = 0, wrong_signals = 0;
 };
 
 /// Writes one session of many trials and makes power cuts at random operations, in every phase of commits and
@@ -49,8 +50,9 @@ Toll count(const std::vector<Cut>& cuts) {
       auto raw = sample::raw(cut.folder + "/a.sqlite");
       const auto trials = raw.integer("SELECT count(*) FROM trial");
       if (raw.text("PRAGMA integrity_check") != "ok") ++toll.damaged;
+      toll.wrong_signals += sample::wrong_signals(raw, cut.acknowledged);
       if (trials < cut.acknowledged) toll.lost += cut.acknowledged - static_cast<int>(trials);
-    } catch (const StoreError&) {
+    } catch (const std::exception&) {  // also what a reader says of signals that are no JSON any more
       ++toll.damaged;
     }
   }
@@ -59,13 +61,34 @@ Toll count(const std::vector<Cut>& cuts) {
 
 }  // namespace
 
-TEST_CASE("a power cut at any operation of a commit or checkpoint loses no acknowledged trial", "[store]") {
+TEST_CASE(
+    "a power cut at any operation of a commit or checkpoint loses no acknowledged trial and no sample of one",
+    "[store]") {
   TemporaryFolder folder;
   LossyDisk disk(LossyDisk::Syncs::kept);
   const auto toll = count(cut_at_random(folder, disk, 250));
   CHECK(toll.cuts > 100);
   CHECK(toll.lost == 0);
   CHECK(toll.damaged == 0);
+  CHECK(toll.wrong_signals == 0);
+}
+
+TEST_CASE("negative control: a trial without its signal, or with that of another trial, is noticed",
+          "[store]") {
+  TemporaryFolder folder;
+  const auto db = folder / "a.sqlite";
+  auto log = SessionLog::begin(db, sample::start(), sample::segment());
+  log.begin_block(sample::block());
+  for (int i = 0; i < 4; ++i) {
+    auto trial = sample::answered(i);
+    if (i == 1) trial.signal_rows.clear();
+    if (i == 2) trial.signal_rows = {sample::finger_signal(3)};
+    if (i == 3) trial.signal_rows[0].start_frame += 1;
+    log.append(trial);
+  }
+  auto raw = sample::raw(db);
+  CHECK(sample::wrong_signals(raw, 1) == 0);
+  CHECK(sample::wrong_signals(raw, 5) == 4);
 }
 
 TEST_CASE("negative control: on a disk that ignores syncs, trials are lost or the file is damaged",

@@ -59,6 +59,19 @@ TEST_CASE("a decoded value is the double nearest to a whole multiple of the reso
   }
 }
 
+TEST_CASE("captured samples come back exactly, and lost ones as missing", "[store][raw]") {
+  const auto values = decode(sample::raw_signal(0));
+  REQUIRE(values.size() == 2);
+  CHECK(values[0][0] == 0);
+  CHECK(values[0][1] == -256);
+  CHECK(std::isnan(values[0][2]));
+  CHECK(values[1] == std::vector<double>{2147483647, -2147483647, 77});
+  SignalRow row;
+  row.channels = {{"channel_0", "", 1}, {"channel_1", "", 1}};
+  const std::vector<std::int32_t> odd(3);
+  CHECK_THROWS_AS(encode(row, std::span(odd)), std::logic_error);
+}
+
 TEST_CASE("a stored signal has the documented encoding", "[store]") {
   SignalRow row;
   row.stream = "finger";

@@ -1,9 +1,13 @@
 // Tests the catalogues of the station's texts, which have one file per language.
 #include <filesystem>
+#include <map>
 #include <regex>
 #include <set>
 #include <stdexcept>
 
+#include "physics/centre_line.hpp"
+#include "physics/field.hpp"
+#include "physics/warning.hpp"
 #include "station/system/read_file.hpp"
 #include "station/terms/fault.hpp"
 #include "station/texts/texts.hpp"
@@ -22,6 +26,21 @@ std::set<std::string> keys_of(const std::string& language) {
 std::multiset<std::string> places_in(const std::string& said) {
   static const std::regex place("%[0-9]");
   return {std::sregex_token_iterator(said.begin(), said.end(), place), std::sregex_token_iterator()};
+}
+
+/// A word of an English sentence that no text in another language contains; "" if there is none. Names of
+/// commands, files and settings are not sentences.
+std::string english_word(const std::string& said) {
+  static const std::regex word(
+      "\\b(the|is|are|of|and|or|with|have|cannot|be|by|from|this|that|which|than)\\b");
+  std::smatch found;
+  return std::regex_search(said, found, word) ? found.str() : "";
+}
+
+/// The source of a file without comments and without messages that are thrown.
+std::string code_of(const std::string& file) {
+  static const std::regex comment("//[^\n]*|#include[^\n]*|throw [^;]*;");
+  return std::regex_replace(system::read_file(std::string(TURNPOINT_SOURCE_DIR) + "/" + file), comment, "");
 }
 
 /// All quoted words in the station's sources, and the words among them that are given to text().
@@ -60,6 +79,40 @@ TEST_CASE("every language has every text, with the same places for numbers and n
   }
 }
 
+TEST_CASE("no text in another language has kept an English sentence", "[texts]") {
+  CHECK(english_word("the amplifier cannot be armed") == "the");
+  CHECK(english_word("sudo swapoff -a").empty());
+  for (const auto& language : texts::languages()) {
+    if (language == "en") continue;
+    for (const auto& [key, said] : texts::catalogue(language)) {
+      INFO(language << " " << key << ": " << said);
+      CHECK(english_word(said).empty());
+      static const std::regex sentence("[a-z]{2,} [a-z]{2,} [a-z]{2,}");
+      const auto& english = texts::text(key, "en");
+      if (std::regex_search(english, sentence)) CHECK(said != english);
+    }
+  }
+}
+
+TEST_CASE("what the screen and the command line both say is never a sentence in the sources", "[texts]") {
+  static const std::regex quoted("\"([^\"\n]*)\"");
+  for (const char* file :
+       {"station/maintenance/doctor.cpp", "station/lines/probe.cpp", "station/session/self_test.cpp",
+        "station/session/self_test_rig.cpp", "station/analysis/course.cpp", "station/analysis/diffusion.cpp",
+        "station/analysis/finger.cpp", "station/analysis/judgements.cpp", "station/analysis/mixed_fit.cpp",
+        "station/analysis/psychometric_fit.cpp", "station/analysis/psychometric_posterior.cpp",
+        "station/analysis/response_signal.cpp", "station/analysis/settings.cpp", "station/analysis/trade.cpp",
+        "station/report/summary.cpp", "station/calibration/calibration.cpp", "station/limits/exposure.cpp"}) {
+    const auto code = code_of(file);
+    CHECK(code.size() > 1000);
+    for (std::sregex_iterator found(code.begin(), code.end(), quoted), end; found != end; ++found) {
+      if ((*found)[1] == "time outside the decision") continue;  // a measure's name in exports
+      INFO(file << ": " << (*found)[1]);
+      CHECK(english_word((*found)[1]).empty());
+    }
+  }
+}
+
 TEST_CASE("every text is used, and every text that the program requests exists", "[texts]") {
   const auto source = quoted();
   const auto keys = keys_of("en");
@@ -70,8 +123,11 @@ TEST_CASE("every text is used, and every text that the program requests exists",
   }
   std::set<std::string> of_faults{"fault.safe"};
   for (const auto kind : terms::fault_kinds)
-    for (const char* part : {".happened", ".safe", ".to_do"})
+    for (const char* part : {".called", ".happened", ".safe", ".to_do"})
       of_faults.insert(std::string("fault.") + terms::name(kind) + part);
+  for (const auto cause : terms::proof_causes)
+    of_faults.insert(std::string("proof_cause.") + terms::name(cause));
+  for (const char* code : physics::warning_codes) of_faults.insert(std::string("physics_warning.") + code);
   const auto schema =
       system::read_file(std::string(TURNPOINT_SOURCE_DIR) + "/protocols/protocol.schema.json");
   const auto goals = system::read_file(std::string(TURNPOINT_SOURCE_DIR) + "/station/design/goals.cpp");
@@ -104,9 +160,79 @@ TEST_CASE(
   CHECK_THROWS_AS(texts::text("no_such_key", "en"), std::logic_error);
 }
 
+TEST_CASE("a phrase is said in a language that is chosen later", "[texts]") {
+  const auto range =
+      texts::Phrase{"check.range", "", {texts::plain("5 %1"), texts::plain("4"), texts::plain("6")}};
+  const texts::Phrase phrase{"check.minutes", "", {range}};
+  CHECK(texts::say(phrase, "en") == "5 %1 (4 to 6) min");
+  CHECK(texts::say(phrase, "de") == "5 %1 (4 bis 6) min");
+  CHECK(texts::say(texts::plain("50 %"), "ja") == "50 %");
+  CHECK(texts::say({"", "", {texts::plain("main: "), {"practice", "", {}}}}, "de") == "main: \u00dcbung");
+  CHECK(texts::say({"check.range", "", {texts::plain("1")}}, "en") == "1 (%2 to %3)");
+  CHECK_THROWS_AS(texts::say({"no_such_key", "", {}}, "en"), std::logic_error);
+}
+
+TEST_CASE("a fault and a cause are named in each language, in English as in messages", "[texts]") {
+  for (const auto kind : terms::fault_kinds) {
+    CHECK(texts::say(texts::phrase_of({kind, ""}), "en") == terms::describe(kind));
+    for (const auto& language : texts::languages())
+      if (language != "en")
+        CHECK(texts::say(texts::phrase_of({kind, ""}), language) != terms::describe(kind));
+  }
+  for (const auto cause : terms::proof_causes)
+    if (cause != terms::ProofCause::none)
+      CHECK(texts::say(texts::phrase_of(cause), "en") == terms::describe(cause));
+  const terms::Fault gone{terms::FaultKind::lines_gone, "No such device"};
+  CHECK(texts::say(texts::phrase_of(gone), "en") == terms::describe(gone));
+  CHECK(texts::say(texts::phrase_of(gone), "de") == "GPIO-Leitungen getrennt: No such device");
+}
+
+TEST_CASE("the physics library's warnings are said in each language, in English as the library says them",
+          "[texts]") {
+  using namespace physics;
+  std::map<std::string, Warning> warnings;
+  const auto gather = [&](const Surface& surface, double frequency_Hz) {
+    const Tone tone{frequency_Hz, 1e-6, 0};
+    for (const auto& one : surface_warnings(surface)) warnings[one.code] = one;
+    for (const auto& one : tone_warnings(surface, {&tone, 1})) warnings[one.code] = one;
+  };
+  auto brass = seed_brass();
+  for (const double frequency_Hz : {1e3, 20e3, 45e3, 200e3}) gather(brass, frequency_Hz);
+  auto cut = brass;
+  cut.length_m /= 4;
+  gather(cut, 45e3);
+  const Tone resonant{nearest_resonance_Hz(brass, 19600).value() * (1 + 1e-7), 1, 0};
+  const double x_m = 0.1;
+  const auto field = evaluate(brass, {&resonant, 1}, {&x_m, 1}, Model::mode, Normalise::drive);
+  for (const auto& one : describe(brass, {&resonant, 1}, field).warnings) warnings[one.code] = one;
+  brass.tension_Pa = 100e6;
+  brass.modulus_Pa = 100e9;
+  brass.poisson = 0.34;
+  brass.bending = Bending::off;
+  brass.yield_strength_Pa = 90e6;
+  gather(brass, 45e3);
+  auto plate = aluminium_plate();
+  plate.theory = PlateTheory::kirchhoff;
+  gather(plate, 45e3);
+  plate.quality_factor = 1e6;
+  for (double frequency_Hz = 23e3; frequency_Hz < 24e3; frequency_Hz += 10) gather(plate, frequency_Hz);
+
+  for (const char* code : warning_codes) {
+    INFO(code);
+    REQUIRE(warnings.count(code) == 1);
+    texts::Phrase phrase{std::string("physics_warning.") + code, "", {}};
+    for (const auto& value : warnings[code].values) phrase.values.push_back(texts::plain(value));
+    CHECK(texts::say(phrase, "en") == warnings[code].text);
+    for (const auto& language : texts::languages())
+      for (const auto& value : warnings[code].values)
+        CHECK(texts::say(phrase, language).find(value) != std::string::npos);
+  }
+}
+
 TEST_CASE("a language is known to be spoken or not, and to have been read by a native speaker or not",
           "[texts]") {
   CHECK(texts::translation("en-GB") == texts::Translation::read);
+  CHECK(texts::translation("de-CH") == texts::Translation::participant_read);
   CHECK(texts::translation("ar") == texts::Translation::unread);
   CHECK(texts::translation("fi") == texts::Translation::none);
 }

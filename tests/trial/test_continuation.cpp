@@ -8,7 +8,7 @@
 #include "tests/support/quick_rig.hpp"
 
 using namespace turnpoint;
-using Catch::Matchers::Contains;
+using Catch::Matchers::ContainsSubstring;
 
 namespace {
 
@@ -151,6 +151,7 @@ TEST_CASE("a procedure that would not have presented the earlier levels cannot c
   const auto before = study(2, 60);
   trial::add_earlier_trials(before, run(before, 1, earlier, answers).blocks, earlier);
   const auto changed = study(2, 60, "step = [2.0]");
-  CHECK_THROWS_WITH(trial::Director(changed, {0, 2}, 2, nullptr, earlier),
-                    Contains("procedure \"stairs\" cannot continue") && Contains("is stored"));
+  CHECK_THROWS_WITH(
+      trial::Director(changed, {0, 2}, 2, nullptr, earlier),
+      ContainsSubstring("procedure \"stairs\" cannot continue") && ContainsSubstring("is stored"));
 }

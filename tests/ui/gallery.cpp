@@ -4,59 +4,11 @@
 #include <utility>
 
 #include "station/texts/texts.hpp"
-#include "tests/ui/gallery_words.hpp"
+#include "tests/ui/gallery_parts.hpp"
 
 namespace turnpoint::ui {
 
 namespace {
-
-using session::Page;
-using session::PageKind;
-
-struct Words {
-  std::string language;
-  std::string pick(const char* en, const char* de, const char* ja) const {
-    if (language == "ar") return gallery_words.at(en).ar;
-    if (language == "zh") return gallery_words.at(en).zh;
-    return language == "de" ? de : language == "ja" ? ja : en;
-  }
-};
-
-Page base(const Words& words, PageKind kind) {
-  Page page;
-  page.kind = kind;
-  page.language = words.language;
-  page.run_mode = "live";
-  page.length_mm = 300;
-  page.wide_half_width_mm = 14;
-  page.narrow_half_width_mm = 5;
-  page.trials_done = 37;
-  page.trials_total = 88;
-  return page;
-}
-
-Page boundary(const Words& words, PageKind kind) {
-  Page page = base(words, kind);
-  page.mark_mm = 164;
-  page.text = words.pick("Did the smooth part end left or right of the mark?",
-                         "Endete der glatte Teil links oder rechts von der Markierung?",
-                         "なめらかな部分は印の左で終わりましたか、右で終わりましたか?");
-  page.answers = {{"left", words.pick("Left", "Links", "左")},
-                  {"right", words.pick("Right", "Rechts", "右")}};
-  page.answers_open = kind == PageKind::stimulus || kind == PageKind::response;
-  return page;
-}
-
-Page instructed(Page page, const Words& words, const std::string& instruction) {
-  page.instruction = instruction;
-  page.mark_mm.reset();
-  page.text = words.pick("Keep sliding. Did it become smoother or rougher?",
-                         "Weiter gleiten. Wurde es glatter oder rauer?",
-                         "すべらせ続けてください。なめらかになりましたか、ざらざらになりましたか?");
-  page.answers = {{"smoother", words.pick("Smoother", "Reibungsärmer geworden", "なめらか")},
-                  {"rougher", words.pick("Rougher", "Reibungsreicher geworden", "ざらざら")}};
-  return page;
-}
 
 Page oddity(const Words& words, PageKind kind, int interval) {
   Page page = base(words, kind);
@@ -140,70 +92,13 @@ void add_judgements(std::vector<Exhibit>& all, const Words& words) {
   all.push_back({"choices-9", many});
   many.answers.resize(4);
   all.push_back({"choices-4", many});
-}
-
-void add_interludes(std::vector<Exhibit>& all, const Words& words) {
-  Page consent = base(words, PageKind::question);
-  consent.trials_done = 0;
-  const std::string form = words.pick(
-      "You will feel vibrations of a surface with one finger and answer questions about them. This takes "
-      "about "
-      "15 minutes. Your answers are stored under a code, without your name. You may stop at any time, "
-      "without "
-      "giving a reason and without any disadvantage. Do you want to take part?",
-      "Sie werden mit einem Finger Schwingungen einer Oberfläche fühlen und Fragen dazu beantworten. Das "
-      "dauert "
-      "etwa 15 Minuten. Ihre Antworten werden unter einem Code gespeichert, ohne Namen. Sie können jederzeit "
-      "aufhören, ohne Angabe von Gründen und ohne Nachteil. Möchten Sie teilnehmen?",
-      "一本の指で表面の振動を感じ、質問に答えていただきます。約15分かかります。回答はお名前ではなく番号で保存"
-      "されます。"
-      "理由を述べずにいつでもやめることができ、不利益はありません。参加されますか?");
-  consent.text = form;
-  consent.answers_open = true;
-  consent.answers = {
-      {"agree", words.pick("Yes, I take part", "Ja, ich nehme teil", "はい、参加します")},
-      {"refuse", words.pick("No, I do not", "Nein, ich nehme nicht teil", "いいえ、参加しません")}};
-  all.push_back({"consent-form", consent});
-  consent.text = form + "\n\n" + form + "\n\n" + form;
-  all.push_back({"consent-form-long", consent});
-  Page question = base(words, PageKind::question);
-  question.back = true;
-  question.answers_open = true;
-  question.text = words.pick("Which hand do you write with?", "Mit welcher Hand schreiben Sie?",
-                             "どちらの手で字を書きますか?");
-  question.answers = {{"left", words.pick("Left", "Links", "左")},
-                      {"right", words.pick("Right", "Rechts", "右")},
-                      {"both", words.pick("Both", "Mit beiden", "両方")}};
-  all.push_back({"question-choices", question});
-  question.answers.clear();
-  for (int i = 1; i <= 7; ++i) question.answers.push_back({std::to_string(i), std::to_string(i)});
-  question.answers.front().caption = words.pick("not at all", "überhaupt nicht", "全く");
-  question.answers.back().caption = words.pick("very", "außerordentlich", "とても");
-  all.push_back({"question-rating", question});
-  Page age = question;
-  age.kind = PageKind::number;
-  age.answers.clear();
-  age.text = words.pick("How old are you, in years?", "Wie alt sind Sie, in Jahren?", "おいくつですか?");
-  age.value = {1, 120, 0, {}, {}, ""};
-  all.push_back({"question-number", age});
-  Page explained = base(words, PageKind::explanation);
-  explained.back = true;
-  explained.text = words.pick(
-      "Press a button, then slide your finger over the surface. You can feel each example as often as you "
-      "wish.",
-      "Drücken Sie einen Knopf und gleiten Sie dann mit dem Finger über die Oberfläche. Sie können jedes "
-      "Beispiel "
-      "beliebig oft fühlen.",
-      "ボタンを押してから、指を表面の上ですべらせてください。それぞれの例は何度でも感じることができます。");
-  all.push_back({"explanation", explained});
-  explained.answers = {{"a", words.pick("This is smooth", "Das ist glatt", "これはなめらか")},
-                       {"b", words.pick("This is rough", "Das ist rau", "これはざらざら")}};
-  all.push_back({"explanation-examples", explained});
-  explained.picture = TURNPOINT_SOURCE_DIR "/tests/ui/finger.png";
-  all.push_back({"explanation-picture", explained});
-  explained.picture.clear();
-  explained.playing = true;
-  all.push_back({"explanation-playing", explained});
+  // the longest labels about which `check` says nothing
+  const auto label = words.pick("Unpredictable vibrations, intermediate roughness ",
+                                "Ungleichmäßig raue Schwingungen, Wahrnehmungen ",
+                                "全体に不規則な振動があり端のほうは少しざらざら");
+  many.answers.clear();
+  for (int i = 1; i <= 9; ++i) many.answers.push_back({std::to_string(i), label + std::to_string(i)});
+  all.push_back({"choices-9-long", many});
 }
 
 /// Adds the bars that guide the finger, for a finger that presses well but moves too slowly.
@@ -211,6 +106,7 @@ Page guided(Page page, bool frozen = false) {
   session::Guidance bars;
   bars.force = session::Guidance::Bar{0.5, 0.36, 0.67};
   bars.speed = session::Guidance::Bar{0.12, 0.22, 0.67};
+  bars.pace_mm_s = 80;
   bars.frozen = frozen;
   page.guidance = bars;
   return page;
@@ -250,6 +146,8 @@ void add_trials(std::vector<Exhibit>& all, const Words& words) {
   Page now = boundary(words, PageKind::stimulus);
   now.answer_now = true;
   all.push_back({"explore-signal", now});
+  now.flash_ns = 0;
+  all.push_back({"explore-flash", now});
   all.push_back({"explore-speed", instructed(boundary(words, PageKind::stimulus), words, "speed")});
   all.push_back({"explore-accuracy", instructed(boundary(words, PageKind::stimulus), words, "accuracy")});
   all.push_back({"abx-cue", abx(words, PageKind::cue)});
@@ -293,6 +191,7 @@ void add_faults(std::vector<Exhibit>& all, const Words& words) {
       {FaultKind::stimulus_missed, "384 frames lost"},
       {FaultKind::capture, "the pilot on output channel 2 is not heard on captured channel 0"},
       {FaultKind::vibration, "the surface does not move; level -62.1 dB; residual -21 dB"},
+      {FaultKind::sounding, "a tone of 29.6 kHz at -46 dB of full drive"},
       {FaultKind::self_test, "gate: the gate stays open although the heartbeat has stopped"},
       {FaultKind::program,
        "program /home/lab/one_up_two_down.py: ended with status 1: \"KeyError: 'start'\""},
@@ -329,6 +228,9 @@ void add_notices(std::vector<Exhibit>& all, const Words& words) {
   Page failed = base(words, PageKind::failed);
   failed.text = "lab.sqlite: database or disk is full";
   all.push_back({"failed", failed});
+  failed.text.clear();
+  failed.early = session::EarlySession{"P07", 2, "2026-11-26", 1, "2026-11-25", 1};
+  all.push_back({"failed-early", failed});
   Page end = base(words, PageKind::end);
   end.title = texts::text("thanks_early", words.language);
   end.resumable = true;
@@ -337,16 +239,13 @@ void add_notices(std::vector<Exhibit>& all, const Words& words) {
   end.title = texts::text("thanks", words.language);
   end.trials_done = end.trials_total = 88;
   all.push_back({"end", end});
-  end.summary = {{"Trials", "88"},
-                 {"Answered", "86"},
-                 {"Too late", "2"},
-                 {"Too early", "0"},
-                 {"Catch trials right", "5 of 5"},
-                 {"PSE", "-1.2 mm (SD 0.6)"},
-                 {"Spread", "6.4 mm (SD 0.9)"},
-                 {"Median response time", "1.31 s"},
-                 {"Underruns", "0"},
-                 {"Duration", "14 min 20 s"}};
+  const auto add = [&end](const char* key, const char* value) {
+    end.summary.push_back({{key, "", {}}, value});
+  };
+  add("operator.trials", "88");
+  add("report.too_late", "2");
+  add("report.right", "81.4 %");
+  end.summary.push_back({{"", "main, ", {{"report.threshold", "", {}}}}, "-1.2 mm (SD 0.6)"});
   all.push_back({"end-operator", end});
 }
 

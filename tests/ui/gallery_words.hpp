@@ -58,6 +58,8 @@ inline const std::map<std::string, GalleryWords> gallery_words{
     {"quite", {"متأكد إلى حد ما", "比较确定"}},
     {"certain", {"متأكد تمامًا", "完全确定"}},
     {"Which pattern was it?", {"أي نمط كان؟", "是哪一种图案？"}},
+    {"Unpredictable vibrations, intermediate roughness ",
+     {"اهتزازات غير منتظمة وخشونة متوسطة عند الأطراف ", "整个表面振动不规则而且边缘处感觉有一点粗糙"}},
     {"Pattern ", {"نمط ", "图案 "}},
     {"Too slow", {"بطيء جدًا", "太慢了"}},
     {"Practice", {"تدريب", "练习"}},

@@ -1,8 +1,13 @@
 #include "tests/ui/operator_desk.hpp"
 
+#include <QDate>
 #include <QDir>
 #include <QFile>
 #include <chrono>
+
+#include "station/desk/live_facts.hpp"
+#include "station/session/planned_session.hpp"
+#include "station/store/session_log.hpp"
 
 namespace turnpoint::ui {
 
@@ -13,9 +18,9 @@ OperatorDesk::OperatorDesk(SessionBridge& bridge, QObject* parent) : QObject(par
   QFile mistaken(folder_.filePath("mistaken.toml"));
   if (mistaken.open(QIODevice::WriteOnly)) mistaken.write("format = \"friction-protocol/1\"\nprotocl = 3\n");
   mistaken.close();
-  operating_ = std::make_unique<OperatorController>(
-      setup::StationRequest{folder_.path().toStdString(), TURNPOINT_SOURCE_DIR "/tests/support/thin_plate.toml",
-                            folder_.filePath("lab.sqlite").toStdString()});
+  operating_ = std::make_unique<OperatorController>(setup::StationRequest{
+      folder_.path().toStdString(), TURNPOINT_SOURCE_DIR "/tests/support/thin_plate.toml",
+      folder_.filePath("lab.sqlite").toStdString()});
   connect(operating_.get(), &OperatorController::chosen, this, [this](const ChosenSession& session) {
     const auto& setup = session.setup;
     chosen_ = QString::fromStdString(setup.protocol.id + " " + setup.participant + " " + setup.language +
@@ -23,6 +28,26 @@ OperatorDesk::OperatorDesk(SessionBridge& bridge, QObject* parent) : QObject(par
     Q_EMIT chosenChanged();
   });
 }
+
+OperatorController* OperatorDesk::early() {
+  if (early_) return early_.get();
+  QFile::copy(TURNPOINT_SOURCE_DIR "/protocols/friction-training.toml",
+              early_folder_.filePath("friction-training.toml"));
+  const auto database = early_folder_.filePath("lab.sqlite").toStdString();
+  records::SessionStart start;
+  start.participant = "P01", start.protocol_id = "friction-training", start.planned_session = 1;
+  start.run_mode = terms::RunMode::pilot;
+  start.station_id = session::station_id(), start.started_local = session::local_time();
+  store::SessionLog::begin(database, start, {}).finish(records::SessionStatus::completed, "");
+  early_ = std::make_unique<OperatorController>(setup::StationRequest{
+      early_folder_.path().toStdString(), TURNPOINT_SOURCE_DIR "/tests/support/thin_plate.toml", database});
+  connect(early_.get(), &OperatorController::chosen, this,
+          [this](const ChosenSession& session) { reason_ = QString::fromStdString(session.setup.early); });
+  return early_.get();
+}
+
+QString OperatorDesk::today() const { return QDate::currentDate().toString(Qt::ISODate); }
+QString OperatorDesk::tomorrow() const { return QDate::currentDate().addDays(1).toString(Qt::ISODate); }
 
 void OperatorDesk::pressed(double ago_ms) {
   const auto now_ns = std::chrono::steady_clock::now().time_since_epoch().count();
@@ -34,9 +59,13 @@ double OperatorDesk::keptLatencyMs() const {
   return kept && kept->touch ? 1e3 * kept->touch->median_s : 0;
 }
 
-void OperatorDesk::tellLive(const QString& heading) {
+void OperatorDesk::tellLive(const QString& heading, const QString& language) {
   desk::LiveState state;
   state.heading = heading.toStdString();
+  desk::LiveTrial scored, caught;
+  scored.correct = caught.correct = true;
+  caught.type = terms::TrialType::catch_trial;
+  state.course = desk::course_of({scored, caught}, language.toStdString());
   live_.take(state);
 }
 

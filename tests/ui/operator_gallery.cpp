@@ -58,7 +58,7 @@ void run_first(const setup::RunRequest& request, session::Monitor& monitor, int 
 
 }  // namespace
 
-desk::LiveState live_exhibit(const std::string& protocol, int trials) {
+desk::LiveState live_exhibit(const std::string& protocol, int trials, const std::string& language) {
   const QTemporaryDir folder;
   const auto request = request_for(protocol, folder.filePath("a.sqlite").toStdString());
   const auto setup = setup::prepare(request);
@@ -66,32 +66,36 @@ desk::LiveState live_exhibit(const std::string& protocol, int trials) {
   std::condition_variable told;
   desk::LiveState state;
   int news = 0;
-  desk::LiveView view(setup.protocol, setup.rig, [&](desk::LiveState next) {
-    const std::lock_guard lock(mutex);
-    state = std::move(next);
-    ++news;
-    told.notify_one();
-  });
+  desk::LiveView view(
+      setup.protocol, setup.rig,
+      [&](desk::LiveState next) {
+        const std::lock_guard lock(mutex);
+        state = std::move(next);
+        ++news;
+        told.notify_one();
+      },
+      language);
   run_first(request, view, trials);
   std::unique_lock lock(mutex);
   told.wait(lock, [&] { return news == 2 * trials + 1; });
   return state;
 }
 
-desk::ReportPages report_exhibit(const std::string& protocol) {
+desk::ReportPages report_exhibit(const std::string& protocol, const std::string& language) {
   const QTemporaryDir folder;
   const auto database = folder.filePath("a.sqlite").toStdString();
   session::Inputs inputs;
   const auto summary = session::run(setup::prepare(request_for(protocol, database)), nullptr, inputs);
-  return desk::report_pages(database, summary.session_id);
+  return desk::report_pages(database, summary.session_id, language);
 }
 
-desk::ReportPages forces_exhibit(const std::string& protocol) {
+desk::ReportPages forces_exhibit(const std::string& protocol, const std::string& language) {
   const QTemporaryDir folder;
   const auto database = folder.filePath("a.sqlite").toStdString();
   session::Inputs inputs;
   const auto session = session::run(setup::prepare(request_for(protocol, database)), nullptr, inputs);
   auto data = desk::report_data(database, session.session_id);
+  data.language = language;
   for (const auto& trial : data.trials) {
     const double wave = std::sin(2.1 * trial.trial_index), other = std::cos(1.3 * trial.trial_index);
     const bool fast = trial.instruction == "speed";

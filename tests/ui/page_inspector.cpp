@@ -113,7 +113,7 @@ QStringList PageInspector::brokenWords(QQuickItem* page) const {
     // Qt may have shrunk the font so that the text fits, so use the size that Qt reports.
     font.setPixelSize(text.property("fontInfo").value<QJSValue>().property("pixelSize").toInt());
     const QFontMetricsF metrics(font);
-    for (const auto& word : text.property("text").toString().split(QRegularExpression("\\s+")))
+    for (const auto& word : text.property("text").toString().split(QRegularExpression("[\\s\u00ad]+")))
       if (!has_ideographs(word) && metrics.horizontalAdvance(word) > text.width() + 1) broken += word;
   });
   return broken;
@@ -189,10 +189,11 @@ std::pair<QString, QString> read_aloud(QQuickItem* item) {
   return {role_word(interface->role()), interface->text(QAccessible::Name)};
 }
 
+/// True for an item that acts on touches: one with a tap handler, or an area that is no mere shield.
 bool reacts_to_taps(const QQuickItem* item) {
   for (const auto* child : item->children())
     if (child->inherits("QQuickTapHandler")) return true;
-  return false;
+  return item->inherits("QQuickMouseArea") && item->isEnabled() && !item->property("shield").toBool();
 }
 
 void for_each_visible(QQuickItem* item, const std::function<void(QQuickItem*)>& visit) {
@@ -216,8 +217,27 @@ QStringList PageInspector::unnamedControls(QQuickItem* page) const {
   QStringList found;
   for_each_visible(page, [&found](QQuickItem* item) {
     const auto [role, name] = read_aloud(item);
-    if (role.isEmpty() ? reacts_to_taps(item) : name.trimmed().isEmpty())
+    // An area may lie in the control whose touches it takes.
+    const bool inside = item->inherits("QQuickMouseArea") && !read_aloud(item->parentItem()).first.isEmpty();
+    if (role.isEmpty() ? reacts_to_taps(item) && !inside : name.trimmed().isEmpty())
       found += QString(item->metaObject()->className()) + " " + item->objectName() + " " + role;
+  });
+  return found;
+}
+
+QStringList PageInspector::unreadTexts(QQuickItem* page) const {
+  QStringList found;
+  for_each_visible(page, [&found](QQuickItem* item) {
+    const auto text = item->property("text").toString();
+    if (!item->inherits("QQuickText") || text.trimmed().isEmpty()) return;
+    bool in_control = false;
+    for (auto* around = item->parentItem(); around != nullptr; around = around->parentItem())
+      in_control = in_control || !read_aloud(around).second.isEmpty();
+    auto* interface = QAccessible::queryAccessibleInterface(item);
+    const bool read = item->property("readAloud").toBool() && interface != nullptr &&
+                      interface->role() == QAccessible::StaticText &&
+                      interface->text(QAccessible::Name) == text;
+    if (read == in_control) found += (read ? "twice: " : "not read: ") + text;
   });
   return found;
 }

@@ -35,6 +35,10 @@ class PageInspector : public QObject {
   /// Items below `page` that react to taps but that a screen reader does not find, or finds without a name.
   Q_INVOKABLE QStringList unnamedControls(QQuickItem* page) const;
 
+  /// Texts below `page` that a screen reader does not read, or reads twice: by themselves and as the name of
+  /// a control.
+  Q_INVOKABLE QStringList unreadTexts(QQuickItem* page) const;
+
   /// Makes a picture and returns its path. From then on opened() returns how often the picture was opened.
   Q_INVOKABLE QString picture();
   Q_INVOKABLE int opened();

@@ -1,11 +1,10 @@
 // Renders every page in every size and language into PNG files, for people to look at:
-//   screenshots --out DIR [--languages en,ja] [--sizes 800x480,1280x800] [--only NAME]
+//   screenshots --out DIR [--languages en,ja] [--sizes 800x480,1280x800] [--only rest,early]
 #include <QCommandLineParser>
 #include <QDir>
 #include <QFile>
 #include <QGuiApplication>
 #include <QQmlApplicationEngine>
-#include <QQmlComponent>
 #include <QQmlExtensionPlugin>
 #include <QQuickItem>
 #include <QQuickWindow>
@@ -29,39 +28,28 @@
 #include "station/ui/participant/session_bridge.hpp"
 #include "station/ui/participant/start_controller.hpp"
 #include "station/ui/platform/screen.hpp"
-#include "station/ui/shared/operator_screen.hpp"
 #include "tests/ui/gallery.hpp"
+#include "tests/ui/operator_camera.hpp"
 #include "tests/ui/operator_gallery.hpp"
 
 Q_IMPORT_QML_PLUGIN(TurnpointPlugin)
 
 namespace {
 
+using turnpoint::ui::Look;
+using turnpoint::ui::OperatorCamera;
+using turnpoint::ui::Panel;
+using turnpoint::ui::panel_of;
 using turnpoint::ui::SessionBridge;
 using turnpoint::ui::StartController;
+using turnpoint::ui::wait_for;
 
 const QStringList kLanguages{"en", "de", "ja", "es", "zh", "ar"};
-
-/// A panel for which pages are rendered: its size in pixels, and the pixel density of a common panel of this
-/// size.
-struct Panel {
-  QSize size;
-  double pixels_per_mm;
-};
-
-Panel panel_of(const QString& text) {
-  const auto parts = text.split('x');
-  if (parts.size() != 2) qFatal("--sizes: %s; allowed: WIDTHxHEIGHT", qPrintable(text));
-  const QSize size(parts[0].toInt(), parts[1].toInt());
-  return {size, size.width() <= 800    ? 5.2
-                : size.width() <= 1280 ? 5.9
-                                       : 5.6};  // px per mm for diagonals of 7", 10.1" and 15.6"
-}
 
 /// Renders the station's window for one panel in one language.
 class Camera {
  public:
-  Camera(const QString& out, const Panel& panel, const QString& prefix, const QString& only)
+  Camera(const QString& out, const Panel& panel, const QString& prefix, const QStringList& only)
       : out_(out),
         prefix_(prefix),
         only_(only),
@@ -85,7 +73,7 @@ class Camera {
   StartController& start() { return start_; }
 
   void shoot(const QString& name) {
-    if (!only_.isEmpty() && only_ != name) return;
+    if (!only_.isEmpty() && !only_.contains(name)) return;
     QGuiApplication::processEvents();
     const QString file = out_ + "/" + prefix_ + name + ".png";
     if (!window_->grabWindow().save(file)) qFatal("cannot write %s", qPrintable(file));
@@ -103,19 +91,20 @@ class Camera {
   /// Renders the keypad for the operator's code: once at the start of a locked station, and once over a
   /// participant's page.
   void shoot_gate() {
+    QMetaObject::invokeMethod(window_, "ask", Q_ARG(QString, "view"));
     auto* gate = window_->findChild<QQuickItem*>("gate");
-    gate->setVisible(true);
     window_->setProperty("locked", true);
     shoot("gate-locked");
     window_->setProperty("locked", false);
     shoot("gate");
-    gate->setVisible(false);
+    QMetaObject::invokeMethod(gate, "abandoned");
   }
 
   int count() const { return count_; }
 
  private:
-  QString out_, prefix_, only_;
+  QString out_, prefix_;
+  QStringList only_;
   SessionBridge bridge_;
   turnpoint::ui::LiveModel live_;
   turnpoint::ui::ReportModel report_;
@@ -126,89 +115,74 @@ class Camera {
   int count_ = 0;
 };
 
-/// Runs the event loop until `ready` returns true, for at most a minute.
-template <typename Ready>
-void wait_for(Ready ready) {
-  for (int i = 0; i < 6000 && !ready(); ++i) QTest::qWait(10);
+/// A name for the pictures, and how the pages look in them.
+using Looks = std::vector<std::pair<QString, Look>>;
+
+Looks looks_of(const QStringList& languages) {
+  Looks looks{{"dark", {"en", true}}, {"large", {"en", false, 200}}};
+  for (const auto& language : languages) looks.push_back({language, {language}});
+  return looks;
 }
 
-/// How the operator's pages look.
-struct Look {
-  QString language = "en";
-  bool dark = false;
-  int text_percent = 100;
-};
+/// Calls `shoot` with a camera for each panel and each look. Returns the number of pictures.
+int shoot_each(const QString& out, const QStringList& sizes, const Looks& looks,
+               const std::function<void(OperatorCamera&)>& shoot) {
+  int count = 0;
+  for (const auto& size : sizes)
+    for (const auto& [name, look] : looks) {
+      OperatorCamera camera(out, panel_of(size), size + "-operator-" + name + "-", look);
+      shoot(camera);
+      count += camera.count();
+    }
+  return count;
+}
 
-/// Renders a single operator's page in a window of its own.
-class OperatorCamera {
- public:
-  OperatorCamera(const QString& out, const Panel& panel, const QString& prefix, Look look = {})
-      : out_(out),
-        look_(std::move(look)),
-        panel_(panel),
-        prefix_(prefix),
-        bridge_([] { return 0; }, [](const auto&) {}),
-        live_(bridge_) {}
+/// The first item below `item` with this name; null if there is none.
+QQuickItem* item_named(QQuickItem* item, const QString& name) {
+  if (item->objectName() == name) return item;
+  for (auto* child : item->childItems())
+    if (auto* found = item_named(child, name)) return found;
+  return nullptr;
+}
 
-  /// Waits until `ready` returns true before it takes the picture.
-  void shoot(
-      const QString& page, const QString& name, QVariantMap properties,
-      const std::function<bool()>& ready = [] { return true; }) {
-    properties["pixelsPerMm"] = panel_.pixels_per_mm;
-    QQmlEngine engine;
-    engine.addImportPath("qrc:/qt/qml");
-    using turnpoint::ui::OperatorScreen;
-    auto* screen = engine.singletonInstance<OperatorScreen*>(qmlTypeId("Turnpoint", 1, 0, "OperatorScreen"));
-    screen->set_language(look_.language);
-    screen->set_dark(look_.dark);
-    screen->set_text_percent(look_.text_percent);
-    QQmlComponent component(&engine, QUrl("qrc:/qt/qml/Turnpoint/" + page));
-    QQuickWindow window;
-    auto* item = qobject_cast<QQuickItem*>(component.createWithInitialProperties(properties));
-    if (item == nullptr) qFatal("%s: %s", qPrintable(page), qPrintable(component.errorString()));
-    item->setParentItem(window.contentItem());
-    item->setSize(panel_.size);
-    window.resize(panel_.size);
-    window.show();
-    wait_for(ready);
-    QGuiApplication::processEvents();
-    const QString file = out_ + "/" + prefix_ + name + ".png";
-    if (!window.grabWindow().save(file)) qFatal("cannot write %s", qPrintable(file));
-    ++count_;
-    delete item;
-  }
+/// Opens the dialog that asks why a session begins early.
+void ask_reason(QQuickWindow& window) {
+  auto* dialog = item_named(window.contentItem(), "early");
+  if (dialog == nullptr) qFatal("the start page has no dialog for the reason");
+  QMetaObject::invokeMethod(dialog, "open", Q_ARG(QString, "leaves the country tomorrow"));
+}
 
-  void shoot_live(const turnpoint::desk::LiveState& state, const QString& name) {
-    turnpoint::session::Page page;
-    page.kind = turnpoint::session::PageKind::interval;
-    page.run_mode = "pilot";
-    bridge_.show(page);
-    live_.take(state);
-    QGuiApplication::processEvents();
-    shoot("LiveView.qml", name,
-          {{"live", QVariant::fromValue(&live_)}, {"bridge", QVariant::fromValue(&bridge_)}});
-  }
-
-  /// `picture` is the number of the figure to show.
-  void shoot_report(const turnpoint::desk::ReportPages& pages, const QString& name, int picture = 0) {
-    report_.take(pages);
-    QGuiApplication::processEvents();
-    shoot("ReportPage.qml", name,
-          {{"report", QVariant::fromValue(&report_)}, {"runMode", "pilot"}, {"shown", picture}});
-  }
-
-  int count() const { return count_; }
-
- private:
-  QString out_;
-  Look look_;
-  Panel panel_;
-  QString prefix_;
-  SessionBridge bridge_;
-  turnpoint::ui::LiveModel live_;
-  turnpoint::ui::ReportModel report_;
-  int count_ = 0;
-};
+/// Renders the start page after it has refused a session that begins too early, and the dialog that asks why
+/// it does so nevertheless.
+int shoot_early(const QString& out, const QStringList& sizes, const QStringList& languages) {
+  using namespace turnpoint;
+  const std::string source = TURNPOINT_SOURCE_DIR;
+  const QTemporaryDir folder;
+  QDir::setCurrent(folder.path());
+  QFile::copy(QString::fromStdString(source + "/tests/support/thin_plate.toml"), "plate.toml");
+  const setup::StationRequest request{source + "/protocols", "plate.toml", ui::today_exhibit(".")};
+  ui::OperatorController early(request);
+  ui::StudiesController studies(request);
+  ui::SessionsController sessions(request);
+  ui::RigController rig(request);
+  ui::DesignController design({folder.path().toStdString(), request.rig, request.protocols});
+  for (int i = 0; i < early.protocols().size(); ++i)
+    if (early.protocols()[i].toMap()["id"] == "friction-training") early.select(i);
+  wait_for([&] { return !early.checking(); });
+  early.enterParticipant("P01");
+  early.begin();
+  wait_for([&] { return !early.preparing() && !early.checking(); });
+  const QVariantMap pages{{"operating", QVariant::fromValue(&early)},
+                          {"studies", QVariant::fromValue(&studies)},
+                          {"sessions", QVariant::fromValue(&sessions)},
+                          {"rig", QVariant::fromValue(&rig)},
+                          {"design", QVariant::fromValue(&design)}};
+  const auto ready = [] { return true; };
+  return shoot_each(out, sizes, looks_of(languages), [&](OperatorCamera& camera) {
+    camera.shoot("StationPages.qml", "early", pages);
+    camera.shoot("StationPages.qml", "early-reason", pages, ready, ask_reason);
+  });
+}
 
 /// The designer with a study that has a mistake, so that a problem is at its field.
 void begin_study(turnpoint::ui::DesignController& design) {
@@ -249,56 +223,99 @@ int shoot_places(const QString& out, const QStringList& sizes, const QStringList
     wait_for([&] { return weighed.busy().isEmpty() || weighed.asked() == "weight"; });
     weighed.answer("read");
   }
+  weighed.selfTest();
+  wait_for([&] { return weighed.busy().isEmpty(); });
   weighing.weigh();
   wait_for([&] { return weighing.asked() == "weight"; });
-  std::vector<std::pair<QString, Look>> looks{{"dark", {"en", true}}, {"large", {"en", false, 200}}};
-  for (const auto& language : languages) looks.push_back({language, {language}});
-  int count = 0;
-  for (const auto& size : sizes)
-    for (const auto& [name, look] : looks) {
-      OperatorCamera camera(out, panel_of(size), size + "-operator-" + name + "-", look);
-      design.close();
-      for (const char* place : {"run", "studies", "sessions", "rig"})
-        camera.shoot("StationPages.qml", place,
-                     {{"operating", QVariant::fromValue(&operating)},
-                      {"studies", QVariant::fromValue(&studies)},
-                      {"sessions", QVariant::fromValue(&sessions)},
-                      {"rig", QVariant::fromValue(&rig)},
-                      {"design", QVariant::fromValue(&design)},
-                      {"shown", place}},
-                     [&] { return !studies.checking() && !operating.checking(); });
-      camera.shoot("RigPage.qml", "weights", {{"rig", QVariant::fromValue(&weighing)}, {"tab", "weights"}});
-      for (const char* series : {"", "boundaries", "response", "friction", "sound"}) {
-        weighed.guide()->begin(series);
-        camera.shoot("RigPage.qml", QString("guide-") + series,
-                     {{"rig", QVariant::fromValue(&weighed)}, {"tab", "guide"}});
-        weighed.guide()->leave();
+  return shoot_each(out, sizes, looks_of(languages), [&](OperatorCamera& camera) {
+    design.close();
+    for (const char* place : {"run", "studies", "sessions", "rig"})
+      camera.shoot("StationPages.qml", place,
+                   {{"operating", QVariant::fromValue(&operating)},
+                    {"studies", QVariant::fromValue(&studies)},
+                    {"sessions", QVariant::fromValue(&sessions)},
+                    {"rig", QVariant::fromValue(&rig)},
+                    {"design", QVariant::fromValue(&design)},
+                    {"shown", place}},
+                   [&] { return !studies.checking() && !operating.checking(); });
+    camera.shoot("RigPage.qml", "weights", {{"rig", QVariant::fromValue(&weighing)}, {"tab", "weights"}});
+    for (const char* series : {"", "boundaries", "response", "friction", "sound"}) {
+      weighed.guide()->begin(series);
+      if (series == std::string("response")) {
+        weighed.guide()->play();
+        const auto percent = [&] {
+          const auto readings = weighed.guide()->readings();
+          return readings.isEmpty() ? 0 : readings[0].toMap()["percent"].toDouble();
+        };
+        wait_for([&] { return percent() > 1; });  // the first reading is from the ramp of the tone
       }
-      camera.shoot("RigPage.qml", "residuals", {{"rig", QVariant::fromValue(&weighed)}, {"tab", "weights"}});
-      const auto shoot_design = [&](const QString& picture, const QString& beside = "") {
-        camera.shoot("DesignPage.qml", picture,
-                     {{"design", QVariant::fromValue(&design)}, {"beside", beside}}, design_ready);
-        design.precision()->set_watched(false);
-      };
-      design.startNew();
-      shoot_design("design-goals");
-      design.make("contrast", "my-study");
-      for (int section = 0; section < 7; ++section) {
-        design.show(section);
-        shoot_design("design-" + QString::number(section));
-      }
-      for (const char* beside : {"text", "pages", "precision"})
-        shoot_design(QString("design-") + beside, beside);
-      design.pages()->show(2);
-      design.pages()->choose("de");
-      shoot_design("design-pages-trial", "pages");
-      shoot_design("design-check", "check");
-      begin_study(design);
-      design.show(5);
-      shoot_design("design-problem");
-      count += camera.count();
+      camera.shoot("RigPage.qml", QString("guide-") + series,
+                   {{"rig", QVariant::fromValue(&weighed)}, {"tab", "guide"}});
+      weighed.guide()->leave();
     }
-  return count;
+    camera.shoot("RigPage.qml", "self-test", {{"rig", QVariant::fromValue(&weighed)}, {"tab", "selfTest"}});
+    camera.shoot("RigPage.qml", "residuals", {{"rig", QVariant::fromValue(&weighed)}, {"tab", "weights"}});
+    const auto shoot_design = [&](const QString& picture, const QString& beside = "") {
+      camera.shoot("DesignPage.qml", picture, {{"design", QVariant::fromValue(&design)}, {"beside", beside}},
+                   design_ready);
+      design.precision()->set_watched(false);
+    };
+    design.startNew();
+    shoot_design("design-goals");
+    design.make("contrast", "my-study");
+    for (int section = 0; section < 7; ++section) {
+      design.show(section);
+      shoot_design("design-" + QString::number(section));
+    }
+    for (const char* beside : {"text", "pages", "precision"})
+      shoot_design(QString("design-") + beside, beside);
+    design.pages()->show(2);
+    design.pages()->choose("de");
+    shoot_design("design-pages-trial", "pages");
+    shoot_design("design-check", "check");
+    begin_study(design);
+    design.show(5);
+    shoot_design("design-problem");
+  });
+}
+
+/// Renders the pages about a session in one language: the view of a running session, reports, and what is
+/// measured or tried out apart from a session.
+int shoot_sessions(const QString& out, const QStringList& sizes, const QString& shown,
+                   turnpoint::ui::OperatorController& operating) {
+  using namespace turnpoint;
+  const std::string source = TURNPOINT_SOURCE_DIR, language = shown.toStdString();
+  ui::PreviewController preview(
+      {source + "/protocols/demo.toml", source + "/tests/support/thin_plate.toml", "", {}});
+  ui::PreviewController zones(
+      {source + "/protocols/friction-2ifc.toml", source + "/tests/support/thin_plate.toml", "", {}});
+  wait_for([&] { return !preview.busy() && !zones.busy(); });
+  const auto live = ui::live_exhibit("boundary-adaptive", 40, language),
+             live2 = ui::live_exhibit("friction-2ifc", 12, language);
+  const auto live3 = ui::live_exhibit("two-spots-oddity", 12, language);
+  const auto report = ui::report_exhibit("speed-accuracy", language),
+             report2 = ui::report_exhibit("boundary-constant", language),
+             report3 = ui::forces_exhibit("speed-accuracy", language);
+  const desk::FingerGauges gauges{
+      {0.45, 0.3, 0.6, "0.68 N"}, {0.4, 0.25, 0.55, "82 mm/s"}, {0.62, 0, 0, "186 mm"}};
+  ui::LatencyController latency(calibration::LatencyReference::photodiode);
+  return shoot_each(out, sizes, {{shown, {shown}}}, [&](OperatorCamera& camera) {
+    camera.shoot("OperatorPage.qml", "participant",
+                 {{"operating", QVariant::fromValue(&operating)}, {"typing", true}});
+    camera.shoot_live(live, "live");
+    camera.shoot_live(live, "live-gauges", gauges);
+    camera.shoot_live(live2, "live-2ifc");
+    camera.shoot_live(live3, "live-oddity");
+    camera.shoot_report(report, "report-trade");
+    camera.shoot_report(report2, "report-boundary");
+    camera.shoot_report(report3, "report-forces", 3);
+    camera.shoot_report(report3, "report-friction", 4);
+    camera.shoot("PreviewPage.qml", "preview", {{"controller", QVariant::fromValue(&preview)}},
+                 [&] { return !preview.busy(); });
+    camera.shoot("PreviewPage.qml", "preview-zone", {{"controller", QVariant::fromValue(&zones)}},
+                 [&] { return !zones.busy(); });
+    camera.shoot("LatencyPage.qml", "panel-latency", {{"controller", QVariant::fromValue(&latency)}});
+  });
 }
 
 int shoot_operator(const QString& out, const QStringList& sizes, const QStringList& languages) {
@@ -312,43 +329,8 @@ int shoot_operator(const QString& out, const QStringList& sizes, const QStringLi
   ui::OperatorController operating({source + "/protocols", "plate.toml", "lab.sqlite"});
   operating.select(9);
   wait_for([&] { return !operating.checking(); });
-  ui::OperatorController early({source + "/protocols", "plate.toml", ui::today_exhibit(".")});
-  for (int i = 0; i < early.protocols().size(); ++i)
-    if (early.protocols()[i].toMap()["id"] == "friction-training") early.select(i);
-  wait_for([&] { return !early.checking(); });
-  early.enterParticipant("P01");
-  early.begin();
-  wait_for([&] { return !early.preparing(); });
-  const int places = shoot_places(out, sizes, languages, operating);
-  ui::PreviewController preview(
-      {source + "/protocols/demo.toml", source + "/tests/support/thin_plate.toml", "", {}});
-  ui::PreviewController zones(
-      {source + "/protocols/friction-2ifc.toml", source + "/tests/support/thin_plate.toml", "", {}});
-  wait_for([&] { return !preview.busy() && !zones.busy(); });
-  const auto live = ui::live_exhibit("boundary-adaptive", 40), live2 = ui::live_exhibit("friction-2ifc", 12);
-  const auto live3 = ui::live_exhibit("two-spots-oddity", 12);
-  const auto report = ui::report_exhibit("speed-accuracy"), report2 = ui::report_exhibit("boundary-constant"),
-             report3 = ui::forces_exhibit("speed-accuracy");
-  ui::LatencyController latency(calibration::LatencyReference::photodiode);
-  int count = places;
-  for (const auto& size : sizes) {
-    OperatorCamera camera(out, panel_of(size), size + "-operator-");
-    camera.shoot("OperatorPage.qml", "start", {{"operating", QVariant::fromValue(&operating)}});
-    camera.shoot("OperatorPage.qml", "early", {{"operating", QVariant::fromValue(&early)}});
-    camera.shoot("OperatorPage.qml", "participant",
-                 {{"operating", QVariant::fromValue(&operating)}, {"typing", true}});
-    camera.shoot_live(live, "live");
-    camera.shoot_live(live2, "live-2ifc");
-    camera.shoot_live(live3, "live-oddity");
-    camera.shoot_report(report, "report-trade");
-    camera.shoot_report(report2, "report-boundary");
-    camera.shoot_report(report3, "report-forces", 3);
-    camera.shoot_report(report3, "report-friction", 4);
-    camera.shoot("PreviewPage.qml", "preview", {{"controller", QVariant::fromValue(&preview)}});
-    camera.shoot("PreviewPage.qml", "preview-zone", {{"controller", QVariant::fromValue(&zones)}});
-    camera.shoot("LatencyPage.qml", "panel-latency", {{"controller", QVariant::fromValue(&latency)}});
-    count += camera.count();
-  }
+  int count = shoot_places(out, sizes, languages, operating);
+  for (const auto& language : languages) count += shoot_sessions(out, sizes, language, operating);
   return count;
 }
 
@@ -376,23 +358,28 @@ int main(int argc, char** argv) {
   parser.addHelpOption();
   parser.addOptions({{"out", "Folder for the pictures", "dir", "screenshots"},
                      {"languages", "Languages", "list", "en,ja"},
-                     {"sizes", "Panel sizes in pixels", "list", "800x480,1280x800,1920x1080"},
-                     {"only", "One page", "name", ""}});
+                     {"sizes", "Panel sizes in pixels", "list", "800x480,1280x800,1920x1080,800x1280"},
+                     {"only", "Some participant's pages, early, operator", "list", ""}});
   parser.process(app);
   turnpoint::ui::set_fonts();
   const QString out = QDir(parser.value("out")).absolutePath();
   if (!QDir().mkpath(out)) qFatal("cannot make %s", qPrintable(out));
+  const auto sizes = parser.value("sizes").split(','), languages = parser.value("languages").split(',');
+  const auto only = parser.value("only").split(',', Qt::SkipEmptyParts);
   int count = 0;
-  for (const auto& size : parser.value("sizes").split(',')) {
-    for (const auto& language : parser.value("languages").split(',')) {
+  for (const auto& size : sizes) {
+    for (const auto& language : languages) {
       if (!kLanguages.contains(language))
         qFatal("--languages: %s; allowed: en, de, ja, es, zh, ar", qPrintable(language));
-      Camera camera(out, panel_of(size), size + "-" + language + "-", parser.value("only"));
+      Camera camera(out, panel_of(size), size + "-" + language + "-", only);
       count += shoot_all(camera, language);
     }
   }
-  if (parser.value("only").isEmpty() || parser.value("only") == "operator")
-    count += shoot_operator(out, parser.value("sizes").split(','), parser.value("languages").split(','));
+  const auto wanted = [&](const char* part) {
+    return only.isEmpty() || only.contains("operator") || only.contains(part);
+  };
+  if (wanted("early")) count += shoot_early(out, sizes, languages);
+  if (wanted("operator")) count += shoot_operator(out, sizes, languages);
   std::printf("%d pictures in %s\n", count, qPrintable(QDir(out).absolutePath()));
   return 0;
 }

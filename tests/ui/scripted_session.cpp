@@ -1,6 +1,7 @@
 #include "tests/ui/scripted_session.hpp"
 
 #include <chrono>
+#include <cmath>
 
 #include "tests/ui/gallery.hpp"
 
@@ -53,6 +54,12 @@ void ScriptedSession::setKernelLead(double ms) {
   });
 }
 
+void ScriptedSession::setKernelTouch(double x, double y) {
+  bridge_.set_kernel_time([=](double at_x, double at_y, std::int64_t seen_ns) {
+    return std::hypot(at_x - x, at_y - y) < 0.02 ? std::optional(seen_ns) : std::nullopt;
+  });
+}
+
 void ScriptedSession::forgetKernel() { bridge_.set_kernel_time({}); }
 
 double ScriptedSession::answerAgeMs() const { return static_cast<double>(steady_ns() - answer_ns_) / 1e6; }
@@ -97,6 +104,9 @@ void ScriptedSession::take(const session::Input& input) {
       break;
     case InputKind::frames_lost:
       inputs_ += QStringLiteral("frames_lost %1").arg(input.value);
+      break;
+    case InputKind::signal_shown:
+      inputs_ += "signal_shown";
       break;
     case InputKind::contact:
     case InputKind::xrun:

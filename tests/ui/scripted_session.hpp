@@ -29,6 +29,8 @@ class ScriptedSession : public QObject {
   Q_INVOKABLE void forget();
   /// Sets how many milliseconds earlier than Qt's time stamp the kernel's time stamp of each touch is.
   Q_INVOKABLE void setKernelLead(double ms);
+  /// The kernel knows only a touch at this place of the panel (0 to 1, in the panel's own axes).
+  Q_INVOKABLE void setKernelTouch(double x, double y);
   Q_INVOKABLE void forgetKernel();
   /// Where the last answer's time stamp comes from: "kernel" or "toolkit".
   Q_INVOKABLE QString quality() const { return quality_; }

@@ -14,8 +14,10 @@
 #include "station/calibration/apply.hpp"
 #include "station/maintenance/calibrate.hpp"
 #include "station/maintenance/panel_latency.hpp"
+#include "station/session/planned_session.hpp"
 #include "station/setup/prepare.hpp"
 #include "station/store/export.hpp"
+#include "station/store/session_log.hpp"
 #include "tests/support/child.hpp"
 
 namespace turnpoint::ui {
@@ -89,7 +91,10 @@ maintenance::DiskSources StationRoom::disks() const {
 OperatorScreen* StationRoom::look() const {
   if (!station_) return nullptr;
   auto* engine = qmlEngine(&station_->window());
-  return engine->singletonInstance<OperatorScreen*>(qmlTypeId("Turnpoint", 1, 0, "OperatorScreen"));
+  auto* screen = engine->singletonInstance<OperatorScreen*>(qmlTypeId("Turnpoint", 1, 0, "OperatorScreen"));
+  // Otherwise the tests' own engine, which did not make it, collects it as garbage.
+  QQmlEngine::setObjectOwnership(screen, QQmlEngine::CppOwnership);
+  return screen;
 }
 
 void StationRoom::plugIn() {
@@ -107,6 +112,18 @@ void StationRoom::plugIn() {
         "unmount) rm \"$here/mountinfo\";;\nesac\n");
   QFile::setPermissions(folder_->filePath("udisksctl"),
                         QFile::ReadOwner | QFile::WriteOwner | QFile::ExeOwner);
+}
+
+void StationRoom::planSessions() {
+  {
+    std::ofstream file(path("protocols/short.toml"), std::ios::app);
+    file << "\n[sessions]\ncount = 2\nmin_days = 1\n";
+  }
+  records::SessionStart start;
+  start.participant = "T1", start.protocol_id = "short", start.planned_session = 1;
+  start.run_mode = terms::RunMode::pilot;
+  start.station_id = session::station_id(), start.started_local = session::local_time();
+  store::SessionLog::begin(path("lab.sqlite"), start, {}).finish(records::SessionStatus::completed, "");
 }
 
 QString StationRoom::askedUdisks() const {
@@ -177,6 +194,16 @@ void StationRoom::addCells() {
       "bridges = [1, 2, 3]\n");
 }
 
+void StationRoom::addGuidance() {
+  std::ofstream file(path("protocols/short.toml"), std::ios::app);
+  file << "\n[sensing]\nnormal_N = [0.3, 0.8]\nspeed_mm_s = [40, 120]\nstrokes = 1\nguidance = true\n"
+          "live_guidance = true\n";
+}
+
+void StationRoom::pretendPanel(CalibrationGuide* guide) {
+  guide->open_panel_with([](LatencyController&, const rig::Rig&) {});
+}
+
 void StationRoom::pressed(double ago_ms) {
   latency_.edge(now_ns() - static_cast<std::int64_t>(ago_ms * 1e6));
 }
@@ -209,6 +236,27 @@ void StationRoom::lookOn() {
 int StationRoom::stallsSeen() {
   beat_.stop();
   return stalls_;
+}
+
+double StationRoom::pressUntilShown(QQuickItem* item) {
+  auto& window = station_->window();
+  const auto before = window.grabWindow();
+  const auto centre = item->mapToScene({item->width() / 2, item->height() / 2}).toPoint();
+  std::int64_t frame_ns = 0;
+  const auto frames = connect(&window, &QQuickWindow::frameSwapped, this, [&] { frame_ns = now_ns(); });
+  const auto start_ns = now_ns();
+  QTest::mousePress(&window, Qt::LeftButton, Qt::NoModifier, centre);
+  bool changed = false;
+  while (!changed && now_ns() - start_ns < 1'000'000'000) {
+    QCoreApplication::processEvents();
+    if (frame_ns != 0) changed = window.grabWindow() != before;
+    if (!changed) frame_ns = 0;
+  }
+  disconnect(frames);
+  const QPoint elsewhere{window.width() / 2, 1};
+  QTest::mouseMove(&window, elsewhere);
+  QTest::mouseRelease(&window, Qt::LeftButton, Qt::NoModifier, elsewhere);
+  return changed ? 1e-6 * static_cast<double>(frame_ns - start_ns) : -1;
 }
 
 void StationRoom::block(int ms) {

@@ -48,6 +48,8 @@ class StationRoom : public QObject {
   Q_INVOKABLE void reopenLocked(const QString& code);
   /// Ends the program, deletes the protocol, and starts the program again.
   Q_INVOKABLE void reopenEmpty(const QString& code);
+  /// Lets the latency of the touch panel be measured without a panel and without button lines.
+  Q_INVOKABLE void pretendPanel(turnpoint::ui::CalibrationGuide* guide);
   Q_INVOKABLE void close();
   Q_INVOKABLE void addSecondScreen();
   /// Plugs in a USB stick "Test, 16 GB", which is simulated by folders. It is not mounted yet.
@@ -64,8 +66,14 @@ class StationRoom : public QObject {
   /// Writes a protocol file with two mistakes into the folder of protocols.
   Q_INVOKABLE void addMistaken();
 
+  /// Plans two sessions for each participant, with a day between them, and stores that T1 had the first one
+  /// today.
+  Q_INVOKABLE void planSessions();
+
   /// Adds simulated pick-ups and force cells to the rig.
   Q_INVOKABLE void addCells();
+  /// Makes the protocol guide the finger with bars and the pacer, during stimuli too. Needs cells.
+  Q_INVOKABLE void addGuidance();
   /// Writes a calibration of the rig (response, friction, sound level), as `turnpoint calibrate` does.
   Q_INVOKABLE void calibrate();
   /// Simulates a press of the reference button this many milliseconds ago. If the operator accepts a latency,
@@ -84,6 +92,10 @@ class StationRoom : public QObject {
   /// how many refreshes this thread was late, rounded up. In these tests nothing else can delay a page.
   Q_INVOKABLE void lookOn();
   Q_INVOKABLE int stallsSeen();
+
+  /// Presses this item, and returns the time in ms until a frame was shown. Then lifts the finger elsewhere,
+  /// so that nothing is chosen. Returns -1 if the picture is the same as before.
+  Q_INVOKABLE double pressUntilShown(QQuickItem* item);
 
   /// Blocks the pages' thread for this time, as if it hung.
   Q_INVOKABLE void block(int ms);

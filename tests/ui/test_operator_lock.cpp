@@ -3,6 +3,7 @@
 
 #include "station/ui/operator/operator_lock.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/ui/event_loop.hpp"
 
 using namespace turnpoint;
 
@@ -13,10 +14,7 @@ constexpr std::chrono::seconds kPatience{20};
 
 /// The operator's lock without its page. The test sets its clock.
 struct Keypad {
-  int argc = 1;
-  char name[5] = "test";
-  char* argv[2] = {name, nullptr};
-  QCoreApplication application{argc, argv};
+  EventLoop<> loop;
   double now_s = 1000;
   int opened = 0, refused = 0;
   ui::OperatorLock lock{desk::OperatorCode::of_digits("7391"), [this] { return now_s; }};

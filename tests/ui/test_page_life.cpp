@@ -10,6 +10,7 @@
 #include "tests/support/catch.hpp"
 #include "tests/support/fake_evdev.hpp"
 #include "tests/support/temporary_folder.hpp"
+#include "tests/ui/event_loop.hpp"
 
 using namespace turnpoint;
 
@@ -17,10 +18,7 @@ namespace {
 
 /// A pilot session on simulated GPIO lines, with stimuli of half a minute.
 struct PilotSession {
-  int argc = 1;
-  char name[5] = "test";
-  char* argv[2] = {name, nullptr};
-  QCoreApplication application{argc, argv};
+  EventLoop<> loop;
   TemporaryFolder folder;
   ui::SessionRunner runner;
 

@@ -6,6 +6,7 @@
 
 #include "station/plot/chart.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/ui/event_loop.hpp"
 
 using namespace turnpoint;
 
@@ -36,10 +37,7 @@ QRect inked(const QImage& sheet) {
 /// An application object without a screen, because fonts need one.
 struct Screen {
   bool offscreen = qputenv("QT_QPA_PLATFORM", "offscreen");
-  int argc = 1;
-  char name[5] = "test";
-  char* argv[2] = {name, nullptr};
-  QGuiApplication application{argc, argv};
+  EventLoop<QGuiApplication> loop;
 };
 
 const plot::Paint kBlack{"", "#000000", 1, "", 1};

@@ -10,6 +10,7 @@
 
 #include "station/ui/platform/service_watchdog.hpp"
 #include "tests/support/catch.hpp"
+#include "tests/ui/event_loop.hpp"
 
 using turnpoint::ui::ServiceWatchdog;
 
@@ -50,12 +51,7 @@ class Manager {
   int socket_;
 };
 
-struct Loop {
-  int argc = 1;
-  char name[5] = "test";
-  char* argv[2] = {name, nullptr};
-  QCoreApplication application{argc, argv};
-};
+using Loop = turnpoint::EventLoop<>;
 
 }  // namespace
 

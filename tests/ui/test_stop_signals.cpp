@@ -8,6 +8,7 @@
 #include "tests/support/catch.hpp"
 #include "tests/support/child.hpp"
 #include "tests/support/temporary_folder.hpp"
+#include "tests/ui/event_loop.hpp"
 
 using turnpoint::ui::StopSignals;
 
@@ -31,12 +32,7 @@ std::vector<std::string> station(const TemporaryFolder& folder) {
           "--db",       folder / "db"};
 }
 
-struct Loop {
-  int argc = 1;
-  char name[5] = "test";
-  char* argv[2] = {name, nullptr};
-  QCoreApplication application{argc, argv};
-};
+using Loop = turnpoint::EventLoop<>;
 
 /// While this object exists, signals have their default action instead of the test framework's own handlers.
 struct KernelsWay {

@@ -15,21 +15,12 @@ Item {
         pixelsPerMm: 5.2
     }
 
-    TestCase {
+    PageTest {
         name: "Adjustment"
         when: windowShown
 
         readonly property PageModel page: session.bridge.page
 
-        function find(parent, name) {
-            for (let i = 0; i < parent.children.length; ++i) {
-                const child = parent.children[i]
-                if (!child.visible) continue
-                const found = child.objectName === name ? child : find(child, name)
-                if (found) return found
-            }
-            return null
-        }
         function tap(name) {
             tryVerify(() => find(view, name) !== null, 20000, name)
             // A page accepts taps only after it has been shown for a while, however long its first frame took.

@@ -8,7 +8,7 @@ Item {
     width: 1280
     height: 800
 
-    TestCase {
+    PageTest {
         name: "Design"
         when: windowShown
         property int taps: 0
@@ -19,44 +19,35 @@ Item {
         }
         function cleanup() { room.close() }
 
-        function find(parent, name) {
-            for (let i = 0; parent && i < parent.children.length; ++i) {
-                const child = parent.children[i]
-                if (!child.visible) continue
-                const found = child.objectName === name ? child : find(child, name)
-                if (found) return found
-            }
-            return null
-        }
-        function says(wanted, parent = room.screen) {
-            for (let i = 0; i < parent.children.length; ++i) {
-                const child = parent.children[i]
-                if (!child.visible) continue
-                if ((child.text ?? "").toString().includes(wanted) || says(wanted, child)) return true
-            }
-            return false
-        }
         function shown(name) { return find(room.screen, name) !== null }
+        function ready(name) {
+            const item = find(room.screen, name)
+            return item !== null && item.enabled && item.armed !== false
+        }
         function appears(name) {
-            tryVerify(() => shown(name) && find(room.screen, name).enabled && find(room.screen, name).armed !== false, 20000, name)
+            tryVerify(() => ready(name), 20000, name)
             return find(room.screen, name)
         }
-        /// Brings an item of the form into view, as a person does with a finger. This is not counted as a tap.
-        function reveal(item) {
-            const scroll = find(room.screen, "formScroll")
-            if (!scroll) return
-            const y = item.mapToItem(scroll.contentItem, 0, 0).y
-            let inside = item
-            while (inside && inside !== scroll) inside = inside.parent
-            if (inside) scroll.contentY = Math.max(0, Math.min(y - 100, scroll.contentHeight - scroll.height))
+        /// Brings a control into view, as a person does with a finger, and returns it. Waits until it stands still
+        /// there, because new fields get their positions a moment after they appear.
+        function inView(name) {
+            let last = Qt.point(-1, -1)
+            tryVerify(() => {
+                if (!ready(name)) return false
+                const item = find(room.screen, name), scroll = find(room.screen, "formScroll")
+                let inside = item
+                while (inside && inside !== scroll) inside = inside.parent
+                const y = inside ? item.mapToItem(scroll.contentItem, 0, 0).y : 0
+                if (inside) scroll.contentY = Math.max(0, Math.min(y - 100, scroll.contentHeight - scroll.height))
+                const at = item.mapToItem(null, 0, 0), still = at.x === last.x && at.y === last.y && item.height > 0
+                last = at
+                return still && at.y < stage.height
+            }, 20000, name)
+            return find(room.screen, name)
         }
-        function tap(name) {
-            appears(name)
-            wait(40)
-            reveal(appears(name))
-            wait(20)
-            const item = appears(name)
-            mouseClick(item, item.width / 2, Math.min(item.height / 2, 20))
+        function tap(name, across = 0.5) {
+            const item = inView(name)
+            mouseClick(item, across * item.width, Math.min(item.height / 2, 15))
             ++taps
         }
         /// Returns the name of the item that shows a key, such as "stop.trials", of a table on the shown
@@ -70,17 +61,7 @@ Item {
             return designPage().design.groups[table].fields.find(one => one.path.join(".") === key).value
         }
         function designPage() { return appears("designPage") }
-        /// Waits for the check, whose remarks rebuild the form. A press during that moment would be lost.
-        function checked() { tryVerify(() => designPage().design.verdict !== "checking", 60000) }
-        function tapField(key, table = 0) {
-            checked()
-            wait(40)
-            reveal(appears(field(key, table)))
-            wait(20)
-            const item = appears(field(key, table))
-            mouseClick(item, 0.8 * item.width, 15)
-            ++taps
-        }
+        function tapField(key, table = 0) { tap(field(key, table), 0.8) }
         function keys(text) { for (const letter of text) tap("letter" + letter) }
         function type(text) {
             keys(text)
@@ -96,6 +77,18 @@ Item {
         }
         function saved(name) { return room.startOf("protocols", name + ".toml", 100000) }
 
+        function test_the_form_waits_while_a_finger_is_on_it() {
+            begin("contrast", "pressed")
+            tap("section-question")
+            verify(!designPage().design.touched)
+            const item = inView(field("question.en"))
+            mousePress(item, 0.8 * item.width, 15)
+            verify(designPage().design.touched)
+            verify(!shown("fieldEntry"))
+            mouseRelease(item, 0.8 * item.width, 15)
+            verify(!designPage().design.touched)
+            appears("fieldEntry")                      // the press has reached the field, too
+        }
         function test_a_jnd_study_from_nothing_to_a_passing_check_in_at_most_60_taps() {
             begin("contrast", "jnd")
             tap("section-question")
@@ -105,12 +98,9 @@ Item {
             tap("keepEntry")
             tap("section-scenes")
             tryVerify(() => Object.keys(designPage().design.profiles).length > 0, 20000)
-            checked()
-            const area = appears("strip0")
+            const area = inView("strip0")
             const strip = find(area, "dragArea")
             const mark = find(area, "zoneMark")
-            tryVerify(() => mark.x > 0)                // the strip has its width
-            wait(50)
             const from = mark.x + mark.width / 2
             mousePress(strip, from, strip.height / 2)
             mouseMove(strip, from + 20, strip.height / 2)
@@ -181,7 +171,7 @@ Item {
             room.releaseKey(Qt.Key_A)
             tap("side-check")
             tryVerify(() => designPage().design.verdict === "bad", 5000)
-            verify(says("not valid TOML"))
+            verify(says(room.screen, "not valid TOML"))
             tap("undo")
             tryVerify(() => designPage().design.verdict !== "bad", 5000)
         }
@@ -198,7 +188,7 @@ Item {
             tap("designRemark0")
             appears(field("deadline_s"))
             tryVerify(() => find(room.screen, field("deadline_s")).pointedAt, 5000)
-            verify(says("✗ ", find(room.screen, field("deadline_s"))))
+            verify(says(find(room.screen, field("deadline_s")), "✗ "))
             tapField("deadline_s")
             type("2.5")
             tryVerify(() => !shown("designRemark0") || designPage().design.verdict !== "bad", 20000)
@@ -210,7 +200,7 @@ Item {
             tapField("trials")
             keys(".5")
             tap("keepEntry")
-            verify(says("a whole number"))
+            verify(says(room.screen, "a whole number"))
             tap("cancelEntry")
             compare(valueOf("trials"), "6")
         }
@@ -220,7 +210,7 @@ Item {
             tap("newStudy")
             tap("goal-boundary")
             type("short")
-            verify(says("short exists already"))
+            verify(says(room.screen, "short exists already"))
             erase(5)
             type("a.b")
             verify(shown("keepEntry"))
@@ -292,15 +282,15 @@ Item {
             const view = appears("previewView")
             const pages = designPage().design.pages
             compare(pages.languages, ["en", "de"])
-            tryVerify(() => says("In which interval was it more slippery?", view))
+            tryVerify(() => says(view, "In which interval was it more slippery?"))
             tap("pageLanguage-de")
-            tryVerify(() => says("In welchem Durchgang war es glatter?", view))
-            verify(!says("In which interval", view))
+            tryVerify(() => says(view, "In welchem Durchgang war es glatter?"))
+            verify(!says(view, "In which interval"))
             tap("section-question")
             tapField("question.de")
             erase(1)
             type(" jetzt?")
-            tryVerify(() => says("In welchem Durchgang war es glatter jetzt?", view))
+            tryVerify(() => says(view, "In welchem Durchgang war es glatter jetzt?"))
             tap("page-next")
             tryVerify(() => view.page.kind === PageModel.Cue)
             compare([view.width, view.height], [1280, 800])
@@ -316,7 +306,7 @@ Item {
             tapField("deadline_s")
             erase(3)
             tap("keepEntry")
-            tryVerify(() => says("These pages are from before."))
+            tryVerify(() => says(room.screen, "These pages are from before."))
             verify(view.visible)
         }
 
@@ -357,7 +347,7 @@ Item {
             tap("section-scenes")
             const scene = designPage().design.groups[0].name
             tap("feel-" + scene)
-            tryVerify(() => says("there is nothing to feel: 1.5 s, "), 20000)
+            tryVerify(() => says(room.screen, "there is nothing to feel: 1.5 s, "), 20000)
             compare(designPage().design.feeling.playing, "")
             verify(designPage().design.feeling.tones > 0 && designPage().design.feeling.peakPercent > 0)
         }

@@ -15,7 +15,7 @@ Item {
         pixelsPerMm: 5.2
     }
 
-    TestCase {
+    PageTest {
         name: "Faults"
         when: windowShown
 
@@ -23,15 +23,6 @@ Item {
 
         SignalSpy { id: shown; target: session.bridge; signalName: "shown" }
 
-        function find(parent, name) {
-            for (let i = 0; i < parent.children.length; ++i) {
-                const child = parent.children[i]
-                if (!child.visible) continue
-                const found = child.objectName === name ? child : find(child, name)
-                if (found) return found
-            }
-            return null
-        }
         function tap(name) {
             tryVerify(() => find(view, name) !== null, 20000, name)
             wait(400)

@@ -53,5 +53,31 @@ Item {
             tryCompare(desk.latency, "taps", 0, 3000)
             mouseRelease(again)
         }
+
+        function test_every_text_has_room_in_every_language_data() {
+            const rows = []
+            for (const size of [[800, 480], [480, 800], [1280, 800]])
+                for (const language of ["en", "de", "es", "ja", "zh", "ar"]) rows.push({ tag: language + " " + size[0] + "x" + size[1], language: language, size: size })
+            return rows
+        }
+        function test_every_text_has_room_in_every_language(row) {
+            stage.width = row.size[0]
+            stage.height = row.size[1]
+            OperatorScreen.language = row.language
+            desk.latency.again()
+            for (let k = 0; k < 3; ++k) {
+                desk.pressed(50)
+                tap()
+                wait(120)
+            }
+            compare(inspector.cutTexts(page), [])
+            compare(inspector.brokenWords(page), [])
+            compare(inspector.overlaps(page), [])
+            verify(findChild(page, "latencyField").height > 60, findChild(page, "latencyField").height)
+        }
+        function cleanup() {
+            OperatorScreen.language = "en"
+            desk.latency.again()
+        }
     }
 }

@@ -68,7 +68,7 @@ Item {
                                        { width: 600, height: 1024, mm: 6.7 }, { width: 800, height: 1280, mm: 5.9 }]
 
         // On a panel of 5 inches, these pages have no room for answers of 20 mm beside everything else.
-        readonly property var needSevenInches: ["rating-9", "line-labels", "number", "number-standard", "choices-9",
+        readonly property var needSevenInches: ["rating-9", "line-labels", "number", "number-standard", "choices-9", "choices-9-long",
                                                     "question-number"]
         // On these pages the text scrolls, and a symbol shows that.
         readonly property var scrolling: ["consent-form-long"]
@@ -78,6 +78,7 @@ Item {
         function cleanup() {
             page.active = false
             liveView.visible = false
+            OperatorScreen.language = "en"
             start.sourceComponent = undefined
             view.visible = true
         }
@@ -181,6 +182,31 @@ Item {
             desk.tellLive("Block main, trial 35, level -10: zone")
             wait(50)
             compare(inspector.overlaps(liveView), [])
+        }
+
+        function test_the_figures_of_the_live_view_are_beside_its_facts_in_every_language_data() {
+            const rows = []
+            for (const panel of panels)
+                for (const language of ["en", "de", "ar"])
+                    rows.push({ tag: language + " " + panel.width + "x" + panel.height + " " + panel.mm, language: language, panel: panel })
+            return rows
+        }
+        function test_the_figures_of_the_live_view_are_beside_its_facts_in_every_language(row) {
+            resize(row.panel)
+            view.visible = false
+            liveView.visible = true
+            OperatorScreen.language = row.language
+            show("between-trials", "en")
+            desk.tellLive("Block main, trial 35, level -10: zone", row.language)
+            wait(50)
+            const facts = findChild(liveView, "facts"), figures = findChild(liveView, "figures")
+            const left = facts.mapToItem(liveView, 0, 0).x, place = figures.mapToItem(liveView, 0, 0)
+            verify(place.x >= 0 && place.x + figures.width <= liveView.width, place.x + " + " + figures.width)
+            verify(figures.width > 0.4 * liveView.width && figures.height > 0.2 * liveView.height)
+            if (row.panel.width > row.panel.height)
+                verify(row.language === "ar" ? left + facts.width <= place.x : place.x + figures.width <= left)
+            compare(inspector.overlaps(liveView), [])
+            compare(inspector.brokenWords(liveView), [])
         }
     }
 }

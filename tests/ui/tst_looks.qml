@@ -107,6 +107,22 @@ Item {
             control.visible = false
         }
 
+        function test_a_tall_panel_shows_faults_in_large_type_data() {
+            const rows = []
+            for (const panel of [{ width: 800, height: 1280, mm: 5.9 }, { width: 480, height: 800, mm: 5.2 }])
+                for (const language of ["de", "ar", "ja"])
+                    for (const page of script.pages.filter(name => name.startsWith("fault-")))
+                        rows.push({ tag: page + " " + language + " " + panel.width, page: page, language: language, panel: panel })
+            return rows
+        }
+        function test_a_tall_panel_shows_faults_in_large_type(row) {
+            place(row)
+            const scale = findChild(view, "explanation").scale
+            const told = all(view, item => item.objectName === "told")
+            compare(told.length, 3)
+            for (const text of told) verify(scale * text.font.pixelSize >= 4 * row.panel.mm, text.text)
+        }
+
         function test_every_text_has_a_contrast_of_seven_to_one_and_is_complete_data() {
             const rows = []
             for (const panel of [{ width: 800, height: 480, mm: 5.2 }, { width: 1280, height: 800, mm: 5.9 }])

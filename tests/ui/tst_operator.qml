@@ -27,7 +27,7 @@ Item {
 
     Texts { id: words; language: "en" }
 
-    TestCase {
+    PageTest {
         name: "Operator"
         when: windowShown
 
@@ -35,16 +35,6 @@ Item {
 
         function initTestCase() { script.bridge.watch(stage.Window.window) }
 
-        function find(parent, name) {
-            for (let i = 0; i < parent.children.length; ++i) {
-                const child = parent.children[i]
-                if (!child.visible) continue
-                if (child.objectName === name) return child
-                const found = find(child, name)
-                if (found) return found
-            }
-            return null
-        }
 
         function tap(parent, name) {
             let button = null
@@ -72,14 +62,6 @@ Item {
             verify(told({ state: "none", hours: 0 }) !== told({ state: "ahead", hours: 0 }))
         }
 
-        function says(parent, wanted) {
-            for (let i = 0; i < parent.children.length; ++i) {
-                const child = parent.children[i]
-                if (!child.visible) continue
-                if ((child.text ?? "").toString().includes(wanted) || says(child, wanted)) return true
-            }
-            return false
-        }
 
         function indexOf(id) {
             return operating.protocols.findIndex(protocol => protocol.id === id)
@@ -90,7 +72,7 @@ Item {
             liveView.visible = false
             operating.select(indexOf("demo"))
             tryCompare(operating, "checking", false, 20000)
-            verify(operating.facts.some(fact => fact.label === "Trials" && fact.value.startsWith("10")))
+            verify(operating.facts.some(fact => fact.label.key === "operator.trials" && fact.value.startsWith("10")))
             verify(operating.cues.length > 0)
             compare(operating.mayBegin, true)
             verify(says(page.item, "Unwanted cues"))
@@ -100,9 +82,10 @@ Item {
             tap(page.item, "live")
             // The simulated rig has no measured friction, so choosing a live session is refused at once, with
             // that reason.
-            tryVerify(() => operating.problems.length > 0, 20000)
+            tryVerify(() => operating.notLive.length > 0, 20000)
             verify(says(page.item, "Begin LIVE session"))
-            compare(operating.problems[0], "Live is not possible: the rig uses the illustrative friction curve, which was not measured")
+            compare(operating.notLive[0].key, "refusal.friction")
+            verify(says(page.item, "Live is not possible: the rig uses the illustrative friction curve, which was not measured"))
             compare(operating.mayBegin, false)
             tap(page.item, "begin")
             compare(desk.chosen, "")
@@ -110,7 +93,7 @@ Item {
             compare(operating.mayBegin, false)
             operating.enterParticipant("")
             tap(page.item, "pilot")
-            compare(operating.problems, [])
+            compare(operating.notLive, [])
             compare(operating.mayBegin, true)
 
             tap(page.item, "language1")

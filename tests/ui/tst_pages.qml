@@ -75,6 +75,38 @@ Item {
             compare(intervalNames(), ["1", "2", "3"])
         }
 
+        function test_the_pacer_moves_at_the_speed_that_is_asked_for() {
+            show("cue")
+            const begun = Date.now()
+            show("stroke")
+            const pacer = item("pacer"), block = visibleItem("pacerBlock")
+            verify(pacer.visible && pacer.running)
+            compare(pacer.speedMmPerS, 80)
+            for (const seconds of [0, 0.1, 0.7, 1.3, 12.34]) {
+                const way = (80 * 5.2 * seconds) % (2 * pacer.travel)
+                fuzzyCompare(pacer.placeAfter(seconds), Math.min(way, 2 * pacer.travel - way), 0.01)
+            }
+            wait(600)
+            const moved = pacer.seconds, passed = (Date.now() - begun) / 1000
+            verify(moved > 0.3 && moved < passed + 0.02, moved + " s of " + passed + " s")
+            fuzzyCompare(block.x, pacer.placeAfter(pacer.seconds), 0.01)
+        }
+
+        function test_the_pacer_rests_during_a_stimulus_and_while_an_answer_is_awaited() {
+            for (const page of ["explore-guided", "response-guided"]) {
+                show(page)
+                const pacer = item("pacer")
+                const all = []
+                collect(view, "pacerBlock", all)
+                compare(all.length, 0, page)
+                const before = pacer.seconds
+                wait(100)
+                compare(pacer.seconds, before, page)
+            }
+            show("cue")
+            verify(!item("pacer").visible)
+        }
+
         function intervalNames() {
             const all = []
             collect(view, "intervalName", all)

@@ -9,7 +9,7 @@ Item {
     width: 1280
     height: 800
 
-    TestCase {
+    RoomTest {
         name: "Places"
         when: windowShown
 
@@ -18,33 +18,6 @@ Item {
             room.close()
         }
 
-        function find(parent, name) {
-            for (let i = 0; parent && i < parent.children.length; ++i) {
-                const child = parent.children[i]
-                if (!child.visible) continue
-                const found = child.objectName === name ? child : find(child, name)
-                if (found) return found
-            }
-            return null
-        }
-        function says(wanted, parent = room.screen) {
-            for (let i = 0; i < parent.children.length; ++i) {
-                const child = parent.children[i]
-                if (!child.visible) continue
-                if ((child.text ?? "").toString().includes(wanted) || says(wanted, child)) return true
-            }
-            return false
-        }
-        function shown(name) { return find(room.screen, name) !== null }
-        function appears(name) {
-            tryVerify(() => shown(name) && find(room.screen, name).enabled && find(room.screen, name).armed !== false, 20000, name)
-            return find(room.screen, name)
-        }
-        function tap(name) {
-            const button = appears(name)
-            wait(20)
-            mouseClick(button, button.width / 2, button.height / 2)
-        }
         function key(code) {
             room.pressKey(code)
             room.releaseKey(code)
@@ -65,6 +38,7 @@ Item {
 
         function test_the_bar_leads_to_each_page_and_back() {
             for (const place of ["studies", "sessions", "rig"]) {
+                verify(room.pressUntilShown(appears("bar-" + place)) >= 0, "a press shows")
                 goTo(place)
                 verify(!shown("operatorPage"))
             }
@@ -76,19 +50,19 @@ Item {
             room.addMistaken()
             goTo("studies")
             tap("protocol0")
-            tryVerify(() => says("Cannot be used", find(room.screen, "verdict").parent), 20000)
-            verify(says("mistaken.toml   ·   line 2"))
-            verify(says("mistaken.toml   ·   line 3"))
-            verify(says("protocl"))
-            verify(says("titel"))
-            verify(says("→ "))
+            tryVerify(() => says(find(room.screen, "verdict").parent, "Cannot be used"), 20000)
+            verify(says(room.screen, "mistaken.toml   ·   line 2"))
+            verify(says(room.screen, "mistaken.toml   ·   line 3"))
+            verify(says(room.screen, "protocl"))
+            verify(says(room.screen, "titel"))
+            verify(says(room.screen, "→ "))
             compare(find(room.screen, "runStudy").enabled, false)
         }
 
         function test_a_study_with_cues_gives_advice_and_leads_to_run() {
             goTo("studies")
             tryVerify(() => find(room.screen, "runStudy").enabled, 20000)
-            verify(says("right with this cue alone"))
+            verify(says(room.screen, "right with this cue alone"))
             tap("runStudy")
             appears("operatorPage")
             tryVerify(() => room.operating.mayBegin, 20000)
@@ -97,7 +71,7 @@ Item {
 
         function test_sessions_without_a_database_says_so() {
             goTo("sessions")
-            verify(says("No session has been recorded yet"))
+            verify(says(room.screen, "No session has been recorded yet"))
             compare(find(room.screen, "export").enabled, false)
         }
 
@@ -105,14 +79,14 @@ Item {
             interrupt()
             tap("addNote")
             type("cold hands")
-            tryVerify(() => says("• cold hands"), 5000)
+            tryVerify(() => says(room.screen, "• cold hands"), 5000)
             tap("search")
             type("cold t1")
-            tryVerify(() => says("“cold t1”"), 1000)
+            tryVerify(() => says(room.screen, "“cold t1”"), 1000)
             verify(shown("session0"))
             tap("search")
             type("x")
-            tryVerify(() => says("No session matches the search."), 1000)
+            tryVerify(() => says(room.screen, "No session matches the search."), 1000)
             tap("clearSearch")
             verify(shown("session0"))
             tap("makeReport")
@@ -134,15 +108,15 @@ Item {
             verify(shown("noDisk"))
             room.plugIn()
             tap("lookAgain")
-            verify(!shown("noDisk") && says("Test, 16 GB"))
+            verify(!shown("noDisk") && says(room.screen, "Test, 16 GB"))
             tap("exportAll")
             tap("place1")
-            tryVerify(() => says("files were written to"), 20000)
+            tryVerify(() => says(room.screen, "files were written to"), 20000)
             const files = room.filesIn("stick")
             verify(files.some(file => /^turnpoint-export-[-0-9]+\/.*\/trials\.csv$/.test(file)), files.join(" "))
             compare(room.askedUdisks(), "mount")
             tap("eject1")
-            tryVerify(() => says("can be unplugged now"), 5000)
+            tryVerify(() => says(room.screen, "can be unplugged now"), 5000)
             compare(room.askedUdisks(), "mount unmount power-off")
             verify(!shown("eject1"))
         }
@@ -154,11 +128,11 @@ Item {
             tap("place1")
             // In this test the stick is a folder on the database's own disk, as if somebody had pulled it
             // out. So the backup must be refused.
-            tryVerify(() => says("no disk is mounted"), 20000)
+            tryVerify(() => says(room.screen, "no disk is mounted"), 20000)
             compare(room.filesIn("stick"), [])
             tap("backUp")
             tap("place0")
-            tryVerify(() => says("The backup was read back and checked."), 20000)
+            tryVerify(() => says(room.screen, "The backup was read back and checked."), 20000)
             verify(room.filesIn("backups").some(file => file.endsWith(".sqlite")))
         }
 
@@ -172,24 +146,24 @@ Item {
             for (let i = 0; i < 4; ++i) mouseClick(room.screen, place.x, place.y)
             verify(shown("withdrawing"))
             compare(find(room.screen, "withdrawing").text.split(",")[0], "T1 would be deleted: 1 sessions")
-            verify(says("This cannot be undone."))
+            verify(says(room.screen, "This cannot be undone."))
             tap("keep")
             verify(!shown("withdrawing") && shown("session0"))
             tap("withdraw")
             tap("confirm")
-            tryVerify(() => says("T1 deleted: 1 sessions, 2 trials"), 20000)
+            tryVerify(() => says(room.screen, "T1 deleted: 1 sessions, 2 trials"), 20000)
             verify(!shown("session0"))
-            verify(says("No session has been recorded yet"))
+            verify(says(room.screen, "No session has been recorded yet"))
         }
 
         function test_the_rig_is_examined_and_tested_and_other_pages_wait_meanwhile() {
             room.calibrate()
             goTo("rig")
-            verify(says("In use"))
-            verify(says("30 more days"))
+            verify(says(room.screen, "In use"))
+            verify(says(room.screen, "30 more days"))
             tap("examine")
             tryVerify(() => shown("finding0"), 60000)
-            verify(says("converter"))
+            verify(says(room.screen, "converter"))
             tap("selfTestTab")
             const test = appears("selfTest")
             mouseClick(test)
@@ -199,7 +173,7 @@ Item {
             tryVerify(() => !find(room.screen, "bar-run").enabled, 3000)
             mouseRelease(test)
             tryVerify(() => shown("finding0") && find(room.screen, "bar-run").enabled, 60000)
-            verify(says("gate"))
+            verify(says(room.screen, "gate"))
             verify(shown("gauge0"))
         }
 
@@ -208,17 +182,17 @@ Item {
             goTo("rig")
             tap("weightsTab")
             tap("weigh")
-            tryVerify(() => says("Take everything off the surface."), 20000)
-            verify(says("thousandths of the excitation"))
+            tryVerify(() => says(room.screen, "Take everything off the surface."), 20000)
+            verify(says(room.screen, "thousandths of the excitation"))
             verify(!find(room.screen, "bar-run").enabled)
             for (let step = 0; step < 39; ++step) {
                 tryVerify(() => find(room.screen, "weightsRead").enabled, 20000)
                 tap("weightsRead")
             }
             tryVerify(() => shown("finding0") && find(room.screen, "bar-run").enabled, 20000)
-            verify(says("Uncertainty"))
-            verify(says("200 g at 210 mm with a pull of 100 g towards the wide edge"))
-            verify(says("force cells"))
+            verify(says(room.screen, "Uncertainty"))
+            verify(says(room.screen, "200 g at 210 mm with a pull of 100 g towards the wide edge"))
+            verify(says(room.screen, "force cells"))
         }
 
         function test_the_steps_of_the_weights_and_the_calibration_are_in_the_operators_language() {
@@ -226,13 +200,13 @@ Item {
             room.calibrate()
             goTo("rig")
             tap("screen-de")
-            tryVerify(() => says("noch 30 Tage") && says("Übertragung, Reibung, Schallpegel"))
+            tryVerify(() => says(room.screen, "noch 30 Tage") && says(room.screen, "Übertragung, Reibung, Schallpegel"))
             tap("weightsTab")
             tap("weigh")
-            tryVerify(() => says("Nehmen Sie alles von der Oberfläche."), 20000)
-            tryVerify(() => says("Tausendstel der Speisung"))
+            tryVerify(() => says(room.screen, "Nehmen Sie alles von der Oberfläche."), 20000)
+            tryVerify(() => says(room.screen, "Tausendstel der Speisung"))
             tap("weightsRead")
-            tryVerify(() => says("Stellen Sie 20 g auf 30 mm vom breiten Rand."), 20000)
+            tryVerify(() => says(room.screen, "Stellen Sie 20 g auf 30 mm vom breiten Rand."), 20000)
         }
 
         function enterReading(text) {
@@ -246,13 +220,13 @@ Item {
             const guide = find(room.screen, "rigPage").rig.guide
             tap("guideTab")
             tap("guide-friction")
-            verify(says("Friction · point 1 of 5"))
+            verify(says(room.screen, "Friction · point 1 of 5"))
             verify(!find(room.screen, "guideFinish").enabled)
             tap("guidePlay")
             tryVerify(() => !guide.playing, 20000)
             compare(guide.problem, "")
             enterReading("1.7")                        // relative friction is at most 1.5
-            verify(says("0 … 1.5"))
+            verify(says(room.screen, "0 … 1.5"))
             tap("cancelEntry")
             compare(guide.entered, 0)
             for (const value of ["0.8", "0,7", "0.5", "0.3"]) {
@@ -261,7 +235,7 @@ Item {
             }
             compare(guide.entered, 4)
             tap("guideFinish")
-            tryVerify(() => says("Written to rig.calibration-"))
+            tryVerify(() => says(room.screen, "Written to rig.calibration-"))
             verify(shown("guideFigure"))
             const csv = room.filesIn(".").find(name => name.includes("friction-"))
             verify(csv, room.filesIn("."))
@@ -270,7 +244,7 @@ Item {
             const made = room.filesIn(".").filter(name => name.includes("calibration-")).pop()
             const text = room.startOf(".", made, 100000)
             verify(text.includes("[[transducer]]") && text.includes("sound"), text)  // what was measured before is kept
-            verify(says("response, friction, sound level"))
+            verify(says(room.screen, "response, friction, sound level"))
         }
         function test_a_guided_calibration_reads_boundaries_from_the_strip_and_forgets_them_if_left() {
             goTo("rig")
@@ -285,7 +259,7 @@ Item {
             mouseRelease(strip, x + 40, strip.height / 2)
             const mm = Number(guide.point.value)
             verify(mm > 150 && mm < 300, mm)
-            verify(says("Reading: " + mm + " mm"))
+            verify(says(room.screen, "Reading: " + mm + " mm"))
             const leave = appears("guideLeave")
             mouseClick(leave)
             compare(guide.entered, 1)                  // a tap is not enough
@@ -295,6 +269,49 @@ Item {
             tap("guide-boundaries")
             compare(guide.entered, 0)
             compare(room.filesIn(".").filter(name => name.includes("boundaries-")), [])
+        }
+
+        function test_while_a_tone_of_a_guided_calibration_plays_the_pick_ups_are_read() {
+            room.addCells()
+            goTo("rig")
+            const guide = find(room.screen, "rigPage").rig.guide
+            tap("guideTab")
+            tap("guide-response")
+            compare(guide.readings, [])
+            tap("guidePlay")
+            tryVerify(() => guide.readings.length === 2, 20000)
+            verify(guide.playing)
+            verify(shown("guideLive"))
+            verify(says(room.screen, "Pick-up on channel 5: ") && says(room.screen, "% of full scale"))
+            tap("guidePlay")                          // stops the tone
+            tryVerify(() => !guide.playing, 20000)
+            compare(guide.readings.length, 2)         // the last reading stays until the next point
+            tap("guideNext")
+            compare(guide.readings, [])
+        }
+        function test_a_rig_without_real_buttons_says_why_the_panel_cannot_be_measured() {
+            goTo("rig")
+            tap("guideTab")
+            for (const reference of ["panel_button", "panel_photodiode"]) {
+                tap("guide-" + reference)
+                tryVerify(() => says(room.screen, "they must be gpio:NAME=LINE"))
+            }
+        }
+        function test_the_latency_of_the_panel_is_measured_on_a_page_of_its_own() {
+            goTo("rig")
+            const guide = find(room.screen, "rigPage").rig.guide
+            room.pretendPanel(guide)
+            tap("guideTab")
+            tap("guide-panel_photodiode")
+            appears("latencyField")
+            verify(says(room.screen, "Fix the photodiode on the square at the left"))
+            tap("latencyLeave")
+            compare(guide.latency, null)
+            tryVerify(() => find(room.screen, "latencyField") === null)
+            tap("guide-panel_button")
+            appears("latencyField")
+            tap("bar-run")                            // leaving the page frees the button lines
+            tryCompare(guide, "latency", null)
         }
 
         function test_weighing_can_be_stopped_and_writes_nothing_then() {
@@ -308,13 +325,13 @@ Item {
             tryVerify(() => find(room.screen, "bar-run").enabled, 20000)
             mouseRelease(stop)
             verify(!shown("finding0"))
-            verify(says("None. Make one"))
+            verify(says(room.screen, "None. Make one"))
         }
 
         function test_language_theme_and_text_size_are_kept() {
             goTo("rig")
             tap("screen-de")
-            verify(says("Kalibrierung") && says("Sitzungen"))
+            verify(says(room.screen, "Kalibrierung") && says(room.screen, "Sitzungen"))
             tap("dark")
             tap("larger")
             compare(room.look.textPercent, 125)
@@ -323,7 +340,7 @@ Item {
             compare(room.look.language, "de")
             compare(room.look.dark, true)
             compare(room.look.textPercent, 125)
-            verify(says("Studien"))
+            verify(says(room.screen, "Studien"))
         }
 
         function test_the_pages_are_operated_by_keyboard() {

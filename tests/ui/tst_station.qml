@@ -17,44 +17,12 @@ Item {
         pixelsPerMm: 5.2
     }
 
-    TestCase {
+    RoomTest {
         name: "Station"
         when: windowShown
 
-        readonly property PageModel page: room.page
-        readonly property OperatorController operating: room.operating
-
         function cleanup() { room.close() }
 
-        function find(parent, name) {
-            for (let i = 0; parent && i < parent.children.length; ++i) {
-                const child = parent.children[i]
-                if (!child.visible) continue
-                const found = child.objectName === name ? child : find(child, name)
-                if (found) return found
-            }
-            return null
-        }
-        function says(parent, wanted) {
-            for (let i = 0; i < parent.children.length; ++i) {
-                const child = parent.children[i]
-                if (!child.visible) continue
-                if ((child.text ?? "").toString().includes(wanted) || says(child, wanted)) return true
-            }
-            return false
-        }
-        function shown(name, parent = room.screen) { return find(parent, name) !== null }
-        function appears(name, parent = room.screen) {
-            tryVerify(() => shown(name, parent), 20000, name)
-            wait(60)
-            // Wait until the page accepts taps, which it does only after it has been shown for a while.
-            tryVerify(() => shown(name, parent) && find(parent, name).armed !== false, 5000, name + " reacts")
-            return find(parent, name)
-        }
-        function tap(name, parent = room.screen) {
-            const button = appears(name, parent)
-            mouseClick(button, button.width / 2, button.height / 2)
-        }
         function hold(name, ms, parent = room.screen) {
             const button = appears(name, parent)
             mousePress(button, button.width / 2, button.height / 2)
@@ -68,30 +36,6 @@ Item {
             // wait until another thread has compared the code
             tryCompare(lock, "checking", false, 20000)
         }
-        /// Touches an answer on the participant's screen with one finger.
-        function answer(choice) {
-            tryCompare(page, "answersOpen", true, 20000)
-            wait(150)
-            const button = find(room.screen, "answer" + choice)
-            const touch = touchEvent(button)
-            touch.press(1, button).commit()
-            touch.release(1, button).commit()
-            tryCompare(page, "answersOpen", false, 5000)
-        }
-        function begin(participant) {
-            tryVerify(() => operating.mayBegin, 20000)
-            tap("language0")
-            tap("enterCode")
-            for (const key of participant) tap("key" + key)
-            tap("accept")
-            tap("begin")
-        }
-        function rest() {
-            tryCompare(page, "kind", PageModel.Rest, 20000)
-            tryCompare(page, "remainingSeconds", 0, 5000)
-            tap("proceed")
-        }
-        function ends() { tryCompare(page, "kind", PageModel.End, 20000) }
         /// Arms the amplifier as an operator does at the participant's screen.
         function arm() {
             tryCompare(page, "awaitsArming", true, 20000)
@@ -120,11 +64,11 @@ Item {
             room.open("7391")
             tryVerify(() => operating.mayBegin, 20000)
             tap("live")
-            tryVerify(() => operating.problems.length > 0, 20000)
-            verify(operating.problems[0].includes("the illustrative friction curve"), operating.problems[0])
+            tryVerify(() => operating.notLive.length > 0, 20000)
+            compare(operating.notLive[0].key, "refusal.friction")
             // the illustrative curve is allowed in a pilot session
             tap("pilot")
-            compare(operating.problems, [])
+            compare(operating.notLive, [])
             compare(operating.mayBegin, true)
 
             const offset = measurePanel()
@@ -224,7 +168,9 @@ Item {
             room.calibrate()
             compare(room.cutOffSession("live"), -9)
             room.reopen("7391")
-            tryVerify(() => operating.interrupted.startsWith("T1, short: 2 trials stored"), 20000, operating.interrupted)
+            tryVerify(() => operating.interrupted.trials === 2, 20000)
+            compare(operating.interrupted.participant, "T1")
+            compare(operating.interrupted.protocol, "short")
             tap("resume")
             // a resumed live session must be armed, too
             arm()
@@ -237,7 +183,7 @@ Item {
             tap("close")
             type("7391")
             appears("operatorPage")
-            compare(operating.interrupted, "")
+            compare(operating.interrupted, {})
             compare(room.column("trials.csv", "trial_index"), ["0", "1", "2", "3"])
             compare(room.column("trials.csv", "response"), ["right", "right", "left", "left"])
             compare(room.column("trials.csv", "run_mode"), ["live", "live", "live", "live"])

@@ -55,10 +55,10 @@ def read_signals(source, *, session="", participant="", protocol="", stream="fin
     source = _existing(source)
     if isinstance(source, Path) and source.is_dir():
         return _read_exported_signals(source, session, participant, protocol, stream)
-    parts = _store.signals(str(source), session, participant, protocol)
+    parts = _store.signals(str(source), session, participant, protocol, stream)
     frames = [pd.DataFrame({"session_id": pd.Series([part["session_id"]] * len(part["time_s"]), dtype=object),
                             **{name: values for name, values in part.items() if name not in ("session_id", "stream")}})
-              for part in parts if part["stream"] == stream]
+              for part in parts]
     if not frames:
         raise LookupError(f"{_shown(source)}: no signals of the stream \"{stream}\"")
     return _joined(frames)

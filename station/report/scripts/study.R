@@ -15,6 +15,9 @@ label <- function(condition) ifelse(is.na(condition) | condition == "", "all tri
 answers$condition <- label(answers$condition)
 groups$condition <- label(groups$condition)
 
+# A condition of two factors has a comma in its name.
+quoted <- function(name) ifelse(grepl(",", name), dQuote(name, FALSE), name)
+
 # The link of a function between guess and 1 - lapse.
 link <- function(name, guess, lapse) {
   range <- 1 - guess - lapse
@@ -42,9 +45,9 @@ for (i in seq_len(nrow(groups))) {
   threshold <- -fixef(model)[[1]] / fixef(model)[[2]] * width + centre
   likelihood <- as.numeric(logLik(model)) - sum(lchoose(part$trials, part$positive))
   ours <- -group$intercept / group$rate
-  cat(sprintf("threshold,%s,%.6g,%.6g\n", group$condition, threshold, ours))
-  cat(sprintf("rate,%s,%.6g,%.6g\n", group$condition, rate, group$rate))
-  cat(sprintf("log_likelihood,%s,%.8g,%.8g\n", group$condition, likelihood, group$log_likelihood))
+  cat(sprintf("threshold,%s,%.6g,%.6g\n", quoted(group$condition), threshold, ours))
+  cat(sprintf("rate,%s,%.6g,%.6g\n", quoted(group$condition), rate, group$rate))
+  cat(sprintf("log_likelihood,%s,%.8g,%.8g\n", quoted(group$condition), likelihood, group$log_likelihood))
 }
 
 # Response times of right answers: log time by condition, with participants as random effects.
@@ -53,6 +56,6 @@ trials$condition <- label(trials$condition)
 if (length(unique(trials$condition)) > 1) {
   model <- suppressMessages(lmer(log(response_time_s) ~ condition + (1 | participant), trials))
   for (name in names(fixef(model))[-1])
-    cat(sprintf("log_response_time,%s,%.6g,%.6g\n", sub("^condition", "", name), fixef(model)[[name]],
+    cat(sprintf("log_response_time,%s,%.6g,%.6g\n", quoted(sub("^condition", "", name)), fixef(model)[[name]],
                 sqrt(vcov(model)[name, name])))
 }

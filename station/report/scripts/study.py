@@ -7,6 +7,7 @@ Prints one line for each measure and pair of conditions: the mean of the partici
 standard error and the number of participants. If no participant has both conditions, they are those of two
 groups, and the line has the difference of the groups' means. The report has the same differences with intervals.
 """
+import csv
 import itertools
 import pathlib
 import sys
@@ -39,9 +40,11 @@ def main() -> None:
     trials = pd.read_csv(folder / "trials.csv", dtype={"participant": str, "condition": str})
     answered = trials[(trials["excluded"] == "no") & (trials["outcome"] == "answered")]
     accuracy = answered.groupby("participant")["correct"].mean()
-    print("accuracy,,," + f"{accuracy.mean():.6g},{accuracy.sem():.6g},{len(accuracy)}")
+    # a condition of two factors has a comma in its name, which csv quotes
+    lines = csv.writer(sys.stdout, lineterminator="\n")
+    lines.writerow(["accuracy", "", "", f"{accuracy.mean():.6g}", f"{accuracy.sem():.6g}", len(accuracy)])
     for row in effects(included).itertuples(index=False):
-        print(f"{row.measure},{row.first},{row.second},{row.difference:.6g},{row.se:.6g},{row.participants}")
+        lines.writerow([row.measure, row.first, row.second, f"{row.difference:.6g}", f"{row.se:.6g}", row.participants])
 
 
 if __name__ == "__main__":

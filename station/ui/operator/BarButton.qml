@@ -11,7 +11,7 @@ Rectangle {
     readonly property color foreground: chosen ? theme.actionText : theme.action
     signal activated()
 
-    color: chosen ? theme.action : theme.raised
+    color: chosen ? theme.action : tap.pressed ? theme.line : theme.raised
     opacity: enabled || chosen ? 1 : 0.35
     activeFocusOnTab: true
     Accessible.role: Accessible.PageTab
@@ -31,6 +31,7 @@ Rectangle {
             color: root.foreground
         }
         PlainText {
+            readAloud: false
             width: parent.width
             text: root.text
             color: root.foreground
@@ -47,6 +48,7 @@ Rectangle {
         border { color: root.theme.warning; width: root.theme.stroke }
     }
     TapHandler {
+        id: tap
         enabled: root.enabled
         gesturePolicy: TapHandler.ReleaseWithinBounds
         onTapped: root.activated()

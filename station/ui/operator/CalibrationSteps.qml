@@ -15,8 +15,9 @@ Item {
     readonly property string reading: point.value ?? ""
 
     function name(series: string) : string {
-        return series === "response" ? texts.text("operator.guide_response") : series === "boundaries" ? texts.text("operator.guide_boundaries")
-            : series === "friction" ? texts.text("operator.guide_friction") : texts.text("operator.guide_sound")
+        const names = { response: "operator.guide_response", boundaries: "operator.guide_boundaries", friction: "operator.guide_friction",
+                        sound: "operator.guide_sound", panel_button: "operator.guide_panel_button", panel_photodiode: "operator.guide_panel_photodiode" }
+        return series === "" ? "" : texts.text(names[series])
     }
 
     OperatorCard {
@@ -62,11 +63,12 @@ Item {
         Item {
             visible: root.measuring && root.guide.chosen !== "boundaries"
             width: card.inner
-            height: Math.max(12 * root.theme.unit, 2 * root.theme.controlHeight)
+            readonly property real strip: Math.max(8.4 * root.theme.unit, 1.4 * root.theme.controlHeight)
+            height: root.guide.chosen === "sound" ? strip / 0.7 : strip  // the meter is above the surface
             SurfaceDrawing {
                 id: picture
                 anchors { left: parent.left; right: parent.right; bottom: parent.bottom }
-                height: 0.7 * parent.height
+                height: parent.strip
                 lengthMm: root.surface.lengthMm ?? 0
                 wideHalfWidthMm: root.surface.wideHalfWidthMm ?? 0
                 narrowHalfWidthMm: root.surface.narrowHalfWidthMm ?? 0
@@ -81,10 +83,10 @@ Item {
                 visible: root.guide.chosen !== "friction"
                 name: root.guide.chosen === "sound" ? "gauge" : "rings"
                 color: root.theme.action
-                height: 0.4 * parent.height
+                height: 0.57 * parent.strip
                 width: height
                 x: root.guide.chosen === "sound" ? (parent.width - width) / 2 : picture.width > 0 ? picture.xOf(0) - width / 2 + (picture.wideEndLeft ? 1 : -1) * width / 2 : 0
-                y: root.guide.chosen === "sound" ? 0 : 0.45 * parent.height
+                y: root.guide.chosen === "sound" ? 0 : 0.21 * parent.strip
             }
         }
         PlainText {
@@ -131,6 +133,39 @@ Item {
                 onActivated: entry.ask(true)
             }
         }
+        // What the pick-ups read while the tone plays, as a text and as a bar up to the converter's
+        // full scale. Below the buttons, which must not move under a finger that is about to press Stop.
+        Repeater {
+            model: root.measuring ? root.guide.readings : []
+            Column {
+                id: reading
+                required property var modelData
+                objectName: "guideLive"
+                width: card.inner
+                spacing: 0.2 * root.theme.unit
+                PlainText {
+                    width: parent.width
+                    text: root.texts.text("operator.guide_pick_up").arg(reading.modelData.channel)
+                        .arg((reading.modelData.um === "" ? "" : reading.modelData.um + " µm, ") + root.texts.text("operator.guide_of_range").arg(reading.modelData.percent.toFixed(1)))
+                    color: root.theme.ink
+                    font.pixelSize: root.theme.textBody
+                    wrapMode: Text.Wrap
+                }
+                Rectangle {
+                    width: parent.width
+                    height: 0.8 * root.theme.unit
+                    radius: height / 2
+                    color: root.theme.paper
+                    border { color: root.theme.line; width: 1 }
+                    Rectangle {
+                        width: Math.max(height, parent.width * Math.min(1, reading.modelData.percent / 100))
+                        height: parent.height
+                        radius: height / 2
+                        color: reading.modelData.percent >= 98 ? root.theme.wrong : root.theme.action
+                    }
+                }
+            }
+        }
         Repeater {
             model: root.measuring ? [] : root.guide.series
             Item {
@@ -165,7 +200,7 @@ Item {
         }
         FigureView {
             objectName: "guideFigure"
-            visible: root.guide.file !== "" && !root.measuring
+            visible: root.guide.figure !== undefined && !root.measuring
             width: card.inner
             height: Math.max(50 * root.theme.unit, 0.8 * width)
             textPixels: 0.75 * root.theme.textSmall

@@ -33,7 +33,8 @@ OperatorCard {
             border { color: problem ? root.theme.wrong : root.theme.line; width: activeFocus ? root.theme.stroke : root.theme.stroke / 2 }
             activeFocusOnTab: true
             Accessible.role: Accessible.Button
-            Accessible.name: modelData.what
+            Accessible.name: (problem ? root.texts.text("operator.problem") : modelData.kind === "warning" ? root.texts.text("operator.warning") : root.texts.text("operator.remark"))
+                + ": " + modelData.what + (modelData.hint === "" ? "" : ". " + modelData.hint)
             Accessible.onPressAction: root.remarkChosen(index)
             Keys.onReturnPressed: root.remarkChosen(index)
             Keys.onSpacePressed: root.remarkChosen(index)
@@ -41,6 +42,7 @@ OperatorCard {
                 id: words
                 anchors { left: parent.left; right: parent.right; verticalCenter: parent.verticalCenter; margins: 0.8 * root.theme.unit }
                 PlainText {
+                    readAloud: false
                     width: parent.width
                     text: (remark.problem ? root.texts.text("operator.problem") : remark.modelData.kind === "warning" ? root.texts.text("operator.warning") : root.texts.text("operator.remark"))
                         + (remark.modelData.line > 0 ? "   ·   " + root.texts.text("operator.line").arg(remark.modelData.line) : "")
@@ -48,6 +50,7 @@ OperatorCard {
                     font { pixelSize: root.theme.textSmall; weight: Font.Bold }
                 }
                 PlainText {
+                    readAloud: false
                     width: parent.width
                     text: remark.modelData.what + (remark.modelData.hint === "" ? "" : "\n→ " + remark.modelData.hint)
                     color: root.theme.ink
@@ -61,9 +64,10 @@ OperatorCard {
     FactTable {
         width: root.inner
         theme: root.theme
+        texts: root.texts
         heading: root.texts.text("operator.the_session")
         facts: root.design.facts
-        labelWidth: 0.32 * width
+        labelShare: 0.32
     }
     Repeater {
         model: root.design.cues
@@ -73,14 +77,14 @@ OperatorCard {
             width: root.inner
             PlainText {
                 width: parent.width
-                text: root.texts.text("operator.cues") + ": " + cue.modelData.name + ", " + cue.modelData.says
+                text: root.texts.text("operator.cues") + ": " + root.texts.say(cue.modelData.name) + ", " + root.texts.say(cue.modelData.says)
                 color: root.theme.ink
                 font { pixelSize: root.theme.textSmall; weight: Font.Bold }
                 wrapMode: Text.Wrap
             }
             PlainText {
                 width: parent.width
-                text: "→ " + cue.modelData.advice
+                text: root.texts.arrow + root.texts.say(cue.modelData.advice)
                 color: root.theme.quiet
                 font.pixelSize: root.theme.textSmall
                 wrapMode: Text.Wrap

@@ -34,7 +34,7 @@ Item {
         color: root.wrong ? root.theme.wrong : root.field.present ? root.theme.ink : root.theme.quiet
         font { pixelSize: root.theme.textBody; weight: root.field.present ? Font.DemiBold : Font.Normal }
         verticalAlignment: Text.AlignVCenter
-        wrapMode: Text.Wrap
+        wrapMode: Text.WordWrap
         maximumLineCount: 2
         fontSizeMode: Text.Fit
         minimumPixelSize: 0.75 * root.theme.textSmall
@@ -73,6 +73,7 @@ Item {
         Keys.onReturnPressed: root.editWanted()
         Keys.onSpacePressed: root.editWanted()
         PlainText {
+            readAloud: false
             id: shown
             anchors { left: parent.left; right: parent.right; verticalCenter: parent.verticalCenter; margins: root.theme.unit }
             text: root.field.present ? root.field.value : root.texts.text("design.not_set")

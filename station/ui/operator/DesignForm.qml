@@ -41,13 +41,9 @@ Rectangle {
     /// chosen.
     property string last
     property int section: -1
-    /// True while the finger drags a mark on the drawn surface. The tables are not rebuilt until it ends,
-    /// because that would remove the mark.
-    property bool dragging: false
-    onDraggingChanged: follow()
     function follow() {
         const next = JSON.stringify(design.groups)
-        if (next === last || dragging) return
+        if (next === last) return
         const y = section === design.section ? scroll.contentY : 0
         last = next
         section = design.section
@@ -114,11 +110,12 @@ Rectangle {
                         height: Math.max(title.implicitHeight, tools.height)
                         PlainText {
                             id: title
+                            objectName: "title" + table.index
                             anchors { left: parent.left; right: tools.left; verticalCenter: parent.verticalCenter }
                             text: root.design.label([table.modelData.kind], root.texts.language) + (table.modelData.name === "" ? "" : "  “" + table.modelData.name + "”")
                             color: root.theme.action
                             font { pixelSize: root.theme.textTitle; weight: Font.Bold }
-                            elide: Text.ElideRight
+                            wrapMode: Text.Wrap
                         }
                         Row {
                             id: tools
@@ -166,7 +163,6 @@ Rectangle {
                             surface: root.design.surface
                             boundaryMm: table.modelData.boundary < 0 ? -1 : Number(table.modelData.fields[table.modelData.boundary].value)
                             zoneMm: table.modelData.zone < 0 ? -1 : Number(table.modelData.fields[table.modelData.zone].value)
-                            onDraggedChanged: root.dragging = dragged
                             profile: root.design.profiles[table.modelData.name]
                             onMoved: (which, mm) => root.design.change(table.index, which === "zone" ? table.modelData.zone : table.modelData.boundary, mm.toFixed(1))
                         }

@@ -59,6 +59,7 @@ Item {
                 Keys.onReturnPressed: root.chosen(cell.modelData.word)
                 Keys.onSpacePressed: root.chosen(cell.modelData.word)
                 PlainText {
+                    readAloud: false
                     anchors { fill: parent; margins: root.theme.unit }
                     text: cell.modelData.says.charAt(0).toUpperCase() + cell.modelData.says.slice(1)
                     color: tap.pressed ? root.theme.actionText : root.theme.ink

@@ -31,6 +31,11 @@ Rectangle {
         dense: true
     }
     Texts { id: texts; language: OperatorScreen.language }
+    Binding {
+        target: root.design
+        property: "language"
+        value: OperatorScreen.language
+    }
 
     function trouble() : string {
         return design.trouble === "taken" ? texts.text("design.taken").arg(naming.typed) : design.trouble === "name" ? texts.text("design.name_of_study")
@@ -280,7 +285,15 @@ Rectangle {
         onConfirmed: root.design.overwrite()
     }
 
-    Component.onDestruction: design.precision.watched = false
+    // Lies on top and sees every finger on the page, but leaves it to the control below.
+    Item {
+        anchors.fill: parent
+        PointHandler { onActiveChanged: root.design.touched = active }
+    }
+    Component.onDestruction: {
+        design.touched = false
+        design.precision.watched = false
+    }
 
     function save() {
         if (!design.save("") && design.trouble === "on_disk") onDisk.open()

@@ -152,6 +152,8 @@ Rectangle {
             MouseArea {
                 objectName: "previewShield"
                 anchors.fill: parent
+                Accessible.role: Accessible.Button
+                Accessible.name: root.texts.text("design.next").arg(root.texts.text("design.pages"))
                 onClicked: root.pages.show((root.pages.shown + 1) % root.pages.names.length)
             }
         }

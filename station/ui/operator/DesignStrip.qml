@@ -13,7 +13,6 @@ Item {
     property real boundaryMm: -1
     property real zoneMm: -1
     property var profile
-    readonly property bool dragged: drag.held !== null
     signal moved(which: string, mm: real)
 
     height: strip.height + (picture.visible ? picture.height + 0.5 * theme.unit : 0) + hint.height
@@ -38,6 +37,8 @@ Item {
         ink: root.theme.ink
         paper: root.theme.raised
         accent: root.theme.action
+        Accessible.role: Accessible.Slider
+        Accessible.name: hint.text
 
         component Mark: Rectangle {
             id: mark
@@ -58,6 +59,7 @@ Item {
                 color: root.theme.action
                 PlainText {
                     id: flag
+                    readAloud: false
                     anchors.centerIn: parent
                     text: mark.text + " " + mark.mm + " mm"
                     color: root.theme.actionText

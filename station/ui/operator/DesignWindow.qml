@@ -6,6 +6,7 @@ Window {
     id: root
     required property DesignController controller
     required property real pixelsPerMm
+    property int turned: 0
 
     width: 1280
     height: 800
@@ -17,10 +18,15 @@ Window {
         property: "shown"
         value: OperatorScreen.language
     }
-    DesignPage {
-        anchors.fill: parent
-        design: root.controller
-        pixelsPerMm: root.pixelsPerMm
-        onClosed: root.close()
+    TurnedPanel {
+        degrees: root.turned
+        across: root.width
+        down: root.height
+        DesignPage {
+            anchors.fill: parent
+            design: root.controller
+            pixelsPerMm: root.pixelsPerMm
+            onClosed: root.close()
+        }
     }
 }

@@ -44,91 +44,102 @@ Rectangle {
 
     visible: false
     color: theme.paper
-    MouseArea { anchors.fill: parent }
+    Shield {}
     Keys.onEscapePressed: visible = false
-    Column {
+    // With large text on a small screen, the dialog scrolls.
+    Flickable {
+        id: scroll
+        objectName: "entryScroll"
         anchors { fill: parent; margins: 2 * root.theme.unit }
-        spacing: root.theme.unit
-        PlainText {
-            width: parent.width
-            text: root.title
-            color: root.theme.ink
-            font { pixelSize: root.theme.textTitle; weight: Font.Bold }
-            wrapMode: Text.Wrap
-        }
-        PlainText {
-            visible: text !== ""
-            width: parent.width
-            text: root.refused !== "" ? root.refused : root.help
-            color: root.refused !== "" ? root.theme.wrong : root.theme.quiet
-            font.pixelSize: root.theme.textSmall
-            wrapMode: Text.Wrap
-        }
-        Rectangle {
-            width: parent.width
-            height: root.theme.controlHeight
-            radius: root.theme.radius
-            color: root.theme.raised
-            border { color: root.theme.action; width: root.theme.stroke }
-            visible: !root.pick
-            TextInput {
-                id: entry
-                objectName: "entry"
-                anchors { fill: parent; leftMargin: root.theme.unit; rightMargin: root.theme.unit }
-                verticalAlignment: TextInput.AlignVCenter
+        contentHeight: sheet.height
+        interactive: contentHeight > height
+        boundsBehavior: Flickable.StopAtBounds
+        Column {
+            id: sheet
+            width: scroll.width
+            spacing: root.theme.unit
+            PlainText {
+                width: parent.width
+                text: root.title
                 color: root.theme.ink
-                font { pixelSize: root.theme.textBody; family: Catalogue.family }
-                clip: true
-                onAccepted: root.keep()
-                Accessible.role: Accessible.EditableText
-                Accessible.name: root.title
+                font { pixelSize: root.theme.textTitle; weight: Font.Bold }
+                wrapMode: Text.Wrap
             }
-        }
-        Flow {
-            visible: root.suggestions.length > 0
-            width: parent.width
-            spacing: 0.6 * root.theme.unit
-            Repeater {
-                model: root.suggestions
+            PlainText {
+                visible: text !== ""
+                width: parent.width
+                text: root.refused !== "" ? root.refused : root.help
+                color: root.refused !== "" ? root.theme.wrong : root.theme.quiet
+                font.pixelSize: root.theme.textSmall
+                wrapMode: Text.Wrap
+            }
+            Rectangle {
+                width: parent.width
+                height: root.theme.controlHeight
+                radius: root.theme.radius
+                color: root.theme.raised
+                border { color: root.theme.action; width: root.theme.stroke }
+                visible: !root.pick
+                TextInput {
+                    id: entry
+                    objectName: "entry"
+                    anchors { fill: parent; leftMargin: root.theme.unit; rightMargin: root.theme.unit }
+                    verticalAlignment: TextInput.AlignVCenter
+                    color: root.theme.ink
+                    font { pixelSize: root.theme.textBody; family: Catalogue.family }
+                    clip: true
+                    onAccepted: root.keep()
+                    Accessible.role: Accessible.EditableText
+                    Accessible.name: root.title
+                }
+            }
+            Flow {
+                visible: root.suggestions.length > 0
+                width: parent.width
+                spacing: 0.6 * root.theme.unit
+                Repeater {
+                    model: root.suggestions
+                    ActionButton {
+                        required property string modelData
+                        theme: root.theme
+                        readonly property bool chosen: root.pick ? entry.text === modelData : root.list && entry.text.split(",").some(part => part.trim() === modelData)
+                        objectName: "suggestion-" + modelData
+                        primary: chosen
+                        quiet: !chosen
+                        glyph: chosen ? "tick" : ""
+                        text: modelData
+                        onActivated: root.choose(modelData)
+                    }
+                }
+            }
+            ScreenKeyboard {
+                visible: !root.pick && !(root.list && root.suggestions.length > 0)
+                full: root.sentences
+                width: parent.width
+                theme: root.theme
+                onTyped: character => entry.text += character
+                onErased: entry.text = entry.text.slice(0, -1)
+            }
+            Flow {
+                width: parent.width
+                spacing: root.theme.unit
                 ActionButton {
-                    required property string modelData
+                    objectName: "keepEntry"
+                    visible: !root.pick
                     theme: root.theme
-                    readonly property bool chosen: root.pick ? entry.text === modelData : root.list && entry.text.split(",").some(part => part.trim() === modelData)
-                    objectName: "suggestion-" + modelData
-                    primary: chosen
-                    quiet: !chosen
-                    glyph: chosen ? "tick" : ""
-                    text: modelData
-                    onActivated: root.choose(modelData)
+                    enabled: entry.text !== "" || root.emptyAllowed
+                    text: root.keepText
+                    onActivated: root.keep()
+                }
+                ActionButton {
+                    objectName: "cancelEntry"
+                    theme: root.theme
+                    primary: false
+                    text: root.cancelText
+                    onActivated: root.visible = false
                 }
             }
         }
-        ScreenKeyboard {
-            visible: !root.pick && !(root.list && root.suggestions.length > 0)
-            full: root.sentences
-            width: parent.width
-            theme: root.theme
-            onTyped: character => entry.text += character
-            onErased: entry.text = entry.text.slice(0, -1)
-        }
-        Flow {
-            width: parent.width
-            spacing: root.theme.unit
-            ActionButton {
-                objectName: "keepEntry"
-                visible: !root.pick
-                theme: root.theme
-                enabled: entry.text !== "" || root.emptyAllowed
-                text: root.keepText
-                onActivated: root.keep()
-            }
-            ActionButton {
-                objectName: "cancelEntry"
-                theme: root.theme
-                primary: false
-                text: root.cancelText
-                onActivated: root.visible = false
-            }
-        }
     }
+    ScrollCue { theme: root.theme; place: scroll }
 }

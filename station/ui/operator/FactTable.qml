@@ -1,15 +1,26 @@
 import QtQuick
 import Turnpoint
 
-// A table of labels and values under a heading, for the operator's pages.
+// A table of labels and values under a heading, for the operator's pages. Both are phrases (see Texts.say). In a
+// language that is read from right to left, English values are at the right as well, so that both columns have a
+// straight edge.
 Column {
     id: root
     required property Theme theme
+    required property Texts texts
     required property var facts
     property string heading
-    property real labelWidth: 0.4 * width
+    /// Share of the width that the labels have, or more if a word needs it.
+    property real labelShare: 0.4
+    readonly property real labelWidth: {
+        let widest = 0
+        for (const fact of facts)
+            for (const word of texts.say(fact.label).split(/[\s\u00ad]+/)) widest = Math.max(widest, metrics.advanceWidth(word))
+        return Math.max(labelShare * width, Math.min(0.6 * width, widest + 1.2 * theme.unit))
+    }
     spacing: 0.35 * theme.unit
 
+    FontMetrics { id: metrics; font.pixelSize: root.theme.textSmall }
     PlainText {
         visible: root.heading !== "" && root.facts.length > 0
         width: root.width
@@ -28,17 +39,19 @@ Column {
                 id: label
                 anchors.left: parent.left
                 width: root.labelWidth - root.theme.unit
-                text: line.modelData.label
+                text: root.texts.say(line.modelData.label)
                 color: root.theme.quiet
                 font.pixelSize: root.theme.textSmall
+                horizontalAlignment: Text.AlignLeft
                 wrapMode: Text.Wrap
             }
             PlainText {
                 id: value
                 anchors { left: label.right; leftMargin: root.theme.unit; right: parent.right }
-                text: line.modelData.value
+                text: root.texts.say(line.modelData.value)
                 color: root.theme.ink
                 font { pixelSize: root.theme.textSmall; weight: Font.DemiBold }
+                horizontalAlignment: Text.AlignLeft
                 wrapMode: Text.Wrap
             }
         }

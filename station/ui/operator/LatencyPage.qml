@@ -1,8 +1,7 @@
 import QtQuick
 import Turnpoint
 
-// Measures the touch panel's latency, for the operator. The dark field flashes at each tap. The texts are in
-// English, like those of the command line.
+// Measures the touch panel's latency, for the operator. The dark field flashes at each tap.
 Rectangle {
     id: root
     required property LatencyController controller
@@ -10,7 +9,10 @@ Rectangle {
     signal closed()
 
     color: look.paper
+    LayoutMirroring.enabled: texts.mirrored
+    LayoutMirroring.childrenInherit: true
 
+    Texts { id: texts; language: OperatorScreen.language }
     Theme {
         id: look
         width: root.width
@@ -24,15 +26,14 @@ Rectangle {
         anchors { left: parent.left; right: parent.right; top: parent.top; margins: look.margin }
         spacing: 0.6 * look.unit
         PlainText {
-            text: "Latency of the touch panel"
+            width: parent.width
+            text: texts.text("latency.title")
             color: look.ink
             font { pixelSize: look.textTitle; weight: Font.Bold }
         }
         PlainText {
             width: parent.width
-            text: root.controller.byButton
-                ? "Hold the button against the fingertip, so that each tap on the dark field also presses it. This measures input latency: the time from the press of the finger to the time stamp of the answer."
-                : "Fix the photodiode on the square at the left, and tap the dark field. This measures display latency: the time from the time stamp of a touch until the square lights up."
+            text: texts.text(root.controller.byButton ? "latency.by_button" : "latency.by_photodiode")
             color: look.ink
             font.pixelSize: look.textBody
             wrapMode: Text.Wrap
@@ -40,9 +41,9 @@ Rectangle {
         PlainText {
             objectName: "result"
             width: parent.width
-            text: root.controller.taps + " taps, " + root.controller.edges + " edges, " + root.controller.pairs + " pairs of the "
-                + root.controller.wanted + " or more that are needed; time stamps of the " + root.controller.quality
-                + (root.controller.result !== "" ? "\n" + root.controller.result : "\n ")
+            text: texts.text("latency.counts").arg(root.controller.taps).arg(root.controller.edges).arg(root.controller.pairs).arg(root.controller.wanted)
+                .arg(texts.text(root.controller.quality === "kernel" ? "latency.kernel" : "latency.toolkit")) + "\n" + (root.controller.medianMs === undefined ? " "
+                : texts.text("latency.result").arg(root.controller.medianMs.toFixed(2)).arg(root.controller.jitterMs.toFixed(2)).arg(root.controller.unmatched).arg(root.controller.taps))
             color: look.ink
             font { pixelSize: look.textBody; weight: Font.DemiBold }
             wrapMode: Text.Wrap
@@ -51,10 +52,15 @@ Rectangle {
     Rectangle {
         id: field
         objectName: "latencyField"
+        Accessible.role: Accessible.Button
+        Accessible.name: texts.text("latency.field")
         anchors { left: parent.left; right: parent.right; top: words.bottom; bottom: buttons.top; margins: look.margin }
         radius: look.radius
         color: flash.running ? "white" : "black"
         border { color: look.ink; width: look.stroke }
+        // The photodiode's square is at the left in every language.
+        LayoutMirroring.enabled: false
+        LayoutMirroring.childrenInherit: true
         Rectangle {
             anchors { left: parent.left; verticalCenter: parent.verticalCenter; leftMargin: look.unit }
             visible: !root.controller.byButton
@@ -71,37 +77,38 @@ Rectangle {
             anchors.fill: parent
             onPressed: mouse => {
                 flash.restart()
-                const place = mapToItem(root, mouse.x, mouse.y)
-                root.controller.tap(place.x / root.width, place.y / root.height)
+                const window = root.Window.window, place = mapToItem(null, mouse.x, mouse.y)
+                root.controller.tap(place.x / window.width, place.y / window.height)
             }
         }
     }
-    Row {
+    Flow {
         id: buttons
-        anchors { right: parent.right; bottom: parent.bottom; margins: look.margin }
+        anchors { left: parent.left; right: parent.right; bottom: parent.bottom; margins: look.margin }
+        layoutDirection: Qt.RightToLeft
         spacing: look.unit
         ActionButton {
-            objectName: "latencyLeave"
+            objectName: "latencyKeep"
             theme: look
-            primary: false
-            holdMs: root.controller.taps > 0 ? 900 : 0
-            text: root.controller.taps > 0 ? "Hold to leave without saving" : "Leave"
-            onActivated: root.closed()
+            enabled: root.controller.pairs >= root.controller.wanted
+            text: texts.text("latency.keep")
+            onActivated: root.controller.keep()
         }
         ActionButton {
             objectName: "latencyAgain"
             theme: look
             primary: false
             holdMs: root.controller.taps > 0 ? 900 : 0
-            text: root.controller.taps > 0 ? "Hold to delete the taps" : "Start over"
+            text: texts.text(root.controller.taps > 0 ? "latency.hold_again" : "latency.again")
             onActivated: root.controller.again()
         }
         ActionButton {
-            objectName: "latencyKeep"
+            objectName: "latencyLeave"
             theme: look
-            enabled: root.controller.pairs >= root.controller.wanted
-            text: "Keep this"
-            onActivated: root.controller.keep()
+            primary: false
+            holdMs: root.controller.taps > 0 ? 900 : 0
+            text: root.controller.taps > 0 ? texts.text("operator.guide_leave") : texts.back
+            onActivated: root.closed()
         }
     }
 }

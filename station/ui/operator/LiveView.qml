@@ -121,6 +121,7 @@ Rectangle {
             }
             ActionButton {
                 objectName: "liveClose"
+                label: texts.close
                 visible: root.closable
                 theme: look
                 primary: false
@@ -134,7 +135,7 @@ Rectangle {
     Column {
         id: surfaces
         anchors { left: parent.left; top: header.bottom; leftMargin: look.margin; topMargin: look.unit }
-        width: root.tall ? root.width - 2 * look.margin : side.x - look.unit - look.margin
+        width: root.tall ? root.width - 2 * look.margin : root.width - side.width - look.unit - 2 * look.margin
         height: (root.live.surfaces.length > 1 ? 0.4 : 0.24) * (root.tall ? 0.62 : 1) * (root.height - header.height - frame.band)
         spacing: 0.4 * look.unit
         Repeater {
@@ -152,6 +153,7 @@ Rectangle {
     }
     Item {
         id: pictures
+        objectName: "figures"
         anchors { left: surfaces.left; right: surfaces.right; top: surfaces.bottom; bottom: root.tall ? side.top : parent.bottom; topMargin: 0.6 * look.unit; bottomMargin: root.tall ? look.unit : frame.edge + look.unit }
         // Show three figures if there is enough room for each. Otherwise show one, with buttons to choose it.
         // The figures in the lower row need room for legends.
@@ -227,6 +229,7 @@ Rectangle {
     }
     Rectangle {
         id: side
+        objectName: "facts"
         anchors { right: parent.right; bottom: parent.bottom; rightMargin: look.margin; bottomMargin: frame.edge + look.unit }
         width: root.tall ? parent.width - 2 * look.margin : 0.36 * parent.width
         height: (parent.height - header.y - header.height - look.unit - anchors.bottomMargin) * (root.tall ? 0.4 : 1)
@@ -265,30 +268,42 @@ Rectangle {
                     font { pixelSize: look.textBody; weight: Font.DemiBold }
                     wrapMode: Text.Wrap
                 }
-                FactTable { width: parent.width; theme: look; heading: texts.text("live.course"); facts: root.live.course }
-                Row {
+                FactTable { width: parent.width; theme: look; texts: texts; heading: texts.text("live.course"); facts: root.live.course }
+                // What the force cells say of the finger at this moment, also if the participant sees no bars.
+                Column {
                     objectName: "gauges"
-                    visible: root.bridge.page.guided && !root.over
+                    visible: root.live.gauged && !root.over
                     width: parent.width
-                    spacing: look.unit
-                    GuidanceBar {
-                        width: (parent.width - look.unit) / 2
-                        theme: look
-                        label: texts.text("live.force")
-                        bar: root.bridge.page.forceBar
-                        frozen: root.bridge.page.barsFrozen
+                    spacing: 0.6 * look.unit
+                    Row {
+                        width: parent.width
+                        spacing: look.unit
+                        GuidanceBar {
+                            objectName: "forceGauge"
+                            width: (parent.width - look.unit) / 2
+                            theme: look
+                            label: texts.text("live.force") + " " + root.live.gaugeFigures[0]
+                            bar: root.live.forceGauge
+                        }
+                        GuidanceBar {
+                            objectName: "speedGauge"
+                            width: (parent.width - look.unit) / 2
+                            theme: look
+                            label: texts.text("live.speed") + " " + root.live.gaugeFigures[1]
+                            bar: root.live.speedGauge
+                        }
                     }
                     GuidanceBar {
-                        width: (parent.width - look.unit) / 2
+                        objectName: "positionGauge"
+                        width: parent.width
                         theme: look
-                        label: texts.text("live.speed")
-                        bar: root.bridge.page.speedBar
-                        frozen: root.bridge.page.barsFrozen
+                        label: texts.text("live.position") + " " + root.live.gaugeFigures[2]
+                        bar: root.live.positionGauge
                     }
                 }
-                FactTable { visible: root.live.sensors.length > 0; width: parent.width; theme: look; heading: texts.text("live.sensors"); facts: root.live.sensors }
-                FactTable { width: parent.width; theme: look; heading: texts.text("live.limits"); facts: root.live.limits }
-                FactTable { width: parent.width; theme: look; heading: texts.text("live.surface"); facts: root.live.scene; labelWidth: 0.3 * width }
+                FactTable { visible: root.live.sensors.length > 0; width: parent.width; theme: look; texts: texts; heading: texts.text("live.sensors"); facts: root.live.sensors }
+                FactTable { width: parent.width; theme: look; texts: texts; heading: texts.text("live.limits"); facts: root.live.limits }
+                FactTable { width: parent.width; theme: look; texts: texts; heading: texts.text("live.surface"); facts: root.live.scene; labelShare: 0.3 }
             }
         }
         ScrollCue { theme: look; place: scroll }
@@ -298,12 +313,12 @@ Rectangle {
         visible: root.noting
         anchors.fill: parent
         color: look.paper
-        MouseArea { anchors.fill: parent }
+        Shield {}
         Column {
             anchors { fill: parent; margins: 2 * look.unit }
             spacing: look.unit
             PlainText {
-                text: "A note to be stored with the session"
+                text: texts.text("operator.note_title")
                 color: look.ink
                 font { pixelSize: look.textTitle; weight: Font.Bold }
             }

@@ -5,7 +5,12 @@ import Turnpoint
 // station this is the first page.
 Rectangle {
     id: root
-    required property Theme theme
+    required property real pixelsPerMm
+    readonly property Theme theme: Theme {
+        width: root.width
+        height: root.height
+        pixelsPerMm: root.pixelsPerMm
+    }
     required property OperatorLock lock
     /// True if there is no page to go back to.
     property bool last: false
@@ -33,7 +38,7 @@ Rectangle {
     }
 
     Texts { id: texts; language: OperatorScreen.language }
-    MouseArea { anchors.fill: parent }
+    Shield {}
     Column {
         anchors.centerIn: parent
         spacing: 0.9 * root.theme.unit
@@ -70,6 +75,7 @@ Rectangle {
                     primary: false
                     text: modelData === "⌫" ? "" : modelData
                     glyph: modelData === "⌫" ? "backspace" : ""
+                    label: modelData === "⌫" ? texts.text("erase") : modelData
                     onActivated: root.type(modelData)
                 }
             }

@@ -21,7 +21,7 @@ Rectangle {
 
     visible: false
     color: theme.paper
-    MouseArea { anchors.fill: parent }
+    Shield {}
     Keys.onEscapePressed: visible = false
     PlainText {
         id: heading

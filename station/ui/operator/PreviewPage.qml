@@ -2,8 +2,7 @@ import QtQuick
 import Turnpoint
 
 // Shows any scene of a protocol without a session: sliders for the scene's factors; figures of surface,
-// profile, friction and spectrum; and, in words, the model, its error and the cues. The texts are in English,
-// like those of the command line.
+// profile, friction and spectrum; and, in words, the model, its error and the cues.
 Rectangle {
     id: root
     required property PreviewController controller
@@ -16,6 +15,14 @@ Rectangle {
         height: root.height
         pixelsPerMm: root.pixelsPerMm
         dense: true
+    }
+    LayoutMirroring.enabled: texts.mirrored
+    LayoutMirroring.childrenInherit: true
+    Texts { id: texts; language: OperatorScreen.language }
+    Binding {
+        target: root.controller
+        property: "language"
+        value: OperatorScreen.language
     }
 
     Row {
@@ -74,9 +81,16 @@ Rectangle {
             font { pixelSize: look.textBody; weight: Font.DemiBold }
             elide: Text.ElideRight
         }
+        // The track runs from left to right in every language, as the figures do.
         Item {
             id: track
-            anchors { left: name.right; right: parent.right; verticalCenter: parent.verticalCenter }
+            LayoutMirroring.enabled: false
+            LayoutMirroring.childrenInherit: true
+            Accessible.role: Accessible.Slider
+            Accessible.name: name.text
+            x: texts.mirrored ? 0 : name.width + look.unit
+            width: parent.width - name.width - look.unit
+            anchors.verticalCenter: parent.verticalCenter
             height: parent.height
             Rectangle {
                 anchors { left: parent.left; right: parent.right; verticalCenter: parent.verticalCenter }
@@ -126,7 +140,7 @@ Rectangle {
     PlainText {
         visible: root.controller.knobs.length === 0
         anchors { left: parent.left; top: tabs.bottom; margins: look.margin; topMargin: 0.8 * look.unit }
-        text: "This scene does not depend on any factor."
+        text: texts.text("preview.no_factor")
         color: look.quiet
         font.pixelSize: look.textSmall
     }
@@ -197,8 +211,8 @@ Rectangle {
                 id: sheet
                 width: scroll.width
                 spacing: look.unit
-                FactTable { width: parent.width; theme: look; heading: "Plan"; facts: root.controller.facts; labelWidth: 0.32 * width }
-                FactTable { width: parent.width; theme: look; heading: "Cues"; facts: root.controller.cues; labelWidth: 0.5 * width }
+                FactTable { width: parent.width; theme: look; texts: texts; heading: texts.text("preview.plan"); facts: root.controller.facts; labelShare: 0.32 }
+                FactTable { width: parent.width; theme: look; texts: texts; heading: texts.text("preview.cues"); facts: root.controller.cues; labelShare: 0.5 }
             }
         }
         ScrollCue { theme: look; place: scroll }

@@ -30,17 +30,23 @@ Rectangle {
         clip: true
         boundsBehavior: Flickable.StopAtBounds
         spacing: 0.3 * root.theme.unit
-        model: root.protocols
+        // The number of protocols, not the list itself: the list is a new one whenever the page changes, and with a new
+        // model the view would forget how far it was scrolled.
+        model: root.protocols.length
         currentIndex: root.selected
         keyNavigationEnabled: true
+        function showChosen() { if (root.selected >= 0 && root.selected < count) positionViewAtIndex(root.selected, ListView.Contain) }
+        onCurrentIndexChanged: showChosen()
+        onCountChanged: showChosen()
+        onHeightChanged: showChosen()
         delegate: Rectangle {
             id: card
-            required property var modelData
             required property int index
+            readonly property var entry: root.protocols[index] ?? { id: "", title: "", usable: true }
             readonly property bool chosen: index === root.selected
             objectName: "protocol" + index
             Accessible.role: Accessible.ListItem
-            Accessible.name: modelData.id + ", " + (modelData.usable ? modelData.title : root.unusableText)
+            Accessible.name: entry.id + ", " + (entry.usable ? entry.title : root.unusableText)
             Accessible.selected: chosen
             Accessible.onPressAction: root.chosen(index)
             activeFocusOnTab: true
@@ -55,16 +61,18 @@ Rectangle {
                 id: words
                 anchors { left: parent.left; right: parent.right; verticalCenter: parent.verticalCenter; margins: 0.9 * root.theme.unit }
                 PlainText {
+                    readAloud: false
                     width: parent.width
-                    text: card.modelData.id
+                    text: card.entry.id
                     color: card.chosen ? root.theme.actionText : root.theme.ink
                     font { pixelSize: root.theme.textBody; weight: Font.DemiBold }
                     elide: Text.ElideRight
                 }
                 PlainText {
+                    readAloud: false
                     width: parent.width
-                    text: card.modelData.usable ? card.modelData.title : root.unusableText
-                    color: card.chosen ? root.theme.actionText : card.modelData.usable ? root.theme.quiet : root.theme.wrong
+                    text: card.entry.usable ? card.entry.title : root.unusableText
+                    color: card.chosen ? root.theme.actionText : card.entry.usable ? root.theme.quiet : root.theme.wrong
                     font.pixelSize: root.theme.textSmall
                     wrapMode: Text.Wrap
                     maximumLineCount: 3

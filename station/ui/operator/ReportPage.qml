@@ -11,6 +11,7 @@ Rectangle {
     property int shown: 0
     /// On a tall screen, the numbers stand below the figure.
     readonly property bool tall: height > width
+    readonly property string title: report.title + (report.status === "" ? "" : " (" + texts.named(report.runMode) + ", " + texts.named(report.status) + ")")
     signal closed()
 
     color: look.paper
@@ -21,6 +22,8 @@ Rectangle {
         pixelsPerMm: root.pixelsPerMm
         dense: true
     }
+    LayoutMirroring.enabled: texts.mirrored
+    LayoutMirroring.childrenInherit: true
     Texts { id: texts; language: OperatorScreen.language }
     RunModeFrame {
         id: frame
@@ -35,7 +38,7 @@ Rectangle {
         height: look.controlHeight
         PlainText {
             anchors { left: parent.left; right: save.visible ? save.left : close.left; verticalCenter: parent.verticalCenter; rightMargin: look.unit }
-            text: root.report.saved !== "" ? root.report.saved : root.report.ready ? root.report.title : "The report is being made …"
+            text: root.report.saved !== "" ? root.report.saved : root.report.ready ? root.title : texts.text("report.making")
             color: look.ink
             font { pixelSize: 1.15 * look.textBody; weight: Font.Bold }
             elide: Text.ElideRight
@@ -79,7 +82,7 @@ Rectangle {
                 primary: root.shown === index
                 quiet: root.shown !== index
                 size: look.textSmall
-                text: modelData
+                text: texts.text(modelData)
                 onActivated: root.shown = index
             }
         }
@@ -112,22 +115,22 @@ Rectangle {
                 id: sheet
                 width: scroll.width
                 spacing: look.unit
-                FactTable { width: parent.width; theme: look; heading: "Trials"; facts: root.report.outcomes; labelWidth: 0.5 * width }
-                FactTable { width: parent.width; theme: look; heading: "Speed and accuracy"; facts: root.report.trade; labelWidth: 0.5 * width }
-                FactTable { width: parent.width; theme: look; heading: "Fit"; facts: root.report.fit; labelWidth: 0.5 * width }
-                FactTable { width: parent.width; theme: look; heading: "Finger"; facts: root.report.forces; labelWidth: 0.5 * width }
+                FactTable { width: parent.width; theme: look; texts: texts; heading: texts.text("operator.trials"); facts: root.report.outcomes; labelShare: 0.5 }
+                FactTable { width: parent.width; theme: look; texts: texts; heading: texts.text("report.speed_accuracy"); facts: root.report.trade; labelShare: 0.5 }
+                FactTable { width: parent.width; theme: look; texts: texts; heading: texts.text("report.fit"); facts: root.report.fit; labelShare: 0.5 }
+                FactTable { width: parent.width; theme: look; texts: texts; heading: texts.text("report.finger"); facts: root.report.forces; labelShare: 0.5 }
                 Repeater {
                     model: root.report.statements
                     PlainText {
-                        required property string modelData
+                        required property var modelData
                         width: sheet.width
-                        text: "• " + modelData
+                        text: "• " + texts.say(modelData)
                         color: look.ink
                         font.pixelSize: look.textSmall
                         wrapMode: Text.Wrap
                     }
                 }
-                FactTable { width: parent.width; theme: look; heading: "Station"; facts: root.report.health; labelWidth: 0.5 * width }
+                FactTable { width: parent.width; theme: look; texts: texts; heading: texts.text("report.station"); facts: root.report.health; labelShare: 0.5 }
             }
         }
         ScrollCue { theme: look; place: scroll }

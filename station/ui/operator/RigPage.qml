@@ -19,6 +19,7 @@ Rectangle {
     LayoutMirroring.enabled: texts.mirrored
     LayoutMirroring.childrenInherit: true
     Component.onCompleted: rig.open()
+    Component.onDestruction: rig.guide.leave()
 
     /// What the operator is asked to do with the weights.
     readonly property var weightStep: rig.step
@@ -60,7 +61,8 @@ Rectangle {
         FactTable {
             width: state.inner
             theme: look
-            labelWidth: 0.3 * width
+            texts: texts
+            labelShare: 0.3
             facts: root.calibrationFacts.map(fact => ({
                 label: texts.text(fact.label),
                 value: fact.parts.length > 0 ? fact.parts.map(part => texts.text(part)).join(", ") : fact.text === "" ? fact.value : texts.text(fact.text).arg(fact.value)
@@ -196,10 +198,6 @@ Rectangle {
                 required property int index
                 readonly property string state: modelData.status ?? modelData.verdict
                 objectName: "finding" + index
-                // The findings are in English, so they are not mirrored on a page that is read from right to
-                // left.
-                LayoutMirroring.enabled: false
-                LayoutMirroring.childrenInherit: true
                 width: results.inner
                 spacing: 0.2 * look.unit
                 Item {
@@ -208,7 +206,8 @@ Rectangle {
                     PlainText {
                         id: named
                         anchors { left: parent.left; right: judged.left; rightMargin: look.unit }
-                        text: finding.modelData.name
+                        text: texts.say(finding.modelData.name)
+                        horizontalAlignment: Text.AlignLeft
                         color: look.ink
                         font { pixelSize: look.textBody; weight: Font.DemiBold }
                         wrapMode: Text.Wrap
@@ -240,15 +239,18 @@ Rectangle {
                 }
                 PlainText {
                     width: parent.width
-                    text: finding.modelData.what
+                    text: texts.say(finding.modelData.what)
+                    horizontalAlignment: Text.AlignLeft
                     color: look.quiet
                     font.pixelSize: look.textSmall
                     wrapMode: Text.Wrap
                 }
                 PlainText {
-                    visible: text !== "→ "
+                    readonly property string mend: texts.say(finding.modelData.mend)
+                    visible: mend !== ""
                     width: parent.width
-                    text: "→ " + (finding.modelData.mend ?? "")
+                    text: texts.arrow + mend
+                    horizontalAlignment: Text.AlignLeft
                     color: look.ink
                     font.pixelSize: look.textSmall
                     wrapMode: Text.Wrap
@@ -297,6 +299,18 @@ Rectangle {
             text: texts.text("operator.weights_stop")
             enabled: root.rig.asked !== ""
             onActivated: root.rig.answer("stop")
+        }
+    }
+    // The measurement of the touch panel's latency covers the page. Its page gets the controller once, because the
+    // controller is deleted after the page.
+    Loader {
+        id: latencyPlace
+        anchors.fill: parent
+        readonly property LatencyController measured: root.rig.guide.latency
+        onMeasuredChanged: measured ? setSource("LatencyPage.qml", { controller: measured, pixelsPerMm: root.pixelsPerMm }) : source = ""
+        Connections {
+            target: latencyPlace.item
+            function onClosed() { root.rig.guide.leave() }
         }
     }
 }

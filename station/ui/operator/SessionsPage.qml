@@ -97,6 +97,7 @@ Rectangle {
                         id: words
                         anchors { left: parent.left; right: parent.right; verticalCenter: parent.verticalCenter; margins: 0.9 * look.unit }
                         PlainText {
+                            readAloud: false
                             width: parent.width
                             text: row.modelData.person + "   ·   " + row.modelData.protocol
                             color: row.chosen ? look.actionText : look.ink
@@ -104,8 +105,9 @@ Rectangle {
                             elide: Text.ElideRight
                         }
                         PlainText {
+                            readAloud: false
                             width: parent.width
-                            text: row.modelData.started + "   ·   " + row.modelData.mode + "   ·   " + row.modelData.status
+                            text: row.modelData.started + "   ·   " + texts.named(row.modelData.mode) + "   ·   " + texts.named(row.modelData.status)
                             color: row.chosen ? look.actionText : look.quiet
                             font.pixelSize: look.textSmall
                             elide: Text.ElideRight
@@ -153,11 +155,12 @@ Rectangle {
             visible: root.some
             width: card.inner
             theme: look
-            labelWidth: 0.34 * width
+            texts: texts
+            labelShare: 0.34
             facts: root.some ? [{ label: texts.text("operator.protocol"), value: root.sessions.chosen.protocol },
                                 { label: texts.text("operator.started"), value: root.sessions.chosen.started },
-                                { label: texts.text("operator.mode"), value: root.sessions.chosen.mode },
-                                { label: texts.text("operator.status"), value: root.sessions.chosen.status + (root.sessions.chosen.reason === "" ? "" : ": " + root.sessions.chosen.reason) },
+                                { label: texts.text("operator.mode"), value: texts.named(root.sessions.chosen.mode) },
+                                { label: texts.text("operator.status"), value: texts.named(root.sessions.chosen.status) + (root.sessions.chosen.reason === "" ? "" : ": " + root.sessions.chosen.reason) },
                                 { label: texts.text("operator.trials"), value: String(root.sessions.chosen.trials) },
                                 { label: "ID", value: root.sessions.chosen.id }] : []
         }
@@ -196,7 +199,7 @@ Rectangle {
                 primary: false
                 text: texts.text("operator.report")
                 onActivated: {
-                    root.sessions.makeReport()
+                    root.sessions.makeReport(OperatorScreen.language)
                     reporting.wanted = true
                 }
             }

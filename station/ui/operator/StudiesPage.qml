@@ -89,9 +89,10 @@ Rectangle {
         FactTable {
             width: card.inner
             theme: look
+            texts: texts
             heading: texts.text("operator.the_session")
             facts: root.studies.facts
-            labelWidth: 0.32 * width
+            labelShare: 0.32
         }
         PlainText {
             visible: root.studies.cues.length > 0
@@ -106,12 +107,10 @@ Rectangle {
             Column {
                 id: cue
                 required property var modelData
-                LayoutMirroring.enabled: false
-                LayoutMirroring.childrenInherit: true
                 width: card.inner
                 PlainText {
                     width: parent.width
-                    text: cue.modelData.name + ": " + cue.modelData.says
+                    text: texts.say(cue.modelData.name) + ": " + texts.say(cue.modelData.says)
                     color: look.ink
                     font { pixelSize: look.textSmall; weight: cue.modelData.leaks ? Font.Bold : Font.Normal }
                     wrapMode: Text.Wrap
@@ -119,7 +118,7 @@ Rectangle {
                 PlainText {
                     visible: cue.modelData.leaks
                     width: parent.width
-                    text: "→ " + cue.modelData.advice
+                    text: texts.arrow + texts.say(cue.modelData.advice)
                     color: look.quiet
                     font.pixelSize: look.textSmall
                     wrapMode: Text.Wrap

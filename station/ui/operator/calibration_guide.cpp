@@ -10,6 +10,7 @@
 #include "station/calibration/calibration.hpp"
 #include "station/desk/preview.hpp"
 #include "station/desk/scene_figures.hpp"
+#include "station/maintenance/panel_latency.hpp"
 #include "station/maintenance/play_armed.hpp"
 #include "station/setup/prepare.hpp"
 #include "station/text/number.hpp"
@@ -25,6 +26,10 @@ constexpr std::pair<Series, const char*> kSeries[] = {{Series::response, "respon
                                                       {Series::boundaries, "boundaries"},
                                                       {Series::friction, "friction"},
                                                       {Series::sound, "sound"}};
+/// What the touch panel's latency is measured against.
+constexpr std::pair<calibration::LatencyReference, const char*> kPanel[] = {
+    {calibration::LatencyReference::button, "panel_button"},
+    {calibration::LatencyReference::photodiode, "panel_photodiode"}};
 constexpr int kTick_ms = 100;
 
 bool has(const calibration::Calibration& made, Series series) {
@@ -62,6 +67,9 @@ CalibrationGuide::CalibrationGuide(std::string rig, QObject* parent)
   connect(&rest_, &QTimer::timeout, this, &CalibrationGuide::changed);
 }
 
+// There may be no event loop any more that would delete it, and its threads must end.
+CalibrationGuide::~CalibrationGuide() { delete latency_.release(); }
+
 QVariantList CalibrationGuide::series() const {
   std::optional<calibration::Calibration> made;
   try {
@@ -72,6 +80,12 @@ QVariantList CalibrationGuide::series() const {
   QVariantList list;
   for (const auto& [series, name] : kSeries)
     list += QVariantMap{{"name", name}, {"measured", made.has_value() && has(*made, series)}};
+  for (const auto& [reference, name] : kPanel) {
+    const auto panel = made ? made->panel : std::nullopt;
+    const bool by_button = reference == calibration::LatencyReference::button;
+    const bool measured = panel && (by_button ? panel->touch : panel->flash);
+    list += QVariantMap{{"name", name}, {"measured", measured}};
+  }
   return list;
 }
 
@@ -87,7 +101,33 @@ bool CalibrationGuide::refuse(const QString& problem) {
   return false;
 }
 
+void CalibrationGuide::begin_latency(calibration::LatencyReference reference) {
+  leave();
+  try {
+    latency_.reset(new LatencyController(reference));
+    open_panel_(*latency_, rig::load(path_));
+    connect(latency_.get(), &LatencyController::finished, this, &CalibrationGuide::keep_latency);
+  } catch (const std::exception& error) {
+    latency_.reset();
+    problem_ = error.what();
+  }
+  Q_EMIT changed();
+}
+
+void CalibrationGuide::keep_latency() {
+  try {
+    file_ = QString::fromStdString(maintenance::keep_panel(rig::load(path_), latency_->kept().value()));
+  } catch (const std::exception& error) {
+    problem_ = error.what();
+  }
+  latency_.reset();
+  Q_EMIT changed();
+  Q_EMIT finished();
+}
+
 void CalibrationGuide::begin(const QString& series) {
+  for (const auto& [reference, name] : kPanel)
+    if (series == name && !playing_) return begin_latency(reference);
   const auto found = std::find_if(std::begin(kSeries), std::end(kSeries),
                                   [&](const auto& one) { return series == one.second; });
   if (found == std::end(kSeries) || playing_) return;
@@ -113,6 +153,7 @@ void CalibrationGuide::play() {
   if (!may_play()) return;
   playing_ = true;
   problem_.clear();
+  take({});
   begun_.start();
   tick_.start();
   Q_EMIT changed();
@@ -120,7 +161,11 @@ void CalibrationGuide::play() {
                  const std::stop_token& stop) -> std::function<void()> {
     QString problem;
     try {
-      maintenance::play_point(rig, point, stop);
+      maintenance::play_point(rig, point, stop,
+                              [this](const std::vector<maintenance::ToneReading>& readings) {
+                                QMetaObject::invokeMethod(
+                                    this, [this, readings] { take(readings); }, Qt::QueuedConnection);
+                              });
     } catch (const std::exception& error) {
       problem = error.what();
     }
@@ -132,6 +177,17 @@ void CalibrationGuide::play() {
       Q_EMIT changed();
     };
   });
+}
+
+void CalibrationGuide::take(const std::vector<maintenance::ToneReading>& readings) {
+  readings_.clear();
+  for (const auto& reading : readings)
+    readings_ += QVariantMap{
+        {"channel", reading.channel},
+        {"um", reading.displacement_um ? QString::fromStdString(text::number(*reading.displacement_um, 3))
+                                       : QString()},
+        {"percent", 100 * reading.amplitude}};
+  Q_EMIT read();
 }
 
 void CalibrationGuide::stop() {
@@ -170,6 +226,7 @@ void CalibrationGuide::show(int point) {
   if (playing_ || point < 0 || point >= count()) return;
   at_ = point;
   problem_.clear();
+  take({});
   Q_EMIT changed();
 }
 
@@ -215,8 +272,10 @@ void CalibrationGuide::finish() {
 void CalibrationGuide::leave() {
   stop();
   chosen_.reset();
+  latency_.reset();
   points_.clear();
   at_ = 0;
+  take({});
   problem_.clear(), file_.clear();
   figure_ = {};
   Q_EMIT changed();

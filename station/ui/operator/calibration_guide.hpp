@@ -2,14 +2,19 @@
 #include <QElapsedTimer>
 #include <QObject>
 #include <QQmlEngine>
+#include <QScopedPointer>
 #include <QTimer>
 #include <QVariantList>
 #include <QVariantMap>
+#include <functional>
+#include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "station/maintenance/guided_series.hpp"
+#include "station/ui/operator/latency_controller.hpp"
 #include "station/ui/platform/newest_job.hpp"
 
 namespace turnpoint::ui {
@@ -21,7 +26,8 @@ class CalibrationGuide : public QObject {
   Q_OBJECT
   QML_ELEMENT
   QML_UNCREATABLE("made by the program")
-  /// series as {name, measured}; the names are response, boundaries, friction and sound
+  /// measurements as {name, measured}: the series response, boundaries, friction and sound, and the latency
+  /// of the touch panel against a button (panel_button) and against a photodiode (panel_photodiode)
   Q_PROPERTY(QVariantList series READ series NOTIFY changed)
   Q_PROPERTY(QString chosen READ chosen NOTIFY changed)  ///< name of the series that is measured; may be ""
   Q_PROPERTY(int at READ at NOTIFY changed)              ///< number of the point, from 0
@@ -33,17 +39,29 @@ class CalibrationGuide : public QObject {
   Q_PROPERTY(bool real READ real NOTIFY changed)  ///< whether a tone arms an amplifier
   Q_PROPERTY(bool playing READ playing NOTIFY changed)
   Q_PROPERTY(bool mayPlay READ may_play NOTIFY changed)
+  /// what the pick-ups read of the tone that plays or played last, as {channel, um, percent}: the
+  /// displacement,
+  /// "" without a calibrated scale, and the share of the converter's full scale
+  Q_PROPERTY(QVariantList readings READ readings NOTIFY read)
   Q_PROPERTY(double remainingSeconds READ remaining_s NOTIFY ticked)  ///< of the tone
   Q_PROPERTY(bool mayFinish READ may_finish NOTIFY changed)
   /// outline of the rig's surface: {lengthMm, wideHalfWidthMm, narrowHalfWidthMm, wideEndLeft}
   Q_PROPERTY(QVariantMap surface READ surface NOTIFY changed)
+  /// the measurement of the touch panel's latency; null unless one is going on
+  Q_PROPERTY(turnpoint::ui::LatencyController* latency READ latency NOTIFY changed)
   Q_PROPERTY(QString problem READ problem NOTIFY changed)
   /// after a series: the name of the calibration file, and the figure with readings, fit and residuals
   Q_PROPERTY(QString file READ file NOTIFY changed)
   Q_PROPERTY(QVariant figure READ figure NOTIFY changed)
 
  public:
+  /// Opens the devices for measuring the panel's latency. Throws the errors of LatencyController::open().
+  using OpenPanel = std::function<void(LatencyController&, const rig::Rig&)>;
+
   explicit CalibrationGuide(std::string rig, QObject* parent = nullptr);
+  ~CalibrationGuide() override;
+  /// Replaces the rig's panel and button lines; for tests.
+  void open_panel_with(OpenPanel open_panel) { open_panel_ = std::move(open_panel); }
 
   QVariantList series() const;
   QString chosen() const;
@@ -54,14 +72,17 @@ class CalibrationGuide : public QObject {
   bool real() const { return real_; }
   bool playing() const { return playing_; }
   bool may_play() const { return !points_.empty() && !playing_ && !rest_.isActive(); }
+  QVariantList readings() const { return readings_; }
   double remaining_s() const;
   bool may_finish() const;
   QVariantMap surface() const { return surface_; }
+  LatencyController* latency() const { return latency_.get(); }
   QString problem() const { return problem_; }
   QString file() const { return file_; }
   QVariant figure() const { return figure_; }
 
-  /// Begins a series with its first point.
+  /// Begins a series with its first point, or a measurement of the panel's latency, which needs the rig's
+  /// button lines: no session can run meanwhile.
   Q_INVOKABLE void begin(const QString& series);
   Q_INVOKABLE void play();
   Q_INVOKABLE void stop();
@@ -75,13 +96,18 @@ class CalibrationGuide : public QObject {
 
  Q_SIGNALS:
   void changed();
+  void read();
   void ticked();
   void finished();
 
  private:
+  void take(const std::vector<maintenance::ToneReading>& readings);
   bool refuse(const QString& problem);
+  void begin_latency(calibration::LatencyReference reference);
+  void keep_latency();
 
   std::string path_;
+  OpenPanel open_panel_ = &LatencyController::open;
   std::optional<rig::Rig> rig_;  ///< with its calibration, for the tones
   std::optional<maintenance::Series> chosen_;
   std::vector<maintenance::SeriesPoint> points_;
@@ -90,6 +116,9 @@ class CalibrationGuide : public QObject {
   QElapsedTimer begun_;
   QTimer tick_, rest_;
   QVariantMap surface_;
+  QVariantList readings_;
+  /// Deleted by the event loop, because it ends its own measurement by a signal.
+  std::unique_ptr<LatencyController, QScopedPointerDeleteLater> latency_;
   QString problem_, file_;
   QVariant figure_;
   // The last member, so that its thread ends before the objects that it uses are destroyed.

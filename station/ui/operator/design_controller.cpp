@@ -176,7 +176,7 @@ void DesignController::start_check() {
 }
 
 void DesignController::start_profiles() {
-  profile_job_.start([this, source = draft_->text(), path = path_,
+  profile_job_.start([this, source = draft_->text(), path = path_, language = language_.toStdString(),
                       rig = place_.rig](const std::stop_token& stop) -> std::function<void()> {
     QVariantMap profiles;
     try {
@@ -188,7 +188,7 @@ void DesignController::start_profiles() {
         const auto look = preview.look(scene, factors);
         if (look.problem.empty())
           profiles[QString::fromStdString(scene)] =
-              to_variant(desk::drawing_of(desk::profile_figure({look})));
+              to_variant(desk::drawing_of(desk::profile_figure({look}, language)));
       }
     } catch (const std::exception&) {
       // A scene that cannot be planned has no profile. The check reports what is wrong.
@@ -216,6 +216,13 @@ const design::Group* DesignController::group(int index) const {
   const auto& groups = form_[static_cast<std::size_t>(section_)].groups;
   return index >= 0 && index < static_cast<int>(groups.size()) ? &groups[static_cast<std::size_t>(index)]
                                                                : nullptr;
+}
+
+void DesignController::touch(bool touched) {
+  touched_ = touched;
+  check_job_.hold(touched);
+  profile_job_.hold(touched);
+  Q_EMIT touchedChanged();
 }
 
 void DesignController::show(int section) {

@@ -48,6 +48,8 @@ class DesignController : public QObject {
   /// remarks of the check as {kind: problem | warning | note, line, what, hint}
   Q_PROPERTY(QVariantList remarks READ remarks NOTIFY changed)
   Q_PROPERTY(QVariantList facts READ facts NOTIFY changed)
+  /// language of the figures, such as "de"
+  Q_PROPERTY(QString language READ language WRITE set_language NOTIFY changed)
   Q_PROPERTY(QVariantList cues READ cues NOTIFY changed)
   /// state of the check: checking, good, warned or bad
   Q_PROPERTY(QString verdict READ verdict NOTIFY changed)
@@ -66,6 +68,9 @@ class DesignController : public QObject {
   Q_PROPERTY(QVariantList timeline READ timeline NOTIFY changed)
   /// profile of displacement and friction of each scene, by name
   Q_PROPERTY(QVariantMap profiles READ profiles NOTIFY profilesChanged)
+  /// True while a finger is on the page. Meanwhile the results of checks wait, because they rebuild the form,
+  /// and a press on a control that is rebuilt would be lost.
+  Q_PROPERTY(bool touched READ touched WRITE touch NOTIFY touchedChanged)
   /// What follows the draft beside the forms.
   Q_PROPERTY(turnpoint::ui::PagesPreview* pages READ pages CONSTANT)
   Q_PROPERTY(turnpoint::ui::Precision* precision READ precision CONSTANT)
@@ -84,6 +89,8 @@ class DesignController : public QObject {
   QVariantList groups() const;
   QVariantList remarks() const;
   QVariantList facts() const;
+  QString language() const { return language_; }
+  void set_language(const QString& language);  // the setter of a QML property must have this name (NOLINT)
   QVariantList cues() const;
   QString verdict() const;
   QString text() const;
@@ -95,6 +102,8 @@ class DesignController : public QObject {
   QVariantMap surface() const { return surface_; }
   QVariantList timeline() const { return timeline_; }
   QVariantMap profiles() const { return profiles_; }
+  bool touched() const { return touched_; }
+  void touch(bool touched);
   PagesPreview* pages() { return &pages_; }
   Precision* precision() { return &precision_; }
   Feeling* feeling() { return &feeling_; }
@@ -136,6 +145,7 @@ class DesignController : public QObject {
  Q_SIGNALS:
   void changed();
   void profilesChanged();
+  void touchedChanged();
   void reached(int group, int field);
   void saved();
 
@@ -173,10 +183,11 @@ class DesignController : public QObject {
   QVariantMap surface_, profiles_;
   QVariantList timeline_;
   int section_ = 0;
-  bool checking_ = false;
+  bool checking_ = false, touched_ = false;
   PagesPreview pages_{this};
   Precision precision_{this};
   Feeling feeling_{this};
+  QString language_ = "en";
   // The last members, so that their threads end before the objects that they use are destroyed.
   NewestJob check_job_, profile_job_;
 };

@@ -64,15 +64,21 @@ QVariantList DesignController::remarks() const {
   return list;
 }
 
+void DesignController::set_language(const QString& language) {
+  if (language == language_) return;
+  language_ = language;
+  if (draft_) start_profiles();
+  Q_EMIT changed();
+}
+
 QVariantList DesignController::facts() const { return to_list(words_.facts); }
 
 QVariantList DesignController::cues() const {
   QVariantList list;
   for (const auto& cue : words_.cues)
     if (cue.leaks)
-      list += QVariantMap{{"name", QString::fromStdString(cue.name)},
-                          {"says", QString::fromStdString(cue.says)},
-                          {"advice", QString::fromStdString(cue.advice)}};
+      list += QVariantMap{
+          {"name", to_variant(cue.name)}, {"says", to_variant(cue.says)}, {"advice", to_variant(cue.advice)}};
   return list;
 }
 

@@ -8,13 +8,28 @@
 #include <utility>
 #include <vector>
 
+#include "station/ui/shared/phrases.hpp"
+
 namespace turnpoint::ui {
+
+inline QVariantList to_list(const std::vector<std::pair<texts::Phrase, texts::Phrase>>& facts) {
+  QVariantList list;
+  for (const auto& [label, value] : facts)
+    list += QVariantMap{{"label", to_variant(label)}, {"value", to_variant(value)}};
+  return list;
+}
 
 /// Converts (label, value) pairs to a list of {label, value} for QML.
 inline QVariantList to_list(const std::vector<std::pair<std::string, std::string>>& facts) {
   QVariantList list;
   for (const auto& [label, value] : facts)
     list += QVariantMap{{"label", QString::fromStdString(label)}, {"value", QString::fromStdString(value)}};
+  return list;
+}
+
+inline QVariantList to_list(const std::vector<texts::Phrase>& phrases) {
+  QVariantList list;
+  for (const auto& phrase : phrases) list += to_variant(phrase);
   return list;
 }
 

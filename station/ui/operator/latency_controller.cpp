@@ -17,6 +17,15 @@ LatencyController::LatencyController(calibration::LatencyReference reference, QO
   connect(&claim_, &QTimer::timeout, this, &LatencyController::claim);
 }
 
+void LatencyController::open(const rig::Rig& rig) {
+  devices_ =
+      std::make_unique<maintenance::LatencyDevices>(rig, [this](std::int64_t time_ns) { edge(time_ns); });
+  if (devices_->has_kernel_times())
+    set_kernel_time(
+        [this](double x, double y, std::int64_t seen_ns) { return devices_->claim(x, y, seen_ns); });
+  Q_EMIT changed();
+}
+
 void LatencyController::edge(std::int64_t time_ns) {
   QMetaObject::invokeMethod(
       this,
@@ -45,15 +54,6 @@ void LatencyController::claim() {
 void LatencyController::measure() {
   delay_ = calibration::pair_delays(touches_ns_, edges_ns_, reference_);
   Q_EMIT changed();
-}
-
-QString LatencyController::result() const {
-  if (!delay_) return "";
-  return QStringLiteral("median %1 ms, jitter (SD) %2 ms, %3 of %4 taps unmatched")
-      .arg(1e3 * delay_->median_s, 0, 'f', 2)
-      .arg(1e3 * delay_->sd_s, 0, 'f', 2)
-      .arg(delay_->unmatched)
-      .arg(taps());
 }
 
 void LatencyController::again() {

@@ -3,8 +3,10 @@
 #include <QQmlEngine>
 #include <QString>
 #include <QTimer>
+#include <QVariant>
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -24,14 +26,22 @@ class LatencyController : public QObject {
   Q_PROPERTY(int pairs READ pairs NOTIFY changed)
   /// smallest number of pairs (a tap and an edge of the reference line) for which a result may be accepted
   Q_PROPERTY(int wanted READ wanted CONSTANT)
-  /// median and jitter in words; "" with fewer than two pairs
-  Q_PROPERTY(QString result READ result NOTIFY changed)
+  /// median and jitter (SD) in ms, and the number of taps without an edge; undefined with fewer than two
+  /// pairs
+  Q_PROPERTY(QVariant medianMs READ median_ms NOTIFY changed)
+  Q_PROPERTY(double jitterMs READ jitter_ms NOTIFY changed)
+  Q_PROPERTY(int unmatched READ unmatched NOTIFY changed)
+  /// where the time stamps of taps come from: kernel or toolkit
   Q_PROPERTY(QString quality READ quality NOTIFY changed)
 
  public:
   using KernelTime = std::function<std::optional<std::int64_t>(double x, double y, std::int64_t seen_ns)>;
 
   explicit LatencyController(calibration::LatencyReference reference, QObject* parent = nullptr);
+
+  /// Opens the rig's touch panel and its button lines, one of which gives the reference time. Throws the
+  /// errors of maintenance::LatencyDevices.
+  void open(const rig::Rig& rig);
 
   /// From now on, the time of a tap is the kernel's time stamp. A tap without one is ignored.
   void set_kernel_time(KernelTime kernel_time) { kernel_time_ = std::move(kernel_time); }
@@ -44,7 +54,9 @@ class LatencyController : public QObject {
   int edges() const { return static_cast<int>(edges_ns_.size()); }
   int pairs() const { return delay_ ? delay_->pairs : 0; }
   static int wanted() { return calibration::kLeastPairs; }
-  QString result() const;
+  QVariant median_ms() const { return delay_ ? QVariant(1e3 * delay_->median_s) : QVariant(); }
+  double jitter_ms() const { return delay_ ? 1e3 * delay_->sd_s : 0; }
+  int unmatched() const { return delay_ ? delay_->unmatched : 0; }
   QString quality() const { return kernel_time_ ? "kernel" : "toolkit"; }
 
   /// Reports that a finger came down at (x, y). Both run from 0 to 1 across the window.
@@ -74,6 +86,8 @@ class LatencyController : public QObject {
   std::vector<std::int64_t> touches_ns_, edges_ns_;
   std::optional<calibration::Delay> delay_;
   std::optional<calibration::PanelLatency> kept_;
+  // The last member, so that its threads end before the objects that they use are destroyed.
+  std::unique_ptr<maintenance::LatencyDevices> devices_;
 };
 
 }  // namespace turnpoint::ui

@@ -20,6 +20,16 @@ void LiveModel::take(desk::LiveState state) {
       Qt::QueuedConnection);
 }
 
+void LiveModel::take(std::optional<desk::FingerGauges> gauges) {
+  QMetaObject::invokeMethod(
+      this,
+      [this, gauges = std::move(gauges)]() mutable {
+        gauges_ = std::move(gauges);
+        Q_EMIT gaugesMoved();
+      },
+      Qt::QueuedConnection);
+}
+
 void LiveModel::hold_or_show() {
   const auto kind = bridge_.page()->kind();
   const bool hold = kind == PageModel::Kind::Stimulus || kind == PageModel::Kind::Pause ||
@@ -39,6 +49,23 @@ void LiveModel::hold_or_show() {
   state_ = std::move(*waiting_);
   waiting_.reset();
   Q_EMIT picturesChanged();
+}
+
+namespace {
+
+QList<double> gauge_of(const desk::Gauge& gauge) { return {gauge.value.value_or(-1), gauge.low, gauge.high}; }
+
+}  // namespace
+
+QList<double> LiveModel::force_gauge() const { return gauges_ ? gauge_of(gauges_->force) : QList<double>{}; }
+QList<double> LiveModel::speed_gauge() const { return gauges_ ? gauge_of(gauges_->speed) : QList<double>{}; }
+QList<double> LiveModel::position_gauge() const {
+  return gauges_ ? gauge_of(gauges_->position) : QList<double>{};
+}
+QStringList LiveModel::gauge_figures() const {
+  if (!gauges_) return {"", "", ""};
+  return {QString::fromStdString(gauges_->force.figure), QString::fromStdString(gauges_->speed.figure),
+          QString::fromStdString(gauges_->position.figure)};
 }
 
 QVariantList LiveModel::scene() const { return to_list(state_.scene); }

@@ -27,6 +27,13 @@ class LiveModel : public QObject {
   Q_PROPERTY(QVariant times READ times NOTIFY picturesChanged)
   Q_PROPERTY(QVariant strip READ strip NOTIFY picturesChanged)
   Q_PROPERTY(bool hasStrip READ has_strip NOTIFY picturesChanged)
+  // What the force cells say of the finger. Each gauge is a list of its value and the two ends of the wanted
+  // range, from 0 to 1. A value below 0 means that there is none.
+  Q_PROPERTY(bool gauged READ gauged NOTIFY gaugesMoved)
+  Q_PROPERTY(QList<double> forceGauge READ force_gauge NOTIFY gaugesMoved)
+  Q_PROPERTY(QList<double> speedGauge READ speed_gauge NOTIFY gaugesMoved)
+  Q_PROPERTY(QList<double> positionGauge READ position_gauge NOTIFY gaugesMoved)
+  Q_PROPERTY(QStringList gaugeFigures READ gauge_figures NOTIFY gaugesMoved)
   Q_PROPERTY(bool held READ held NOTIFY heldChanged)
 
  public:
@@ -34,6 +41,10 @@ class LiveModel : public QObject {
 
   /// Takes the newest state of the session. May be called on any thread; returns at once.
   void take(desk::LiveState state);
+
+  /// Takes the newest gauges; none if nothing is known of the finger, as before a session. May be called on
+  /// any thread; returns at once. Gauges are small, so they are shown at once, also while a stimulus runs.
+  void take(std::optional<desk::FingerGauges> gauges);
 
   QString heading() const { return QString::fromStdString(state_.heading); }
   QVariantList scene() const;
@@ -46,6 +57,12 @@ class LiveModel : public QObject {
   QVariant times() const { return to_variant(state_.times); }
   QVariant strip() const { return to_variant(state_.strip); }
   bool has_strip() const { return static_cast<bool>(state_.strip); }
+  bool gauged() const { return gauges_.has_value(); }
+  QList<double> force_gauge() const;
+  QList<double> speed_gauge() const;
+  QList<double> position_gauge() const;
+  /// the values in figures, in this order
+  QStringList gauge_figures() const;
   /// True while a stimulus runs or answers are open; the figures do not change during that time.
   bool held() const { return held_; }
 
@@ -60,6 +77,7 @@ class LiveModel : public QObject {
   void wordsChanged();
   void picturesChanged();
   void heldChanged();
+  void gaugesMoved();
 
  private:
   void hold_or_show();
@@ -67,6 +85,7 @@ class LiveModel : public QObject {
   SessionBridge& bridge_;
   desk::LiveState state_;
   std::optional<desk::LiveState> waiting_;
+  std::optional<desk::FingerGauges> gauges_;
   bool held_ = false;
 };
 

@@ -9,11 +9,17 @@
 #include "station/setup/prepare.hpp"
 #include "station/setup/resume.hpp"
 #include "station/ui/operator/facts.hpp"
+#include "station/ui/shared/early_session.hpp"
 
 namespace turnpoint::ui {
 
-OperatorController::OperatorController(setup::StationRequest request, Checker checker, QObject* parent)
-    : QObject(parent), request_(std::move(request)), checker_(std::move(checker)), worker_(*this) {
+OperatorController::OperatorController(setup::StationRequest request, Checker checker, Checks checks,
+                                       QObject* parent)
+    : QObject(parent),
+      request_(std::move(request)),
+      checker_(std::move(checker)),
+      may_check_(checks == Checks::at_once),
+      worker_(*this) {
   std::filesystem::create_directories(std::filesystem::absolute(request_.database).parent_path());
   connect(&minutes_, &QTimer::timeout, this, &OperatorController::look_at_backup);
   minutes_.start(std::chrono::minutes(1));
@@ -25,7 +31,7 @@ OperatorController::~OperatorController() = default;
 void OperatorController::refresh() {
   armed_ = false;
   participant_.clear();
-  too_early_.clear();
+  too_early_.reset();
   protocols_ = desk::list_studies(request_.protocols, request_.database);
   try {
     participants_ = to_list(desk::known_participants(request_.database));
@@ -100,8 +106,13 @@ void OperatorController::select(int index) {
   check_selected();
 }
 
+void OperatorController::allow_checks() {
+  may_check_ = true;
+  if (checking_) check_selected();
+}
+
 void OperatorController::check_selected() {
-  if (entry() == nullptr) return;
+  if (entry() == nullptr || !may_check_) return;
   work(
       [this, path = entry()->path, rig = request_.rig](const std::stop_token& stop) -> Then {
         auto words = desk::words_of(checker_(path, rig, stop));
@@ -138,10 +149,16 @@ void OperatorController::check_live() {
       &OperatorController::refuse_live);
 }
 
-void OperatorController::refuse_live(std::vector<std::string> reasons) {
-  for (auto& reason : reasons) reason.insert(0, "Live is not possible: ");
+void OperatorController::refuse_live(std::vector<texts::Phrase> reasons) {
   not_live_ = std::move(reasons);
   stay();
+}
+
+/// The check itself has failed.
+void OperatorController::refuse_live(std::vector<std::string> messages) {
+  std::vector<texts::Phrase> reasons;
+  for (auto& message : messages) reasons.push_back(texts::plain(std::move(message)));
+  refuse_live(std::move(reasons));
 }
 
 void OperatorController::chooseLanguage(int index) {
@@ -179,12 +196,12 @@ void OperatorController::begin() { prepare(""); }
 
 void OperatorController::beginEarly(const QString& reason) {
   const auto why = reason.trimmed().toStdString();
-  if (!too_early_.empty() && !why.empty()) prepare(why);
+  if (too_early_ && !why.empty()) prepare(why);
 }
 
 void OperatorController::forget_refusal() {
   refused_.clear();
-  too_early_.clear();
+  too_early_.reset();
 }
 
 void OperatorController::prepare(const std::string& early) {
@@ -208,8 +225,8 @@ void OperatorController::prepare(const std::string& early) {
             Q_EMIT chosen(session);
           };
         } catch (const setup::TooEarly& refused) {
-          return [this, why = refused.problems().front().what] {
-            too_early_ = why;
+          return [this, early = refused.early()] {
+            too_early_ = early;
             stay();
           };
         }
@@ -256,17 +273,16 @@ QVariantList OperatorController::protocols() const {
 }
 
 QVariantList OperatorController::facts() const { return to_list(words_.facts); }
-QStringList OperatorController::problems() const {
-  return to_list(words_.problems) + to_list(not_live_) + to_list(refused_);
-}
+QStringList OperatorController::problems() const { return to_list(words_.problems) + to_list(refused_); }
+QVariantList OperatorController::not_live() const { return to_list(not_live_); }
 QStringList OperatorController::warnings() const { return to_list(words_.warnings); }
+
+QVariantMap OperatorController::too_early() const { return too_early_ ? to_map(*too_early_) : QVariantMap(); }
 
 QVariantList OperatorController::cues() const {
   QVariantList list;
   for (const auto& cue : words_.cues)
-    list += QVariantMap{{"name", QString::fromStdString(cue.name)},
-                        {"says", QString::fromStdString(cue.says)},
-                        {"leaks", cue.leaks}};
+    list += QVariantMap{{"name", to_variant(cue.name)}, {"says", to_variant(cue.says)}, {"leaks", cue.leaks}};
   return list;
 }
 
@@ -283,13 +299,12 @@ QVariantMap OperatorController::backup() const {
   return {{"state", state}, {"hours", backup_.hours}};
 }
 
-QString OperatorController::interrupted() const {
+QVariantMap OperatorController::interrupted() const {
   if (!interrupted_) return {};
-  return QStringLiteral("%1, %2: %3 trials stored, interrupted %4 ago")
-      .arg(QString::fromStdString(interrupted_->participant),
-           QString::fromStdString(interrupted_->protocol_id))
-      .arg(interrupted_->trials)
-      .arg(QString::fromStdString(desk::age_in_words(interrupted_->age_s)));
+  return {{"participant", QString::fromStdString(interrupted_->participant)},
+          {"protocol", QString::fromStdString(interrupted_->protocol_id)},
+          {"trials", interrupted_->trials},
+          {"ageS", interrupted_->age_s}};
 }
 
 }  // namespace turnpoint::ui

@@ -41,9 +41,11 @@ class OperatorController : public QObject {
   /// does)}
   Q_PROPERTY(QVariantList cues READ cues NOTIFY changed)
   Q_PROPERTY(QStringList problems READ problems NOTIFY changed)
-  /// why the chosen session would begin too early, although a reason of the operator can overrule that; "" if
-  /// it would not
-  Q_PROPERTY(QString tooEarly READ too_early NOTIFY changed)
+  /// why the chosen protocol cannot run live
+  Q_PROPERTY(QVariantList notLive READ not_live NOTIFY changed)
+  /// set if the chosen session would begin too early, which a reason of the operator can overrule (see
+  /// to_map() in early_session.hpp)
+  Q_PROPERTY(QVariantMap tooEarly READ too_early NOTIFY changed)
   Q_PROPERTY(QStringList warnings READ warnings NOTIFY changed)
   Q_PROPERTY(QStringList languages READ languages NOTIFY changed)
   /// index of the chosen language; -1 if the participant chooses it on the screen
@@ -53,8 +55,9 @@ class OperatorController : public QObject {
   Q_PROPERTY(QStringList participants READ participants NOTIFY changed)
   Q_PROPERTY(bool live READ live NOTIFY changed)
   Q_PROPERTY(bool armed READ armed NOTIFY changed)
-  /// description of the interrupted session; "" if there is none
-  Q_PROPERTY(QString interrupted READ interrupted NOTIFY changed)
+  /// the interrupted session, if there is one: {participant, protocol, trials, ageS (the time since then in
+  /// seconds)}
+  Q_PROPERTY(QVariantMap interrupted READ interrupted NOTIFY changed)
   /// age of the last backup as {state: none | recent | old | ahead (its time is in the future), hours}
   Q_PROPERTY(QVariantMap backup READ backup NOTIFY changed)
   Q_PROPERTY(bool mayBegin READ may_begin NOTIFY changed)
@@ -64,10 +67,15 @@ class OperatorController : public QObject {
   Q_PROPERTY(QString database READ database CONSTANT)
 
  public:
+  /// When protocols are checked: from the beginning, or only after allow_checks(), so that the first check
+  /// does not compete with the first page for the processor.
+  enum class Checks { at_once, when_allowed };
   /// `checker` runs on the worker thread.
   explicit OperatorController(setup::StationRequest request, Checker checker = check_protocol,
-                              QObject* parent = nullptr);
+                              Checks checks = Checks::at_once, QObject* parent = nullptr);
   ~OperatorController() override;
+
+  void allow_checks();
 
   const setup::StationRequest& request() const { return request_; }
   QVariantList protocols() const;
@@ -76,7 +84,8 @@ class OperatorController : public QObject {
   QVariantList facts() const;
   QVariantList cues() const;
   QStringList problems() const;
-  QString too_early() const { return QString::fromStdString(too_early_); }
+  QVariantList not_live() const;
+  QVariantMap too_early() const;
   QStringList warnings() const;
   QStringList languages() const;
   int language() const { return language_; }
@@ -85,7 +94,7 @@ class OperatorController : public QObject {
   QStringList participants() const { return participants_; }
   bool live() const { return live_; }
   bool armed() const { return armed_; }
-  QString interrupted() const;
+  QVariantMap interrupted() const;
   QVariantMap backup() const;
   bool may_begin() const;
   bool preparing() const { return preparing_; }
@@ -123,6 +132,7 @@ class OperatorController : public QObject {
   void check_selected();
   void check_live();
   void refuse_live(std::vector<std::string> reasons);
+  void refuse_live(std::vector<texts::Phrase> reasons);
   void look_at_backup();
   void stay();
   void fail(std::vector<std::string> problems);
@@ -138,11 +148,12 @@ class OperatorController : public QObject {
   QTimer minutes_;  ///< updates the ages shown on the page, which may be open for days
   desk::CheckWords words_;
   std::vector<std::string> refused_;  ///< why the last chosen session did not begin
-  std::string too_early_;
-  std::vector<std::string> not_live_;  ///< why the chosen protocol cannot run live
+  std::optional<session::EarlySession> too_early_;
+  std::vector<texts::Phrase> not_live_;  ///< why the chosen protocol cannot run live
   int selected_ = -1, language_ = -1;
   QString participant_;
   bool live_ = false, armed_ = false, checking_ = false, preparing_ = false;
+  bool may_check_;
   // The last member, so that its thread ends before the objects that it uses are destroyed.
   NewestJob worker_;
 };

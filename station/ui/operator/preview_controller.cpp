@@ -65,6 +65,12 @@ void PreviewController::choose(int scene) {
   plan();
 }
 
+void PreviewController::set_language(const QString& language) {
+  if (language == language_) return;
+  language_ = language;
+  plan();
+}
+
 void PreviewController::set(const QString& factor, double value) {
   const auto found = factors_.find(factor.toStdString());
   if (found == factors_.end() || !std::holds_alternative<double>(found->second)) return;
@@ -78,7 +84,7 @@ void PreviewController::plan() {
   Q_EMIT changed();
   {
     const std::lock_guard lock(mutex_);
-    wanted_ = Wanted{scenes_[static_cast<std::size_t>(scene_)], factors_};
+    wanted_ = Wanted{scenes_[static_cast<std::size_t>(scene_)], factors_, language_.toStdString()};
   }
   arrived_.notify_one();
 }
@@ -105,9 +111,9 @@ PreviewController::Drawn PreviewController::draw(const Wanted& wanted) {
     drawn.look.problem = error.what();
   }
   if (!drawn.look.problem.empty()) return drawn;
-  drawn.surface = to_variant(desk::drawing_of_surface(drawn.look, preview_.rig()));
-  drawn.profile = to_variant(desk::drawing_of(desk::profile_figure({drawn.look})));
-  drawn.spectrum = to_variant(desk::drawing_of(desk::spectrum_figure(drawn.look)));
+  drawn.surface = to_variant(desk::drawing_of_surface(drawn.look, preview_.rig(), wanted.language));
+  drawn.profile = to_variant(desk::drawing_of(desk::profile_figure({drawn.look}, wanted.language)));
+  drawn.spectrum = to_variant(desk::drawing_of(desk::spectrum_figure(drawn.look, wanted.language)));
   return drawn;
 }
 

@@ -26,6 +26,8 @@ class PreviewController : public QObject {
   Q_PROPERTY(int scene READ scene NOTIFY sceneChanged)
   /// sliders as {name, low, high, levels, value}
   Q_PROPERTY(QVariantList knobs READ knobs NOTIFY sceneChanged)
+  /// language of the figures, such as "de"
+  Q_PROPERTY(QString language READ language WRITE set_language NOTIFY changed)
   Q_PROPERTY(bool busy READ busy NOTIFY changed)
   Q_PROPERTY(QString problem READ problem NOTIFY changed)
   Q_PROPERTY(QVariantList facts READ facts NOTIFY changed)
@@ -45,6 +47,8 @@ class PreviewController : public QObject {
   QStringList scenes() const;
   int scene() const { return scene_; }
   QVariantList knobs() const;
+  QString language() const { return language_; }
+  void set_language(const QString& language);  // the setter of a QML property must have this name (NOLINT)
   bool busy() const { return busy_; }
   QString problem() const { return QString::fromStdString(look_.problem); }
   QVariantList facts() const;
@@ -69,6 +73,7 @@ class PreviewController : public QObject {
   struct Wanted {
     std::string scene;
     protocol::Factors factors;
+    std::string language;
   };
   void plan();
   void work(const std::stop_token& stop);
@@ -79,6 +84,7 @@ class PreviewController : public QObject {
   std::vector<std::string> scenes_;
   protocol::Factors factors_;
   int scene_ = 0;
+  QString language_ = "en";
   bool busy_ = false;
   desk::SceneLook look_;
   QVariant surface_, profile_, spectrum_;

@@ -4,6 +4,7 @@
 #include <exception>
 #include <utility>
 
+#include "station/texts/texts.hpp"
 #include "station/ui/operator/facts.hpp"
 #include "station/ui/operator/figure_view.hpp"
 
@@ -34,10 +35,13 @@ void ReportModel::save(int picture) {
   const auto file_name = [](QString text) {
     return text.replace(QRegularExpression("[^A-Za-z0-9]+"), "-").toLower();
   };
-  const QString folder = folder_ + "/" + file_name(title()).left(80);
+  const QString folder =
+      folder_ + "/" + file_name(title() + " (" + run_mode() + ", " + status() + ")").left(80);
+  // Files have the same names in every language.
+  const QString file = file_name(QString::fromStdString(texts::text(name.toStdString(), "en")));
   try {
-    save_drawing(drawing, folder, file_name(name));
-    saved_ = folder + "/" + file_name(name) + ".svg, .pdf";
+    save_drawing(drawing, folder, file);
+    saved_ = folder + "/" + file + ".svg, .pdf";
   } catch (const std::exception& error) {
     saved_ = QString::fromUtf8(error.what());
   }
@@ -49,19 +53,19 @@ QVariantList ReportModel::fit() const { return to_list(pages_.fit); }
 QVariantList ReportModel::trade() const { return to_list(pages_.speed_accuracy); }
 QVariantList ReportModel::forces() const { return to_list(pages_.forces); }
 QVariantList ReportModel::health() const { return to_list(pages_.health); }
-QStringList ReportModel::statements() const { return to_list(pages_.statements); }
+QVariantList ReportModel::statements() const { return to_list(pages_.statements); }
 
 std::vector<std::pair<QString, desk::Drawing>> ReportModel::all_pictures() const {
   std::vector<std::pair<QString, desk::Drawing>> list;
   const auto add = [&list](const char* name, const desk::Drawing& drawing) {
     if (drawing) list.emplace_back(name, drawing);
   };
-  add("Speed and accuracy", pages_.trade);
-  add("Fit", pages_.fits);
-  add("Levels", pages_.levels);
-  add("Response times", pages_.times);
-  add("Finger", pages_.finger);
-  add("Friction", pages_.friction);
+  add("report.speed_accuracy", pages_.trade);
+  add("report.fit", pages_.fits);
+  add("live.levels", pages_.levels);
+  add("live.times", pages_.times);
+  add("report.finger", pages_.finger);
+  add("live.friction", pages_.friction);
   return list;
 }
 

@@ -13,13 +13,16 @@ class ReportModel : public QObject {
   QML_UNCREATABLE("made by the program")
   Q_PROPERTY(bool ready READ ready NOTIFY changed)
   Q_PROPERTY(QString title READ title NOTIFY changed)
+  /// run mode and status of the session, such as "live" and "completed"; "" if there is no report
+  Q_PROPERTY(QString runMode READ run_mode NOTIFY changed)
+  Q_PROPERTY(QString status READ status NOTIFY changed)
   Q_PROPERTY(QVariantList outcomes READ outcomes NOTIFY changed)
   Q_PROPERTY(QVariantList fit READ fit NOTIFY changed)
   Q_PROPERTY(QVariantList trade READ trade NOTIFY changed)
   Q_PROPERTY(QVariantList forces READ forces NOTIFY changed)
   Q_PROPERTY(QVariantList health READ health NOTIFY changed)
-  Q_PROPERTY(QStringList statements READ statements NOTIFY changed)
-  /// Names and drawings of the existing figures, beginning with the speed-accuracy trade-off.
+  Q_PROPERTY(QVariantList statements READ statements NOTIFY changed)
+  /// Keys of the names and drawings of the existing figures, beginning with the speed-accuracy trade-off.
   Q_PROPERTY(QStringList pictureNames READ picture_names NOTIFY changed)
   Q_PROPERTY(QVariantList pictures READ pictures NOTIFY changed)
   /// where the last figure was saved, or why that failed; "" if no figure was saved yet
@@ -42,12 +45,14 @@ class ReportModel : public QObject {
 
   bool ready() const { return ready_; }
   QString title() const { return QString::fromStdString(pages_.title); }
+  QString run_mode() const { return QString::fromStdString(pages_.run_mode); }
+  QString status() const { return QString::fromStdString(pages_.status); }
   QVariantList outcomes() const;
   QVariantList fit() const;
   QVariantList trade() const;
   QVariantList forces() const;
   QVariantList health() const;
-  QStringList statements() const;
+  QVariantList statements() const;
   QStringList picture_names() const;
   QVariantList pictures() const;
 

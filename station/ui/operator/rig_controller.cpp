@@ -22,7 +22,7 @@ namespace {
 /// The page warns that a calibration will expire, from this number of days before it does.
 constexpr int kSoon_days = 14;
 
-QVariantMap fact(const char* label, const QString& value, const char* text = "") {
+QVariantMap fact(const char* label, const QVariant& value, const char* text = "") {
   return {{"label", label}, {"text", text}, {"value", value}, {"parts", QStringList()}};
 }
 
@@ -92,7 +92,7 @@ QVariantList weights_of(const maintenance::ForceResult& result, const std::strin
 }
 
 /// Returns a reading as a share of its limit, from 0 to 1; -1 if the check has no number.
-double share_of_limit(const session::CheckRow& check) {
+double share_of_limit(const session::Check& check) {
   if (!check.value || !check.limit || *check.limit == 0) return -1;
   return std::min(1.0, std::abs(*check.value / *check.limit));
 }
@@ -123,7 +123,7 @@ void RigController::open() {
       calibration_ = facts_of(made, file, left_days);
       const auto problems = calibration::problems(made, rig.sha256, today);
       for (const auto& problem : problems)
-        calibration_ += fact("operator.fact_not_used", QString::fromStdString(problem));
+        calibration_ += fact("operator.fact_not_used", to_variant(problem));
       calibration_state_ = !problems.empty() ? "bad" : left_days <= kSoon_days ? "ageing" : "good";
     }
   } catch (const std::exception& error) {
@@ -248,21 +248,21 @@ void RigController::ask(const QString& what, const QString& button) {
 QVariantList RigController::findings() const {
   QVariantList list;
   for (const auto& finding : findings_)
-    list += QVariantMap{{"name", QString::fromStdString(finding.name)},
+    list += QVariantMap{{"name", to_variant(finding.name)},
                         {"status", word(finding.status)},
-                        {"what", QString::fromStdString(finding.what)},
-                        {"mend", QString::fromStdString(finding.mend)}};
+                        {"what", to_variant(finding.what)},
+                        {"mend", to_variant(finding.mend)}};
   return list;
 }
 
 QVariantList RigController::checks() const {
   QVariantList list;
   for (const auto& check : checks_)
-    list += QVariantMap{{"name", QString::fromStdString(check.name)},
+    list += QVariantMap{{"name", to_variant(check.name)},
                         {"verdict", check.verdict == session::Verdict::passed   ? "ok"
                                     : check.verdict == session::Verdict::failed ? "failed"
                                                                                 : "absent"},
-                        {"what", QString::fromStdString(check.what)},
+                        {"what", to_variant(check.what)},
                         {"share", share_of_limit(check)}};
   return list;
 }

@@ -34,9 +34,9 @@ class RigController : public QObject {
   Q_PROPERTY(bool hasCells READ has_cells NOTIFY changed)
   /// results of a calibration of the force cells, one row for each weight; the fields are those of `checks`
   Q_PROPERTY(QVariantList weights READ weights NOTIFY changed)
-  /// what the operator is asked to do with the weights, as {tare, grams, mm, pull, remark, trouble, converter}. A pull
-  /// is in grams, and negative towards the wide edge. `remark` says why a step is repeated, and `trouble` why
-  /// a reading failed; both are in English.
+  /// what the operator is asked to do with the weights, as {tare, grams, mm, pull, remark, trouble,
+  /// converter}. A pull is in grams, and negative towards the wide edge. `remark` says why a step is
+  /// repeated, and `trouble` why a reading failed; both are in English.
   Q_PROPERTY(QVariantMap step READ step NOTIFY changed)
   /// what the three cells read meanwhile, as texts; one text if they cannot be read
   Q_PROPERTY(QStringList reading READ reading NOTIFY changed)
@@ -94,7 +94,7 @@ class RigController : public QObject {
   QString calibration_state_ = "none";
   QString busy_, asked_, asked_button_;
   std::vector<lines::Finding> findings_;
-  std::vector<session::CheckRow> checks_;
+  std::vector<session::Check> checks_;
   QStringList errors_;
   bool has_cells_ = false;
   QVariantList weights_;

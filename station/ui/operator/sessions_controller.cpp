@@ -156,11 +156,11 @@ void SessionsController::act(std::function<Done()> action) {
   });
 }
 
-void SessionsController::makeReport() {
+void SessionsController::makeReport(const QString& language) {
   if (line() == nullptr || line()->trials == 0) return;
   report_.clear();
-  act([this, id = chosen_] {
-    report_.take(desk::report_pages(database_, id));
+  act([this, id = chosen_, language = language.toStdString()] {
+    report_.take(desk::report_pages(database_, id, language));
     return Done{};
   });
 }

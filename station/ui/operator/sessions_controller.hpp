@@ -62,7 +62,7 @@ class SessionsController : public QObject {
   /// Reads the list of sessions and the disks again.
   Q_INVOKABLE void open();
   Q_INVOKABLE void select(int index);
-  Q_INVOKABLE void makeReport();
+  Q_INVOKABLE void makeReport(const QString& language);
   Q_INVOKABLE void annotate(const QString& note);
   /// Updates the list of disks that are plugged in.
   Q_INVOKABLE void lookForDisks();

@@ -104,10 +104,10 @@ QVariantList StudiesController::facts() const { return to_list(words_.facts); }
 QVariantList StudiesController::cues() const {
   QVariantList list;
   for (const auto& cue : words_.cues)
-    list += QVariantMap{{"name", QString::fromStdString(cue.name)},
-                        {"says", QString::fromStdString(cue.says)},
+    list += QVariantMap{{"name", to_variant(cue.name)},
+                        {"says", to_variant(cue.says)},
                         {"leaks", cue.leaks},
-                        {"advice", QString::fromStdString(cue.advice)}};
+                        {"advice", to_variant(cue.advice)}};
   return list;
 }
 

@@ -61,6 +61,7 @@ std::optional<maintenance::ForceResult> Weighing::run(const rig::Rig& rig, const
   maintenance::WeightStep now;
   const auto ready = [&](const maintenance::WeightStep& step) {
     now = step;
+    if (step.tap != maintenance::Tap::none) return false;  // only the command line asks for taps
     return await(*bridges, {step, "", {}, false, ""}, show, stop) == Answer::read;
   };
   const auto failed = [&](const std::string& why) {

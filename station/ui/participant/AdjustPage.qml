@@ -60,6 +60,8 @@ Item {
     Item {
         id: slider
         objectName: "slider"
+        Accessible.role: Accessible.Slider
+        Accessible.name: root.page.text
         readonly property real knob: Math.max(root.theme.targetMin, 9 * root.theme.unit)
         anchors { left: parent.left; right: parent.right; bottom: controls.top; bottomMargin: root.theme.unit }
         opacity: root.silent ? 0.35 : 1
@@ -99,6 +101,7 @@ Item {
             spacing: root.theme.targetGap
             ActionButton {
                 objectName: "stepDown"
+                label: root.texts.text("step_down")
                 height: root.theme.targetMin
                 enabled: !root.silent
                 theme: root.theme
@@ -109,6 +112,7 @@ Item {
             }
             ActionButton {
                 objectName: "stepUp"
+                label: root.texts.text("step_up")
                 height: root.theme.targetMin
                 enabled: !root.silent
                 theme: root.theme

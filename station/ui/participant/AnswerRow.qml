@@ -43,7 +43,7 @@ Item {
             text: root.answers[index] ?? ""
             font { pixelSize: root.theme.textTitle; weight: Font.DemiBold }
             fontSizeMode: Text.Fit
-            minimumPixelSize: root.theme.textSmall
+            minimumPixelSize: root.theme.textLeast
             wrapMode: Text.WordWrap
         }
     }
@@ -67,6 +67,7 @@ Item {
             color: down ? root.theme.raised : root.theme.action
             border { color: root.theme.action; width: 3 * root.theme.stroke }
             PlainText {
+                readAloud: false
                 anchors { left: parent.left; right: parent.right; top: parent.top; margins: root.theme.unit * (root.columns > 3 ? 0.6 : 1) }
                 height: root.labelHeight
                 text: root.answers[button.index] ?? ""
@@ -77,6 +78,7 @@ Item {
                 verticalAlignment: Text.AlignVCenter
             }
             PlainText {
+                readAloud: false
                 visible: root.captioned
                 anchors { left: parent.left; right: parent.right; bottom: parent.bottom; margins: 0.6 * root.theme.unit }
                 height: root.labelHeight
@@ -84,7 +86,7 @@ Item {
                 color: button.down ? root.theme.action : root.theme.actionText
                 font { pixelSize: root.theme.textBody; weight: Font.Medium }
                 fontSizeMode: Text.Fit
-                minimumPixelSize: 2.4 * root.theme.pixelsPerMm
+                minimumPixelSize: root.theme.textLeast
                 wrapMode: Text.WordWrap
                 horizontalAlignment: Text.AlignHCenter
                 verticalAlignment: Text.AlignVCenter

@@ -124,6 +124,8 @@ Item {
         id: key
         property string label
         property string glyph
+        /// What a screen reader says.
+        property string spoken: label
         property bool strong: false
         readonly property bool armed: root.armed
         signal tapped()
@@ -133,8 +135,12 @@ Item {
         radius: 0.8 * root.theme.unit
         color: filled ? root.theme.action : root.theme.raised
         border { color: strong ? root.theme.action : root.theme.line; width: Math.max(1, 0.5 * root.theme.stroke) }
+        Accessible.role: Accessible.Button
+        Accessible.name: spoken
+        Accessible.onPressAction: if (enabled && armed) tapped()
         opacity: enabled ? 1 : 0.35
         PlainText {
+            readAloud: false
             anchors.centerIn: parent
             text: key.label
             color: key.filled ? root.theme.actionText : root.theme.ink
@@ -183,6 +189,7 @@ Item {
                     visible: line.index === root.rows.length - 1
                     objectName: visible ? "backspace" : ""
                     glyph: "backspace"
+                    spoken: root.texts.text("erase")
                     enabled: code.valid
                     onTapped: code.erase()
                 }

@@ -2,8 +2,7 @@ import QtQuick
 import Turnpoint
 
 // Thanks the participant, and shows nothing else. The session's numbers are for the operator, who reaches
-// them by a button and the operator's code. Like all of the operator's pages they are in English, with the
-// names that the report and the files use.
+// them by a button and the operator's code. They are in the operator's language.
 Item {
     id: root
     required property Theme theme
@@ -70,19 +69,21 @@ Item {
         }
     }
 
+    Texts { id: spoken; language: OperatorScreen.language }
+
     // The session's numbers, for the operator. They are shown if there is no report yet or none could be
     // made.
     Rectangle {
         visible: root.counting
-        LayoutMirroring.enabled: false
+        LayoutMirroring.enabled: spoken.mirrored
         LayoutMirroring.childrenInherit: true
         anchors.fill: parent
         color: root.theme.paper
-        MouseArea { anchors.fill: parent }
+        Shield {}
         PlainText {
             id: heading
             anchors { left: parent.left; right: parent.right; top: parent.top }
-            text: "The session in numbers"
+            text: spoken.text("report.numbers")
             color: root.theme.ink
             font { pixelSize: 0.85 * root.theme.textTitle; weight: Font.Bold }
             elide: Text.ElideRight
@@ -98,13 +99,15 @@ Item {
                 Item {
                     id: entry
                     required property int index
-                    required property string modelData
+                    required property var modelData
                     width: (numbers.width - numbers.columnSpacing) / 2
                     height: label.implicitHeight
                     PlainText {
                         id: label
+                        anchors.left: parent.left
+                        horizontalAlignment: Text.AlignLeft
                         width: parent.width - value.width - root.theme.unit
-                        text: entry.modelData
+                        text: spoken.say(entry.modelData)
                         color: root.theme.quiet
                         font.pixelSize: root.theme.textSmall
                         elide: Text.ElideRight
@@ -124,7 +127,7 @@ Item {
             anchors { horizontalCenter: parent.horizontalCenter; bottom: parent.bottom }
             theme: root.theme
             primary: false
-            text: "Close"
+            text: spoken.close
             onActivated: root.counting = false
         }
     }

@@ -77,6 +77,8 @@ Item {
     Item {
         id: line
         objectName: "line"
+        Accessible.role: Accessible.Slider
+        Accessible.name: root.page.text
         readonly property real inset: 2 * root.theme.unit
         anchors { left: parent.left; right: parent.right; bottom: confirm.top; bottomMargin: root.theme.unit }
         height: root.theme.targetMin

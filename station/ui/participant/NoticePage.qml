@@ -12,8 +12,12 @@ Item {
     property bool armable: false
     readonly property PageModel page: bridge.page
     readonly property bool failed: page.kind === PageModel.Failed
+    /// Why the session did not begin because it would be too early; "" if that is not the reason.
+    readonly property string tooEarly: texts.tooEarly(page.early)
     readonly property bool fault: page.kind === PageModel.Fault || failed
     readonly property bool explained: fault && !failed && page.safe !== ""
+    /// On a tall screen, each text has a line of its own below its heading, and is larger.
+    readonly property bool tall: theme.height > theme.width
     signal closed()
     signal armingWanted()
 
@@ -57,7 +61,7 @@ Item {
         }
         PlainText {
             width: parent.width
-            text: root.page.title !== "" ? root.texts.phrased(root.page.title)
+            text: root.page.title !== "" ? root.texts.phrased(root.page.title) : root.tooEarly !== "" ? root.texts.declinedTitle
                 : root.failed ? root.texts.failedTitle : root.fault ? root.texts.faultTitle : root.texts.paused
             color: root.theme.ink
             font { pixelSize: 0.85 * root.theme.textTitle; weight: Font.Bold }
@@ -66,7 +70,8 @@ Item {
         }
         PlainText {
             width: parent.width
-            text: root.page.text !== "" ? root.texts.phrased(root.page.text) : root.texts.pausedText
+            objectName: "notice"
+            text: root.tooEarly !== "" ? root.tooEarly : root.page.text !== "" ? root.texts.phrased(root.page.text) : root.texts.pausedText
             color: root.theme.quiet
             font.pixelSize: root.theme.textBody
             lineHeight: 1.2
@@ -77,7 +82,7 @@ Item {
         }
         PlainText {
             width: parent.width
-            visible: root.failed
+            visible: root.failed && root.tooEarly === ""
             text: root.texts.failedText
             color: root.theme.ink
             font { pixelSize: root.theme.textBody; weight: Font.DemiBold }
@@ -86,20 +91,22 @@ Item {
         }
     }
 
-    // Symbol, heading and text side by side, so that each can be found at a glance. A heading is never broken
-    // into two lines.
-    component Line: Row {
+    // Symbol, heading and text side by side, so that each can be found at a glance. On a tall screen the text is
+    // below the heading. A heading is never broken into two lines.
+    component Line: Item {
         id: line
         property string glyph
         property string heading
         property string says
         property color tint: root.theme.ink
         readonly property real needed: label.implicitWidth
-        readonly property real textSize: Math.max(root.theme.textSmall, 0.84 * root.theme.textBody)
+        readonly property real textSize: root.tall ? 1.2 * root.theme.textBody : Math.max(root.theme.textSmall, 0.84 * root.theme.textBody)
+        readonly property real gap: 1.2 * root.theme.unit
         width: parent.width
-        spacing: 1.2 * root.theme.unit
+        implicitHeight: Math.max(sign.height, told.y + told.height)
         Glyph {
             id: sign
+            anchors { left: parent.left; top: parent.top }
             height: 1.3 * line.textSize
             name: line.glyph
             // the symbol "tool" is an arrow; turn it round for languages that are read from right to left
@@ -109,13 +116,19 @@ Item {
         PlainText {
             id: label
             objectName: "heading"
-            width: lines.headingWidth
+            anchors { left: sign.right; leftMargin: line.gap; top: parent.top }
+            width: root.tall ? implicitWidth : lines.headingWidth
             text: line.heading
             color: line.tint
             font { pixelSize: Math.max(root.theme.textSmall, 0.9 * line.textSize); weight: Font.Bold }
         }
         PlainText {
-            width: line.width - sign.width - label.width - 2 * line.spacing
+            id: told
+            objectName: "told"
+            anchors {
+                left: root.tall ? label.left : label.right; leftMargin: root.tall ? 0 : line.gap; right: parent.right
+                top: root.tall ? label.bottom : parent.top; topMargin: root.tall ? 0.4 * root.theme.unit : 0
+            }
             text: line.says
             color: root.theme.ink
             font { pixelSize: line.textSize; weight: Font.Medium }
@@ -135,7 +148,7 @@ Item {
             id: lines
             objectName: "explanation"
             anchors { left: parent.left; right: parent.right; verticalCenter: parent.verticalCenter; margins: 1.8 * root.theme.unit }
-            spacing: 0.8 * root.theme.unit
+            spacing: (root.tall ? 2.4 : 0.8) * root.theme.unit
             scale: Math.min(1, (parent.height - root.theme.unit) / Math.max(1, implicitHeight))
             readonly property real headingWidth: Math.max(happened.needed, safe.needed, toDo.needed) + 0.8 * root.theme.unit
             Line {
@@ -164,9 +177,9 @@ Item {
                 width: parent.width
                 text: root.page.detail
                 color: root.theme.quiet
-                font.pixelSize: 0.9 * root.theme.textSmall
+                font.pixelSize: (root.tall ? 1.1 : 0.9) * root.theme.textSmall
                 wrapMode: Text.Wrap
-                maximumLineCount: 2
+                maximumLineCount: root.tall ? 4 : 2
                 elide: Text.ElideRight
             }
         }

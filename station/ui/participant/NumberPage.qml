@@ -105,6 +105,7 @@ Item {
                 size: root.theme.textTitle
                 glyph: key === "<" ? "backspace" : ""
                 text: key === "<" ? "" : key === "." ? root.point : key
+                label: key === "<" ? root.texts.text("erase") : text
                 onActivated: root.press(key)
             }
         }

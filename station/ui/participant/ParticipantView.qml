@@ -220,6 +220,8 @@ Rectangle {
 
     MouseArea {
         objectName: "operatorCorner"
+        Accessible.role: Accessible.Button
+        Accessible.name: texts.forOperator
         LayoutMirroring.enabled: false
         anchors { right: parent.right; bottom: parent.bottom }
         width: 12 * theme.unit

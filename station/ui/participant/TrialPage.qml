@@ -2,8 +2,8 @@ import QtQuick
 import Turnpoint
 
 // Everything that a trial shows, in a single layout: the surface at the top, the question in the middle, the
-// answers below. The phases of a trial fill or empty these three places. Nothing is animated, so nothing
-// moves while a stimulus runs.
+// answers below. The phases of a trial fill or empty these three places. Nothing moves while a stimulus runs, unless
+// the protocol asks for guidance during stimuli.
 Item {
     id: root
     required property Theme theme
@@ -16,6 +16,27 @@ Item {
     readonly property bool feedback: page.kind === PageModel.Feedback
     readonly property bool asks: page.answersOpen && page.answers.length > 0
     readonly property bool counted: page.intervals > 1
+
+    // A flash lasts for a moment from the frame that shows it, however late this frame is. There is one flash in a trial,
+    // and each trial begins with a cue of 0.8 s, so no second has three flashes, which could cause a seizure.
+    readonly property bool signalledByFlash: page.flash
+    readonly property bool flashing: signalledByFlash && !flash.over
+    onSignalledByFlashChanged: {
+        flash.stop()
+        flash.over = false
+    }
+    Connections {
+        target: root.Window.window
+        enabled: root.flashing
+        function onFrameSwapped() { flash.start() }
+    }
+    Timer {
+        id: flash
+        objectName: "flash"
+        property bool over: false
+        interval: 100
+        onTriggered: over = true
+    }
 
     // Tapping an answer twice by accident must not also count as a confidence rating: the page ignores taps for a
     // moment.
@@ -30,7 +51,7 @@ Item {
         id: surface
         visible: !root.counted && !root.page.answerNow && height > 12 * root.theme.unit && (root.cue || root.stimulus || root.page.kind === PageModel.Response)
         anchors { left: parent.left; right: parent.right; top: parent.top }
-        height: Math.max(0, Math.min(0.46 * parent.height, parent.height - answers.height - bars.height - (bars.visible ? 5.5 : 10) * root.theme.unit))
+        height: Math.max(0, Math.min(0.46 * parent.height, parent.height - answers.height - bars.height - pacer.height - (pacer.visible ? 6.6 : bars.visible ? 5.5 : 10) * root.theme.unit))
         lengthMm: root.page.lengthMm
         wideHalfWidthMm: root.page.wideHalfWidthMm
         narrowHalfWidthMm: root.page.narrowHalfWidthMm
@@ -78,7 +99,7 @@ Item {
         id: bars
         objectName: "bars"
         visible: root.page.guided && !root.page.answerNow && !root.feedback && !root.confides
-        anchors { left: parent.left; right: parent.right; bottom: answers.top; bottomMargin: visible ? root.theme.unit : 0 }
+        anchors { left: parent.left; right: parent.right; bottom: pacer.top; bottomMargin: visible ? root.theme.unit : 0 }
         height: visible ? Math.max(force.implicitHeight, speed.implicitHeight) : 0
         spacing: 3 * root.theme.unit
         readonly property int count: (force.visible ? 1 : 0) + (speed.visible ? 1 : 0)
@@ -102,17 +123,38 @@ Item {
         }
     }
 
-    // The response signal: a band over the whole width, dark and large enough to be noticed while looking elsewhere.
+    // The speed that is asked for. It does not move while an answer is awaited either, so that it disturbs nobody.
+    Pacer {
+        id: pacer
+        objectName: "pacer"
+        // On a small panel the question, the answers and the dots of the intervals come first.
+        readonly property bool fits: root.height - answers.height - bars.height - implicitHeight >= (root.counted ? 19.6 : 6.6) * root.theme.unit
+        visible: bars.visible && root.page.paceMmPerS > 0 && fits
+        anchors { left: parent.left; right: parent.right; bottom: answers.top; bottomMargin: visible ? root.theme.unit : 0 }
+        height: visible ? implicitHeight : 0
+        theme: root.theme
+        speedMmPerS: root.page.paceMmPerS
+        running: visible && !root.page.barsFrozen && !root.asks
+    }
+
+    // The response signal: a band over the whole width, dark and large enough to be noticed while looking elsewhere. A
+    // flash makes the whole page dark for a moment, and then light again. Both say what to do, so that they do not depend
+    // on brightness alone.
     Rectangle {
         objectName: "signal"
         visible: root.page.answerNow && !root.feedback
-        anchors { left: parent.left; right: parent.right; top: parent.top; bottom: answers.top; bottomMargin: root.theme.targetGap }
+        anchors {
+            left: parent.left; right: parent.right; top: parent.top
+            bottom: root.flashing ? parent.bottom : answers.top
+            bottomMargin: root.flashing ? 0 : root.theme.targetGap
+        }
+        readonly property bool dark: root.flashing || !root.signalledByFlash
         radius: root.theme.radius
-        color: root.theme.ink
+        color: dark ? root.theme.ink : "transparent"
         PlainText {
             anchors { fill: parent; margins: root.theme.unit }
             text: root.texts.answerNow
-            color: root.theme.actionText
+            color: parent.dark ? root.theme.actionText : root.theme.ink
             font { pixelSize: root.theme.textHuge; weight: Font.Bold }
             fontSizeMode: Text.Fit
             minimumPixelSize: root.theme.textSmall
@@ -140,7 +182,7 @@ Item {
 
     AnswerRow {
         id: answers
-        visible: root.asks
+        visible: root.asks && !root.flashing
         anchors { left: parent.left; right: parent.right; bottom: parent.bottom }
         height: Math.max(leastHeight, 0.36 * parent.height)
         theme: root.theme

@@ -30,12 +30,19 @@ void FrameWatch::follow(QQuickWindow* window, double refresh_Hz) {
   // Qt calls this on its rendering thread, which may be another thread, so it only reads the clock.
   connect(
       window, &QQuickWindow::frameSwapped, this, [this] { swapped(); }, Qt::DirectConnection);
+  connect(
+      window, &QQuickWindow::afterSynchronizing, this, [this] { drawn(); }, Qt::DirectConnection);
 }
 
 void FrameWatch::asked() {
   if (!timer_.isActive()) begin();
   asked_ns_ = clock_();
   if (window_ != nullptr) window_->update();
+}
+
+void FrameWatch::timed() {
+  timed_ = true;
+  asked();
 }
 
 int FrameWatch::end() {
@@ -57,7 +64,14 @@ void FrameWatch::begin() {
 
 void FrameWatch::beat() { waited(std::exchange(beat_ns_, clock_())); }
 
+// A frame that was already being drawn when timed() was called shows the old page, so its time does not
+// count.
+void FrameWatch::drawn() {
+  if (timed_.exchange(false)) drawn_ = true;
+}
+
 void FrameWatch::swapped() {
+  if (drawn_.exchange(false)) Q_EMIT presented(clock_());
   if (const auto asked = asked_ns_.exchange(0); asked != 0) waited(asked);
 }
 

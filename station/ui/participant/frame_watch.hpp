@@ -46,12 +46,22 @@ class FrameWatch : public QObject {
   /// same, so that the next frame always shows the new content. The first call begins the count.
   void asked();
 
+  /// Like asked(), for something whose time matters: presented() says when its frame was handed to the
+  /// screen.
+  void timed();
+
   /// Ends the count and returns the number of late frames; 0 if no count had begun.
   int end();
+
+ Q_SIGNALS:
+  /// The first frame that was drawn after timed() was handed to the screen at this time. Emitted on the
+  /// rendering thread.
+  void presented(qint64 time_ns);
 
  private:
   void begin();
   void beat();
+  void drawn();    ///< called on the rendering thread when it has taken over what the next frame shows
   void swapped();  ///< called on the rendering thread when a frame is on the screen
   void waited(std::int64_t from_ns);
 
@@ -62,6 +72,8 @@ class FrameWatch : public QObject {
   std::int64_t beat_ns_ = 0;
   /// time at which something new was requested; 0 if nothing is waiting
   std::atomic<std::int64_t> asked_ns_{0};
+  std::atomic<bool> timed_ = false;  ///< timed() was called, and no frame has been drawn since
+  std::atomic<bool> drawn_ = false;  ///< the frame that is being drawn is the one whose time matters
   std::mutex mutex_;
   LateFrames late_{60};  ///< guarded by mutex_
 };

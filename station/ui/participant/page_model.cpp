@@ -2,6 +2,9 @@
 
 #include <QUrl>
 
+#include "station/ui/shared/early_session.hpp"
+#include "station/ui/shared/phrases.hpp"
+
 namespace turnpoint::ui {
 
 void PageModel::set(session::Page page) {
@@ -97,6 +100,8 @@ QStringList PageModel::captions() const {
   return captions;
 }
 
+QVariantMap PageModel::early() const { return page_.early ? to_map(*page_.early) : QVariantMap(); }
+
 QStringList PageModel::anchor_texts() const {
   QStringList texts;
   for (const auto& text : page_.value.texts) texts += QString::fromStdString(text);
@@ -109,9 +114,9 @@ QStringList PageModel::interval_names() const {
   return names;
 }
 
-QStringList PageModel::summary_labels() const {
-  QStringList labels;
-  for (const auto& line : page_.summary) labels += QString::fromStdString(line.label);
+QVariantList PageModel::summary_labels() const {
+  QVariantList labels;
+  for (const auto& line : page_.summary) labels += to_variant(line.label);
   return labels;
 }
 

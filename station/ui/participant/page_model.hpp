@@ -32,6 +32,7 @@ class PageModel : public QObject {
   Q_PROPERTY(bool playing READ playing NOTIFY changed)
   Q_PROPERTY(QString picture READ picture NOTIFY changed)
   Q_PROPERTY(bool answerNow READ answer_now NOTIFY changed)
+  Q_PROPERTY(bool flash READ flash NOTIFY changed)
   Q_PROPERTY(Verdict verdict READ verdict NOTIFY changed)
   Q_PROPERTY(QString instruction READ instruction NOTIFY changed)
   Q_PROPERTY(bool hasMark READ has_mark NOTIFY changed)
@@ -55,11 +56,13 @@ class PageModel : public QObject {
   Q_PROPERTY(QString safe READ safe NOTIFY changed)
   Q_PROPERTY(QString toDo READ to_do NOTIFY changed)
   Q_PROPERTY(QString detail READ detail NOTIFY changed)
+  /// set on a failed page if the session would have begun too early (see to_map() in early_session.hpp)
+  Q_PROPERTY(QVariantMap early READ early NOTIFY changed)
   Q_PROPERTY(bool awaitsArming READ awaits_arming NOTIFY changed)
   Q_PROPERTY(bool awaitsNote READ awaits_note NOTIFY changed)
   Q_PROPERTY(bool resumable READ resumable NOTIFY changed)
   Q_PROPERTY(bool unsaved READ unsaved NOTIFY changed)
-  Q_PROPERTY(QStringList summaryLabels READ summary_labels NOTIFY changed)
+  Q_PROPERTY(QVariantList summaryLabels READ summary_labels NOTIFY changed)
   Q_PROPERTY(QStringList summaryValues READ summary_values NOTIFY changed)
   // The bars that guide the finger. Each bar is a list of the finger's value and the two ends of the wanted
   // range, from 0 to 1. A value below 0 means that there is none.
@@ -67,6 +70,7 @@ class PageModel : public QObject {
   Q_PROPERTY(bool barsFrozen READ bars_frozen NOTIFY barsMoved)
   Q_PROPERTY(QList<double> forceBar READ force_bar NOTIFY barsMoved)
   Q_PROPERTY(QList<double> speedBar READ speed_bar NOTIFY barsMoved)
+  Q_PROPERTY(double paceMmPerS READ pace_mm_s NOTIFY barsMoved)
 
  public:
   /// The values of session::PageKind under names that QML can use.
@@ -106,6 +110,8 @@ class PageModel : public QObject {
   /// there is no such bar.
   QList<double> force_bar() const;
   QList<double> speed_bar() const;
+  /// The speed at which the finger is to slide; 0 if there is none.
+  double pace_mm_s() const { return page_.guidance ? page_.guidance->pace_mm_s.value_or(0) : 0; }
   Kind kind() const;
   QString title() const { return QString::fromStdString(page_.title); }
   QString text() const { return QString::fromStdString(page_.text); }
@@ -122,6 +128,7 @@ class PageModel : public QObject {
   bool playing() const { return page_.playing; }
   QString picture() const;
   bool answer_now() const { return page_.answer_now; }
+  bool flash() const { return page_.flash_ns.has_value(); }
   Verdict verdict() const;
   QString instruction() const { return QString::fromStdString(page_.instruction); }
   bool has_mark() const { return page_.mark_mm.has_value(); }
@@ -144,6 +151,7 @@ class PageModel : public QObject {
   QString run_mode() const { return QString::fromStdString(page_.run_mode); }
   QString safe() const { return QString::fromStdString(page_.safe); }
   QString to_do() const { return QString::fromStdString(page_.to_do); }
+  QVariantMap early() const;
   QString detail() const { return QString::fromStdString(page_.detail); }
   /// True if the session can continue from this page only after an operator has armed the amplifier.
   bool awaits_arming() const { return page_.amplifier == "disarmed" || page_.amplifier == "faulted"; }
@@ -156,7 +164,7 @@ class PageModel : public QObject {
   bool unsaved() const {
     return page_.kind == session::PageKind::fault && page_.fault == session::FaultKind::disk_full;
   }
-  QStringList summary_labels() const;
+  QVariantList summary_labels() const;
   QStringList summary_values() const;
 
  Q_SIGNALS:

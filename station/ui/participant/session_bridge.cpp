@@ -113,6 +113,14 @@ void SessionBridge::frames_lost(int frames) {
   sink_(std::move(input));
 }
 
+void SessionBridge::signal_shown(std::int64_t time_ns, std::int64_t due_ns) {
+  session::Input input;
+  input.time_ns = time_ns;
+  input.kind = session::InputKind::signal_shown;
+  input.number = 1e-9 * static_cast<double>(time_ns - due_ns);
+  sink_(std::move(input));
+}
+
 void SessionBridge::push(session::InputKind kind, int value, double number) {
   // forget the tap that pressed this button; otherwise it would count as a stray touch in the next trial
   pending_.clear();

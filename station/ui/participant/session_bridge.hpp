@@ -80,6 +80,8 @@ class SessionBridge : public QObject, public session::Display {
   Q_INVOKABLE void annotate(const QString& text);
   /// Reports by how many frames the screen was late during the finished trial; 0 is not reported.
   void frames_lost(int frames);
+  /// Reports when the frame with a flash was handed to the screen, and when the flash was due.
+  void signal_shown(std::int64_t time_ns, std::int64_t due_ns);
 
  Q_SIGNALS:
   /// Emitted when a page has been applied, even if nothing changed.

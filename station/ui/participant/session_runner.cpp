@@ -7,6 +7,7 @@
 #include "station/desk/report_pages.hpp"
 #include "station/setup/open_touch.hpp"
 #include "station/system/clocks.hpp"
+#include "station/texts/texts.hpp"
 
 namespace turnpoint::ui {
 
@@ -34,12 +35,17 @@ SessionRunner::SessionRunner(QObject* parent)
   connect(this, &SessionRunner::over, &life_, &QTimer::stop);
   connect(&bridge_, &SessionBridge::shown, this, [this] {
     const auto kind = bridge_.page()->kind();
+    // The page changes again while it shows the signal, but only its first frame is the flash.
+    const auto flash_ns = bridge_.page()->page().flash_ns;
+    if (flash_ns && flash_ns != std::exchange(flash_ns_, flash_ns)) return frames_.timed();
     if (is_trial(kind)) return frames_.asked();
     const int lost = frames_.end();
     // Late frames are reported on the page between trials. If a fault or a pause interrupts a trial, another
     // page follows and the frames are not reported, because the trial is repeated.
     if (kind == PageModel::Kind::Interval) bridge_.frames_lost(lost);
   });
+  connect(&frames_, &FrameWatch::presented, this,
+          [this](qint64 time_ns) { bridge_.signal_shown(time_ns, *flash_ns_); });
   connect(&bridge_, &SessionBridge::acknowledged, this, [this] {
     if (is_trial(bridge_.page()->kind())) frames_.asked();
   });
@@ -54,9 +60,10 @@ void SessionRunner::watch(QQuickWindow* window) {
   frames_.follow(window, window->screen() != nullptr ? window->screen()->refreshRate() : 0);
 }
 
-void SessionRunner::begin(session::Setup setup) {
+void SessionRunner::begin(session::Setup setup, const std::string& language) {
   if (thread_.joinable()) thread_.join();
   setup_ = std::move(setup);
+  language_ = language;
   inputs_.drain();
   summary_.reset();
   failure_ = nullptr;
@@ -69,8 +76,10 @@ void SessionRunner::begin(session::Setup setup) {
   empty.language = setup_.language;
   empty.run_mode = store::name(setup_.run_mode);
   bridge_.show(empty);
-  view_ = std::make_unique<desk::LiveView>(setup_.protocol, setup_.rig,
-                                           [this](desk::LiveState state) { live_.take(std::move(state)); });
+  live_.take(std::optional<desk::FingerGauges>{});
+  view_ = std::make_unique<desk::LiveView>(
+      setup_.protocol, setup_.rig, [this](desk::LiveState state) { live_.take(std::move(state)); }, language_,
+      [this](desk::FingerGauges gauges) { live_.take(std::optional(std::move(gauges))); });
   inputs_.page_alive(system::monotonic_ns());
   life_.start(kLife_ms);
   thread_ = std::jthread([this] { run(); });
@@ -87,12 +96,12 @@ void SessionRunner::run() {
   over_ = true;
   try {
     if (summary_ && summary_->trials > 0)
-      report_.take(desk::report_pages(summary_->database, summary_->session_id));
+      report_.take(desk::report_pages(summary_->database, summary_->session_id, language_));
   } catch (const std::exception& error) {
     // The session is complete and stored, even if its report cannot be made.
     desk::ReportPages pages;
-    pages.title = "No report";
-    pages.statements = {error.what()};
+    pages.title = texts::text("report.none", language_);
+    pages.statements = {texts::plain(error.what())};
     report_.take(pages);
   }
   Q_EMIT over();
@@ -123,6 +132,8 @@ void SessionRunner::show_failure() {
   page.run_mode = store::name(setup_.run_mode);
   try {
     std::rethrow_exception(failure_);
+  } catch (const session::TooEarly& refused) {
+    page.early = refused.early();
   } catch (const std::exception& error) {
     page.text = error.what();
   }

@@ -38,9 +38,9 @@ class SessionRunner : public QObject {
   /// counted.
   void watch(QQuickWindow* window);
 
-  /// Begins a session, after the previous one has ended. Throws the errors of touch::TouchReader if the rig's
-  /// touch panel does not exist.
-  void begin(session::Setup setup);
+  /// Begins a session, after the previous one has ended. `language` is that of the operator. Throws the
+  /// errors of touch::TouchReader if the rig's touch panel does not exist.
+  void begin(session::Setup setup, const std::string& language = "en");
   bool running() const { return thread_.joinable() && !over_; }
   void ask_to_stop();
 
@@ -58,12 +58,14 @@ class SessionRunner : public QObject {
   void show_failure();
 
   session::Setup setup_;
+  std::string language_;  ///< language of the operator
   session::Inputs inputs_;
   SessionBridge bridge_;
   LiveModel live_;
   ReportModel report_;
   FrameWatch frames_;
-  QTimer life_;  ///< reports to the session that the pages' event loop is running
+  std::optional<std::int64_t> flash_ns_;  ///< when the last flash was due
+  QTimer life_;                           ///< reports to the session that the pages' event loop is running
   std::unique_ptr<touch::TouchReader> touch_;
   std::unique_ptr<desk::LiveView> view_;
   std::optional<session::Summary> summary_;

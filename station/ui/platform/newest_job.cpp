@@ -14,6 +14,7 @@ NewestJob::~NewestJob() {
 }
 
 void NewestJob::start(Job job) {
+  waiting_ = {};
   {
     const std::lock_guard lock(mutex_);
     wanted_ = Wanted{++newest_, std::move(job)};
@@ -28,8 +29,27 @@ void NewestJob::stop() {
   running_.request_stop();
 }
 
+void NewestJob::hold(bool held) {
+  held_ = held;
+  if (held_) return;
+  // Not at once: the release of the finger may still have to reach the control under it.
+  const auto resume = [this] {
+    if (!held_ && waiting_) std::exchange(waiting_, {})();
+  };
+  QMetaObject::invokeMethod(&owner_, resume, Qt::QueuedConnection);
+}
+
+void NewestJob::finish(int number, const std::function<void()>& then) {
+  if (number != newest_ || !then) return;
+  if (held_)
+    waiting_ = then;
+  else
+    then();
+}
+
 void NewestJob::abandon() {
   ++newest_;
+  waiting_ = {};
   const std::lock_guard lock(mutex_);
   wanted_.reset();
   running_.request_stop();
@@ -49,10 +69,7 @@ void NewestJob::run(const std::stop_token& stop) {
     }
     auto then = now.job(abandoned);
     QMetaObject::invokeMethod(
-        &owner_,
-        [this, number = now.number, then = std::move(then)] {
-          if (number == newest_ && then) then();
-        },
+        &owner_, [this, number = now.number, then = std::move(then)] { finish(number, then); },
         Qt::QueuedConnection);
   }
 }

@@ -26,6 +26,9 @@ class NewestJob {
   void start(Job job);
   /// Asks the running job to stop. What it returns then still counts.
   void stop();
+  /// While results are held back, what a job returned waits; hold(false) lets it run soon afterwards. For
+  /// pages that must not change under a finger. Call this on the owner's thread.
+  void hold(bool held);
   /// Drops the results of all jobs started so far. Call this on the owner's thread; it returns at once.
   void abandon();
 
@@ -35,9 +38,13 @@ class NewestJob {
     Job job;
   };
   void run(const std::stop_token& stop);
+  void finish(int number, const std::function<void()>& then);
 
   QObject& owner_;
-  int newest_ = 0;  ///< number of the newest job; used on the owner's thread only
+  // used on the owner's thread only
+  int newest_ = 0;  ///< number of the newest job
+  bool held_ = false;
+  std::function<void()> waiting_;  ///< the newest result, while results are held back
   std::mutex mutex_;
   std::condition_variable_any changed_;
   std::optional<Wanted> wanted_;

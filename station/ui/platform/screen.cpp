@@ -27,6 +27,14 @@ double pixels_per_mm(const QScreen& screen) {
   return (believable(reported) ? reported : kFallback_dpi) / kInch_mm;
 }
 
+int panel_rotation_deg() {
+  const QString stated = qEnvironmentVariable("TURNPOINT_ROTATION", "0");
+  for (const int degrees : {0, 90, 180, 270})
+    if (stated == QString::number(degrees)) return degrees;
+  throw terms::UsageError("TURNPOINT_ROTATION: \"" + stated.toStdString() +
+                          "\"; allowed are 0, 90, 180 and 270 degrees");
+}
+
 void set_fonts() {
   QFont::insertSubstitutions(
       "Inter", {"Noto Sans Arabic UI", "Noto Sans Hebrew", "Noto Sans Devanagari UI", "DejaVu Sans",

@@ -9,6 +9,11 @@ namespace turnpoint::ui {
 /// that range.
 double pixels_per_mm(const QScreen& screen);
 
+/// The angle by which all pages are turned clockwise, for a panel that is not mounted upright: 0 or what the
+/// environment variable TURNPOINT_ROTATION says, 90, 180 or 270 degrees. Throws terms::UsageError for any
+/// other value.
+int panel_rotation_deg();
+
 /// Sets the application's font and, for each script, the fonts to fall back on, in order of preference. A
 /// text that mixes scripts then finds all of its glyphs. Catalogue::family says which languages need a
 /// different first font.

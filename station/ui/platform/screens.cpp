@@ -21,7 +21,7 @@ namespace {
 
 StationWindow::Place place_on(const Application& application, bool fullscreen) {
   return {pixels_per_mm(application.screen()), application.window_size(),
-          fullscreen || application.is_bare_panel()};
+          fullscreen || application.is_bare_panel(), panel_rotation_deg()};
 }
 
 /// Makes a stop signal end the event loop, from the moment at which the window shows its first page. Before
@@ -50,6 +50,7 @@ void show_until_closed(const Application& application, const QString& page, cons
   auto& window = load_page(engine, page,
                            {{"controller", controller},
                             {"pixelsPerMm", pixels_per_mm(application.screen())},
+                            {"turned", panel_rotation_deg()},
                             {"width", application.window_size().width()},
                             {"height", application.window_size().height()}});
   if (application.is_bare_panel()) window.showFullScreen();
@@ -80,9 +81,12 @@ session::Summary run_on_screen(setup::RunRequest request, std::optional<session:
 
 void run_station(const setup::StationRequest& request) {
   const Application application;
-  OperatorController operating(request);
+  OperatorController operating(request, check_protocol, OperatorController::Checks::when_allowed);
   StationWindow window(place_on(application, request.fullscreen),
                        {&operating, desk::operator_code(), request.locked}, request.database);
+  QObject::connect(&window.window(), &QQuickWindow::frameSwapped, &operating,
+                   &OperatorController::allow_checks,
+                   static_cast<Qt::ConnectionType>(Qt::QueuedConnection | Qt::SingleShotConnection));
   use_second_screen(application, window);
   stop_in_order(application, window);
   try {
@@ -118,11 +122,7 @@ void show_design(const cli::DesignRequest& request) {
 std::optional<calibration::PanelLatency> measure_latency(const maintenance::LatencyRequest& request) {
   const Application application;
   LatencyController controller(request.reference);
-  maintenance::LatencyDevices devices(rig::load(request.rig),
-                                      [&controller](std::int64_t time_ns) { controller.edge(time_ns); });
-  if (devices.has_kernel_times())
-    controller.set_kernel_time(
-        [&devices](double x, double y, std::int64_t seen_ns) { return devices.claim(x, y, seen_ns); });
+  controller.open(rig::load(request.rig));
   show_until_closed(application, "LatencyWindow.qml", QVariant::fromValue(&controller));
   return controller.kept();
 }

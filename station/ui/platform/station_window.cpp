@@ -1,20 +1,15 @@
 #include "station/ui/platform/station_window.hpp"
 
-#include <time.h>
-#include <unistd.h>
 #include <QGuiApplication>
-#include <QLoggingCategory>
 #include <QScreen>
 
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
-#include <sstream>
 #include <stdexcept>
 #include <utility>
 
 #include "station/setup/places.hpp"
+#include "station/ui/platform/first_page.hpp"
 #include "station/ui/platform/load_page.hpp"
 #include "station/ui/platform/screen.hpp"
 #include "station/ui/shared/operator_screen.hpp"
@@ -23,40 +18,17 @@ namespace turnpoint::ui {
 
 namespace {
 
-/// Logs how long the first page took to appear, if QT_LOGGING_RULES is `turnpoint.startup=true`.
-Q_LOGGING_CATEGORY(startup, "turnpoint.startup", QtWarningMsg)
-
-/// Milliseconds since the kernel started this process, with a resolution of 10 ms.
-double process_age_ms() {
-  std::ifstream stat("/proc/self/stat");
-  const std::string line{std::istreambuf_iterator<char>(stat), {}};
-  std::istringstream fields(line.substr(line.rfind(')') + 1));
-  std::string field;
-  for (int i = 3; i <= 22; ++i) fields >> field;  // field 22 is the start time in ticks since boot
-  timespec now{};
-  ::clock_gettime(CLOCK_BOOTTIME, &now);
-  const double started_s = std::stod(field) / static_cast<double>(::sysconf(_SC_CLK_TCK));
-  return 1e3 * (static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec) - started_s);
-}
-
-void tell_first_page(QQuickWindow& window) {
-  if (!startup().isInfoEnabled()) return;
-  QObject::connect(
-      &window, &QQuickWindow::frameSwapped, &window,
-      [] { qCInfo(startup) << "first page after" << process_age_ms() << "ms"; },
-      static_cast<Qt::ConnectionType>(Qt::DirectConnection | Qt::SingleShotConnection));
-}
-
 bool is_known(const std::string& database, const QString& code) {
   const auto known = desk::known_participants(database);
   return std::find(known.begin(), known.end(), code.toStdString()) != known.end();
 }
 
 /// Keeps the operator's choices of language, theme and text size in a file beside the database.
-void keep_screen_beside(QQmlEngine& engine, const std::string& database) {
+OperatorScreen* keep_screen_beside(QQmlEngine& engine, const std::string& database) {
   auto* screen = engine.singletonInstance<OperatorScreen*>(qmlTypeId("Turnpoint", 1, 0, "OperatorScreen"));
   if (screen == nullptr) throw std::logic_error("the module Turnpoint has no OperatorScreen");
   screen->keep_in(QString::fromStdString(std::filesystem::absolute(database).parent_path() / "screen.ini"));
+  return screen;
 }
 
 }  // namespace
@@ -90,9 +62,10 @@ StationWindow::StationWindow(const Place& place, const Operator& allowed, const 
                         {"operatorLock", QVariant::fromValue(&lock_)},
                         {"locked", allowed.locked},
                         {"pixelsPerMm", place.pixels_per_mm},
+                        {"turned", place.rotation_deg},
                         {"width", place.size.width()},
                         {"height", place.size.height()}});
-  keep_screen_beside(engine_, database);
+  look_ = keep_screen_beside(engine_, database);
   tell_first_page(*window_);
   runner_.watch(window_);
   if (place.bare_panel) window_->showFullScreen();
@@ -132,7 +105,7 @@ void StationWindow::begin() {
   setup_.participant = start_.participant().toStdString();
   if (!start_.language().isEmpty()) setup_.language = start_.language().toStdString();
   Q_EMIT beginning();
-  runner_.begin(setup_);
+  runner_.begin(setup_, look_->language().toStdString());
   if (arm_) runner_.bridge().arm();
 }
 

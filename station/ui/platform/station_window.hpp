@@ -19,6 +19,8 @@
 
 namespace turnpoint::ui {
 
+class OperatorScreen;
+
 /// The station's only window. It shows the operator's page, if there is one, and then the participant's
 /// pages, and runs the sessions behind them one after another. GUI thread only.
 class StationWindow : public QObject {
@@ -29,6 +31,7 @@ class StationWindow : public QObject {
     double pixels_per_mm = 4;
     QSize size;
     bool bare_panel = false;  ///< true if the window fills the screen
+    int rotation_deg = 0;     ///< the angle by which the pages are turned clockwise, see panel_rotation_deg()
   };
 
   struct Operator {
@@ -74,6 +77,7 @@ class StationWindow : public QObject {
   StartController start_;
   OperatorLock lock_;
   QQmlApplicationEngine engine_, live_engine_;
+  OperatorScreen* look_ = nullptr;  ///< owned by `engine_`
   QQuickWindow* window_ = nullptr;
 };
 

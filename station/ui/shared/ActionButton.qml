@@ -95,6 +95,7 @@ Rectangle {
             anchors.verticalCenter: parent.verticalCenter
         }
         PlainText {
+            readAloud: false
             visible: root.text !== ""
             text: root.text
             color: root.foreground

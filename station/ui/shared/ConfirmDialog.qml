@@ -24,7 +24,7 @@ Rectangle {
         id: arming
         interval: 350
     }
-    MouseArea { anchors.fill: parent }
+    Shield {}
     FittedColumn {
         theme: root.theme
         anchors { left: parent.left; right: parent.right; top: parent.top; bottom: buttons.top }

@@ -2,7 +2,7 @@ import QtQuick
 import Turnpoint
 
 // Letters and digits on the screen, for a station without a keyboard. `full` adds capitals and more signs, for
-// sentences.
+// sentences. The keys have the same order in languages that are read from right to left, like those of a keyboard.
 Column {
     id: root
     required property Theme theme
@@ -13,6 +13,10 @@ Column {
     readonly property var rows: full ? ["1234567890", "qwertyuiop", "asdfghjkl-", "zxcvbnm,. ", "?!'():/+*=_"]
         : ["1234567890", "qwertyuiop", "asdfghjkl-", "zxcvbnm,. "]
     spacing: 0.4 * theme.unit
+    LayoutMirroring.enabled: false
+    LayoutMirroring.childrenInherit: true
+
+    Texts { id: texts; language: OperatorScreen.language }
 
     Repeater {
         model: root.rows
@@ -31,6 +35,7 @@ Column {
                     quiet: true
                     width: (root.width - 11 * line.spacing) / 11.5
                     height: Math.min(root.theme.controlHeight, width)
+                    label: modelData === " " ? texts.text("space") : text
                     text: modelData === " " ? "␣" : root.capitals ? modelData.toUpperCase() : modelData
                     onActivated: {
                         root.typed(root.capitals ? modelData.toUpperCase() : modelData)
@@ -47,6 +52,7 @@ Column {
                 width: 1.5 * (root.width - 11 * line.spacing) / 11.5
                 height: Math.min(root.theme.controlHeight, width)
                 glyph: "backspace"
+                label: texts.text("erase")
                 onActivated: root.erased()
             }
             ActionButton {
@@ -58,6 +64,7 @@ Column {
                 width: 1.5 * (root.width - 11 * line.spacing) / 11.5
                 height: Math.min(root.theme.controlHeight, width)
                 text: "Aa"
+                label: texts.text("capitals")
                 onActivated: root.capitals = !root.capitals
             }
         }

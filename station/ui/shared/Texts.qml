@@ -6,6 +6,8 @@ import Turnpoint
 QtObject {
     required property string language
     readonly property bool mirrored: Catalogue.mirrored(language)
+    /// What stands before a piece of advice.
+    readonly property string arrow: mirrored ? "← " : "→ "
 
     function text(key: string) : string { return phrased(Catalogue.text(key, language)) }
 
@@ -32,6 +34,25 @@ QtObject {
         return hiragana.test(text[i]) && !polite(i) && (begins.test(text[i + 1]) || polite(i + 1))
     }
 
+    // Says a phrase that C++ gives: a string, or {key, values}, whose values are phrases as well. Without a key, the
+    // values follow one another. In a text that is read from right to left, each value is isolated (U+2068, U+2069), so
+    // that numbers, names and file names keep their order.
+    function say(phrase) : string {
+        if (phrase === undefined || typeof phrase === "string") return phrase ?? ""
+        const values = phrase.values.map(value => say(value))
+        if (phrase.key === "") return values.join("")
+        return text(phrase.key).replace(/%([1-9])/g, (place, number) => values[number - 1] === undefined ? place
+            : mirrored ? "\u2068" + values[number - 1] + "\u2069" : values[number - 1])
+    }
+
+    // What the run mode or the status of a session is called; a word that is not known stays as it is.
+    function named(word: string) : string {
+        const keys = { live: "operator.mode_live", pilot: "operator.mode_pilot", simulated: "operator.mode_simulated",
+                       running: "operator.status_running", "not ended": "operator.status_running", completed: "operator.status_completed", interrupted: "operator.status_interrupted",
+                       abandoned: "operator.status_abandoned", stopped: "operator.status_stopped" }
+        return word in keys ? text(keys[word]) : word
+    }
+
     // `backup` is {state: none | recent | old | ahead, hours}
     function lastBackup(backup) {
         if (backup.state === "none") return text("backup_none")
@@ -42,6 +63,33 @@ QtObject {
         if (backup.hours < 48)
             return text("backup_hours").arg(backup.hours)
         return text("backup_days").arg(Math.floor(backup.hours / 24))
+    }
+
+    // `session` is {participant, protocol, trials, ageS}, or empty
+    function interrupted(session) {
+        if (session.participant === undefined) return ""
+        return text("operator.interrupted").arg(session.participant).arg(session.protocol).arg(session.trials).arg(ago(session.ageS))
+    }
+    function ago(seconds: real) : string {
+        if (seconds < 0) return text("operator.ago_ahead")
+        if (seconds < 120) return text("operator.ago_now")
+        if (seconds < 7200) return text("operator.ago_minutes").arg(Math.floor(seconds / 60))
+        if (seconds < 172800) return text("operator.ago_hours").arg(Math.floor(seconds / 3600))
+        return text("operator.ago_days").arg(Math.floor(seconds / 86400))
+    }
+
+    // A day such as 2026-11-24 in words. Chinese and Japanese have no spaces, so word joiners keep the day on one
+    // line.
+    function day(date: string) : string {
+        const said = Catalogue.day(date, language)
+        return /^(ja|zh)/.test(language) ? said.split("").join("\u2060") : said
+    }
+
+    // `early` is {participant, session, from, last, lastDay, minDays}, or empty
+    function tooEarly(early) {
+        if (early.session === undefined) return ""
+        return text("operator.too_early").arg(early.session).arg(early.participant).arg(day(early.from))
+            .arg(early.last).arg(day(early.lastDay)).arg(early.minDays)
     }
 
     readonly property string proceed: text("proceed")

@@ -28,6 +28,8 @@ QtObject {
     readonly property real textHuge: 6 * unit
     readonly property real textTitle: (dense ? 2 * Math.min(1.4, textScale) : 4) * unit
     readonly property real textBody: dense ? textScale * Math.max(1.3 * unit, 2.5 * pixelsPerMm) : Math.max(2.5 * unit, 3.4 * pixelsPerMm)
+    /// The smallest text that can be read, for labels that do not fit otherwise.
+    readonly property real textLeast: 2.4 * pixelsPerMm
     readonly property real textSmall: dense ? textScale * Math.max(1.1 * unit, 2.2 * pixelsPerMm) : Math.max(1.8 * unit, 2.4 * pixelsPerMm)
 
     readonly property color paper: dark ? "#11161b" : "#f6f4ee"

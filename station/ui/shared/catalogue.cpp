@@ -1,5 +1,6 @@
 #include "station/ui/shared/catalogue.hpp"
 
+#include <QDate>
 #include <QLocale>
 
 #include "station/texts/texts.hpp"
@@ -12,6 +13,13 @@ QString Catalogue::text(const QString& key, const QString& language) {
 
 bool Catalogue::mirrored(const QString& language) {
   return QLocale(language).textDirection() == Qt::RightToLeft;
+}
+
+QString Catalogue::day(const QString& day, const QString& language) {
+  auto said = QLocale(language).toString(QDate::fromString(day, Qt::ISODate), QLocale::LongFormat);
+  for (auto& sign : said)
+    if (sign.isDigit()) sign = QChar('0' + sign.digitValue());
+  return said;
 }
 
 QString Catalogue::family() const {

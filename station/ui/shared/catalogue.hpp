@@ -22,6 +22,9 @@ class Catalogue : public QObject {
   Q_INVOKABLE static QString text(const QString& key, const QString& language);
   /// Says whether a language is written from right to left.
   Q_INVOKABLE static bool mirrored(const QString& language);
+  /// Returns a day such as 2026-11-24 as the language writes it, with the day of the week. Its digits are
+  /// 0 to 9, like those of all other numbers on the pages.
+  Q_INVOKABLE static QString day(const QString& day, const QString& language);
   QString family() const;
 
  Q_SIGNALS:

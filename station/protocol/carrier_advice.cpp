@@ -1,0 +1,73 @@
+#include "station/protocol/carrier_advice.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <string>
+
+#include "station/scene/force_carrier.hpp"
+#include "station/terms/force_carrier.hpp"
+#include "station/text/number.hpp"
+
+namespace turnpoint::protocol {
+
+namespace {
+
+using scene::ToneProduct;
+using text::number;
+
+/// Says how far one tone must be moved so that the filter of the force stops the product.
+std::string remedy(const ToneProduct& product, double carrier_Hz, int rate_Hz) {
+  const double shift_Hz = std::ceil((scene::force_stop_Hz - product.distance_Hz) / std::abs(product.first));
+  const auto distance_at = [&](double first_Hz) {
+    const double sum_Hz = product.first * first_Hz + product.second * product.second_Hz;
+    return std::abs(scene::captured_at(sum_Hz, rate_Hz) - carrier_Hz);
+  };
+  const double higher_Hz = product.first_Hz + shift_Hz, lower_Hz = product.first_Hz - shift_Hz;
+  const bool up = distance_at(higher_Hz) > distance_at(lower_Hz);
+  return "move a tone (that of " + number(product.first_Hz, 7) + " Hz to " +
+         number(up ? higher_Hz : lower_Hz, 7) + " Hz or " + (up ? "higher" : "lower") +
+         "), or compare the forces with those of trials without these tones before you rely on them";
+}
+
+struct Worst {
+  const Sight* sight = nullptr;
+  ToneProduct product;
+  int cases = 0;
+};
+
+}  // namespace
+
+std::vector<text::Problem> carrier_warnings(const Protocol& protocol, const rig::Rig& rig,
+                                            const std::vector<Sight>& sights) {
+  if (!rig.capture || rig.capture->bridges.empty()) return {};
+  const bool calibrated = rig.capture->forces && rig.capture->forces->carrier_Hz > 0;
+  const double carrier_Hz = calibrated ? rig.capture->forces->carrier_Hz : terms::kForceCarrier_Hz;
+  const int rate_Hz = rig.output.rate_Hz;
+  std::map<std::string, Worst> worst;
+  for (const auto& sight : sights) {
+    std::vector<double> tones_Hz;
+    for (const auto& tone : sight.tones) tones_Hz.push_back(tone.frequency_Hz);
+    const auto product = scene::nearest_product(tones_Hz, carrier_Hz, rate_Hz);
+    if (!product || product->distance_Hz >= scene::force_band_Hz) continue;
+    auto& of_scene = worst[sight.scene];
+    if (of_scene.cases++ == 0 || product->distance_Hz < of_scene.product.distance_Hz)
+      of_scene.sight = &sight, of_scene.product = *product;
+  }
+  std::vector<text::Problem> warnings;
+  for (const auto& [name, found] : worst) {
+    const auto& sight = *found.sight;
+    warnings.push_back(
+        {protocol.scenes.at(name).place,
+         "scene \"" + name + "\" in block \"" + sight.block + "\"" +
+             (sight.factors.empty() ? "" : " at " + format(sight.factors)) + ": " +
+             scene::name(found.product) + " is only " + number(found.product.distance_Hz, 3) +
+             " Hz from the carrier of the force cells (" + number(carrier_Hz) +
+             " Hz), so distortion can appear as an oscillation of the force" +
+             (found.cases > 1 ? " (and in " + std::to_string(found.cases - 1) + " more cases)" : ""),
+         remedy(found.product, carrier_Hz, rate_Hz)});
+  }
+  return warnings;
+}
+
+}  // namespace turnpoint::protocol

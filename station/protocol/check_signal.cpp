@@ -1,0 +1,156 @@
+#include <optional>
+#include <set>
+
+#include "station/protocol/answers.hpp"
+#include "station/protocol/combinations.hpp"
+#include "station/protocol/expression.hpp"
+#include "station/protocol/reading.hpp"
+#include "station/terms/limits.hpp"
+#include "station/text/number.hpp"
+
+namespace turnpoint::protocol {
+
+namespace {
+
+using By = ResponseSignal::By;
+using text::number;
+
+/// True if the time of a signal within the stimulus is known before the stimulus begins. Otherwise reports
+/// why it is not.
+bool time_is_known(const Protocol& protocol, const std::string& what, text::Findings& findings) {
+  const auto& signal = *protocol.timing.signal;
+  if (!explored(protocol.task)) {
+    findings.add(signal.by_place,
+                 what + " is part of the stimulus, but this task is answered after its intervals",
+                 "by = \"screen\" or \"flash\", or a task with a single interval");
+    return false;
+  }
+  const auto zero = protocol.timing.response_zero;
+  if (zero == ResponseZero::go_cue || zero == ResponseZero::change) return true;
+  findings.add(signal.by_place,
+               what + " is part of the stimulus, but \"response_zero\" is \"" + name(zero) +
+                   "\", whose time is not known when the stimulus begins",
+               "by = \"screen\" or \"flash\", or a \"response_zero\" of \"go_cue\" or \"change\"");
+  return false;
+}
+
+/// A buzz is the same in all trials. The search for cues does not look at it, so it must not depend on
+/// anything that could tell the answer.
+void check_same_buzz(const Reading& reading) {
+  const auto& scenes = reading.protocol.scenes;
+  // A zone is designed for the friction of its base scene, so the factors of the base scenes count, too.
+  for (auto at = scenes.find(reading.protocol.timing.signal->scene); at != scenes.end();
+       at = scenes.find(at->second.base))
+    for (const auto& name : factors_of(at->second))
+      return reading.findings.add(
+          reading.places.of("timing.response_signal.scene"),
+          "the buzz depends on \"" + name + "\", so it could tell something of the answer",
+          "a scene that is the same in all trials");
+}
+
+/// A lag that depends on what makes an answer right would tell something of the answer.
+void check_telling_lag(const Reading& reading) {
+  std::set<std::string> deciding;
+  for (const auto& [id, comparison] : reading.protocol.task.correct_answer)
+    for (const auto* side : {&comparison.left, &comparison.right})
+      for (const auto& name : factors_in(*side)) deciding.insert(name);
+  for (const auto& name : factors_in(reading.protocol.timing.signal->after_s))
+    if (deciding.count(name))
+      return reading.findings.add(
+          reading.places.of("timing.response_signal.after_s"),
+          "the time of the signal depends on \"" + name + "\", which decides the right answer",
+          "other factors");
+}
+
+/// A buzz takes the place of the last scene, which must have been reached, and be long enough before to be
+/// measured.
+void check_buzz(const Reading& reading) {
+  check_same_buzz(reading);
+  const auto& protocol = reading.protocol;
+  const auto& task = protocol.task;
+  const bool changes = !task.intervals.empty() && task.intervals.back().size() > 1;
+  if (!changes) return;
+  const auto& signal = *protocol.timing.signal;
+  if (protocol.timing.response_zero != ResponseZero::change)
+    return reading.findings.add(
+        signal.by_place, "a buzz that is timed from \"go_cue\" could meet the change to the second scene",
+        "response_zero = \"change\", or an interval of one scene");
+  const double first_s = bounds(signal.after_s, protocol.factors).first;
+  const double changed_s = 1e-3 * task.transition_ms.value_or(0) + terms::kBetweenChanges_s;
+  if (first_s < changed_s)
+    reading.findings.add(reading.places.of("timing.response_signal.after_s"),
+                         "the buzz can begin " + number(first_s) +
+                             " s after the change begins, which takes " +
+                             number(task.transition_ms.value_or(0)) + " ms",
+                         "at least " + number(changed_s) + " s");
+}
+
+/// All lags of a signal, if they are a list; empty if a factor varies over a range.
+std::set<double> lags_of(const Linear& after_s, const std::vector<Factor>& factors) {
+  std::vector<Factors> combinations{{}};
+  for (const auto& name : factors_in(after_s)) {
+    const auto* factor = find_factor(factors, name);
+    if (factor == nullptr || !span(*factor) || factor->levels.empty()) return {};
+    std::vector<Factors> next;
+    for (const auto& level : factor->levels)
+      for (auto combination : combinations) {
+        combination[name] = level;
+        next.push_back(std::move(combination));
+      }
+    combinations = std::move(next);
+  }
+  std::set<double> lags;
+  for (const auto& combination : combinations) lags.insert(evaluate(after_s, combination));
+  return lags;
+}
+
+/// A screen shows a flash with its next frame or the one after. A lag that is not longer than that, or that
+/// differs from another one by less than a frame, is not the lag that people get.
+void check_flash(const Reading& reading) {
+  const auto& after_s = reading.protocol.timing.signal->after_s;
+  const auto place = reading.places.of("timing.response_signal.after_s");
+  const auto& factors = reading.protocol.factors;
+  const double first_s = bounds(after_s, factors).first;
+  if (first_s < terms::kSignalLate_s - 1e-9)
+    reading.findings.add(place,
+                         "the flash can be due " + number(first_s) + " s after \"" +
+                             name(reading.protocol.timing.response_zero) +
+                             "\", but a screen may need three frames to show it",
+                         "at least " + number(terms::kSignalLate_s) + " s, or by = \"tone\"");
+  std::optional<double> before_s;
+  for (const double lag_s : lags_of(after_s, factors)) {
+    const double apart_s = lag_s - before_s.value_or(-1);
+    if (apart_s > 1e-9 && apart_s < terms::kFrame_s - 1e-9)
+      return reading.findings.add(
+          place,
+          "the lags " + number(*before_s) + " and " + number(lag_s) +
+              " s differ by less than a frame of the screen, so a flash cannot present both",
+          "lags that differ by at least " + number(terms::kFrame_s, 3) + " s, or by = \"tone\"");
+    before_s = lag_s;
+  }
+}
+
+}  // namespace
+
+void check_signal(const Reading& reading) {
+  const auto& protocol = reading.protocol;
+  const auto& signal = protocol.timing.signal;
+  if (!signal) return;
+  check_telling_lag(reading);
+  if (signal->by == By::screen) return;
+  if (signal->by == By::flash) return check_flash(reading);
+  const bool tone = signal->by == By::tone;
+  if (!time_is_known(protocol, tone ? "a tone" : "a buzz", reading.findings)) return;
+  if (!tone) check_buzz(reading);
+  const auto end = stimulus_end(protocol);
+  const double length_s = tone ? terms::kSignal_s : signal->length_s + terms::kBuzzRamp_s;
+  const double latest_s = bounds(signal->after_s, protocol.factors).second + length_s;
+  if (end && latest_s > end->earliest_s)
+    reading.findings.add(reading.places.of("timing.response_signal.after_s"),
+                         std::string("the ") + (tone ? "tone" : "buzz") + " can end " + number(latest_s) +
+                             " s after \"" + name(protocol.timing.response_zero) +
+                             "\", but the stimulus can end " + number(end->earliest_s) + " s after it",
+                         "a longer \"explore_s\", or at most " + number(end->earliest_s - length_s) + " s");
+}
+
+}  // namespace turnpoint::protocol
