@@ -488,6 +488,19 @@ class Sensors(Folder):
         with open(os.path.join(self.folder, "made.toml"), encoding="utf-8") as made:
             self.assertRegex(made.read(), r"(?s)\n\[forces\] .*\nusable_Hz = (19\.\d+|20(\.\d+)?) ")
 
+    def test_a_calibration_that_is_written_again_keeps_what_is_not_measured(self):
+        self.calibrated("--pickup")
+        self.calibrated("--forces", "\n" * 41)
+        with open(os.path.join(self.folder, "made.toml"), encoding="utf-8") as file:
+            made = file.read()
+        self.assertEqual((made.count("\n[[pickup]]"), made.count("\n[forces]")), (2, 1))
+        # a calibration of another rig file is not overwritten, and nobody has to measure to learn that
+        with open(os.path.join(self.folder, "plate.toml"), "a", encoding="utf-8") as rig:
+            rig.write("# changed\n")
+        self.refused(["calibrate", "--rig", "plate.toml", "--forces", "--out", "made.toml"], "made.toml is a calibration that has expired or belongs to another rig file")
+        with open(os.path.join(self.folder, "made.toml"), encoding="utf-8") as file:
+            self.assertEqual(file.read(), made)
+
     def test_the_doctor_weighs_under_drive(self):
         self.calibrated("--forces", "\n" * 41)
         os.rename(os.path.join(self.folder, "made.toml"), os.path.join(self.folder, "plate.calibration-" + TODAY + ".toml"))
