@@ -2,7 +2,7 @@
 // station plays on hw:Loopback,0,0 and plays what the station captures on hw:Loopback,1,1. Once a second it
 // prints the true state at a captured frame: "FRAME NORMAL_N LATERAL_N CONTACT_M AMPLITUDE_UM TEMPERATURE_C".
 // Exits with status 1 if it was ever too slow for the card, because frames are then missing.
-//   rig=FILE           surface, friction and transducers, from a rig file
+//   rig=FILE           a rig file with [capture]: surface, friction, transducers, pick-ups and force cells
 //   seconds=S          how long to run
 //   tones=HZ,HZ...     the tones that the finger can feel
 //   delay_ms=MS        length of the silence that is played first (default 250)
@@ -12,7 +12,6 @@
 //   commands=FIFO      obeys the lines that are written there: "fault NAME [AMOUNT]", "repair", "touch
 //   SECONDS", "lift";
 //                      each takes effect with the next captured period, and is then printed as "done: LINE"
-//   playback=N         channels that the station plays (default 4)
 //   from=PCM, to=PCM   the card's sides (default hw:Loopback,1,0 and hw:Loopback,0,1)
 #include <alsa/asoundlib.h>
 #include <fcntl.h>
@@ -36,7 +35,7 @@
 
 #include "station/plant/plant.hpp"
 #include "station/rig/rig.hpp"
-#include "station/scene/planner.hpp"
+#include "station/session/simulated_room.hpp"
 
 using namespace turnpoint;
 
@@ -50,7 +49,6 @@ struct Arguments {
                                             {"tones", ""},
                                             {"delay_ms", "250"},
                                             {"touch", ""},
-                                            {"playback", "4"},
                                             {"noise", "on"},
                                             {"commands", ""},
                                             {"from", "hw:Loopback,1,0"},
@@ -84,18 +82,8 @@ std::int64_t frame_at(const plant::Setup& setup, const std::string& seconds) {
 
 plant::Setup setup_from(const Arguments& arguments) {
   const auto rig = rig::load(arguments.text("rig"));
-  plant::Setup setup;
-  setup.rate_Hz = rig.output.rate_Hz;
-  setup.band_high_Hz = std::min(setup.band_high_Hz, 0.45 * setup.rate_Hz);
-  setup.playback_channels = static_cast<int>(arguments.number("playback"));
-  setup.surface = scene::surface_of(rig);
-  setup.friction = scene::friction_of(rig);
-  setup.finger.fingertip_m = rig.friction.fingertip_m;
-  setup.transducers.clear();
-  for (const auto& transducer : rig.transducers)
-    setup.transducers.push_back({transducer.channel, 1e6 * transducer.m_per_full_scale.value()});
-  if (setup.playback_channels <= 3) setup.wires.carrier_channel.reset();
-  if (setup.playback_channels > 2) setup.marker_channel = 2;
+  auto setup = session::laboratory_of(rig);
+  setup.playback_channels = std::max(setup.playback_channels, rig.output.device_channels);
   setup.loop_delay_frames = 0;
   if (arguments.text("noise") == "off") setup.finger.normal_noise = setup.finger.friction_noise = 0;
   if (!arguments.text("touch").empty())

@@ -1,4 +1,5 @@
 # proves: for ten minutes at 192 kHz, a session that plays eight tones and captures six channels, among them a pick-up and three force cells, loses no frame of playback and of capture, and proves every stimulus
+# needs: fast
 # suite: long
 # timeout: 7200
 minutes=${TURNPOINT_CAPTURE_MINUTES:-10}
@@ -11,7 +12,7 @@ loopback
 calibrate_for_live rig.toml
 calibration=$(ls rig.calibration-*.toml)
 { printf '\n[[pickup]]\nchannel = 0\ndrive_channel = 0\nfrequency_Hz = [%s]\n' "$(seq -s ', ' 14000 1000 60000)"
-  printf 'amplitude = [%s]\nphase_deg = [%s]\n' "$(seq -s ', ' -f 1 1 47)" "$(seq -s ', ' -f 0 1 47)"
+  printf 'amplitude = [%s1]\nphase_deg = [%s0]\n' "$(printf '1, %.0s' {1..46})" "$(printf '0, %.0s' {1..46})"
   printf '[forces]\ncarrier_Hz = 10525\nreference_amplitude = 0.5\nrotation_deg = [0, 0, 0]\nrated_ratio = [0.5, 0.5, 0.5]\n'
   printf 'matrix = [20, 0, 0, 20, 0, 6000, 0, 20, 0]\n'
 } >>"$calibration"

@@ -1,4 +1,6 @@
 # proves: a session on a sound card measures with [capture] what the simulated laboratory does: levels, phases, onsets and forces are right, and each fault of the laboratory is named in the trial in which it was, and in no other
+# needs: fast
+# suite: long
 # timeout: 1800
 loopback 2
 cp "$OUT/rig.toml" "$OUT/calibration.toml" .
