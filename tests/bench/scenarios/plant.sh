@@ -2,7 +2,7 @@
 # timeout: 400
 loopback 2
 # The emulated machine is too slow for 192 kHz. The laboratory decides that the card has 4 channels.
-sed -e 's/^rate_Hz.*/rate_Hz = 96000/' -e 's/^band_kHz.*/band_kHz = [14, 43]/' -e '/^rate_Hz/a period_frames = 1920\nperiods = 40\ndevice_channels = 4' \
+sed -e 's/^rate_Hz.*/rate_Hz = 96000/' -e 's/^band_kHz.*/band_kHz = [16, 43]/' -e '/^rate_Hz/a period_frames = 1920\nperiods = 40\ndevice_channels = 4' \
   "$SOURCE/deploy/rigs/simulated-forces.toml" >rig.toml
 plant rig=rig.toml seconds=10 tones=30000 touch=0.5 >truth.txt & plant=$!
 eventually 60 grep -q RUNNING /proc/asound/Loopback/pcm0p/sub1/status
