@@ -242,10 +242,10 @@ void add_calibrate(CommandLine& app, Context& context) {
   command->add_option("--note", options->note,
                       "Note to store in the calibration file: instruments, temperature, operator");
   command
-      ->add_option(
-          "--out", options->out,
-          "Calibration file to write; by default beside the rig file, with the date in its name, "
-          "where `run` finds it. What the file already has and this command does not measure is kept")
+      ->add_option("--out", options->out,
+                   "Calibration file to write; by default beside the rig file, with the date in its name, "
+                   "where `run` finds it. If it exists, --pickup, --forces and --panel replace only what "
+                   "they measure; other measurements replace all but the results of these three")
       ->value("FILE");
   command
       ->add_option("--plots", options->plots,

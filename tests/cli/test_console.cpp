@@ -1,7 +1,4 @@
 // What the operator without a screen reads: each page says what can be typed to go on.
-#include <fcntl.h>
-#include <unistd.h>
-
 #include <sstream>
 
 #include "station/cli/operator_console.hpp"

@@ -9,9 +9,9 @@
 //   touch=S            when a finger begins to stroke; without this key there is no finger
 //   fault=NAME@S       a fault and its beginning (s), e.g. "fault=transducer dead@5"; may be repeated
 //   noise=off          a finger whose force and friction do not vary
-//   commands=FIFO      obeys the lines that are written there: "fault NAME [AMOUNT]", "repair", "touch
-//   SECONDS", "lift";
-//                      each takes effect with the next captured period, and is then printed as "done: LINE"
+//   commands=FIFO      obeys the lines that are written there: "fault NAME [AMOUNT]", "repair",
+//                      "touch SECONDS", "lift"; each takes effect with the next captured period, and is then
+//                      printed as "done: LINE"
 //   from=PCM, to=PCM   the card's sides (default hw:Loopback,1,0 and hw:Loopback,0,1)
 #include <alsa/asoundlib.h>
 #include <fcntl.h>

@@ -29,6 +29,7 @@ said() { grep -cE "$1" console.txt || true; }
 mended=0 went_on=0 touched=0 answered=0
 while kill -0 $session 2>/dev/null; do
   kill -0 $plant 2>/dev/null || { tail console.txt; fail "the laboratory was too slow for the card"; }
+  [ "$(said "note REASON")" = 0 ] || { tail console.txt; fail "the self-test found a fault"; }
   if [ "$(said ^fault)" -gt $mended ]; then
     mended=$(said ^fault)
     sleep 0.5
