@@ -153,7 +153,7 @@ void calibrate_panel(const Options& options, const rig::Rig& rig, Context& conte
     return context.screens->latency({options.rig, reference});
   });
   if (!measured) throw std::runtime_error("calibrate --panel: no result was accepted, so no file is written");
-  const auto made = maintenance::with_panel(rig, *measured);
+  const auto made = maintenance::with_panel(rig, *measured, options.out);
   const auto out =
       options.out.empty() ? calibration::file_for(options.rig, calibration::today()) : options.out;
   system::write_file(out, calibration::to_toml(made));
@@ -179,6 +179,8 @@ void calibrate_panel(const Options& options, const rig::Rig& rig, Context& conte
 void calibrate(const Options& options, Context& context) {
   const auto rig = rig::load(options.rig);
   if (options.sweep) return sweep(options, rig, context);
+  // refuses to overwrite a calibration that must be kept before anything is measured
+  static_cast<void>(maintenance::known_calibration(rig, options.out));
   if (options.panel) return calibrate_panel(options, rig, context);
   if (options.sensors.pick_up && options.sensors.forces)
     throw UsageError("calibrate: --pickup and --forces are two measurements; give one of them");
@@ -191,7 +193,7 @@ void calibrate(const Options& options, Context& context) {
   }
   const auto measurements = measurements_of(options);
   auto made = maintenance::calibrate(rig, measurements, options.valid_days, options.note);
-  maintenance::keep_devices(rig, made);
+  maintenance::keep_devices(rig, made, options.out);
   const auto out = options.out.empty() ? calibration::file_for(options.rig, made.made_on) : options.out;
   const auto plots = options.plots.empty() ? out + ".svg" : options.plots;
   system::write_file(plots, plot::render(maintenance::calibration_figure(made, measurements)));
@@ -242,7 +244,8 @@ void add_calibrate(CommandLine& app, Context& context) {
   command
       ->add_option("--out", options->out,
                    "Calibration file to write; by default beside the rig file, with the date in its name, "
-                   "where `run` finds it")
+                   "where `run` finds it. If it exists, --pickup, --forces and --panel replace only what "
+                   "they measure; other measurements replace all but the results of these three")
       ->value("FILE");
   command
       ->add_option("--plots", options->plots,

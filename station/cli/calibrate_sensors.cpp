@@ -99,7 +99,7 @@ void calibrate_pick_ups(const SensorOptions& options, const rig::Rig& rig, Conte
   plan.sensor = calibration::find_sensor(options.sensor).value();
   plan.vibrometer = options.vibrometer, plan.accelerometer = options.accelerometer;
   plan.instrument_sd = 1e-2 * options.instrument_percent;
-  const auto made = maintenance::with_pick_ups(rig, maintenance::calibrate_pick_ups(rig, plan));
+  const auto made = maintenance::with_pick_ups(rig, maintenance::calibrate_pick_ups(rig, plan), options.out);
   const auto out =
       options.out.empty() ? calibration::file_for(options.rig_path, calibration::today()) : options.out;
   system::write_file(out, calibration::to_toml(made));

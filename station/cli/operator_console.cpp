@@ -68,6 +68,13 @@ const char* name(PageKind kind) {
   return "";
 }
 
+/// What the operator can type on the page of a fault.
+std::string what_continues(const session::Page& page) {
+  if (page.fault == session::FaultKind::self_test) return "; note REASON continues, stop ends the session";
+  if (page.fault == session::FaultKind::limits) return "; next ends the session";
+  return page.amplifier.empty() ? "; next continues" : "; amplifier " + page.amplifier + ": arm or stop";
+}
+
 }  // namespace
 
 OperatorConsole::OperatorConsole(const rig::Rig& rig, session::Inputs& inputs, std::ostream& messages)
@@ -83,7 +90,7 @@ void OperatorConsole::show(const session::Page& page) {
   std::string text = name(page.kind);
   if (page.kind == PageKind::fault) {
     text += ": " + page.text + (page.detail.empty() ? "" : " (" + page.detail + ")");
-    text += page.amplifier.empty() ? "; next continues" : "; amplifier " + page.amplifier + ": arm or stop";
+    text += what_continues(page);
   }
   if (page.kind == PageKind::feedback && page.correct) text += *page.correct ? ": right" : ": wrong";
   if (text == std::exchange(last_, text)) return;

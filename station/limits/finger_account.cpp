@@ -13,9 +13,13 @@ namespace {
 
 constexpr double kUnlimited_s = 1e9;
 
-double wall_s(const records::SegmentStart& segment, std::int64_t time_ns) {
-  return 1e-9 * static_cast<double>(segment.realtime_ns) +
-         1e-9 * static_cast<double>(time_ns - segment.monotonic_ns);
+/// When a segment began, on today's wall clock. A board without a clock of its own begins with a wrong time,
+/// which the network sets right later.
+double start_s(const records::SegmentStart& segment, const records::SegmentStart& now) {
+  const bool same_boot = !now.boot_id.empty() && segment.boot_id == now.boot_id;
+  const auto start_ns =
+      same_boot ? now.realtime_ns - (now.boottime_ns - segment.boottime_ns) : segment.realtime_ns;
+  return 1e-9 * static_cast<double>(start_ns);
 }
 
 /// The time during which a segment (one program run of a session) was active, in s since 1970.
@@ -23,19 +27,19 @@ struct Active {
   double start_s = 0, end_s = 0;
 };
 
-void gather(const store::StoredSession& session, double longest_s, std::vector<Exposed>& stimuli,
-            std::vector<Active>& active) {
+void gather(const store::StoredSession& session, const records::SegmentStart& now, double longest_s,
+            std::vector<Exposed>& stimuli, std::vector<Active>& active) {
   std::set<int> ended;
   for (const auto& block : session.blocks)
     for (const auto& trial : block.trials) ended.insert(trial.trial_index);
   std::vector<Active> segments;
   for (const auto& segment : session.segments)
-    segments.push_back(
-        {1e-9 * static_cast<double>(segment.realtime_ns), 1e-9 * static_cast<double>(segment.realtime_ns)});
+    segments.push_back({start_s(segment, now), start_s(segment, now)});
   for (const auto& event : session.events) {
     const auto index = static_cast<std::size_t>(event.segment_index - 1);
     if (index >= segments.size()) continue;
-    const double at_s = wall_s(session.segments[index], event.time_ns);
+    const double at_s = segments[index].start_s +
+                        1e-9 * static_cast<double>(event.time_ns - session.segments[index].monotonic_ns);
     segments[index].end_s = std::max(segments[index].end_s, at_s);
     const bool open = event.kind == "presented" && event.trial_index && !ended.count(*event.trial_index);
     if (event.kind == "stimulus")
@@ -54,11 +58,12 @@ ExposureLimits limits_of(const rig::Rig& rig, terms::RunMode mode) {
           person ? 60 * rig.limits.session_minutes : kUnlimited_s};
 }
 
-FingerHistory finger_history(const std::vector<store::StoredSession>& sessions, double now_s,
-                             double longest_s) {
+FingerHistory finger_history(const std::vector<store::StoredSession>& sessions,
+                             const records::SegmentStart& now, double longest_s) {
+  const double now_s = 1e-9 * static_cast<double>(now.realtime_ns);
   FingerHistory history;
   std::vector<Active> active;
-  for (const auto& session : sessions) gather(session, longest_s, history.stimuli, active);
+  for (const auto& session : sessions) gather(session, now, longest_s, history.stimuli, active);
   for (auto& stimulus : history.stimuli) {
     const double late_s = std::max(0.0, stimulus.end_s - now_s);
     stimulus.start_s -= late_s, stimulus.end_s -= late_s;
@@ -73,17 +78,23 @@ FingerHistory finger_history(const std::vector<store::StoredSession>& sessions, 
   return history;
 }
 
-FingerHistory read_finger_history(const std::string& database, const std::string& participant, double now_s,
-                                  double longest_s) {
-  std::vector<store::StoredSession> recent;
+FingerHistory read_finger_history(const std::string& database, const std::string& participant,
+                                  const records::SegmentStart& now, double longest_s) {
   std::error_code ignored;
-  if (std::filesystem::exists(database, ignored))
-    for (const auto& session : store::list_sessions(database, {"", participant, ""})) {
-      const double idle_s = now_s - 1e-9 * static_cast<double>(session.last_activity_realtime_ns);
-      if (session.start.run_mode != terms::RunMode::simulated && idle_s < 3600 + kNewPeriod_s)
-        recent.push_back(store::read_session(database, session.session_id));
-    }
-  return finger_history(recent, now_s, longest_s);
+  if (!std::filesystem::exists(database, ignored)) return finger_history({}, now, longest_s);
+  auto sessions = store::list_sessions(database, {"", participant, ""});
+  std::erase_if(sessions,
+                [](const auto& session) { return session.start.run_mode == terms::RunMode::simulated; });
+  std::int64_t newest = 0;
+  for (const auto& session : sessions) newest = std::max(newest, session.last_trial_id);
+  std::vector<store::StoredSession> recent;
+  for (const auto& session : sessions) {
+    const double idle_s = 1e-9 * static_cast<double>(now.realtime_ns - session.last_activity_realtime_ns);
+    // The newest session is read whatever the wall clock says, because the clock may have been set ahead.
+    if (idle_s < 3600 + kNewPeriod_s || session.last_trial_id == newest)
+      recent.push_back(store::read_session(database, session.session_id));
+  }
+  return finger_history(recent, now, longest_s);
 }
 
 namespace {

@@ -23,15 +23,17 @@ struct FingerHistory {
 };
 inline constexpr double kNewPeriod_s = 1800;
 
-/// Computes the history from the sessions that ended within the half hour before `now_s`. A trial that was
-/// presented but never finished, because of a crash, counts as a stimulus of `longest_s`. A time after
-/// `now_s` counts as `now_s`, because the clock must have been set back.
-FingerHistory finger_history(const std::vector<store::StoredSession>& sessions, double now_s,
-                             double longest_s);
+/// Computes the history from the sessions that ended within the half hour before `now`, which are the clocks
+/// of the program run that begins. Since the machine was started, how long ago a stimulus was is taken from
+/// the clock that nobody sets (`boottime_ns`); before that, from the wall clock. A trial that was presented
+/// but never finished, because of a crash, counts as a stimulus of `longest_s`. A time after `now` counts as
+/// `now`, because the wall clock must have been set back.
+FingerHistory finger_history(const std::vector<store::StoredSession>& sessions,
+                             const records::SegmentStart& now, double longest_s);
 
 /// Reads the history from a database, which may not exist yet. Simulated sessions have no history.
-FingerHistory read_finger_history(const std::string& database, const std::string& participant, double now_s,
-                                  double longest_s);
+FingerHistory read_finger_history(const std::string& database, const std::string& participant,
+                                  const records::SegmentStart& now, double longest_s);
 
 /// Keeps a period of exposure within the rig's limits. Times are those of the stage's clock, which may be
 /// virtual.

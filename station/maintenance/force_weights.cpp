@@ -363,7 +363,7 @@ ForceResult weigh(const rig::Rig& rig, BridgeReader& bridges,
 }
 
 std::string write_forces(const rig::Rig& rig, const rig::ForceCells& cells, const std::string& path) {
-  auto made = known_calibration(rig);
+  auto made = known_calibration(rig, path);
   made.forces = cells;
   const auto out = path.empty() ? calibration::file_for(rig.path, calibration::today()) : path;
   system::write_file(out, calibration::to_toml(made));

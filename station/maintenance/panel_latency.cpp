@@ -1,5 +1,6 @@
 #include "station/maintenance/panel_latency.hpp"
 
+#include <filesystem>
 #include <utility>
 
 #include "station/calibration/apply.hpp"
@@ -13,8 +14,7 @@ namespace turnpoint::maintenance {
 
 namespace {
 
-std::optional<calibration::Calibration> in_force(const rig::Rig& rig) {
-  const auto path = calibration::newest_for(rig.path);
+std::optional<calibration::Calibration> in_force(const rig::Rig& rig, const std::string& path) {
   if (path.empty()) return std::nullopt;
   auto newest = calibration::load(path);
   // A calibration that has only friction or sound levels is not used by sessions, but what is in it still
@@ -43,8 +43,13 @@ std::optional<std::int64_t> LatencyDevices::claim(double x, double y, std::int64
   return touch_ ? touch_->claim(x, y, seen_ns) : std::nullopt;
 }
 
-calibration::Calibration known_calibration(const rig::Rig& rig) {
-  auto made = in_force(rig).value_or(calibration::Calibration{});
+calibration::Calibration known_calibration(const rig::Rig& rig, const std::string& out) {
+  const bool continued = !out.empty() && std::filesystem::exists(out);
+  const auto found = in_force(rig, continued ? out : calibration::newest_for(rig.path));
+  if (continued && !found)
+    throw terms::UsageError(out + " is a calibration that has expired or belongs to another rig file, and " +
+                            "would be overwritten; choose another file, or remove it");
+  auto made = found.value_or(calibration::Calibration{});
   if (made.rig_sha256.empty()) {
     made.rig_name = rig.name;
     made.rig_sha256 = rig.sha256;
@@ -53,8 +58,9 @@ calibration::Calibration known_calibration(const rig::Rig& rig) {
   return made;
 }
 
-calibration::Calibration with_panel(const rig::Rig& rig, const calibration::PanelLatency& measured) {
-  auto made = known_calibration(rig);
+calibration::Calibration with_panel(const rig::Rig& rig, const calibration::PanelLatency& measured,
+                                    const std::string& out) {
+  auto made = known_calibration(rig, out);
   auto panel = measured;
   panel.made_on = calibration::today();
   if (made.panel && made.panel->quality == panel.quality) {
@@ -71,8 +77,8 @@ std::string keep_panel(const rig::Rig& rig, const calibration::PanelLatency& mea
   return file;
 }
 
-void keep_devices(const rig::Rig& rig, calibration::Calibration& made) {
-  const auto known = known_calibration(rig);
+void keep_devices(const rig::Rig& rig, calibration::Calibration& made, const std::string& out) {
+  const auto known = known_calibration(rig, out);
   made.panel = known.panel;
   made.pick_ups = known.pick_ups;
   made.forces = known.forces;

@@ -46,19 +46,21 @@ class LatencyDevices {
   std::unique_ptr<lines::Buttons> buttons_;
 };
 
-/// Returns a calibration that includes this latency of the panel. It is based on the newest calibration
-/// beside the rig file, if that is still valid; otherwise it contains nothing else. If the older calibration
-/// has a latency measured with the other reference (button or photodiode), that value is kept. The
-/// calibration gets today's date.
-calibration::Calibration with_panel(const rig::Rig& rig, const calibration::PanelLatency& measured);
+/// Returns the known calibration with this latency of the panel. If it already has a latency measured with
+/// the other reference (button or photodiode), that value is kept. The latency gets today's date.
+calibration::Calibration with_panel(const rig::Rig& rig, const calibration::PanelLatency& measured,
+                                    const std::string& out = "");
 /// Writes that calibration beside the rig file, and returns its path. Throws std::system_error.
 std::string keep_panel(const rig::Rig& rig, const calibration::PanelLatency& measured);
 
-/// Returns the newest valid calibration beside the rig file; without one, a calibration with nothing in it.
-calibration::Calibration known_calibration(const rig::Rig& rig);
+/// Returns the calibration whose parts a new one keeps: the file `out` if it exists, since it will be
+/// overwritten; otherwise the newest valid calibration beside the rig file; without one, a calibration with
+/// nothing in it. Throws terms::UsageError if `out` has expired or belongs to another rig file, and
+/// text::BadInput if it cannot be read.
+calibration::Calibration known_calibration(const rig::Rig& rig, const std::string& out = "");
 
 /// Copies the parts of a calibration that separate commands measure (panel, pick-ups, force cells) from the
-/// newest valid calibration beside the rig file.
-void keep_devices(const rig::Rig& rig, calibration::Calibration& made);
+/// known calibration.
+void keep_devices(const rig::Rig& rig, calibration::Calibration& made, const std::string& out = "");
 
 }  // namespace turnpoint::maintenance

@@ -179,8 +179,9 @@ std::vector<PickUp> calibrate_pick_ups(const rig::Rig& rig, const PickUpOptions&
   return made;
 }
 
-calibration::Calibration with_pick_ups(const rig::Rig& rig, std::vector<PickUp> pick_ups) {
-  auto made = known_calibration(rig);
+calibration::Calibration with_pick_ups(const rig::Rig& rig, std::vector<PickUp> pick_ups,
+                                       const std::string& out) {
+  auto made = known_calibration(rig, out);
   made.pick_ups = std::move(pick_ups);
   return made;
 }

@@ -29,8 +29,8 @@ struct PickUpOptions {
 /// not allow a fit; text::BadInput for the table; std::runtime_error if frames were lost.
 std::vector<calibration::PickUp> calibrate_pick_ups(const rig::Rig& rig, const PickUpOptions& options);
 
-/// Returns the newest valid calibration beside the rig file with these pick-ups; without one, a calibration
-/// that contains nothing else.
-calibration::Calibration with_pick_ups(const rig::Rig& rig, std::vector<calibration::PickUp> pick_ups);
+/// Returns known_calibration() with these pick-ups.
+calibration::Calibration with_pick_ups(const rig::Rig& rig, std::vector<calibration::PickUp> pick_ups,
+                                       const std::string& out = "");
 
 }  // namespace turnpoint::maintenance

@@ -139,10 +139,11 @@ namespace {
 /// Reads the participant's history of exposure. Call this before the log is opened for writing, because both
 /// use the same database.
 limits::FingerAccount account_of(const Setup& setup, std::int64_t origin_ns) {
-  const double now_s = 1e-9 * static_cast<double>(system::realtime_ns());
+  const auto now = segment("", origin_ns);
+  const double now_s = 1e-9 * static_cast<double>(now.realtime_ns);
   const auto limits = limits::limits_of(setup.rig, setup.run_mode);
   const auto history = setup.observer.empty() ? limits::read_finger_history(setup.database, setup.participant,
-                                                                            now_s, limits.continuous_s)
+                                                                            now, limits.continuous_s)
                                               : limits::FingerHistory{{}, now_s};
   return limits::FingerAccount(limits, history, origin_ns, now_s);
 }

@@ -20,46 +20,6 @@ constexpr double kFirst_m = 3e-3, kNext_m = 6e-3;
 constexpr double kStrokeFrom = 0.25, kStrokeTo = 0.75, kStroke_m_s = 0.09, kPause_s = 0.05;
 constexpr double kStep_Hz = 20;  // distance between two points of a pick-up's response
 
-plant::Setup room_of(const rig::Rig& rig) {
-  if (!rig.capture) throw std::logic_error("simulated room: the rig captures nothing");
-  plant::Setup room;
-  room.rate_Hz = rig.output.rate_Hz;
-  room.playback_channels = rig::channels(rig);
-  room.transducers.clear();
-  room.band_low_Hz = 1e9, room.band_high_Hz = 0;
-  for (const auto& t : rig.transducers) {
-    room.transducers.push_back({t.channel, 1e6 * t.m_per_full_scale.value_or(4e-6)});
-    room.band_low_Hz = std::min(room.band_low_Hz, t.low_Hz);
-    room.band_high_Hz = std::max(room.band_high_Hz, t.high_Hz);
-  }
-  room.capture.count = rig.capture->channels;
-  room.capture.marker = std::nullopt;
-  room.wires.carrier_channel = rig.capture->excitation_channel;
-  if (const auto& bridges = rig.capture->bridges; !bridges.empty()) {
-    room.capture.reference = rig.capture->reference;
-    room.capture.bridge_a = bridges[0], room.capture.bridge_b = bridges[1], room.capture.lateral = bridges[2];
-    room.cells.span_m = rig.surface.length_m;
-    room.finger.from_m = kStrokeFrom * rig.surface.length_m;
-    room.finger.to_m = kStrokeTo * rig.surface.length_m;
-    room.finger.stroke_s = (room.finger.to_m - room.finger.from_m) / kStroke_m_s;
-    room.finger.pause_s = kPause_s;
-    room.finger.fingertip_m = rig.friction.fingertip_m;
-  } else {
-    room.capture.reference = room.capture.bridge_a = room.capture.bridge_b = room.capture.lateral =
-        std::nullopt;
-  }
-  if (rig.capture->marker_channel) {
-    room.capture.marker = rig.capture->marker_channel;
-    room.marker_channel = rig.marker.value().channel;
-  }
-  room.pickups.clear();
-  for (const int pick_up : rig.capture->pick_ups)
-    room.pickups.push_back({pick_up, kFirst_m + kNext_m * static_cast<double>(room.pickups.size())});
-  room.surface = scene::surface_of(rig);
-  room.friction = scene::friction_of(rig);
-  return room;
-}
-
 /// Returns the ratio of bridge signal to reference signal for a force of 1 N on a cell.
 double ratio_per_N(const plant::Setup& room) {
   const auto& wires = room.wires;
@@ -99,9 +59,49 @@ sensing::FingerSetup finger_of(const plant::Setup& room) {
 
 }  // namespace
 
+plant::Setup laboratory_of(const rig::Rig& rig) {
+  if (!rig.capture) throw std::logic_error("simulated laboratory: the rig captures nothing");
+  plant::Setup room;
+  room.rate_Hz = rig.output.rate_Hz;
+  room.playback_channels = rig::channels(rig);
+  room.transducers.clear();
+  room.band_low_Hz = 1e9, room.band_high_Hz = 0;
+  for (const auto& t : rig.transducers) {
+    room.transducers.push_back({t.channel, 1e6 * t.m_per_full_scale.value_or(4e-6)});
+    room.band_low_Hz = std::min(room.band_low_Hz, t.low_Hz);
+    room.band_high_Hz = std::max(room.band_high_Hz, t.high_Hz);
+  }
+  room.capture.count = rig.capture->channels;
+  room.capture.marker = std::nullopt;
+  room.wires.carrier_channel = rig.capture->excitation_channel;
+  if (const auto& bridges = rig.capture->bridges; !bridges.empty()) {
+    room.capture.reference = rig.capture->reference;
+    room.capture.bridge_a = bridges[0], room.capture.bridge_b = bridges[1], room.capture.lateral = bridges[2];
+    room.cells.span_m = rig.surface.length_m;
+    room.finger.from_m = kStrokeFrom * rig.surface.length_m;
+    room.finger.to_m = kStrokeTo * rig.surface.length_m;
+    room.finger.stroke_s = (room.finger.to_m - room.finger.from_m) / kStroke_m_s;
+    room.finger.pause_s = kPause_s;
+    room.finger.fingertip_m = rig.friction.fingertip_m;
+  } else {
+    room.capture.reference = room.capture.bridge_a = room.capture.bridge_b = room.capture.lateral =
+        std::nullopt;
+  }
+  if (rig.capture->marker_channel) {
+    room.capture.marker = rig.capture->marker_channel;
+    room.marker_channel = rig.marker.value().channel;
+  }
+  room.pickups.clear();
+  for (const int pick_up : rig.capture->pick_ups)
+    room.pickups.push_back({pick_up, kFirst_m + kNext_m * static_cast<double>(room.pickups.size())});
+  room.surface = scene::surface_of(rig);
+  room.friction = scene::friction_of(rig);
+  return room;
+}
+
 SimulatedRoom::SimulatedRoom(const rig::Rig& rig, const std::function<void(plant::Setup&)>& change)
     : rig_(rig.capture.value_or(rig::Capture{})), plant_([&] {
-        auto room = room_of(rig);
+        auto room = laboratory_of(rig);
         if (change) change(room);
         return room;
       }()) {}

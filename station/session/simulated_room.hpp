@@ -10,6 +10,10 @@
 
 namespace turnpoint::session {
 
+/// Returns the laboratory that a rig with a [capture] table describes: its surface, pick-ups, force cells and
+/// wires. Throws std::logic_error if the rig captures nothing.
+plant::Setup laboratory_of(const rig::Rig& rig);
+
 /// The simulated laboratory behind the converter of a rig whose [capture] is `sim:`: the plate moves as its
 /// model says, pick-ups near the drive edge record it, and force cells feel the finger.
 class SimulatedRoom {

@@ -231,7 +231,8 @@ class Examples(Folder):
         _, out, _ = run(["protocols", "--json"], self.folder)
         for protocol in json.loads(out):
             for name in (protocol["id"], protocol["id"] + ".toml"):
-                rig = "simulated-forces" if protocol["id"] == "friction-measured" else "simulated"
+                measures_or_plays = protocol["id"] in ("friction-measured", "response-signal-tone")
+                rig = "simulated-forces" if measures_or_plays else "simulated"
                 status, _, err = run(["check", name, "--rig", rig, "--sessions", "0"], self.folder)
                 self.assertEqual(status, 0, err)
         # a file of this name is used instead of the shipped protocol of the same name
@@ -487,6 +488,19 @@ class Sensors(Folder):
         with open(os.path.join(self.folder, "made.toml"), encoding="utf-8") as made:
             self.assertRegex(made.read(), r"(?s)\n\[forces\] .*\nusable_Hz = (19\.\d+|20(\.\d+)?) ")
 
+    def test_a_calibration_that_is_written_again_keeps_what_is_not_measured(self):
+        self.calibrated("--pickup")
+        self.calibrated("--forces", "\n" * 41)
+        with open(os.path.join(self.folder, "made.toml"), encoding="utf-8") as file:
+            made = file.read()
+        self.assertEqual((made.count("\n[[pickup]]"), made.count("\n[forces]")), (2, 1))
+        # a calibration of another rig file is not overwritten, and nobody has to measure to learn that
+        with open(os.path.join(self.folder, "plate.toml"), "a", encoding="utf-8") as rig:
+            rig.write("# changed\n")
+        self.refused(["calibrate", "--rig", "plate.toml", "--forces", "--out", "made.toml"], "made.toml is a calibration that has expired or belongs to another rig file")
+        with open(os.path.join(self.folder, "made.toml"), encoding="utf-8") as file:
+            self.assertEqual(file.read(), made)
+
     def test_the_doctor_weighs_under_drive(self):
         self.calibrated("--forces", "\n" * 41)
         os.rename(os.path.join(self.folder, "made.toml"), os.path.join(self.folder, "plate.calibration-" + TODAY + ".toml"))
@@ -561,6 +575,24 @@ class Measured(Folder):
             self.assertEqual({len(line.split("\t")) for line in file}, {len(sidecar["Columns"])})
         with open(os.path.join(self.folder, "P01.html"), encoding="utf-8") as page:
             self.assertIn("<h2>The finger</h2>", page.read())
+
+    def test_a_session_answered_at_a_tone_on_the_headphones(self):
+        with open(os.path.join(SOURCE, "protocols/response-signal-tone.toml"), encoding="utf-8") as file:
+            protocol = file.read()
+        for text, shorter in (("[0.1, 0.2, 0.35, 0.6, 1.0, 1.6]", "[0.35, 1.0]"), ("repeats = 84", "repeats = 2"), ("trials = 28", "trials = 2")):
+            self.assertIn(text, protocol)
+            protocol = protocol.replace(text, shorter)
+        self.write("short.toml", protocol.encode())
+        session = ["run", "short.toml", "--participant", "P01", "--observer", "sim", "--seed", "1", "--db", "lab.sqlite"]
+        self.refused([*session, "--rig", "simulated"], "the response signal is a tone, but the rig has none")
+        for arguments in ([*session, "--rig", "simulated-forces"], ["export", "--db", "lab.sqlite", "--out", "csv"]):
+            status, _, err = run(arguments, self.folder)
+            self.assertEqual(status, 0, err)
+        trials = self.rows("csv/response-signal-tone/trials.csv")
+        self.assertEqual(len(trials), 10)
+        for trial in trials:
+            after_signal_s = float(trial["response_time"]) - float(trial["lag_s"])
+            self.assertEqual((trial["outcome"], trial["proof"], 0 <= after_signal_s <= 0.4), ("answered", "ok", True), trial)
 
 
 STUDY = ["power", "boundary-constant", "--observers", "12", "--intervals", "4"]

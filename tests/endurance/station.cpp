@@ -146,12 +146,12 @@ bool Station::live(session::Setup setup) {
   const auto now_ns = world_.now_ns + world_.wall_offset_ns;
   const double now_s = 1e-9 * static_cast<double>(now_ns);
   const auto limits = limits::limits_of(setup.rig, setup.run_mode);
-  limits::FingerAccount account(
-      limits, limits::read_finger_history(database_, setup.participant, now_s, limits.continuous_s), 0,
-      now_s);
   const auto interrupted = fs::exists(database_) ? store::interrupted_session(database_) : std::nullopt;
   const auto segment =
       records::SegmentStart{std::to_string(lives), interrupted ? "resume" : "start", 0, 0, now_ns};
+  limits::FingerAccount account(
+      limits, limits::read_finger_history(database_, setup.participant, segment, limits.continuous_s), 0,
+      now_s);
   if (interrupted) setup.resume_session = interrupted->session.session_id;
   programs::Programs programs(setup.protocol.path);  // this protocol names none
   std::optional<trial::Director> director;

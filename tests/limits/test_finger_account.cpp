@@ -9,6 +9,8 @@ namespace {
 
 constexpr std::int64_t kSecond_ns = 1'000'000'000;
 constexpr double kNow_s = 1.8e9;
+const records::SegmentStart kNow{"this boot", "start", 0, 9000 * kSecond_ns,
+                                 static_cast<std::int64_t>(kNow_s) * kSecond_ns};
 
 /// A session of one segment that began `ago_s` before now, when its monotonic clock read 5 s.
 store::StoredSession session_of(double ago_s) {
@@ -34,7 +36,7 @@ void add(store::StoredSession& session, double at_s, const std::string& kind, co
 TEST_CASE("stimuli are read from the database with their wall-clock times", "[session][limits]") {
   auto session = session_of(100);
   add(session, 60, "stimulus", "8.5");
-  const auto history = finger_history({session}, kNow_s, 30);
+  const auto history = finger_history({session}, kNow, 30);
   REQUIRE(history.stimuli.size() == 1);
   CHECK(history.stimuli[0].start_s - kNow_s == Approx(-40).margin(1e-5));
   CHECK(history.stimuli[0].end_s - kNow_s == Approx(-31.5).margin(1e-5));
@@ -44,29 +46,44 @@ TEST_CASE("stimuli are read from the database with their wall-clock times", "[se
 TEST_CASE("a trial that a crash cut off counts as the longest stimulus", "[session][limits]") {
   auto session = session_of(20);
   add(session, 10, "presented", "");
-  const auto history = finger_history({session}, kNow_s, 30);
+  const auto history = finger_history({session}, kNow, 30);
   REQUIRE(history.stimuli.size() == 1);
   CHECK(history.stimuli[0].end_s - kNow_s == Approx(0).margin(1e-5));  // the stimulus counts only up to now
   records::BlockRecord block;
   block.trials.emplace_back();
   // negative control: a stored trial has ended, so it does not count as cut off
   session.blocks.push_back(block);
-  CHECK(finger_history({session}, kNow_s, 30).stimuli.empty());
+  CHECK(finger_history({session}, kNow, 30).stimuli.empty());
 }
 
 TEST_CASE("a pause of half an hour begins a new period of exposure, but a crash does not",
           "[session][limits]") {
   auto earlier = session_of(3000);
   add(earlier, 1500, "stimulus", "1");  // the finger was stimulated until 1500 s ago
-  CHECK(finger_history({earlier}, kNow_s, 30).period_start_s == Approx(kNow_s - 3000).epsilon(1e-12));
+  CHECK(finger_history({earlier}, kNow, 30).period_start_s == Approx(kNow_s - 3000).epsilon(1e-12));
   auto long_ago = session_of(5000);
   // stimulated until 4000 s ago, which is 1000 s before the session `earlier` began
   add(long_ago, 1000, "stimulus", "1");
-  CHECK(finger_history({earlier, long_ago}, kNow_s, 30).period_start_s ==
-        Approx(kNow_s - 5000).epsilon(1e-12));
+  CHECK(finger_history({earlier, long_ago}, kNow, 30).period_start_s == Approx(kNow_s - 5000).epsilon(1e-12));
   auto rested = session_of(3000);
   add(rested, 1000, "stimulus", "1");  // the finger was stimulated until 2000 s ago
-  CHECK(finger_history({rested}, kNow_s, 30).period_start_s == kNow_s);
+  CHECK(finger_history({rested}, kNow, 30).period_start_s == kNow_s);
+}
+
+TEST_CASE("setting the wall clock does not make a finger's stimuli older or newer", "[session][limits]") {
+  // The wall clock was set ahead by a day, or back by an hour, after the session.
+  const double set_s = GENERATE(-86400.0, 3600.0);
+  auto session = session_of(100 + set_s);
+  session.segments[0].boot_id = kNow.boot_id;
+  session.segments[0].boottime_ns = 8900 * kSecond_ns;
+  add(session, 60, "stimulus", "8.5");
+  const auto history = finger_history({session}, kNow, 30);
+  REQUIRE(history.stimuli.size() == 1);
+  CHECK(history.stimuli[0].start_s - kNow_s == Approx(-40).margin(1e-5));
+  CHECK(history.period_start_s == Approx(kNow_s - 100).epsilon(1e-12));
+  // After a restart of the machine, only the wall clock is left.
+  session.segments[0].boot_id = "another boot";
+  CHECK(finger_history({session}, kNow, 30).stimuli[0].start_s - kNow_s != Approx(-40).margin(1));
 }
 
 TEST_CASE("the intervals of a trial together keep the limits, even in a long session", "[session][limits]") {

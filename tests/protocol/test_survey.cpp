@@ -31,9 +31,10 @@ std::string problems(const std::string& protocol_text, const rig::Rig& rig) {
 
 bool contains(const std::string& all, const std::string& part) { return all.find(part) != std::string::npos; }
 
-/// Returns the rig with the pick-ups and force cells of simulated-forces.toml added.
+/// Returns the rig with the pick-ups, force cells and headphones of simulated-forces.toml added.
 rig::Rig with_cells(rig::Rig rig) {
-  rig.capture = rig::load(root + "/deploy/rigs/simulated-forces.toml").capture;
+  const auto other = rig::load(root + "/deploy/rigs/simulated-forces.toml");
+  rig.capture = other.capture, rig.noise = other.noise;
   return rig;
 }
 
@@ -42,7 +43,8 @@ void check_shipped(const rig::Rig& rig) {
     if (entry.path().extension() != ".toml") continue;
     INFO(entry.path().string());
     const auto protocol = protocol::load(entry.path().string());
-    const auto survey = protocol::survey(protocol, protocol.sensing ? with_cells(rig) : rig);
+    const bool more = protocol.sensing || protocol.task.sound == protocol::Sound::masking_noise;
+    const auto survey = protocol::survey(protocol, more ? with_cells(rig) : rig);
     CHECK(all_of(survey.problems) == "");
     CHECK(all_of(survey.warnings) == "");
     CHECK_FALSE(survey.sights.empty());

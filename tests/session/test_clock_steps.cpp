@@ -40,8 +40,9 @@ struct SetClock {
     room.cooperate(page);
   }
 
-  /// Runs the session and returns how the log says that the clock was changed.
-  std::vector<std::string> run(const std::function<void()>& change) {
+  /// Runs the session and returns how the log says that the clock was changed. Empty if the machine was so
+  /// busy that the first trial, which nobody answers, was void.
+  std::optional<std::vector<std::string>> run(const std::function<void()>& change) {
     auto devices = room.devices();
     devices.clocks = [this] {
       auto clocks = system::read_clocks();
@@ -52,6 +53,12 @@ struct SetClock {
     };
     room.reacts = [&](const auto& page) { react(page, change); };
     const auto summary = session::run(setup, &room, room.inputs, std::move(devices));
+    for (const auto& page : room.pages)
+      if (page.kind == PageKind::fault &&
+          page.fault != terms::FaultKind::disarmed)  // before the session is armed
+        CHECK(machine_was_busy(page.fault));
+    const auto trials = trials_of(setup.database, summary);
+    if (!trials.empty() && trials.front().outcome == terms::Outcome::fault) return std::nullopt;
     check(summary);
     std::vector<std::string> notices;
     for (const auto& event : events_of(setup.database, summary, "notice"))
@@ -61,10 +68,6 @@ struct SetClock {
 
   void check(const session::Summary& summary) {
     CHECK(summary.status == records::SessionStatus::completed);
-    for (const auto& page : room.pages)
-      if (page.kind == PageKind::fault &&
-          page.fault != terms::FaultKind::disarmed)  // before the session is armed
-        CHECK(machine_was_busy(page.fault));
     // the deadline is neither earlier nor later
     const double waited_s = 1e-9 * static_cast<double>(missed_ns - stimulus_ns);
     CHECK(waited_s > kDeadline_s - 0.5);
@@ -105,13 +108,23 @@ struct SetClock {
   }
 };
 
+/// Runs a session in which the clock is changed, and returns how the log says so.
+std::vector<std::string> notices_after(const std::function<void(SetClock&)>& change) {
+  for (int attempt = 0; attempt < 4; ++attempt) {
+    SetClock session;
+    if (auto notices = session.run([&] { change(session); })) return *notices;
+  }
+  FAIL("the machine was too busy for the first trial of four sessions");
+  return {};
+}
+
 }  // namespace
 
 TEST_CASE("a wall clock that is set during a session changes no time and no order, and is logged",
           "[session][live][clock]") {
   const auto hours = GENERATE(1, -1);
-  SetClock session;
-  const auto notices = session.run([&] { session.ahead_ns = hours * 3600 * std::int64_t{1'000'000'000}; });
+  const auto notices = notices_after(
+      [&](SetClock& session) { session.ahead_ns = hours * 3600 * std::int64_t{1'000'000'000}; });
   REQUIRE(notices.size() == 1);
   CHECK(notices.front().find(hours > 0 ? "the wall clock was set by +3600."
                                        : "the wall clock was set by -3600.") == 0);
@@ -119,6 +132,5 @@ TEST_CASE("a wall clock that is set during a session changes no time and no orde
 
 TEST_CASE("a wall clock that a time service steers during a session changes nothing",
           "[session][live][clock]") {
-  SetClock session;
-  CHECK(session.run([&] { session.steered_since_ns = system::monotonic_ns(); }).empty());
+  CHECK(notices_after([](SetClock& session) { session.steered_since_ns = system::monotonic_ns(); }).empty());
 }

@@ -2,31 +2,40 @@
 // station plays on hw:Loopback,0,0 and plays what the station captures on hw:Loopback,1,1. Once a second it
 // prints the true state at a captured frame: "FRAME NORMAL_N LATERAL_N CONTACT_M AMPLITUDE_UM TEMPERATURE_C".
 // Exits with status 1 if it was ever too slow for the card, because frames are then missing.
-//   rig=FILE           surface, friction and transducers, from a rig file
+//   rig=FILE           a rig file with [capture]: surface, friction, transducers, pick-ups and force cells
 //   seconds=S          how long to run
 //   tones=HZ,HZ...     the tones that the finger can feel
 //   delay_ms=MS        length of the silence that is played first (default 250)
 //   touch=S            when a finger begins to stroke; without this key there is no finger
 //   fault=NAME@S       a fault and its beginning (s), e.g. "fault=transducer dead@5"; may be repeated
-//   playback=N         channels that the station plays (default 4)
+//   noise=off          a finger whose force and friction do not vary
+//   commands=FIFO      obeys the lines that are written there: "fault NAME [AMOUNT]", "repair",
+//                      "touch SECONDS", "lift"; each takes effect with the next captured period, and is then
+//                      printed as "done: LINE"
 //   from=PCM, to=PCM   the card's sides (default hw:Loopback,1,0 and hw:Loopback,0,1)
 #include <alsa/asoundlib.h>
+#include <fcntl.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
+#include <cstring>
 #include <exception>
 #include <map>
+#include <optional>
 #include <sstream>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "station/plant/plant.hpp"
 #include "station/rig/rig.hpp"
-#include "station/scene/planner.hpp"
+#include "station/session/simulated_room.hpp"
 
 using namespace turnpoint;
 
@@ -40,7 +49,8 @@ struct Arguments {
                                             {"tones", ""},
                                             {"delay_ms", "250"},
                                             {"touch", ""},
-                                            {"playback", "4"},
+                                            {"noise", "on"},
+                                            {"commands", ""},
                                             {"from", "hw:Loopback,1,0"},
                                             {"to", "hw:Loopback,0,1"}};
   std::vector<std::string> faults;
@@ -72,30 +82,25 @@ std::int64_t frame_at(const plant::Setup& setup, const std::string& seconds) {
 
 plant::Setup setup_from(const Arguments& arguments) {
   const auto rig = rig::load(arguments.text("rig"));
-  plant::Setup setup;
-  setup.rate_Hz = rig.output.rate_Hz;
-  setup.band_high_Hz = std::min(setup.band_high_Hz, 0.45 * setup.rate_Hz);
-  setup.playback_channels = static_cast<int>(arguments.number("playback"));
-  setup.surface = scene::surface_of(rig);
-  setup.friction = scene::friction_of(rig);
-  setup.finger.fingertip_m = rig.friction.fingertip_m;
-  setup.transducers.clear();
-  for (const auto& transducer : rig.transducers)
-    setup.transducers.push_back({transducer.channel, 1e6 * transducer.m_per_full_scale.value()});
-  if (setup.playback_channels <= 3) setup.wires.carrier_channel.reset();
-  if (setup.playback_channels > 2) setup.marker_channel = 2;
+  auto setup = session::laboratory_of(rig);
+  setup.playback_channels = std::max(setup.playback_channels, rig.output.device_channels);
   setup.loop_delay_frames = 0;
+  if (arguments.text("noise") == "off") setup.finger.normal_noise = setup.finger.friction_noise = 0;
   if (!arguments.text("touch").empty())
     setup.finger.touches = {{frame_at(setup, arguments.text("touch")), plant::kNever}};
   return setup;
 }
 
+plant::FaultKind fault_named(const std::string& name) {
+  if (const auto kind = plant::find_fault(name)) return *kind;
+  throw std::invalid_argument("not a fault: " + name);
+}
+
 void add_faults(plant::Plant& plant, const Arguments& arguments) {
   for (const auto& text : arguments.faults) {
     const auto at = text.find('@');
-    const auto kind = plant::find_fault(text.substr(0, at));
-    if (!kind || at == std::string::npos) throw std::invalid_argument("not a fault: " + text);
-    plant.add({*kind, frame_at(plant.setup(), text.substr(at + 1))});
+    if (at == std::string::npos) throw std::invalid_argument("not a fault: " + text);
+    plant.add({fault_named(text.substr(0, at)), frame_at(plant.setup(), text.substr(at + 1))});
   }
 }
 
@@ -105,6 +110,58 @@ std::vector<double> tones_from(const Arguments& arguments) {
   for (std::string tone; std::getline(list, tone, ',');) tones.push_back(std::stod(tone));
   return tones;
 }
+
+void obey(plant::Plant& plant, const std::string& line) {
+  const auto space = line.find(' ');
+  const std::string word = line.substr(0, space),
+                    rest = space == std::string::npos ? "" : line.substr(space + 1);
+  if (word == "fault") {
+    const auto amount = rest.find_first_of("0123456789");
+    plant::Fault fault{fault_named(amount == std::string::npos ? rest : rest.substr(0, amount - 1)),
+                       plant.frames() + 1};
+    if (amount != std::string::npos) fault.amount = std::stod(rest.substr(amount));
+    plant.add(fault);
+  } else if (word == "repair")
+    plant.repair();
+  else if (word == "touch")
+    plant.touch(frame_at(plant.setup(), rest));
+  else if (word == "lift")
+    plant.lift(0);
+  else
+    throw std::invalid_argument("not a command: " + line);
+  std::printf("done: %s\n", line.c_str());
+  std::fflush(stdout);
+}
+
+/// Lines that other programs write to a FIFO. Without a FIFO there are none.
+class Commands {
+ public:
+  explicit Commands(const std::string& path) {
+    if (path.empty()) return;
+    // Opened for writing too, so that the FIFO does not end when a writer closes it.
+    fifo_ = ::open(path.c_str(), O_RDWR | O_NONBLOCK);
+    if (fifo_ < 0) throw std::runtime_error(path + ": " + std::strerror(errno));
+  }
+  ~Commands() {
+    if (fifo_ >= 0) ::close(fifo_);
+  }
+  Commands(const Commands&) = delete;
+  Commands& operator=(const Commands&) = delete;
+
+  std::optional<std::string> next() {
+    char letter = 0;
+    while (fifo_ >= 0 && ::read(fifo_, &letter, 1) == 1)
+      if (letter == '\n')
+        return std::exchange(line_, "");
+      else
+        line_ += letter;
+    return std::nullopt;
+  }
+
+ private:
+  int fifo_ = -1;
+  std::string line_;
+};
 
 void check(long result, const std::string& what) {
   if (result < 0) throw std::runtime_error(what + ": " + snd_strerror(static_cast<int>(result)));
@@ -140,6 +197,7 @@ void run(const Arguments& arguments) {
   plant::Plant plant(setup_from(arguments));
   plant.set_tones(tones_from(arguments));
   add_faults(plant, arguments);
+  Commands commands(arguments.text("commands"));
   const auto inputs = static_cast<std::size_t>(plant.setup().playback_channels);
   const auto outputs = static_cast<std::size_t>(plant.setup().capture.count);
   const auto rate_Hz = static_cast<unsigned>(plant.setup().rate_Hz);
@@ -155,6 +213,7 @@ void run(const Arguments& arguments) {
   if (snd_pcm_state(to.pcm) != SND_PCM_STATE_RUNNING) check(snd_pcm_start(to.pcm), to.what);
   std::int64_t next = 0;
   while (plant.frames() < frame_at(plant.setup(), arguments.text("seconds"))) {
+    while (const auto line = commands.next()) obey(plant, *line);
     check(snd_pcm_readi(from.pcm, in.data(), kPeriod), from.what);
     for (std::size_t k = 0; k < in.size(); ++k) played[k] = in[k] * 0x1p-31;
     plant.advance(played, captured);

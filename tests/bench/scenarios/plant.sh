@@ -1,9 +1,10 @@
 # proves: between two connections of a loopback card, the simulated laboratory answers a tone that the station plays with that tone at its pick-ups, with the expected level and without losing a frame, and its finger strokes
 # timeout: 400
 loopback 2
-# The emulated machine is too slow for 192 kHz. The laboratory decides that the card has 4 channels.
-sed -e 's/^rate_Hz.*/rate_Hz = 96000/' -e 's/^band_kHz.*/band_kHz = [14, 43]/' -e '/^rate_Hz/a period_frames = 1920\nperiods = 40\ndevice_channels = 4' \
-  "$SOURCE/deploy/rigs/simulated.toml" >rig.toml
+# The emulated machine is too slow for 192 kHz. At 96 kHz, the level that the laboratory answers depends a little on the
+# band: it is 0.05 dB below the formula with 16 to 43 kHz, and 0.11 dB with 14 to 43 kHz.
+sed -e 's/^rate_Hz.*/rate_Hz = 96000/' -e 's/^band_kHz.*/band_kHz = [16, 43]/' -e '/^rate_Hz/a period_frames = 1920\nperiods = 40\ndevice_channels = 4' \
+  "$SOURCE/deploy/rigs/simulated-forces.toml" >rig.toml
 plant rig=rig.toml seconds=10 tones=30000 touch=0.5 >truth.txt & plant=$!
 eventually 60 grep -q RUNNING /proc/asound/Loopback/pcm0p/sub1/status
 arecord -q -D hw:Loopback,1,1 -t raw -f S32_LE -c 8 -r 96000 --period-size=4800 --buffer-size=48000 -d 7 heard.raw & recorder=$!
