@@ -144,3 +144,40 @@ english() { shows 200 150; }
 # has a dark button at the same place.
 went_on() { ! start_page && continues || return 1; sleep 0.7; tap 400 390; sleep 0.5; ! continues; }
 goes_on() { eventually 30 went_on; }
+
+# Functions for a session without a screen, in the background, which reads from the FIFO `operator` (descriptor 8) and
+# writes console.txt. `said PATTERN` counts lines of the console. `conduct PID` goes on at instructions, rests and faults
+# until the session's process ends; the self-test must find no fault. The scenario defines what happens else:
+# `stimulus_begins` is called when a stimulus begins, $stimuli is its number; `answer_is_open` when an answer can be given.
+said() { grep -cE "$1" console.txt || true; }
+fault_page() {
+  [ "$(said "note REASON")" = 0 ] || { tail console.txt; fail "the self-test found a fault"; }
+  sleep 0.5
+  case $(grep ^fault console.txt | tail -1) in *"arm or stop"*) echo arm ;; *) echo next ;; esac >&8
+}
+conduct() {
+  local faults=0 went_on=0 answers=0
+  stimuli=0
+  while kill -0 "$1" 2>/dev/null; do
+    [ "$(said ^fault)" -le $faults ] || { faults=$(said ^fault); fault_page; }
+    [ "$(said "^(instructions|rest|paused)")" -le $went_on ] || { went_on=$((went_on + 1)); echo next >&8; }
+    [ "$(said ^stimulus)" -le $stimuli ] || { stimuli=$(said ^stimulus); stimulus_begins; }
+    [ "$(said ^response)" -le $answers ] || { answers=$(said ^response); answer_is_open; }
+    sleep 0.1
+  done
+}
+
+# laboratory_begins ARGUMENTS...: starts `plant` with these arguments, between the sides of `loopback 2`. $laboratory is
+# its process. `laboratory LINE` has it do something, and waits until it is done (plant.cpp lists the commands).
+laboratory_begins() {
+  mkfifo laboratory
+  exec 7<>laboratory
+  chrt -f 60 plant commands=laboratory "$@" >truth.txt & laboratory=$!
+  eventually 60 test -s truth.txt
+}
+laboratory_lasts() { kill -0 $laboratory 2>/dev/null || fail "the laboratory was too slow for the card"; }
+laboratory() {
+  local before; before=$(grep -c ^done: truth.txt || true)
+  echo "$*" >&7
+  eventually 30 sh -c "[ \$(grep -c ^done: truth.txt) -gt $before ]"
+}

@@ -10,8 +10,11 @@
 //   fault=NAME@S       a fault and its beginning (s), e.g. "fault=transducer dead@5"; may be repeated
 //   noise=off          a finger whose force and friction do not vary
 //   commands=FIFO      obeys the lines that are written there: "fault NAME [AMOUNT]", "repair",
-//                      "touch SECONDS", "lift"; each takes effect with the next captured period, and is then
-//                      printed as "done: LINE"
+//                      "touch SECONDS", "lift", "load NORMAL_N LATERAL_N MM" (a weight on the surface, and a
+//                      lateral force, at this place); each takes effect with the next captured period, and is
+//                      then printed as "done: LINE"
+//   truth=FILE         writes the true state there at each millisecond: "FRAME NORMAL_N LATERAL_N CONTACT_MM"
+//   crosstalk_mV=MV    what a tone at full scale adds to each bridge (default 4)
 //   from=PCM, to=PCM   the card's sides (default hw:Loopback,1,0 and hw:Loopback,0,1)
 #include <alsa/asoundlib.h>
 #include <fcntl.h>
@@ -25,8 +28,10 @@
 #include <cstdlib>
 #include <cstring>
 #include <exception>
+#include <fstream>
 #include <map>
 #include <optional>
+#include <span>
 #include <sstream>
 #include <stdexcept>
 #include <string>
@@ -51,6 +56,8 @@ struct Arguments {
                                             {"touch", ""},
                                             {"noise", "on"},
                                             {"commands", ""},
+                                            {"truth", ""},
+                                            {"crosstalk_mV", "4"},
                                             {"from", "hw:Loopback,1,0"},
                                             {"to", "hw:Loopback,0,1"}};
   std::vector<std::string> faults;
@@ -85,6 +92,7 @@ plant::Setup setup_from(const Arguments& arguments) {
   auto setup = session::laboratory_of(rig);
   setup.playback_channels = std::max(setup.playback_channels, rig.output.device_channels);
   setup.loop_delay_frames = 0;
+  setup.wires.crosstalk_V_per_full_scale = 1e-3 * arguments.number("crosstalk_mV");
   if (arguments.text("noise") == "off") setup.finger.normal_noise = setup.finger.friction_noise = 0;
   if (!arguments.text("touch").empty())
     setup.finger.touches = {{frame_at(setup, arguments.text("touch")), plant::kNever}};
@@ -127,7 +135,12 @@ void obey(plant::Plant& plant, const std::string& line) {
     plant.touch(frame_at(plant.setup(), rest));
   else if (word == "lift")
     plant.lift(0);
-  else
+  else if (word == "load") {
+    plant::Load load;
+    std::istringstream(rest) >> load.normal_N >> load.lateral_N >> load.x_m;
+    load.x_m *= 1e-3;
+    plant.set_load(load);
+  } else
     throw std::invalid_argument("not a command: " + line);
   std::printf("done: %s\n", line.c_str());
   std::fflush(stdout);
@@ -193,11 +206,40 @@ void print(const plant::Truth& truth) {
   std::fflush(stdout);
 }
 
+/// Writes the true state at each millisecond to a file.
+class TruthFile {
+ public:
+  explicit TruthFile(const std::string& path) {
+    if (!path.empty()) file_.open(path);
+    if (!path.empty() && !file_) throw std::runtime_error(path + ": " + std::strerror(errno));
+  }
+
+  /// Advances the plant, in pieces of a millisecond if there is a file.
+  void advance(plant::Plant& plant, std::span<const double> played, std::span<double> captured) {
+    const auto inputs = static_cast<std::size_t>(plant.setup().playback_channels);
+    const auto outputs = static_cast<std::size_t>(plant.setup().capture.count);
+    const auto all = played.size() / inputs;
+    const auto piece = file_.is_open() ? static_cast<std::size_t>(plant.setup().rate_Hz / 1000) : all;
+    for (std::size_t at = 0; at < all; at += piece) {
+      plant.advance(played.subspan(at * inputs, piece * inputs),
+                    captured.subspan(at * outputs, piece * outputs));
+      if (!file_.is_open()) continue;
+      const auto& truth = plant.truth();
+      file_ << truth.frame << ' ' << truth.normal_N << ' ' << truth.lateral_N << ' '
+            << 1e3 * truth.finger.contact_m << '\n';
+    }
+  }
+
+ private:
+  std::ofstream file_;
+};
+
 void run(const Arguments& arguments) {
   plant::Plant plant(setup_from(arguments));
   plant.set_tones(tones_from(arguments));
   add_faults(plant, arguments);
   Commands commands(arguments.text("commands"));
+  TruthFile truth(arguments.text("truth"));
   const auto inputs = static_cast<std::size_t>(plant.setup().playback_channels);
   const auto outputs = static_cast<std::size_t>(plant.setup().capture.count);
   const auto rate_Hz = static_cast<unsigned>(plant.setup().rate_Hz);
@@ -216,7 +258,7 @@ void run(const Arguments& arguments) {
     while (const auto line = commands.next()) obey(plant, *line);
     check(snd_pcm_readi(from.pcm, in.data(), kPeriod), from.what);
     for (std::size_t k = 0; k < in.size(); ++k) played[k] = in[k] * 0x1p-31;
-    plant.advance(played, captured);
+    truth.advance(plant, played, captured);
     std::transform(captured.begin(), captured.end(), out.begin(), sample_of);
     check(snd_pcm_writei(to.pcm, out.data(), kPeriod), to.what);
     if (plant.frames() < next) continue;

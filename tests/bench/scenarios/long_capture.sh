@@ -29,14 +29,11 @@ mkfifo operator
 turnpoint run long.toml --rig rig.toml --participant P1 --db lab.sqlite --buttons-only --json \
   <operator >summary.json 2>console.txt & session=$!
 exec 8>operator
-said() { grep -cE "$1" console.txt || true; }
-went_on=0 answered=0 began=$SECONDS
-while kill -0 $session 2>/dev/null; do
-  [ "$(said ^fault)" = 0 ] || { tail -20 console.txt; fail "the session stopped at a fault"; }
-  [ "$(said "^(instructions|rest|paused)")" -le $went_on ] || { went_on=$((went_on + 1)); echo next >&8; }
-  [ "$(said ^response)" -le $answered ] || { answered=$((answered + 1)); echo left >&8; }
-  sleep 0.3
-done
+began=$SECONDS
+fault_page() { tail -20 console.txt; fail "the session stopped at a fault"; }
+stimulus_begins() { :; }
+answer_is_open() { echo left >&8; }
+conduct $session
 status=0; wait $session || status=$?
 tail -5 console.txt; cat summary.json
 cp console.txt summary.json lab.sqlite* "$OUT"

@@ -1,0 +1,37 @@
+# proves: force cells behind a sound card measure the finger of the simulated laboratory during stimuli of four tones: force, its noise, no offset from the tones, position, speed, and the boundary that the finger feels
+# needs: fast
+# suite: long
+# timeout: 2400
+loopback 2
+cp "$OUT/rig.toml" "$OUT/calibration.toml" "$OUT/strokes.toml" .
+laboratory_begins rig=rig.toml seconds=2000 tones="$(cat "$OUT/tones.txt")" truth=finger.txt crosstalk_mV="$(cat "$OUT/crosstalk.txt")"
+mkfifo operator
+turnpoint run strokes.toml --rig rig.toml --calibration calibration.toml --participant P1 --db lab.sqlite --buttons-only --json \
+  <operator >summary.json 2>console.txt & session=$!
+exec 8>operator
+# During the first stimulus, there are weights on the surface and no finger; the tones end while one still lies there.
+# During the others, a finger strokes to and fro six times.
+stimulus_begins() {
+  laboratory_lasts
+  cp console.txt "$OUT"
+  if [ $stimuli -gt 1 ]; then
+    echo touch 20.7 >&7
+  else
+    sleep 1.5
+    for weight in "0.1 0 150" "0.5 0.3 100" "1 -0.3 200" "2 0.5 80" "0.5 0 150"; do laboratory load "$weight"; sleep 0.8; done
+    echo left >&8
+    sleep 1.2
+    laboratory load 0 0 0
+  fi
+}
+answer_is_open() { [ $stimuli = 1 ] || echo left >&8; }
+conduct $session
+cp console.txt truth.txt finger.txt "$OUT"
+tail -30 console.txt
+status=0; wait $session || status=$?
+cp summary.json "$OUT"
+[ ! -e lab.sqlite ] || cp lab.sqlite* "$OUT"
+cat summary.json
+laboratory_lasts
+[ $status = 0 ] && has summary.json '"completed"' || fail "the session was not completed (exit status $status)"
+has summary.json '"xruns": 0' || fail "the playback had gaps"
