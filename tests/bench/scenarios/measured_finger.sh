@@ -4,7 +4,8 @@
 # timeout: 2400
 loopback 2
 cp "$OUT/rig.toml" "$OUT/calibration.toml" "$OUT/strokes.toml" .
-laboratory_begins rig=rig.toml seconds=2000 tones="$(cat "$OUT/tones.txt")" truth=finger.txt crosstalk_mV="$(cat "$OUT/crosstalk.txt")"
+mapfile -t about <"$OUT/laboratory.txt"
+laboratory_begins rig=rig.toml seconds=2000 truth=finger.txt "${about[@]}"
 mkfifo operator
 turnpoint run strokes.toml --rig rig.toml --calibration calibration.toml --participant P1 --db lab.sqlite --buttons-only --json \
   <operator >summary.json 2>console.txt & session=$!
