@@ -254,11 +254,13 @@ TEST_CASE("a session measures forces with the calibration that dead weights gave
   const auto path = measured::with_capture(folder, measured::kCells);
   const auto rig = rig::load(path);
   ExactBridges bridges;
-  bridges.room.cells.span_m = rig.surface.length_m;
+  bridges.room = session::laboratory_of(rig);
   auto made = maintenance::known_calibration(rig);
   made.forces = weigh(rig, bridges, kReady, kGiveUp).cells;
-  // the amplitude with which the simulated room plays the carrier; ExactBridges uses another one
-  made.forces->reference_amplitude = session::kCarrier * 2.5 / 3;
+  // ExactBridges has another amplitude of the carrier than the simulated room.
+  const auto& wires = bridges.room.wires;
+  made.forces->reference_amplitude =
+      session::kCarrier * wires.excitation_V_per_full_scale / wires.reference_V_at_full_scale;
   const auto mean_force = [&](double factor) {
     auto changed = made;
     for (auto& row : changed.forces->matrix)

@@ -148,19 +148,22 @@ goes_on() { eventually 30 went_on; }
 # Functions for a session without a screen, in the background, which reads from the FIFO `operator` (descriptor 8) and
 # writes console.txt. `said PATTERN` counts lines of the console. `conduct PID` goes on at instructions, rests and faults
 # until the session's process ends; the self-test must find no fault. The scenario defines what happens else:
-# `stimulus_begins` is called when a stimulus begins, $stimuli is its number; `answer_is_open` when an answer can be given.
+# `stimulus_begins` is called when a stimulus begins, $stimuli is its number; `answer_is_open` when an answer can be given;
+# `cue_begins`, which need not be defined, when the participant is told to get ready.
 said() { grep -cE "$1" console.txt || true; }
 fault_page() {
   [ "$(said "note REASON")" = 0 ] || { tail console.txt; fail "the self-test found a fault"; }
   sleep 0.5
   case $(grep ^fault console.txt | tail -1) in *"arm or stop"*) echo arm ;; *) echo next ;; esac >&8
 }
+cue_begins() { :; }
 conduct() {
-  local faults=0 went_on=0 answers=0
+  local faults=0 went_on=0 cues=0 answers=0
   stimuli=0
   while kill -0 "$1" 2>/dev/null; do
     [ "$(said ^fault)" -le $faults ] || { faults=$(said ^fault); fault_page; }
     [ "$(said "^(instructions|rest|paused)")" -le $went_on ] || { went_on=$((went_on + 1)); echo next >&8; }
+    [ "$(said "^get ready")" -le $cues ] || { cues=$(said "^get ready"); cue_begins; }
     [ "$(said ^stimulus)" -le $stimuli ] || { stimuli=$(said ^stimulus); stimulus_begins; }
     [ "$(said ^response)" -le $answers ] || { answers=$(said ^response); answer_is_open; }
     sleep 0.1
