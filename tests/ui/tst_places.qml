@@ -189,8 +189,16 @@ Item {
                 tryVerify(() => find(room.screen, "weightsRead").enabled, 20000)
                 tap("weightsRead")
             }
+            tryVerify(() => says(room.screen, "tap the middle of the plate once from above"), 20000)
+            tap("weightsRead")
+            tryVerify(() => says(room.screen, "tap the narrow end of the plate once along the plate"), 20000)
+            tap("weightsRead")
             tryVerify(() => shown("finding0") && find(room.screen, "bar-run").enabled, 20000)
             verify(says(room.screen, "Uncertainty"))
+            verify(says(room.screen, "60 Hz; changes of force above 20 Hz are not measured correctly"))
+            tap("screen-de")
+            verify(says(room.screen, "200 g bei 210 mm mit einem Zug von 100 g zum breiten Rand"))
+            tap("screen-en")
             verify(says(room.screen, "200 g at 210 mm with a pull of 100 g towards the wide edge"))
             verify(says(room.screen, "force cells"))
         }

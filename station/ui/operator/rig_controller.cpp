@@ -67,26 +67,49 @@ const char* word(session::Request::Kind kind) {
                                       : "press_button";
 }
 
-/// Returns rows for the page: the uncertainty of the force calibration, and each weight with its residual.
+texts::Phrase number(double value, const char* format) {
+  return texts::plain(fmt::format(fmt::runtime(format), value));
+}
+
+/// Which weight it is: its place, and the pull if there is one.
+texts::Phrase weight_of(const maintenance::WeightStep& step) {
+  std::vector<texts::Phrase> values{number(step.mass_g, "{:.4g}"), number(step.position_mm, "{:.4g}")};
+  if (step.pull_g == 0) return texts::phrase("operator.weights_weight", values);
+  values.push_back(number(std::abs(step.pull_g), "{:.4g}"));
+  return step.pull_g > 0 ? texts::phrase("operator.weights_weight_narrow", values)
+                         : texts::phrase("operator.weights_weight_wide", values);
+}
+
+/// Returns rows for the page: uncertainty and resonance of the force calibration, and each weight with its
+/// residual.
 QVariantList weights_of(const maintenance::ForceResult& result, const std::string& file) {
+  using texts::phrase;
   QVariantList list;
-  const auto add = [&list](const std::string& name, const char* verdict, const std::string& what) {
-    list += QVariantMap{{"name", QString::fromStdString(name)},
-                        {"verdict", verdict},
-                        {"what", QString::fromStdString(what)},
+  const auto add = [&list](const texts::Phrase& name, bool good, const texts::Phrase& what) {
+    list += QVariantMap{{"name", to_variant(name)},
+                        {"verdict", good ? "ok" : "warning"},
+                        {"what", to_variant(what)},
                         {"share", -1.0}};
   };
-  add("Uncertainty (one standard deviation)", "ok",
-      fmt::format("position {:.2f} mm, friction {:.4f}, lateral force {:.1f} mN; largest change of the zero "
-                  "{:.2f} mN; written to {}",
-                  result.sd.position_mm, result.sd.friction, 1e3 * result.sd.lateral_N, result.zero_moved_mN,
-                  std::filesystem::path(file).filename().string()));
+  add(phrase("operator.weights_uncertainty"), true,
+      phrase("operator.weights_uncertainty_text",
+             {number(result.sd.position_mm, "{:.2f}"), number(result.sd.friction, "{:.4f}"),
+              number(1e3 * result.sd.lateral_N, "{:.1f}"), number(result.zero_moved_mN, "{:.2f}"),
+              texts::plain(std::filesystem::path(file).filename().string())}));
+  add(phrase("operator.weights_resonance"), result.resonance_Hz.has_value(),
+      result.resonance_Hz
+          ? phrase("operator.weights_resonance_text",
+                   {number(*result.resonance_Hz, "{:.3g}"), number(result.cells.usable_Hz.value(), "{:.3g}")})
+          : phrase("operator.weights_resonance_unknown"));
   for (std::size_t k = 0; k < result.steps.size(); ++k) {
     const auto& rest = result.residuals[k];
-    add(result.steps[k].name(), result.steps[k].remark.empty() ? "ok" : "warning",
-        fmt::format("{}residual: normal {:.2f} mN, lateral {:.2f} mN, position {:.2f} mm",
-                    result.steps[k].remark.empty() ? "" : "weighed again; ", 1e3 * rest.normal_N,
-                    1e3 * rest.lateral_N, rest.position_mm));
+    const std::vector<texts::Phrase> values{number(1e3 * rest.normal_N, "{:.2f}"),
+                                            number(1e3 * rest.lateral_N, "{:.2f}"),
+                                            number(rest.position_mm, "{:.2f}")};
+    const bool once = result.steps[k].remark.empty();
+    add(weight_of(result.steps[k]), once,
+        once ? phrase("operator.weights_residual", values)
+             : phrase("operator.weights_residual_again", values));
   }
   return list;
 }
@@ -222,6 +245,9 @@ void RigController::show(const Weighing::Shown& shown) {
   if (shown.step) {
     const auto& step = *shown.step;
     step_ = {{"tare", step.tare},
+             {"tap", step.tap == maintenance::Tap::from_above ? "above"
+                     : step.tap == maintenance::Tap::along    ? "along"
+                                                              : ""},
              {"converter", shown.converter},
              {"grams", step.mass_g},
              {"mm", step.position_mm},

@@ -59,13 +59,18 @@ std::optional<maintenance::ForceResult> Weighing::run(const rig::Rig& rig, const
                                                       const std::stop_token& stop) {
   const auto bridges = maintenance::open_bridges(rig);
   maintenance::WeightStep now;
+  std::string silent;  // why a tap was not noticed
   const auto ready = [&](const maintenance::WeightStep& step) {
     now = step;
-    if (step.tap != maintenance::Tap::none) return false;  // only the command line asks for taps
-    return await(*bridges, {step, "", {}, false, ""}, show, stop) == Answer::read;
+    now.remark += std::exchange(silent, "");
+    return await(*bridges, {now, "", {}, false, ""}, show, stop) == Answer::read;
   };
   const auto failed = [&](const std::string& why) {
-    await(*bridges, {now, why, {}, false, ""}, show, stop);
+    // A tap is asked for again, and may be left out.
+    if (now.tap != maintenance::Tap::none)
+      silent = why;
+    else
+      await(*bridges, {now, why, {}, false, ""}, show, stop);
     return true;
   };
   try {
