@@ -1,7 +1,7 @@
 # proves: force cells behind a sound card measure the finger of the simulated laboratory during stimuli of four tones: force, its noise, no offset from the tones, position, speed, and the boundary that the finger feels
 # needs: fast
 # suite: long
-# timeout: 2400
+# timeout: 3600
 loopback 2
 cp "$OUT/rig.toml" "$OUT/calibration.toml" "$OUT/strokes.toml" .
 mapfile -t about <"$OUT/laboratory.txt"
