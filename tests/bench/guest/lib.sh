@@ -158,14 +158,14 @@ fault_page() {
 }
 cue_begins() { :; }
 conduct() {
-  local faults=0 went_on=0 cues=0 answers=0
+  local mended=0 went_on=0 cued=0 answered=0   # not the names of a scenario's own variables, which they would hide
   stimuli=0
   while kill -0 "$1" 2>/dev/null; do
-    [ "$(said ^fault)" -le $faults ] || { faults=$(said ^fault); fault_page; }
+    [ "$(said ^fault)" -le $mended ] || { mended=$(said ^fault); fault_page; }
     [ "$(said "^(instructions|rest|paused)")" -le $went_on ] || { went_on=$((went_on + 1)); echo next >&8; }
-    [ "$(said "^get ready")" -le $cues ] || { cues=$(said "^get ready"); cue_begins; }
+    [ "$(said "^get ready")" -le $cued ] || { cued=$(said "^get ready"); cue_begins; }
     [ "$(said ^stimulus)" -le $stimuli ] || { stimuli=$(said ^stimulus); stimulus_begins; }
-    [ "$(said ^response)" -le $answers ] || { answers=$(said ^response); answer_is_open; }
+    [ "$(said ^response)" -le $answered ] || { answered=$(said ^response); answer_is_open; }
     sleep 0.1
   done
 }
