@@ -6,6 +6,7 @@
 #include "physics/centre_line.hpp"
 #include "physics/dispersion.hpp"
 #include "physics/modal_field.hpp"
+#include "physics/taper.hpp"
 
 namespace turnpoint::physics {
 namespace {
@@ -84,7 +85,10 @@ std::optional<ModesBound> modes_bound(const Surface& surface, double f, const Ed
   bound.level_dB = 8.686 * (peak_margin * std::abs(gain) + level_share * near_drive.relative() + floor);
   const auto at = edge_m(a, edge), other_at = edge_m(b, edge);
   const double cut = cut_off_half_width_m(surface, f);
-  bound.position_m = cut * (position_share * near_shape.difference + floor);
+  // Polynomials converge slowly where an element spans a steep step, so that its part of the difference
+  // counts more.
+  const double steep = at ? Taper(surface).slope(*at) : 0;
+  bound.position_m = cut * (position_share * (1 + steep * steep) * near_shape.difference + floor);
   if (at.has_value() != other_at.has_value()) bound.position_m += surface.length_m;
   if (at && other_at) bound.position_m += edge_margin * std::abs(*at - *other_at);
   if (edge.kind == Edge::Kind::turning) bound.position_m = 0;

@@ -243,6 +243,19 @@ RungEstimate profile_estimate(const Surface& surface, const PlanRequest& request
   return e;
 }
 
+// Computes the error bounds of the model `mode` by solving for `modes`. The error of |v| is at most the
+// difference between the two plus the error of `modes`.
+RungEstimate compared_mode_estimate(const Surface& surface, const PlanRequest& request,
+                                    const Reference& reference) {
+  RungEstimate e = profile_estimate(surface, request, reference, Model::mode);
+  const RungEstimate modes = modes_estimate(surface, request, reference);
+  const Difference d =
+      compare(surface, request, reference.mode, probe(surface, request, reference.f, Model::modes));
+  e.amplitude_bound = std::min(e.amplitude_bound, modes.amplitude_bound + d.amplitude);
+  e.level_bound_dB = std::min(e.level_bound_dB, modes.level_bound_dB + probe_margin * d.level_dB);
+  return e;
+}
+
 RungEstimate estimate_with(const Surface& surface, const PlanRequest& request,
                            const std::vector<Reference>& references, Model model) {
   RungEstimate all;
@@ -299,9 +312,13 @@ std::string numbers(const RungEstimate& e, const Tolerance& tolerance) {
 
 RungEstimate estimate(const Surface& surface, const PlanRequest& request, Model model) {
   const auto references = references_for(surface, request);
-  return model == Model::modes && modes_bound_applies(surface)
-             ? compared_modes(surface, request, references, Comparison::finer)
-             : estimate_with(surface, request, references, model);
+  if (model == Model::modes && modes_bound_applies(surface))
+    return compared_modes(surface, request, references, Comparison::finer);
+  if (model != Model::mode || !modes_bound_applies(surface) || !Dispersion(surface).clamped_bending())
+    return estimate_with(surface, request, references, model);
+  RungEstimate all;
+  for (const Reference& one : references) merge(all, compared_mode_estimate(surface, request, one));
+  return all;
 }
 
 PlanChoice choose_model(const Surface& surface, const PlanRequest& request) {

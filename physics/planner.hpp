@@ -21,7 +21,8 @@ struct Tolerance {
 };
 
 // The error bounds of a model for a set of tones. They are estimated before the model is evaluated, except
-// that estimate() solves for `modes` twice and compares. For membranes and simply supported plates the errors
+// that estimate() solves for `modes` twice and compares, and for `mode` of a clamped plate compares it with
+// `modes`. For membranes and simply supported plates the errors
 // are differences from the two-dimensional field; for clamped plates, from the one-mode equation.
 struct RungEstimate {
   Model model = Model::mode;
