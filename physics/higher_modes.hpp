@@ -8,8 +8,7 @@ namespace turnpoint::physics {
 // Effects of first order in the slope and the curvature of the sides. The wave fronts of the first mode are
 // arcs that meet both sides at a right angle. Two things excite higher modes:
 // - The drive edge is straight and cuts across the arcs, so the first mode alone does not have the shape of
-// the
-//   drive there. The higher modes make up the difference.
+//   the drive there. The higher modes make up the difference.
 // - Where the slope of the sides changes, the curvature of the arcs changes too, and the first mode turns
 //   partly into higher modes.
 // A changing slope also shifts the phase of every mode. On curved sides, the effects are computed without the

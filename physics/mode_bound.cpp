@@ -80,7 +80,7 @@ double airy_length_m(double cut, double slope) {
 // How steep and how curved the taper is at the places where this disturbs the first mode.
 struct Steepness {
   double at_turning = 0;  // |W'| near the turning point
-  double before = 0;  // largest |W'| W / (cut-off half-width) between the drive edge and the turning point
+  double before = 0;    // largest |W'| W / (cut-off half-width) between the drive edge and the turning point
   double steepest = 0;  // largest |W'| between the drive edge and the turning point
   double bend = 0;      // largest |W''| W near the turning point
   // distance from the turning point that counts as near: two cut-off half-widths, or more where the strip is
