@@ -38,8 +38,8 @@ Json problems_json(const std::vector<text::Problem>& problems) {
     list.push_back({{"file", problem.place.file},
                     {"line", problem.place.line > 0 ? Json(problem.place.line) : Json(nullptr)},
                     {"column", problem.place.line > 0 ? Json(problem.place.column) : Json(nullptr)},
-                    {"what", problem.what},
-                    {"allowed", problem.allowed}});
+                    {"what", texts::say(problem.what, "en")},
+                    {"allowed", texts::say(problem.allowed, "en")}});
   return list;
 }
 

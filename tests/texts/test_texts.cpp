@@ -10,6 +10,7 @@
 #include "physics/warning.hpp"
 #include "station/system/read_file.hpp"
 #include "station/terms/fault.hpp"
+#include "station/text/toml.hpp"
 #include "station/texts/texts.hpp"
 #include "tests/support/catch.hpp"
 
@@ -41,6 +42,16 @@ std::string english_word(const std::string& said) {
 std::string code_of(const std::string& file) {
   static const std::regex comment("//[^\n]*|#include[^\n]*|throw [^;]*;");
   return std::regex_replace(system::read_file(std::string(TURNPOINT_SOURCE_DIR) + "/" + file), comment, "");
+}
+
+/// All texts of a table of a catalogue, and of the tables in it, as the reader of TOML files finds them.
+void collect(const text::Value& table, const std::string& above,
+             std::map<std::string, std::string, std::less<>>& found) {
+  for (const auto& [key, place, value] : table.entries)
+    if (value.kind == text::Value::Kind::table)
+      collect(value, above + key + ".", found);
+    else if (key != "read_by_native_speaker")
+      found[above + key] = value.string;
 }
 
 /// All quoted words in the station's sources, and the words among them that are given to text().
@@ -79,6 +90,16 @@ TEST_CASE("every language has every text, with the same places for numbers and n
   }
 }
 
+TEST_CASE("a catalogue is a TOML file, and says what such a file says", "[texts]") {
+  for (const auto& language : texts::languages()) {
+    const auto file = std::string(TURNPOINT_SOURCE_DIR) + "/station/texts/" + language + ".toml";
+    std::map<std::string, std::string, std::less<>> found;
+    collect(text::parse_toml(system::read_file(file), file), "", found);
+    CHECK(found.size() > 1000);
+    CHECK(found == texts::catalogue(language));
+  }
+}
+
 TEST_CASE("no text in another language has kept an English sentence", "[texts]") {
   CHECK(english_word("the amplifier cannot be armed") == "the");
   CHECK(english_word("sudo swapoff -a").empty());
@@ -96,13 +117,31 @@ TEST_CASE("no text in another language has kept an English sentence", "[texts]")
 
 TEST_CASE("what the screen and the command line both say is never a sentence in the sources", "[texts]") {
   static const std::regex quoted("\"([^\"\n]*)\"");
-  for (const char* file :
-       {"station/maintenance/doctor.cpp", "station/lines/probe.cpp", "station/session/self_test.cpp",
-        "station/session/self_test_rig.cpp", "station/analysis/course.cpp", "station/analysis/diffusion.cpp",
-        "station/analysis/finger.cpp", "station/analysis/judgements.cpp", "station/analysis/mixed_fit.cpp",
-        "station/analysis/psychometric_fit.cpp", "station/analysis/psychometric_posterior.cpp",
-        "station/analysis/response_signal.cpp", "station/analysis/settings.cpp", "station/analysis/trade.cpp",
-        "station/report/summary.cpp", "station/calibration/calibration.cpp", "station/limits/exposure.cpp"}) {
+  std::vector<std::string> files{"station/maintenance/doctor.cpp",
+                                 "station/lines/probe.cpp",
+                                 "station/session/self_test.cpp",
+                                 "station/session/self_test_rig.cpp",
+                                 "station/analysis/course.cpp",
+                                 "station/analysis/diffusion.cpp",
+                                 "station/analysis/finger.cpp",
+                                 "station/analysis/judgements.cpp",
+                                 "station/analysis/mixed_fit.cpp",
+                                 "station/analysis/psychometric_fit.cpp",
+                                 "station/analysis/psychometric_posterior.cpp",
+                                 "station/analysis/response_signal.cpp",
+                                 "station/analysis/settings.cpp",
+                                 "station/analysis/trade.cpp",
+                                 "station/report/summary.cpp",
+                                 "station/calibration/calibration.cpp",
+                                 "station/limits/exposure.cpp"};
+  static const std::regex reads("(read_|check_|load|needs|survey|reader|surface|devices|spare_).*\\.cpp");
+  for (const char* folder : {"station/text", "station/protocol", "station/rig"})
+    for (const auto& entry :
+         std::filesystem::directory_iterator(std::string(TURNPOINT_SOURCE_DIR) + "/" + folder))
+      if (const auto name = entry.path().filename().string(); std::regex_match(name, reads))
+        files.push_back(std::string(folder) + "/" + name);
+  CHECK(files.size() > 40);
+  for (const auto& file : files) {
     const auto code = code_of(file);
     CHECK(code.size() > 1000);
     for (std::sregex_iterator found(code.begin(), code.end(), quoted), end; found != end; ++found) {
