@@ -117,31 +117,13 @@ TEST_CASE("no text in another language has kept an English sentence", "[texts]")
 
 TEST_CASE("what the screen and the command line both say is never a sentence in the sources", "[texts]") {
   static const std::regex quoted("\"([^\"\n]*)\"");
-  std::vector<std::string> files{"station/maintenance/doctor.cpp",
-                                 "station/lines/probe.cpp",
-                                 "station/session/self_test.cpp",
-                                 "station/session/self_test_rig.cpp",
-                                 "station/analysis/course.cpp",
-                                 "station/analysis/diffusion.cpp",
-                                 "station/analysis/finger.cpp",
-                                 "station/analysis/judgements.cpp",
-                                 "station/analysis/mixed_fit.cpp",
-                                 "station/analysis/psychometric_fit.cpp",
-                                 "station/analysis/psychometric_posterior.cpp",
-                                 "station/analysis/response_signal.cpp",
-                                 "station/analysis/settings.cpp",
-                                 "station/analysis/trade.cpp",
-                                 "station/report/summary.cpp",
-                                 "station/calibration/calibration.cpp",
-                                 "station/limits/exposure.cpp"};
-  static const std::regex reads("(read_|check_|load|needs|survey|reader|surface|devices|spare_).*\\.cpp");
-  for (const char* folder : {"station/text", "station/protocol", "station/rig"})
-    for (const auto& entry :
-         std::filesystem::directory_iterator(std::string(TURNPOINT_SOURCE_DIR) + "/" + folder))
-      if (const auto name = entry.path().filename().string(); std::regex_match(name, reads))
-        files.push_back(std::string(folder) + "/" + name);
-  CHECK(files.size() > 40);
-  for (const auto& file : files) {
+  for (const char* file :
+       {"station/maintenance/doctor.cpp", "station/lines/probe.cpp", "station/session/self_test.cpp",
+        "station/session/self_test_rig.cpp", "station/analysis/course.cpp", "station/analysis/diffusion.cpp",
+        "station/analysis/finger.cpp", "station/analysis/judgements.cpp", "station/analysis/mixed_fit.cpp",
+        "station/analysis/psychometric_fit.cpp", "station/analysis/psychometric_posterior.cpp",
+        "station/analysis/response_signal.cpp", "station/analysis/settings.cpp", "station/analysis/trade.cpp",
+        "station/report/summary.cpp", "station/calibration/calibration.cpp", "station/limits/exposure.cpp"}) {
     const auto code = code_of(file);
     CHECK(code.size() > 1000);
     for (std::sregex_iterator found(code.begin(), code.end(), quoted), end; found != end; ++found) {
@@ -150,6 +132,29 @@ TEST_CASE("what the screen and the command line both say is never a sentence in 
       CHECK(english_word((*found)[1]).empty());
     }
   }
+}
+
+TEST_CASE("what is wrong in a file is never a sentence in the sources of its readers", "[texts]") {
+  static const std::regex quoted(R"re("((?:[^"\\\n]|\\.)*)")re"), sentence("[a-z]{2,} [a-z]{2,}");
+  const std::set<std::string> known{"`turnpoint calibrate --forces`", "median absolute deviations",
+                                    "silicone rubber", "(or inf: lossless)",
+                                    R"([ { at = 1, text = { en = \"not at all\" } }, ... ])"};
+  int files = 0;
+  for (const std::string folder : {"station/text", "station/protocol", "station/rig"})
+    for (const auto& entry :
+         std::filesystem::directory_iterator(std::string(TURNPOINT_SOURCE_DIR) + "/" + folder)) {
+      const auto name = entry.path().filename().string();
+      // its names of personal data, in several languages, are looked for in questions
+      if (!name.ends_with(".cpp") || name == "interlude_advice.cpp") continue;
+      ++files;
+      const auto code = code_of(folder + "/" + name);
+      for (std::sregex_iterator found(code.begin(), code.end(), quoted), end; found != end; ++found) {
+        const auto words = (*found)[1].str();
+        INFO(name << ": " << words);
+        CHECK((known.contains(words) || !std::regex_search(words, sentence)));
+      }
+    }
+  CHECK(files > 50);
 }
 
 TEST_CASE("every text is used, and every text that the program requests exists", "[texts]") {

@@ -2,8 +2,8 @@ import QtQuick
 import QtTest
 import Turnpoint
 
-// Tests that the operator's pages say everything in the operator's language. Only messages about a file or a device
-// are in English, and names from a protocol stay as they are.
+// Tests that the operator's pages say everything in the operator's language. Only messages of the system and of
+// devices are in English, and names from a protocol stay as they are.
 Item {
     id: stage
     width: 1280
