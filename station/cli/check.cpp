@@ -254,10 +254,10 @@ void check(const Options& options, Context& context) {
   const auto signal = work.end(context);
   if (result.problems.empty())
     for (const auto& name : rig::unproven_transducers(calibrated.value()))
-      result.notes.push_back(
-          {{rig, 0, 0},
-           "no pick-up is calibrated for the transducer \"" + name + "\", so its stimuli will be unproven",
-           "add [[pickup]] to the calibration"});
+      result.notes.push_back({{rig, 0, 0},
+                              texts::plain("no pick-up is calibrated for the transducer \"" + name +
+                                           "\", so its stimuli will be unproven"),
+                              texts::plain("add [[pickup]] to the calibration")});
   if (!result.problems.empty()) context.exit_code = 2;
   for (const auto& problem : result.problems) fmt::print(context.err, "{}\n", format(problem));
   for (const auto& warning : result.warnings) fmt::print(context.err, "warning: {}\n", format(warning));
