@@ -93,10 +93,10 @@ std::vector<ProtocolEntry> list_protocols(const std::string& folder) {
       entry.id = protocol.id, entry.version = protocol.version, entry.title = protocol.title;
       entry.languages = protocol.languages;
     } catch (const text::BadInput& bad) {
-      for (const auto& problem : bad.problems()) entry.problems.push_back(format(problem));
+      for (const auto& problem : bad.problems()) entry.problems.push_back(phrase_of(problem));
     } catch (const std::exception& error) {
       // Keep the error with this file and continue, so that the list contains the other files too.
-      entry.problems = {error.what()};
+      entry.problems = {plain(error.what())};
     }
     list.push_back(std::move(entry));
   }
@@ -141,8 +141,8 @@ std::optional<InterruptedNote> interrupted_note(const std::string& database) {
 
 CheckWords words_of(const simulation::Check& check) {
   CheckWords words;
-  for (const auto& problem : check.problems) words.problems.push_back(format(problem));
-  for (const auto& warning : check.warnings) words.warnings.push_back(format(warning));
+  for (const auto& problem : check.problems) words.problems.push_back(phrase_of(problem));
+  for (const auto& warning : check.warnings) words.warnings.push_back(phrase_of(warning));
   using Kind = CheckWords::Remark::Kind;
   add_remarks(check.problems, Kind::problem, words);
   add_remarks(check.warnings, Kind::warning, words);

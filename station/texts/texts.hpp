@@ -33,6 +33,8 @@ const std::string& text(std::string_view key, std::string_view language);
 struct Phrase {
   std::string key, words;
   std::vector<Phrase> values;
+  /// True if it says nothing in any language.
+  bool empty() const { return key.empty() && words.empty() && values.empty(); }
   bool operator==(const Phrase&) const = default;
 };
 /// A phrase that is the same in every language.

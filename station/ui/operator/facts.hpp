@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "station/text/problem.hpp"
 #include "station/ui/shared/phrases.hpp"
 
 namespace turnpoint::ui {
@@ -37,6 +38,15 @@ inline QStringList to_list(const std::vector<std::string>& texts) {
   QStringList list;
   for (const auto& text : texts) list += QString::fromStdString(text);
   return list;
+}
+
+/// Returns what an error says: each problem of a file, or the error's message.
+inline std::vector<texts::Phrase> phrases_of(const std::exception& error) {
+  const auto* bad = dynamic_cast<const text::BadInput*>(&error);
+  if (bad == nullptr) return {texts::plain(error.what())};
+  std::vector<texts::Phrase> phrases;
+  for (const auto& problem : bad->problems()) phrases.push_back(phrase_of(problem));
+  return phrases;
 }
 
 /// Splits an error's message into lines. An error about files has one line for each problem.
