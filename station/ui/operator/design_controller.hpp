@@ -99,6 +99,7 @@ class DesignController : public QObject {
   bool can_redo() const { return draft_ && draft_->can_redo(); }
   bool unsaved() const { return draft_ && draft_->text() != saved_; }
   QVariant trouble() const { return to_variant(trouble_); }
+  const texts::Phrase& trouble_phrase() const { return trouble_; }
   QString saved_as() const { return saved_as_; }
   QVariantMap surface() const { return surface_; }
   QVariantList timeline() const { return timeline_; }
