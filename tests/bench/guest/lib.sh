@@ -145,28 +145,34 @@ english() { shows 200 150; }
 went_on() { ! start_page && continues || return 1; sleep 0.7; tap 400 390; sleep 0.5; ! continues; }
 goes_on() { eventually 30 went_on; }
 
-# Functions for a session without a screen, in the background, which reads from the FIFO `operator` (descriptor 8) and
-# writes console.txt. `said PATTERN` counts lines of the console. `conduct PID` goes on at instructions, rests and faults
-# until the session's process ends; the self-test must find no fault. The scenario defines what happens else:
-# `stimulus_begins` is called when a stimulus begins, $stimuli is its number; `answer_is_open` when an answer can be given;
-# `cue_begins`, which need not be defined, when the participant is told to get ready.
-said() { grep -cE "$1" console.txt || true; }
-fault_page() {
-  [ "$(said "note REASON")" = 0 ] || { tail console.txt; fail "the self-test found a fault"; }
-  sleep 0.5
-  case $(grep ^fault console.txt | tail -1) in *"arm or stop"*) echo arm ;; *) echo next ;; esac >&8
-}
+# conduct PID: answers a session without a screen, in the background (process PID), until it ends. The session reads from
+# the FIFO `operator` (descriptor 8) and writes console.txt, whose lines are taken in turn. Goes on at instructions, rests
+# and faults; the self-test must find no fault. The scenario defines what else happens: `stimulus_begins` is called when a
+# stimulus begins, $stimuli is its number; `answer_is_open` when an answer can be given. It may define `cue_begins`, for
+# the moment when the participant is told to get ready, and `fault_page LINE`.
 cue_begins() { :; }
+fault_page() {
+  case $1 in
+    *"note REASON"*) tail console.txt; fail "the self-test found a fault" ;;
+    *"arm or stop"*) sleep 0.5; echo arm >&8 ;;
+    *) sleep 0.5; echo next >&8 ;;
+  esac
+}
 conduct() {
-  local mended=0 went_on=0 cued=0 answered=0   # not the names of a scenario's own variables, which they would hide
+  local line begun=
   stimuli=0
+  exec 6<console.txt
   while kill -0 "$1" 2>/dev/null; do
-    [ "$(said ^fault)" -le $mended ] || { mended=$(said ^fault); fault_page; }
-    [ "$(said "^(instructions|rest|paused)")" -le $went_on ] || { went_on=$((went_on + 1)); echo next >&8; }
-    [ "$(said "^get ready")" -le $cued ] || { cued=$(said "^get ready"); cue_begins; }
-    [ "$(said ^stimulus)" -le $stimuli ] || { stimuli=$(said ^stimulus); stimulus_begins; }
-    [ "$(said ^response)" -le $answered ] || { answered=$(said ^response); answer_is_open; }
-    sleep 0.1
+    # At the end of the file, `read` fails, and has read the beginning of the next line if that is there already.
+    read -r line <&6 || { begun+=$line; sleep 0.1; continue; }
+    line=$begun$line begun=
+    case $line in
+      fault*) fault_page "$line" ;;
+      instructions* | rest* | paused*) echo next >&8 ;;
+      "get ready"*) cue_begins ;;
+      stimulus*) stimuli=$((stimuli + 1)); stimulus_begins ;;
+      response*) answer_is_open ;;
+    esac
   done
 }
 
