@@ -161,6 +161,7 @@ fault_page() {
 conduct() {
   local line begun=
   stimuli=0
+  : >>console.txt   # the session may not have opened it yet
   exec 6<console.txt
   while kill -0 "$1" 2>/dev/null; do
     # At the end of the file, `read` fails, and has read the beginning of the next line if that is there already.
