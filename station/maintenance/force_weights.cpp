@@ -38,6 +38,14 @@ constexpr std::array<const char*, 3> kCells{"a", "b", "lateral"};
 
 double newtons(double grams) { return 1e-3 * grams * kGravity_m_s2; }
 
+/// Grams and place of a weight, and the grams that pull if there are any.
+std::vector<texts::Phrase> values_of(const WeightStep& step) {
+  std::vector<texts::Phrase> values{texts::plain(text::number(step.mass_g)),
+                                    texts::plain(text::number(step.position_mm, 4))};
+  if (step.pull_g != 0) values.push_back(texts::plain(text::number(std::abs(step.pull_g))));
+  return values;
+}
+
 /// The reading with one weight, and the reading without a weight (tare) before it.
 struct Weighed {
   WeightStep step;
@@ -166,9 +174,8 @@ class Weighing {
             fmt::format("{} does not agree with the other weights: {}. Check the weights, their places, and "
                         "that the string "
                         "pulls at the height of the surface; then start again",
-                        step.name(), found));
-      step.remark =
-          fmt::format("{} does not agree with the other weights: {}. Weigh it again.", step.name(), found);
+                        texts::say(step.name(), "en"), texts::say(found, "en")));
+      step.remark = texts::phrase("weights.disagrees", {step.name(), found});
       repeated_.push_back(step);
       all_.erase(all_.begin() + static_cast<std::ptrdiff_t>(index));
       take({true, 0, 0, 0, step.remark});
@@ -228,14 +235,16 @@ class Weighing {
   }
 
   /// Returns the load that a calibration with the other weights finds for weight `index`, as text.
-  static std::string found_without(std::vector<sensing::DeadWeight> weights, std::size_t index) {
+  static texts::Phrase found_without(std::vector<sensing::DeadWeight> weights, std::size_t index) {
     const auto readings = weights[index].readings;
     weights.erase(weights.begin() + static_cast<std::ptrdiff_t>(index));
     const auto force = sensing::fit_weights(weights).calibration.force(readings);
-    const auto tenths = [](double value) { return text::number(std::round(10 * value) / 10 + 0.0, 5); };
+    const auto tenths = [](double value) {
+      return texts::plain(text::number(std::round(10 * value) / 10 + 0.0, 5));
+    };
     const auto grams = [&](double force_N) { return tenths(1e3 * force_N / kGravity_m_s2); };
-    return fmt::format("according to them, it is {} g at {} mm with a pull of {} g", grams(force.normal_N),
-                       tenths(force.moment_Nmm / force.normal_N), grams(force.lateral_N));
+    return texts::phrase("weights.found", {grams(force.normal_N), tenths(force.moment_Nmm / force.normal_N),
+                                           grams(force.lateral_N)});
   }
 
   BridgeReader& bridges_;
@@ -274,31 +283,17 @@ void check(const ForceResult& made, const std::vector<BridgeReading>& tares) {
 
 }  // namespace
 
-std::string WeightStep::name() const {
-  using text::number;
-  if (tare) return "the empty surface";
-  if (tap != Tap::none) return tap == Tap::from_above ? "the tap from above" : "the tap along the plate";
-  auto said = fmt::format("{} g at {} mm", number(mass_g), number(position_mm, 4));
-  if (pull_g != 0)
-    said += fmt::format(" with a pull of {} g towards the {} edge", number(std::abs(pull_g)),
-                        pull_g > 0 ? "narrow" : "wide");
-  return said;
+texts::Phrase WeightStep::name() const {
+  if (pull_g == 0) return texts::phrase("weights.weight", values_of(*this));
+  return texts::phrase(pull_g > 0 ? "weights.weight_narrow" : "weights.weight_wide", values_of(*this));
 }
 
-std::string WeightStep::text() const {
-  using text::number;
-  if (tare) return "Take everything off the surface.";
-  if (tap == Tap::from_above)
-    return "Leave the surface empty. When the reading begins, tap the middle of the plate once from "
-           "above with a fingernail, within three seconds.";
-  if (tap == Tap::along)
-    return "When the reading begins, tap the narrow end of the plate once along the plate with a fingernail, "
-           "within three seconds.";
-  if (pull_g == 0)
-    return fmt::format("Put {} g at {} mm from the wide edge.", number(mass_g), number(position_mm, 4));
-  return fmt::format(
-      "Put {} g at {} mm from the wide edge, and hang {} g on the string that pulls towards the {} edge.",
-      number(mass_g), number(position_mm, 4), number(std::abs(pull_g)), pull_g > 0 ? "narrow" : "wide");
+texts::Phrase WeightStep::text() const {
+  if (tare) return texts::phrase("weights.clear");
+  if (tap == Tap::from_above) return texts::phrase("weights.tap_above");
+  if (tap == Tap::along) return texts::phrase("weights.tap_along");
+  if (pull_g == 0) return texts::phrase("weights.put", values_of(*this));
+  return texts::phrase(pull_g > 0 ? "weights.pull_narrow" : "weights.pull_wide", values_of(*this));
 }
 
 std::vector<WeightStep> weight_steps(double length_mm) {

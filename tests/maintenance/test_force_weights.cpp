@@ -182,7 +182,7 @@ TEST_CASE("a weight that does not agree with the others is named and weighed aga
   };
   std::vector<std::string> remarks;
   const auto asked = [&](const WeightStep& step) {
-    if (!step.remark.empty() && !step.tare) remarks.push_back(step.remark);
+    if (!step.remark.empty() && !step.tare) remarks.push_back(texts::say(step.remark, "en"));
     return true;
   };
   const auto why = "50 g at 90 mm does not agree with the other weights: " + said;
@@ -191,7 +191,7 @@ TEST_CASE("a weight that does not agree with the others is named and weighed aga
   } else {
     const auto made = weigh(rig, bridges, asked, kGiveUp);
     REQUIRE(made.repeated.size() == 1);
-    CHECK(made.repeated[0].name() == "50 g at 90 mm");
+    CHECK(texts::say(made.repeated[0].name(), "en") == "50 g at 90 mm");
     CHECK(made.steps.size() == 32);
     for (const auto& rest : made.residuals) CHECK(std::abs(rest.position_mm) < 1e-6);
   }

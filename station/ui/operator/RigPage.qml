@@ -25,13 +25,8 @@ Rectangle {
     readonly property var weightStep: rig.step
     readonly property var calibrationFacts: rig.calibration
     function step() : string {
-        const step = weightStep
-        const asked = step.tare ? texts.text("operator.weights_clear")
-            : step.tap === "above" ? texts.text("operator.weights_tap_above")
-            : step.tap === "along" ? texts.text("operator.weights_tap_along")
-            : step.pull === 0 ? texts.text("operator.weights_put").arg(step.grams).arg(step.mm)
-            : texts.text(step.pull > 0 ? "operator.weights_pull_narrow" : "operator.weights_pull_wide").arg(step.grams).arg(step.mm).arg(Math.abs(step.pull))
-        return (step.trouble !== "" ? texts.text("operator.weights_repair").arg(step.trouble) + "\n" : step.remark !== "" ? step.remark + "\n" : "") + asked
+        const remark = texts.say(weightStep.remark)
+        return (weightStep.trouble !== "" ? texts.text("operator.weights_repair").arg(weightStep.trouble) + "\n" : remark !== "" ? remark + "\n" : "") + texts.say(weightStep.asked)
     }
 
     Theme {

@@ -13,6 +13,7 @@
 #include "station/rig/rig.hpp"
 #include "station/session/self_test_rig.hpp"
 #include "station/setup/prepare.hpp"
+#include "station/text/number.hpp"
 #include "station/ui/operator/facts.hpp"
 
 namespace turnpoint::ui {
@@ -67,17 +68,8 @@ const char* word(session::Request::Kind kind) {
                                       : "press_button";
 }
 
-texts::Phrase number(double value, const char* format) {
-  return texts::plain(fmt::format(fmt::runtime(format), value));
-}
-
-/// Which weight it is: its place, and the pull if there is one.
-texts::Phrase weight_of(const maintenance::WeightStep& step) {
-  std::vector<texts::Phrase> values{number(step.mass_g, "{:.4g}"), number(step.position_mm, "{:.4g}")};
-  if (step.pull_g == 0) return texts::phrase("operator.weights_weight", values);
-  values.push_back(number(std::abs(step.pull_g), "{:.4g}"));
-  return step.pull_g > 0 ? texts::phrase("operator.weights_weight_narrow", values)
-                         : texts::phrase("operator.weights_weight_wide", values);
+texts::Phrase fixed(double value, int decimals) {
+  return texts::plain(fmt::format("{:.{}f}", value, decimals));
 }
 
 /// Returns rows for the page: uncertainty and resonance of the force calibration, and each weight with its
@@ -92,22 +84,21 @@ QVariantList weights_of(const maintenance::ForceResult& result, const std::strin
                         {"share", -1.0}};
   };
   add(phrase("operator.weights_uncertainty"), true,
-      phrase("operator.weights_uncertainty_text",
-             {number(result.sd.position_mm, "{:.2f}"), number(result.sd.friction, "{:.4f}"),
-              number(1e3 * result.sd.lateral_N, "{:.1f}"), number(result.zero_moved_mN, "{:.2f}"),
-              texts::plain(std::filesystem::path(file).filename().string())}));
+      phrase(
+          "operator.weights_uncertainty_text",
+          {fixed(result.sd.position_mm, 2), fixed(result.sd.friction, 4), fixed(1e3 * result.sd.lateral_N, 1),
+           fixed(result.zero_moved_mN, 2), texts::plain(std::filesystem::path(file).filename().string())}));
   add(phrase("operator.weights_resonance"), result.resonance_Hz.has_value(),
-      result.resonance_Hz
-          ? phrase("operator.weights_resonance_text",
-                   {number(*result.resonance_Hz, "{:.3g}"), number(result.cells.usable_Hz.value(), "{:.3g}")})
-          : phrase("operator.weights_resonance_unknown"));
+      result.resonance_Hz ? phrase("operator.weights_resonance_text",
+                                   {texts::plain(text::number(*result.resonance_Hz, 3)),
+                                    texts::plain(text::number(result.cells.usable_Hz.value(), 3))})
+                          : phrase("operator.weights_resonance_unknown"));
   for (std::size_t k = 0; k < result.steps.size(); ++k) {
     const auto& rest = result.residuals[k];
-    const std::vector<texts::Phrase> values{number(1e3 * rest.normal_N, "{:.2f}"),
-                                            number(1e3 * rest.lateral_N, "{:.2f}"),
-                                            number(rest.position_mm, "{:.2f}")};
+    const std::vector<texts::Phrase> values{fixed(1e3 * rest.normal_N, 2), fixed(1e3 * rest.lateral_N, 2),
+                                            fixed(rest.position_mm, 2)};
     const bool once = result.steps[k].remark.empty();
-    add(weight_of(result.steps[k]), once,
+    add(result.steps[k].name(), once,
         once ? phrase("operator.weights_residual", values)
              : phrase("operator.weights_residual_again", values));
   }
@@ -244,15 +235,9 @@ void RigController::show(const Weighing::Shown& shown) {
   step_.clear();
   if (shown.step) {
     const auto& step = *shown.step;
-    step_ = {{"tare", step.tare},
-             {"tap", step.tap == maintenance::Tap::from_above ? "above"
-                     : step.tap == maintenance::Tap::along    ? "along"
-                                                              : ""},
+    step_ = {{"asked", to_variant(step.text())},
+             {"remark", to_variant(step.remark)},
              {"converter", shown.converter},
-             {"grams", step.mass_g},
-             {"mm", step.position_mm},
-             {"pull", step.pull_g},
-             {"remark", QString::fromStdString(step.remark)},
              {"trouble", QString::fromStdString(shown.trouble)}};
     if (!shown.unread.empty())
       reading_ = QStringList(QString::fromStdString(shown.unread));

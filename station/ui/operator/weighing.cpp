@@ -62,7 +62,7 @@ std::optional<maintenance::ForceResult> Weighing::run(const rig::Rig& rig, const
   std::string silent;  // why a tap was not noticed
   const auto ready = [&](const maintenance::WeightStep& step) {
     now = step;
-    now.remark += std::exchange(silent, "");
+    if (!silent.empty()) now.remark = texts::plain(std::exchange(silent, ""));
     return await(*bridges, {now, "", {}, false, ""}, show, stop) == Answer::read;
   };
   const auto failed = [&](const std::string& why) {
