@@ -1,9 +1,9 @@
 #include "station/texts/texts.hpp"
 
-#include <algorithm>
 #include <array>
 #include <iterator>
 #include <mutex>
+#include <span>
 #include <stdexcept>
 
 #include "catalogues.hpp"
@@ -44,11 +44,9 @@ std::string unescaped(std::string_view text) {
 
 /// Reads a catalogue, whose lines are comments, `[table]` and `key = "text"`. The reader of TOML files cannot
 /// read it, because that reader says with the catalogue what is wrong in a file.
-void read(std::string_view toml, Spoken& spoken) {
+void read(std::span<const char* const> lines, Spoken& spoken) {
   std::string table;
-  while (!toml.empty()) {
-    const auto line = toml.substr(0, toml.find('\n'));
-    toml.remove_prefix(std::min(toml.size(), line.size() + 1));
+  for (const std::string_view line : lines) {
     if (line.starts_with('[')) table = std::string(line.substr(1, line.size() - 2)) + ".";
     const auto equals = line.find(" = \"");
     if (line.starts_with('#') || equals == std::string_view::npos) continue;
@@ -70,7 +68,7 @@ const Spoken* find(std::string_view language) {
   static std::array<std::once_flag, std::size(catalogues)> parsed;
   for (std::size_t i = 0; i < spoken.size(); ++i) {
     if (language.substr(0, 2) != catalogues[i].language) continue;
-    std::call_once(parsed[i], [i] { read(catalogues[i].toml, spoken[i]); });
+    std::call_once(parsed[i], [i] { read(catalogues[i].lines, spoken[i]); });
     return &spoken[i];
   }
   return nullptr;
