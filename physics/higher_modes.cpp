@@ -30,9 +30,9 @@ constexpr int edge_points = 32;  // number of points across half of the drive ed
 // The shape of the n-th symmetric mode is cos(q y/W), n = 1, 2, ...
 double transverse_q(int n) { return (2 * n - 1) * pi / 2; }
 
-// Projection of (y/W)^2 cos(q y/W) on the n-th mode, with the q of the first mode.
-double projection_of_first(int n) {
-  return (n % 2 == 1 ? 2 : -2) / (pi * pi) * (1 / std::pow(n - 1, 2) - 1 / std::pow(n, 2));
+// Projection of (y/W)^2 cos(q y/W) on the n-th mode, with the q of another mode, the m-th.
+double projection_on_other(int m, int n) {
+  return ((n - m) % 2 == 0 ? 2 : -2) / (pi * pi) * (1 / std::pow(n - m, 2) - 1 / std::pow(n + m - 1, 2));
 }
 
 // Projection of (y/W)^2 cos(q y/W) on itself.
@@ -55,14 +55,14 @@ struct ModeWave {
   // parts
   double turn = 0, turns = 0;
   double phase_error = 0;
-  Complex excited = 0;  // amplitude of the other solution that the first mode excites on curved sides
+  // g = sqrt(W) v and dg/dx at each of the points along curved sides
+  std::vector<Complex> g, g_slope;
 };
 
 // A point between the drive edge and the turning point of the first mode. Sums over these points stand for
-// integrals along the surface. `first` is g = sqrt(W) v of the first mode, and `first_slope` is dg/dx.
+// integrals along the surface.
 struct CurvedPoint {
   double x, w, bend;  // bend: W W''
-  Complex first, first_slope;
 };
 
 struct ModeWaves {
@@ -73,6 +73,8 @@ struct ModeWaves {
   bool curved;
   std::vector<CurvedPoint> points;
   std::vector<ModeWave> modes;
+  // amplitude of the other solution of mode n that mode m excites on curved sides
+  Eigen::MatrixXcd excited;
   double resonance = 1;
 
   ModeWaves(const Surface& surface, double f, double near);
@@ -81,10 +83,8 @@ struct ModeWaves {
   // The wavenumber along x, if q is that across; not exactly 0, so that one can divide by it.
   Complex along(double q) const { return std::sqrt(lossy_k * lossy_k - q * q + 1e-12 * k * k); }
   void turn(ModeWave& wave, int n) const;
-  // Computes g = sqrt(W) v of a mode and dg/dx at a point.
-  void flow(const CurvedPoint& point, const TaylorMarch& march, double ln_unit, Complex& g,
-            Complex& slope) const;
-  void excite(ModeWave& wave, int n, const TaylorMarch& march, double ln_unit, double end_m) const;
+  void flow(ModeWave& wave, const TaylorMarch& march, double ln_unit, double end_m) const;
+  Complex excited_by(std::size_t m, std::size_t n) const;
 };
 
 ModeWaves::ModeWaves(const Surface& surface, double f, double near)
@@ -105,7 +105,14 @@ ModeWaves::ModeWaves(const Surface& surface, double f, double near)
   const double ratio = taper.half_width_m(0) / cut_off_half_width_m(surface, f);
   int n = 1;
   for (; n == 1 || 2 * n - 1 < ratio; ++n) add_propagating(surface, f, n);
+  const int propagating = n - 1;
   for (const int last = n + extra_modes; n < last; ++n) add_evanescent(surface, f, n);
+  excited = Eigen::MatrixXcd::Zero(n - 1, n - 1);
+  if (!curved || propagating == 1) return;
+  for (std::size_t from = 0; from < static_cast<std::size_t>(propagating); ++from)
+    for (std::size_t to = 0; to < static_cast<std::size_t>(propagating); ++to)
+      if (from != to)
+        excited(static_cast<Eigen::Index>(to), static_cast<Eigen::Index>(from)) = excited_by(from, to);
 }
 
 // The phase is the integral of kx (y/W)^2 W W''/2, projected on the mode.
@@ -119,32 +126,35 @@ void ModeWaves::turn(ModeWave& wave, int n) const {
   }
 }
 
-void ModeWaves::flow(const CurvedPoint& point, const TaylorMarch& march, double ln_unit, Complex& g,
-                     Complex& slope) const {
-  const Scaled value = march.value(point.x), derivative = march.slope(point.x);
-  const double root = std::sqrt(point.w);
-  g = root * std::exp(value.ln_scale - ln_unit) * value.mantissa;
-  slope = root * std::exp(derivative.ln_scale - ln_unit) * derivative.mantissa +
-          0.5 * taper.slope(point.x) / point.w * g;
+// Computes g and dg/dx of a mode, which is negligible beyond end_m.
+void ModeWaves::flow(ModeWave& wave, const TaylorMarch& march, double ln_unit, double end_m) const {
+  wave.g.assign(points.size(), 0), wave.g_slope.assign(points.size(), 0);
+  for (std::size_t i = 0; i < points.size() && points[i].x <= end_m; ++i) {
+    const CurvedPoint& point = points[i];
+    const Scaled value = march.value(point.x), derivative = march.slope(point.x);
+    const double root = std::sqrt(point.w);
+    wave.g[i] = root * std::exp(value.ln_scale - ln_unit) * value.mantissa;
+    wave.g_slope[i] = root * std::exp(derivative.ln_scale - ln_unit) * derivative.mantissa +
+                      0.5 * taper.slope(point.x) / point.w * wave.g[i];
+  }
 }
 
-// In coordinates that follow the arcs, x + W W' (y/W)^2/2, the Laplacian of the first mode g has the extra
-// terms (y/W)^2 (W W'' g'' + (W W'')' g'/2). They drive the n-th mode. The sum is the product of that mode
-// with them, integrated by parts. The mode is negligible beyond end_m.
-void ModeWaves::excite(ModeWave& wave, int n, const TaylorMarch& march, double ln_unit, double end_m) const {
+// In coordinates that follow the arcs, x + W W' (y/W)^2/2, the Laplacian of a mode g has the extra terms
+// (y/W)^2 (W W'' g'' + (W W'')' g'/2). They drive the other modes. The sum is the product of another mode
+// with them, integrated by parts. `m` and `n` count from 0.
+Complex ModeWaves::excited_by(std::size_t m, std::size_t n) const {
+  const ModeWave &from = modes[m], &to = modes[n];
+  const int m1 = static_cast<int>(m) + 1, n1 = static_cast<int>(n) + 1;
   Complex sum = 0;
-  for (const CurvedPoint& point : points) {
-    if (point.x > end_m) break;
-    Complex g, slope;
-    flow(point, march, ln_unit, g, slope);
-    const double q = transverse_q(1) / point.w;
-    sum += 0.5 * point.bend * ((lossy_k * lossy_k - q * q) * point.first * g + point.first_slope * slope);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const double q = transverse_q(m1) / points[i].w;
+    sum += 0.5 * points[i].bend *
+           ((lossy_k * lossy_k - q * q) * from.g[i] * to.g[i] + from.g_slope[i] * to.g_slope[i]);
   }
   sum *= reach_m / static_cast<double>(points.size());
   const double w = taper.half_width_m(0);
-  sum += 0.5 * w * w * taper.second_derivative(0) * modes[0].sine * modes[0].kx * wave.cosine;
-  wave.excited =
-      -projection_of_first(n) * sum / (w * wave.kx * (std::norm(wave.cosine) + std::norm(wave.sine)));
+  sum += 0.5 * w * w * taper.second_derivative(0) * from.sine * from.kx * to.cosine;
+  return -projection_on_other(m1, n1) * sum / (w * to.kx * (std::norm(to.cosine) + std::norm(to.sine)));
 }
 
 // sqrt(|v|^2 + |v'/k|^2)
@@ -168,15 +178,14 @@ void ModeWaves::add_propagating(const Surface& surface, double f, int n) {
   if (n == 1) {
     wave.most = std::max(wave.near, std::abs(wave.cosine));
     const bool alone = 3 * cut >= w;  // no other mode propagates
-    for (std::size_t i = 0; i < points.size() && !alone; ++i)
-      flow(points[i], march, ln_unit, points[i].first, points[i].first_slope);
+    if (curved && !alone) flow(wave, march, ln_unit, reach_m);
   } else {
     const auto turning = taper.position_continued_m((2 * n - 1) * cut);
     const double reach = std::clamp(turning.value_or(taper.length_m()), 0.0, taper.length_m());
     double ln_most = value.ln_magnitude();
     for (int i = 1; i <= 200; ++i) ln_most = std::max(ln_most, march.value(reach * i / 200).ln_magnitude());
     wave.most = std::exp(ln_most - ln_unit);
-    if (curved) excite(wave, n, march, ln_unit, reach + 2 * cut);
+    if (curved) flow(wave, march, ln_unit, reach + 2 * cut);
     // Near a resonance, the amplitude of the standing wave at the drive edge depends on its phase, which is
     // known only to `phase_uncertainty`.
     const double standing = std::exp(value.ln_magnitude() - ln_most);
@@ -234,18 +243,17 @@ void solve_drive_edge(const ModeWaves& waves, const DriveEdgeModes& edge, double
                       HigherModes& all) {
   const auto count = static_cast<Eigen::Index>(waves.modes.size());
   Eigen::MatrixXcd matrix(count, count),
-      turned(count, count);  // turned: derivative by the phase of each mode
-  Eigen::VectorXcd excited = Eigen::VectorXcd::Zero(count);
+      turned(count, count);               // turned: derivative by the phase of each mode
+  Eigen::MatrixXcd others(count, count);  // the other solution of each mode
   for (Eigen::Index n = 0; n < count; ++n) {
     const ModeWave& wave = waves.modes[static_cast<std::size_t>(n)];
     const double c = std::cos(curvature * wave.turn), s = std::sin(curvature * wave.turn);
     const Complex cosine = wave.cosine * c + wave.sine * s, sine = wave.sine * c - wave.cosine * s;
     matrix.col(n) = edge.cosine.col(n) * cosine + edge.sine.col(n) * sine;
     turned.col(n) = edge.cosine.col(n) * sine - edge.sine.col(n) * cosine;
-    excited += curvature * wave.excited *
-               (edge.sine.col(n) * std::conj(wave.cosine) - edge.cosine.col(n) * std::conj(wave.sine));
+    others.col(n) = edge.sine.col(n) * std::conj(wave.cosine) - edge.cosine.col(n) * std::conj(wave.sine);
   }
-  matrix.col(0) += excited;
+  matrix += curvature * others * waves.excited;
   const Eigen::PartialPivLU<Eigen::MatrixXcd> solver(matrix);
   const Eigen::VectorXcd amplitude = solver.solve(edge.drive);
   const Eigen::MatrixXcd effect = solver.solve(turned);
@@ -262,7 +270,8 @@ void solve_drive_edge(const ModeWaves& waves, const DriveEdgeModes& edge, double
   double field = 0, near = 0;
   for (Eigen::Index n = 1; n < count; ++n) {
     const ModeWave& wave = waves.modes[static_cast<std::size_t>(n)];
-    const double size = (std::abs(amplitude(n)) + spread(n)) / first + std::abs(curvature * wave.excited);
+    const double size =
+        (std::abs(amplitude(n)) + spread(n)) / first + std::abs(curvature * waves.excited(n, 0));
     field += size * wave.most / waves.modes[0].most;
     near += size * wave.near / waves.modes[0].near;
   }

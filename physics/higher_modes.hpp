@@ -9,8 +9,9 @@ namespace turnpoint::physics {
 // arcs that meet both sides at a right angle. Two things excite higher modes:
 // - The drive edge is straight and cuts across the arcs, so the first mode alone does not have the shape of
 //   the drive there. The higher modes make up the difference.
-// - Where the slope of the sides changes, the curvature of the arcs changes too, and the first mode turns
-//   partly into higher modes.
+// - Where the slope of the sides changes, the curvature of the arcs changes too, and each mode turns partly
+//   into the others. The way through another mode matters: it may reach a resonant mode that the first mode
+//   excites only weakly by itself.
 // A changing slope also shifts the phase of every mode. On curved sides, the effects are computed without the
 // curvature, with it, and with twice the curvature, because one result may be small by chance. Each member
 // holds the largest of the three results.

@@ -344,6 +344,17 @@ TEST_CASE("the errors of models and map lie inside their bounds on random membra
                  turnpoint::physics_test::random_membrane);
 }
 
+// The third mode of this scene is near a resonance, and the first mode excites it mostly through the second.
+TEST_CASE("the bound of mode includes modes that excite one another along curved sides", "[physics]") {
+  Campaign all;
+  Draw draw(Draw(20260104 + 903836).next());
+  const Surface s = turnpoint::physics_test::random_membrane(draw);
+  all.add(903836, s, draw.next() % 2 == 0 ? Normalise::peak : Normalise::drive,
+          {14, 12, 9, 3, 0.75, 0.8, 30});
+  CHECK(all.error.size() == 1);
+  CHECK(all.mode.outside == 0);
+}
+
 // In these scenes, the clamped end is at most half as wide as the cut-off, so the first mode reaches it only
 // as a weak evanescent wave. The reflection of this wave moves the edges by about 0.1 um.
 TEST_CASE("the map's bound includes a reflection from a clamped end far beyond the turning point",
