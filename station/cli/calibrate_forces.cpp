@@ -105,7 +105,7 @@ void calibrate_forces(const SensorOptions& options, const rig::Rig& rig, Context
   const auto bridges = maintenance::open_bridges(rig);
   const auto result = maintenance::weigh(
       rig, *bridges, [&](const auto& step) { return stands(std::cin, context.err, step); },
-      [&](const auto& why) { return again(std::cin, context.err, why); });
+      [&](const auto& why) { return again(std::cin, context.err, texts::say(why, "en")); });
   const auto out = maintenance::write_forces(rig, result.cells, options.out);
   if (context.json) {
     context.out << to_json(result, out).dump(2) << "\n";

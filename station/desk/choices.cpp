@@ -13,6 +13,7 @@
 #include "station/store/read.hpp"
 #include "station/system/clocks.hpp"
 #include "station/text/number.hpp"
+#include "station/texts/refusal.hpp"
 
 namespace turnpoint::desk {
 
@@ -96,7 +97,7 @@ std::vector<ProtocolEntry> list_protocols(const std::string& folder) {
       for (const auto& problem : bad.problems()) entry.problems.push_back(phrase_of(problem));
     } catch (const std::exception& error) {
       // Keep the error with this file and continue, so that the list contains the other files too.
-      entry.problems = {plain(error.what())};
+      entry.problems = {texts::phrase_of(error)};
     }
     list.push_back(std::move(entry));
   }

@@ -14,10 +14,13 @@
 #include "station/terms/force_carrier.hpp"
 #include "station/terms/usage_error.hpp"
 #include "station/text/number.hpp"
+#include "station/texts/refusal.hpp"
 
 namespace turnpoint::maintenance {
 
 namespace {
+
+using texts::phrase, texts::plain;
 
 constexpr double kRatedLoad_N = 10;
 // largest allowed change and SD of the zero reading; sessions use the same limits before a trial
@@ -69,8 +72,7 @@ std::array<double, 3> rotations(const std::vector<Weighed>& all) {
   const double most = *std::max_element(largest.begin(), largest.end());
   for (std::size_t cell = 0; cell < 3; ++cell)
     if (!(largest[cell] > kDeaf_share * most))
-      throw terms::UsageError(fmt::format(
-          "cell {} does not respond to any weight; check its wires and its amplifier", kCells[cell]));
+      throw texts::Refusal(phrase("weights.no_response", {plain(kCells[cell])}));
   return rotation;
 }
 
@@ -132,10 +134,7 @@ sensing::WeightFit fit_of(const std::vector<sensing::DeadWeight>& weights) {
   try {
     return sensing::fit_weights(weights);
   } catch (const terms::UsageError&) {
-    throw terms::UsageError(
-        "the readings do not tell normal force, lateral force and position apart; check the lateral cell, "
-        "and "
-        "that the string pulls at the surface");
+    throw texts::Refusal(phrase("weights.not_apart"));
   }
 }
 
@@ -143,7 +142,7 @@ sensing::WeightFit fit_of(const std::vector<sensing::DeadWeight>& weights) {
 class Weighing {
  public:
   Weighing(BridgeReader& bridges, const std::function<bool(const WeightStep&)>& ready,
-           const std::function<bool(const std::string&)>& failed)
+           const std::function<bool(const texts::Phrase&)>& failed)
       : bridges_(bridges), ready_(ready), failed_(failed) {}
 
   void take(const WeightStep& step) {
@@ -152,7 +151,7 @@ class Weighing {
     if (step.tare)
       tares_.push_back(*reading);
     else if (tares_.empty())
-      throw terms::UsageError("the first step, without a weight, cannot be left out");
+      throw texts::Refusal(phrase("weights.first_step"));
     else
       all_.push_back({step, *reading, tares_.back()});
   }
@@ -170,11 +169,7 @@ class Weighing {
       auto step = all_[index].step;
       const auto found = found_without(weights, index);
       if (!step.remark.empty() || repeated_.size() == kMostRepeats)
-        throw terms::UsageError(
-            fmt::format("{} does not agree with the other weights: {}. Check the weights, their places, and "
-                        "that the string "
-                        "pulls at the height of the surface; then start again",
-                        texts::say(step.name(), "en"), texts::say(found, "en")));
+        throw texts::Refusal(phrase("weights.still_disagrees", {step.name(), found}));
       step.remark = texts::phrase("weights.disagrees", {step.name(), found});
       repeated_.push_back(step);
       all_.erase(all_.begin() + static_cast<std::ptrdiff_t>(index));
@@ -190,10 +185,9 @@ class Weighing {
     step.tap = where;
     for (int k = 0; k < kMostTaps && ready_(step); ++k) try {
         if (const auto found_Hz = bridges_.tapped_Hz(where)) return found_Hz;
-        if (!failed_("the plate did not ring after a tap; tap harder, with a fingernail or a pencil"))
-          return std::nullopt;
+        if (!failed_(phrase("weights.no_ring"))) return std::nullopt;
       } catch (const std::runtime_error& error) {
-        if (!failed_(error.what())) throw;
+        if (!failed_(texts::phrase_of(error))) throw;
       }
     return std::nullopt;
   }
@@ -205,8 +199,7 @@ class Weighing {
  private:
   void enough() const {
     if (all_.size() < kFewest)
-      throw terms::UsageError(
-          fmt::format("at least {} weights are needed for a calibration of the forces", kFewest));
+      throw texts::Refusal(phrase("weights.too_few", {plain(std::to_string(kFewest))}));
   }
 
   std::optional<BridgeReading> read(const WeightStep& step) {
@@ -217,7 +210,7 @@ class Weighing {
       } catch (const terms::UsageError&) {
         throw;
       } catch (const std::runtime_error& error) {
-        if (!failed_(error.what())) throw;
+        if (!failed_(texts::phrase_of(error))) throw;
       }
     return std::nullopt;
   }
@@ -227,10 +220,9 @@ class Weighing {
     for (std::size_t cell = 0; cell < 3; ++cell) {
       const double before = tares_.front().sd[cell];
       if (reading.sd[cell] > kRestlessShare * before + kRipple * std::abs(reading.ratio[cell]))
-        throw std::runtime_error(
-            fmt::format("cell {} did not rest: it varied {:.0f} times as much as in the first step; let the "
-                        "weight come to rest",
-                        kCells[cell], reading.sd[cell] / before));
+        throw texts::Failure(
+            phrase("weights.restless",
+                   {plain(kCells[cell]), plain(fmt::format("{:.0f}", reading.sd[cell] / before))}));
     }
   }
 
@@ -249,7 +241,7 @@ class Weighing {
 
   BridgeReader& bridges_;
   const std::function<bool(const WeightStep&)>& ready_;
-  const std::function<bool(const std::string&)>& failed_;
+  const std::function<bool(const texts::Phrase&)>& failed_;
   std::vector<Weighed> all_;
   std::vector<BridgeReading> tares_;
   std::vector<WeightStep> repeated_;
@@ -258,27 +250,20 @@ class Weighing {
 /// Throws if the weights do not agree with each other, or if the readings without a weight vary or drift too
 /// much.
 void check(const ForceResult& made, const std::vector<BridgeReading>& tares) {
-  constexpr std::array<const char*, 3> loads{"normal force", "pull along the surface", "place"};
+  constexpr std::array<const char*, 3> loads{"weights.normal", "weights.pull", "weights.place"};
   for (std::size_t k = 0; k < 3; ++k)
     if (!(made.misfit[k] < kMostMisfit))
-      throw terms::UsageError(
-          fmt::format("the weights do not agree with each other: the residuals of the {} are {} times what "
-                      "careful weighing leaves; check the masses, the places and the string",
-                      loads[k], text::number(made.misfit[k], 2)));
+      throw texts::Refusal(
+          phrase("weights.misfit", {phrase(loads[k]), plain(text::number(made.misfit[k], 2))}));
   double shaken_N = 0;
   for (const auto& tare : tares)
     for (std::size_t cell = 0; cell < 3; ++cell)
       shaken_N = std::max(shaken_N, kRatedLoad_N * tare.sd[cell] / made.cells.rated_ratio[cell]);
   if (shaken_N > kRestless_N)
-    throw terms::UsageError(
-        fmt::format("the force cells are not steady without a weight: the reading of a cell varies by {} mN; "
-                    "a calibration needs less than {} mN",
-                    text::number(1e3 * shaken_N, 2), text::number(1e3 * kRestless_N, 2)));
+    throw texts::Refusal(phrase("weights.unsteady", {plain(text::number(1e3 * shaken_N, 2)),
+                                                     plain(text::number(1e3 * kRestless_N, 2))}));
   if (made.zero_moved_mN > 1e3 * kMoved_N)
-    throw terms::UsageError(fmt::format(
-        "the zero of the cells moved by {} mN between two readings without a weight; something lay "
-        "on the surface, or a cell is damaged",
-        text::number(made.zero_moved_mN, 3)));
+    throw texts::Refusal(phrase("weights.zero_moved", {plain(text::number(made.zero_moved_mN, 3))}));
 }
 
 }  // namespace
@@ -323,7 +308,7 @@ std::optional<double> ringing_of(const std::array<std::vector<double>, 3>& readi
 
 ForceResult weigh(const rig::Rig& rig, BridgeReader& bridges,
                   const std::function<bool(const WeightStep&)>& ready,
-                  const std::function<bool(const std::string&)>& failed) {
+                  const std::function<bool(const texts::Phrase&)>& failed) {
   Weighing weighing(bridges, ready, failed);
   for (const auto& step : weight_steps(1e3 * rig.surface.length_m)) weighing.take(step);
   weighing.repeat_outliers();

@@ -116,7 +116,7 @@ struct ForceResult {
 /// were left out, if a cell does not respond, if a weight still does not agree, or if the zero moved.
 ForceResult weigh(const rig::Rig& rig, BridgeReader& bridges,
                   const std::function<bool(const WeightStep&)>& ready,
-                  const std::function<bool(const std::string&)>& failed);
+                  const std::function<bool(const texts::Phrase&)>& failed);
 
 /// Adds the force cells to the newest valid calibration of the rig, and writes it: to `path`, or beside the
 /// rig file with today's date if `path` is empty. Returns the path.

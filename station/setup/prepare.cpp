@@ -17,6 +17,7 @@
 #include "station/terms/usage_error.hpp"
 #include "station/text/number.hpp"
 #include "station/text/toml.hpp"
+#include "station/texts/refusal.hpp"
 
 namespace turnpoint::setup {
 
@@ -30,10 +31,7 @@ const std::string kLiveOption = "--mode live: ";
 void check_participant(const std::string& code, std::vector<Problem>& problems) {
   static const std::regex allowed("[A-Za-z0-9][A-Za-z0-9_-]{0,31}");
   if (!std::regex_match(code, allowed))
-    problems.push_back({{},
-                        plain("--participant \"" + code + "\" is not a code"),
-                        plain("a code has 1 to 32 letters, digits, - and _, and begins with a letter or "
-                              "digit; never use a person's name")});
+    problems.push_back({{}, phrase("refusal.not_a_code", {plain(code)}), phrase("refusal.code_rule")});
 }
 
 std::string choose_language(const std::string& wanted, const protocol::Protocol& protocol,
@@ -44,8 +42,8 @@ std::string choose_language(const std::string& wanted, const protocol::Protocol&
   std::string list;
   for (const auto& language : known) list += (list.empty() ? "" : ", ") + language;
   problems.push_back({{},
-                      plain("--language " + wanted + ": the protocol does not have this language"),
-                      plain("it has " + list)});
+                      phrase("refusal.other_language", {plain(wanted)}),
+                      phrase("refusal.has_languages", {plain(list)})});
   return wanted;
 }
 
@@ -78,28 +76,25 @@ std::optional<texts::Phrase> unmeasured_sound(const session::Setup& setup, const
 std::vector<Problem> check_live(const session::Setup& setup, const protocol::Survey& survey) {
   const auto& rig = setup.rig;
   std::vector<Problem> problems;
-  const auto add = [&](const texts::Phrase& reason, const std::string& allowed) {
-    problems.push_back({{rig.path, 0, 0}, {"", kLiveOption, {reason}}, plain(allowed)});
+  const auto add = [&](const texts::Phrase& reason, const texts::Phrase& allowed) {
+    problems.push_back({{rig.path, 0, 0}, {"", kLiveOption, {reason}}, allowed});
   };
   const auto measures = [](const auto& part) {
     const auto& block = protocol::block_of(part);
     return block.kind == protocol::BlockKind::friction_table && block.strokes.used;
   };
   if (!rig.friction.measured && !std::ranges::any_of(setup.protocol.plan, measures))
-    add(phrase("refusal.friction"),
-        "set table_csv in [friction] to a measured table, or run with --mode pilot");
-  if (rig.reproduction)
-    add(phrase("refusal.reproduction"), "live sessions need a rig with reproduction = false");
+    add(phrase("refusal.friction"), phrase("refusal.measure_friction"));
+  if (rig.reproduction) add(phrase("refusal.reproduction"), phrase("refusal.no_reproduction"));
   if (!has_response(setup) && rig.amplifier_uri != "sim:")
-    add(phrase("refusal.no_calibration"), "turnpoint calibrate --rig " + rig.path + " makes one");
+    add(phrase("refusal.no_calibration"), phrase("refusal.make_calibration", {plain(rig.path)}));
   for (const auto& sight : survey.sights) {
     // Use an amplitude near 0, so that this checks only whether the level was measured. Whether the sound is
     // too loud depends on each tone's amplitude and is checked in the trial.
     auto problem = limits::sound_problem(sight.lowest_Hz, 1e-9, setup.sound);
     if (!problem) problem = unmeasured_sound(setup, sight);
     if (!problem) continue;
-    add(phrase("refusal.scene", {plain(sight.scene), *problem}),
-        "the calibration needs sound levels measured below and above these tones");
+    add(phrase("refusal.scene", {plain(sight.scene), *problem}), phrase("refusal.measure_sound"));
     break;
   }
   return problems;
@@ -108,16 +103,13 @@ std::vector<Problem> check_live(const session::Setup& setup, const protocol::Sur
 void check_buttons_only(const session::Setup& setup, std::vector<Problem>& problems) {
   const auto& task = setup.protocol.task;
   if (!setup.rig.buttons_uri)
-    problems.push_back({{setup.rig.path, 0, 0},
-                        plain("--buttons-only: the rig has no buttons"),
-                        plain("use a rig with [buttons]")});
+    problems.push_back(
+        {{setup.rig.path, 0, 0}, phrase("refusal.no_buttons"), phrase("refusal.need_buttons")});
   if (task.device == protocol::Device::touch)
-    problems.push_back({task.device_place, plain("--buttons-only: the task is answered by touch"),
-                        plain("set device to \"buttons\" or \"either\"")});
+    problems.push_back({task.device_place, phrase("refusal.by_touch"), phrase("refusal.set_device")});
   if (const auto& signal = setup.protocol.timing.signal; signal && !protocol::in_stimulus(*signal))
-    problems.push_back({signal->by_place,
-                        plain("--buttons-only: the response signal is on the screen, which shows nothing"),
-                        plain("by = \"tone\" or by = \"buzz\", or a session on the screen of turnpoint-ui")});
+    problems.push_back(
+        {signal->by_place, phrase("refusal.signal_on_screen"), phrase("refusal.signal_elsewhere")});
 }
 
 }  // namespace
@@ -151,8 +143,7 @@ std::vector<Problem> find_calibration(const RunRequest& request, session::Setup&
   if (request.calibration.empty() && !live) return {};
   std::vector<Problem> problems;
   for (const auto& fault : faults)
-    problems.push_back(
-        {{path, 0, 0}, fault, plain("calibrate again, or name another file with --calibration")});
+    problems.push_back({{path, 0, 0}, fault, phrase("refusal.calibrate_again")});
   return problems;
 }
 
@@ -211,19 +202,15 @@ session::Setup prepare(const RunRequest& request, const std::stop_token& stop) {
                                              : terms::RunMode::pilot;
   const auto next =
       request.participant != kCodeToCome ? session::next_session(setup) : session::NextSession{};
-  if (!next.problem.empty() && !next.too_early)
-    problems.push_back({{}, plain(next.problem), plain(next.allowed)});
+  if (!next.problem.empty() && !next.too_early) problems.push_back({{}, next.problem, next.allowed});
   try {
     if (problems.empty()) session::earlier_trials(setup, next);
   } catch (const terms::UsageError& refused) {
-    problems.push_back({{},
-                        plain(refused.what()),
-                        plain("use the file with that version for the participant's other sessions")});
+    problems.push_back({{}, texts::phrase_of(refused), phrase("refusal.same_version")});
   }
   if (problems.empty()) problems = programs::problems_of(setup.protocol);
-  if (problems.empty() && next.too_early)
-    throw TooEarly({{}, plain(next.problem), plain(next.allowed)}, *next.too_early);
-  if (next.too_early) problems.push_back({{}, plain(next.problem), plain(next.allowed)});
+  if (problems.empty() && next.too_early) throw TooEarly({{}, next.problem, next.allowed}, *next.too_early);
+  if (next.too_early) problems.push_back({{}, next.problem, next.allowed});
   if (!problems.empty()) throw text::BadInput(std::move(problems));
   return setup;
 }

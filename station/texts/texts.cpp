@@ -112,11 +112,15 @@ std::string say(const Phrase& phrase, std::string_view language) {
     return said;
   }
   const auto& pattern = text(phrase.key, language);
+  // In Arabic, which is written from right to left, invisible characters around a value keep its parts in
+  // their order ("-30" would be drawn as "30-"). Texts.qml does the same.
+  const bool mirrored = language.starts_with("ar");
+  const std::string before = mirrored ? "\u2068" : "", after = mirrored ? "\u2069" : "";
   for (std::size_t i = 0; i < pattern.size(); ++i) {
     const bool place = pattern[i] == '%' && i + 1 < pattern.size() && pattern[i + 1] >= '1' &&
                        pattern[i + 1] < '1' + static_cast<int>(phrase.values.size());
     if (place)
-      said += say(phrase.values[static_cast<std::size_t>(pattern[++i] - '1')], language);
+      said += before + say(phrase.values[static_cast<std::size_t>(pattern[++i] - '1')], language) + after;
     else
       said += pattern[i];
   }

@@ -20,7 +20,7 @@ using maintenance::WeightStep;
 namespace {
 
 const auto kReady = [](const WeightStep&) { return true; };
-const auto kGiveUp = [](const std::string&) { return false; };
+const auto kGiveUp = [](const texts::Phrase&) { return false; };
 
 /// Returns each cell's ratio of bridge to reference under a load, from the formulas in plant/setup.hpp.
 sensing::Readings readings(const plant::Setup& room, const plant::Load& load) {
@@ -102,7 +102,7 @@ TEST_CASE("taps on the plate show up to which frequency forces are right", "[mai
     const auto laboratory = [&](plant::Setup& room) {
       room.cells.normal_Hz = normal_Hz, room.cells.lateral_Hz = lateral_Hz, room.cells.damping = damping;
     };
-    return weigh(rig, *open_bridges(rig, laboratory), kReady, [](const std::string&) { return true; });
+    return weigh(rig, *open_bridges(rig, laboratory), kReady, [](const texts::Phrase&) { return true; });
   };
   const auto usual = with(56, 180, 0.05);
   CHECK(usual.resonance_Hz.value() == Approx(56).epsilon(0.02));
@@ -143,8 +143,8 @@ TEST_CASE("a failed reading can be repeated, steps can be left out, and a moving
   bridges.room.cells.span_m = rig.surface.length_m;
   bridges.fails_at = 5;
   std::string why;
-  const auto repeated = weigh(rig, bridges, kReady, [&](const std::string& reason) {
-    why = reason;
+  const auto repeated = weigh(rig, bridges, kReady, [&](const texts::Phrase& reason) {
+    why = texts::say(reason, "en");
     return true;
   });
   CHECK(why.find("cell b") != std::string::npos);

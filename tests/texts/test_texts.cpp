@@ -134,6 +134,30 @@ TEST_CASE("what the screen and the command line both say is never a sentence in 
   }
 }
 
+// Messages of the system and breaches of contract are left out, and what only a log tells.
+TEST_CASE("what the operator's pages show is never a sentence in their sources, nor where it is thrown",
+          "[texts]") {
+  static const std::regex quoted("\"([^\"\n]*)\""),
+      left_out("//[^\n]*|#include[^\n]*|(logic_error|system_error|qWarning)[^;]*;");
+  const std::string root = std::string(TURNPOINT_SOURCE_DIR) + "/";
+  std::vector<std::string> files;
+  for (const char* file :
+       {"station/maintenance/force_weights.cpp", "station/maintenance/bridge_reader.cpp",
+        "station/maintenance/disks.cpp", "station/setup/prepare.cpp", "station/calibration/response_fit.cpp"})
+    files.push_back(root + file);
+  for (const auto& entry : std::filesystem::directory_iterator(root + "station/ui/operator"))
+    if (entry.path().extension() == ".cpp") files.push_back(entry.path().string());
+  CHECK(files.size() > 20);
+  for (const auto& file : files) {
+    const auto code = std::regex_replace(system::read_file(file), left_out, "");
+    for (std::sregex_iterator found(code.begin(), code.end(), quoted), end; found != end; ++found) {
+      INFO(file << ": " << (*found)[1]);
+      const auto words = (*found)[1].str();
+      CHECK((words.find(' ') == std::string::npos || english_word(words).empty()));
+    }
+  }
+}
+
 TEST_CASE("what is wrong in a file is never a sentence in the sources of its readers", "[texts]") {
   static const std::regex quoted(R"re("((?:[^"\\\n]|\\.)*)")re"), sentence("[a-z]{2,} [a-z]{2,}");
   const std::set<std::string> known{"`turnpoint calibrate --forces`", "median absolute deviations",
@@ -211,6 +235,9 @@ TEST_CASE("a phrase is said in a language that is chosen later", "[texts]") {
   CHECK(texts::say(phrase, "en") == "5 %1 (4 to 6) min");
   CHECK(texts::say(phrase, "de") == "5 %1 (4 bis 6) min");
   CHECK(texts::say(texts::plain("50 %"), "ja") == "50 %");
+  // in Arabic, which runs from right to left, a value is kept apart from the sentence around it
+  CHECK(texts::say({"problem.below", "", {texts::plain("-30")}}, "ar") ==
+        "\u0623\u0642\u0644 \u0645\u0646 \u2068-30\u2069");
   CHECK(texts::say({"", "", {texts::plain("main: "), {"practice", "", {}}}}, "de") == "main: \u00dcbung");
   CHECK(texts::say({"check.range", "", {texts::plain("1")}}, "en") == "1 (%2 to %3)");
   CHECK_THROWS_AS(texts::say({"no_such_key", "", {}}, "en"), std::logic_error);

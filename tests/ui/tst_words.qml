@@ -119,6 +119,18 @@ Item {
             verify(report.some(text => text.startsWith("• ")), report.join("\n"))
             for (const text of report) verify(!/^• .*\b(the|is|are|of)\b/.test(text), text)
         }
+        function test_what_became_of_backups_and_data_is_said_in_the_language_of_the_operator() {
+            compare(room.cutOffSession("pilot"), -9)
+            room.look.language = "de"
+            tap("bar-sessions")
+            tryVerify(() => find(room.screen, "session0") !== null, 5000)
+            tap("backUp")
+            tap("place0")
+            tryVerify(() => texts(room.screen).some(text => text.includes("zurückgelesen und geprüft")), 20000)
+            tap("withdraw")
+            tryVerify(() => find(room.screen, "withdrawing") !== null, 20000)
+            tryVerify(() => find(room.screen, "withdrawing").text.includes("Notizen würden gelöscht."), 5000)
+        }
         function test_the_end_of_a_session_in_numbers_is_in_the_language_of_the_operator() {
             const words = ["Durchgänge", "Zu spät", "Richtig", "main, Schwelle", "Die Sitzung in Zahlen", "Schließen"]
             OperatorScreen.language = "de"

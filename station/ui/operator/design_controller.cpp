@@ -13,6 +13,7 @@
 #include "station/setup/prepare.hpp"
 #include "station/system/read_file.hpp"
 #include "station/text/toml.hpp"
+#include "station/texts/refusal.hpp"
 #include "station/ui/operator/design_lists.hpp"
 #include "station/ui/operator/facts.hpp"
 #include "station/ui/operator/figure_view.hpp"
@@ -171,7 +172,7 @@ void DesignController::start_check() {
       return {};
     } catch (const std::exception& error) {
       simulation::Check failed;
-      failed.problems.push_back({{path, 0, 0}, texts::plain(error.what()), {}});
+      failed.problems.push_back({{path, 0, 0}, texts::phrase_of(error), {}});
       return [this, failed] { take(failed); };
     }
   });

@@ -68,8 +68,10 @@ const char* word(session::Request::Kind kind) {
                                       : "press_button";
 }
 
+/// Rounds to this number of decimals. What rounds to zero has no sign.
 texts::Phrase fixed(double value, int decimals) {
-  return texts::plain(fmt::format("{:.{}f}", value, decimals));
+  const double unit = std::pow(10.0, -decimals);
+  return texts::plain(fmt::format("{:.{}f}", std::abs(value) < unit / 2 ? 0.0 : value, decimals));
 }
 
 /// Returns rows for the page: uncertainty and resonance of the force calibration, and each weight with its
@@ -142,7 +144,7 @@ void RigController::open() {
     }
   } catch (const std::exception& error) {
     calibration_state_ = "bad";
-    errors_ = to_list(lines_of(error));
+    errors_ = to_list(phrases_of(error));
   }
   Q_EMIT changed();
 }
@@ -156,11 +158,11 @@ void RigController::run(const QString& what, NewestJob::Job job) {
   Q_EMIT changed();
   worker_.start([this, job = std::move(job)](const std::stop_token& stop) -> std::function<void()> {
     std::function<void()> result;
-    std::vector<std::string> errors;
+    std::vector<texts::Phrase> errors;
     try {
       result = job(stop);
     } catch (const std::exception& error) {
-      errors = lines_of(error);
+      errors = phrases_of(error);
     }
     return [this, result, errors] {
       busy_.clear();
@@ -238,10 +240,9 @@ void RigController::show(const Weighing::Shown& shown) {
     step_ = {{"asked", to_variant(step.text())},
              {"remark", to_variant(step.remark)},
              {"converter", shown.converter},
-             {"trouble", QString::fromStdString(shown.trouble)}};
-    if (!shown.unread.empty())
-      reading_ = QStringList(QString::fromStdString(shown.unread));
-    else
+             {"trouble", to_variant(shown.trouble)},
+             {"unread", to_variant(shown.unread)}};
+    if (shown.unread.empty())
       for (const double cell : shown.cells)
         reading_ += shown.converter ? QString::number(cell, 'g', 5) : QString::number(cell, 'f', 2);
   }

@@ -48,7 +48,7 @@ class RigController : public QObject {
   /// release_stop, press_button, weight, repair or ""
   Q_PROPERTY(QString asked READ asked NOTIFY changed)
   Q_PROPERTY(QString askedButton READ asked_button NOTIFY changed)
-  Q_PROPERTY(QStringList errors READ errors NOTIFY changed)
+  Q_PROPERTY(QVariantList errors READ errors NOTIFY changed)
   /// the guided calibration
   Q_PROPERTY(turnpoint::ui::CalibrationGuide* guide READ guide CONSTANT)
 
@@ -67,7 +67,7 @@ class RigController : public QObject {
   QStringList reading() const { return reading_; }
   QString asked() const { return asked_; }
   QString asked_button() const { return asked_button_; }
-  QStringList errors() const { return errors_; }
+  QVariantList errors() const { return errors_; }
   CalibrationGuide* guide() { return &guide_; }
 
   /// Reads the calibration again.
@@ -94,7 +94,7 @@ class RigController : public QObject {
   QString busy_, asked_, asked_button_;
   std::vector<lines::Finding> findings_;
   std::vector<session::Check> checks_;
-  QStringList errors_;
+  QVariantList errors_;
   bool has_cells_ = false;
   QVariantList weights_;
   QVariantMap step_;
