@@ -33,6 +33,16 @@ QVariantMap to_map(const desk::SessionLine& session) {
 
 texts::Phrase count_of(auto count) { return plain(std::to_string(count)); }
 
+/// Joins phrases, each on a line of its own.
+texts::Phrase in_lines(const std::vector<texts::Phrase>& phrases) {
+  texts::Phrase lines;
+  for (const auto& one : phrases) {
+    if (!lines.values.empty()) lines.values.push_back(plain("\n"));
+    lines.values.push_back(one);
+  }
+  return lines;
+}
+
 /// Describes in words what a withdrawal deletes, or would delete.
 std::vector<texts::Phrase> words_of(const store::Withdrawal& gone, bool done) {
   std::vector<texts::Phrase> words{
@@ -78,13 +88,13 @@ SessionsController::SessionsController(const setup::StationRequest& request, mai
 }
 
 void SessionsController::open() {
-  said_.clear();
+  said_ = {};
   failed_ = false;
   try {
     read_list();
   } catch (const std::exception& error) {
     failed_ = true;
-    said_ = to_list(phrases_of(error));
+    said_ = in_lines(phrases_of(error));
   }
   lookForDisks();
 }
@@ -104,7 +114,7 @@ void SessionsController::lookForDisks() {
     disks_ = maintenance::removable_disks(sources_);
   } catch (const std::exception& error) {  // ignore this: a disk was unplugged while the list was made
     disks_.clear();
-    said_ = to_list(phrases_of(error));
+    said_ = in_lines(phrases_of(error));
     failed_ = true;
   }
   Q_EMIT changed();
@@ -120,7 +130,7 @@ void SessionsController::select(int index) {
   const auto shown = sessions();
   if (busy_ || index < 0 || index >= shown.size()) return;
   chosen_ = shown[index].toMap()["id"].toString().toStdString();
-  said_.clear();
+  said_ = {};
   failed_ = false;
   Q_EMIT changed();
 }
@@ -130,7 +140,7 @@ void SessionsController::act(std::function<Done()> action) {
   if (busy_) return;
   busy_ = true;
   failed_ = false;
-  said_.clear();
+  said_ = {};
   Q_EMIT changed();
   worker_.start([this, action = std::move(action)](const std::stop_token&) -> std::function<void()> {
     Done done;
@@ -144,7 +154,7 @@ void SessionsController::act(std::function<Done()> action) {
     return [this, done = std::move(done), failed] {
       busy_ = false;
       failed_ = failed;
-      said_ = to_list(done.said);
+      said_ = in_lines(done.said);
       if (done.then) done.then();
       Q_EMIT changed();
     };
@@ -230,7 +240,7 @@ void SessionsController::planWithdrawal() {
     auto plan = words_of(store::plan_withdrawal(database_, options), false);
     plan.push_back(what_is_not_searched(options));
     return Done{{}, [this, plan, person] {
-                  consequence_ = to_list(plan);
+                  consequence_ = in_lines(plan);
                   withdrawing_ = person;
                   Q_EMIT planned();
                 }};
@@ -244,7 +254,7 @@ void SessionsController::withdraw() {
     auto words = words_of(store::withdraw(database_, options), true);
     words.push_back(what_is_not_searched(options));
     return Done{words, [this] {
-                  consequence_.clear();
+                  consequence_ = {};
                   read_list();
                 }};
   });
