@@ -15,7 +15,7 @@ namespace {
 using std::numbers::pi;
 
 // Margin of what higher_modes() computes to first order in the slope. On random membranes, the bound was at
-// least 2.0 times the true error of |v|, and 2.9 times that of the level (README.md).
+// least 2.0 times the true error of |v|, and 1.5 times that of the level (README.md).
 constexpr double first_order_margin = 3;
 // Relative error of what higher_modes() computes on small slopes: it sees the phases of the standing waves
 // only to first order. The square of the slope is added.
