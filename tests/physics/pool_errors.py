@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Computes the medians of bound / error from the files that modes_bound_test.cpp writes.
+"""Computes the medians and the smallest values of bound / error from the files that modes_bound_test.cpp writes.
 
 Usage: TURNPOINT_ERRORS=errors.txt TURNPOINT_SCENES=1000 test_physics "*random membranes"
        pool_errors.py errors.txt...
@@ -31,8 +31,9 @@ for model, quantity in sorted({key[2:] for key in found}):
             continue
         slack = REFERENCE_M if model == "map" else 0
         outside = sum(error > bound + slack for bound, error in pairs)
-        median = statistics.median(bound / error for bound, error in pairs if error > 0)
+        ratios = [bound / error for bound, error in pairs if error > 0]
+        least = min((bound + slack) / error for bound, error in pairs if error > 0)
         print(
             f"{model:6} {quantity:10} {surface:9} {len(pairs):6} scenes, {outside} outside, "
-            f"median {median:.1f}"
+            f"median {statistics.median(ratios):.1f}, least {least:.2f}"
         )

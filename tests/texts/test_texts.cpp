@@ -134,7 +134,8 @@ TEST_CASE("what the screen and the command line both say is never a sentence in 
   }
 }
 
-// Messages of the system and breaches of contract are left out, and what only a log tells.
+// The test does not look at messages of the system, at errors of the program itself, or at what only goes to
+// a log.
 TEST_CASE("what the operator's pages show is never a sentence in their sources, nor where it is thrown",
           "[texts]") {
   static const std::regex quoted("\"([^\"\n]*)\""),

@@ -110,7 +110,7 @@ void CalibrationGuide::begin_latency(calibration::LatencyReference reference) {
     connect(latency_.get(), &LatencyController::finished, this, &CalibrationGuide::keep_latency);
   } catch (const std::exception& error) {
     latency_.reset();
-    problem_ = phrases_of(error).front();
+    problem_ = explanation_of(error);
   }
   Q_EMIT changed();
 }
@@ -119,7 +119,7 @@ void CalibrationGuide::keep_latency() {
   try {
     file_ = QString::fromStdString(maintenance::keep_panel(rig::load(path_), latency_->kept().value()));
   } catch (const std::exception& error) {
-    problem_ = phrases_of(error).front();
+    problem_ = explanation_of(error);
   }
   latency_.reset();
   Q_EMIT changed();
@@ -145,7 +145,7 @@ void CalibrationGuide::begin(const QString& series) {
                 {"narrowHalfWidthMm", outline.narrow_half_width_mm},
                 {"wideEndLeft", outline.wide_end_left}};
   } catch (const std::exception& error) {
-    problem_ = phrases_of(error).front();
+    problem_ = explanation_of(error);
   }
   Q_EMIT changed();
 }
@@ -168,7 +168,7 @@ void CalibrationGuide::play() {
                                     this, [this, readings] { take(readings); }, Qt::QueuedConnection);
                               });
     } catch (const std::exception& error) {
-      problem = phrases_of(error).front();
+      problem = explanation_of(error);
     }
     return [this, problem, rest_s = maintenance::rest_after_tone_s(rig)] {
       playing_ = false;
@@ -263,7 +263,7 @@ void CalibrationGuide::finish() {
     at_ = 0;
     problem_ = {};
   } catch (const std::exception& error) {
-    refuse(phrases_of(error).front());
+    refuse(explanation_of(error));
     return;
   }
   Q_EMIT changed();

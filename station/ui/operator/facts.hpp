@@ -49,4 +49,17 @@ inline std::vector<texts::Phrase> phrases_of(const std::exception& error) {
   return phrases;
 }
 
+/// Joins phrases, each on a line of its own.
+inline texts::Phrase in_lines(const std::vector<texts::Phrase>& phrases) {
+  texts::Phrase lines;
+  for (const auto& one : phrases) {
+    if (!lines.values.empty()) lines.values.push_back(texts::plain("\n"));
+    lines.values.push_back(one);
+  }
+  return lines;
+}
+
+/// Returns everything that an error says as one phrase, each problem of a file on a line of its own.
+inline texts::Phrase explanation_of(const std::exception& error) { return in_lines(phrases_of(error)); }
+
 }  // namespace turnpoint::ui

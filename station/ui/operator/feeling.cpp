@@ -48,7 +48,7 @@ void Feeling::play(const QString& scene) {
       std::vector<std::string> assumed;
       felt = maintenance::feel_scene(rig, protocol, scene, desk::factors_for(protocol, {}, assumed), stop);
     } catch (const std::exception& error) {
-      problem = phrases_of(error).front();
+      problem = explanation_of(error);
     }
     return [this, felt, problem] {
       playing_.clear();

@@ -30,7 +30,7 @@ void PagesPreview::make() {
   try {
     pages_ = desk::sample_pages(protocol_, rig_, language_.toStdString());
   } catch (const std::exception& error) {
-    problem_ = phrases_of(error).front();
+    problem_ = explanation_of(error);
   }
   show(shown_);
 }

@@ -110,7 +110,7 @@ void Precision::start() {
                 this, [this, found, draft] { take(found, draft); }, Qt::QueuedConnection);
           }
         } catch (const std::exception& error) {
-          return [this, problem = phrases_of(error).front()] {
+          return [this, problem = explanation_of(error)] {
             power_.reset();
             figure_ = {};
             problem_ = problem;

@@ -34,8 +34,9 @@ class RigController : public QObject {
   Q_PROPERTY(bool hasCells READ has_cells NOTIFY changed)
   /// results of a calibration of the force cells, one row for each weight; the fields are those of `checks`
   Q_PROPERTY(QVariantList weights READ weights NOTIFY changed)
-  /// what the operator is asked to do with the weights, as {asked, remark, trouble, converter}. `remark` says
-  /// why a step is repeated, and `trouble`, in English, why a reading failed.
+  /// what the operator is asked to do with the weights, as {asked, remark, trouble, unread, converter}.
+  /// `remark` says why a step is repeated, `trouble` why a reading failed, and `unread` why there is no live
+  /// reading.
   Q_PROPERTY(QVariantMap step READ step NOTIFY changed)
   /// what the three cells read meanwhile, as texts; one text if they cannot be read
   Q_PROPERTY(QStringList reading READ reading NOTIFY changed)

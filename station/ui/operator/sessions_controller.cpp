@@ -33,16 +33,6 @@ QVariantMap to_map(const desk::SessionLine& session) {
 
 texts::Phrase count_of(auto count) { return plain(std::to_string(count)); }
 
-/// Joins phrases, each on a line of its own.
-texts::Phrase in_lines(const std::vector<texts::Phrase>& phrases) {
-  texts::Phrase lines;
-  for (const auto& one : phrases) {
-    if (!lines.values.empty()) lines.values.push_back(plain("\n"));
-    lines.values.push_back(one);
-  }
-  return lines;
-}
-
 /// Describes in words what a withdrawal deletes, or would delete.
 std::vector<texts::Phrase> words_of(const store::Withdrawal& gone, bool done) {
   std::vector<texts::Phrase> words{
@@ -94,7 +84,7 @@ void SessionsController::open() {
     read_list();
   } catch (const std::exception& error) {
     failed_ = true;
-    said_ = in_lines(phrases_of(error));
+    said_ = explanation_of(error);
   }
   lookForDisks();
 }
@@ -114,7 +104,7 @@ void SessionsController::lookForDisks() {
     disks_ = maintenance::removable_disks(sources_);
   } catch (const std::exception& error) {  // ignore this: a disk was unplugged while the list was made
     disks_.clear();
-    said_ = in_lines(phrases_of(error));
+    said_ = explanation_of(error);
     failed_ = true;
   }
   Q_EMIT changed();
