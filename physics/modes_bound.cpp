@@ -17,6 +17,8 @@ constexpr double profile_margin = 8, peak_margin = 4, edge_margin = 5;
 // these factors, for the edge also by the cut-off half-width.
 constexpr double level_share = 2, position_share = 1.25;
 constexpr double near_rad = 3;  // phase on either side of the last maximum that counts as near
+// how much larger the bounds are when the other solution is coarser: the two are then more often wrong alike
+constexpr double coarser_share = 1.5;
 // largest differences that come from rounding and from effects that both solutions neglect
 constexpr double floor = 1e-8;
 
@@ -92,7 +94,9 @@ std::optional<ModesBound> modes_bound(const Surface& surface, double f, const Ed
   if (at.has_value() != other_at.has_value()) bound.position_m += surface.length_m;
   if (at && other_at) bound.position_m += edge_margin * std::abs(*at - *other_at);
   if (edge.kind == Edge::Kind::turning) bound.position_m = 0;
-  return bound;
+  if (finer) return bound;
+  return ModesBound{coarser_share * bound.shape, coarser_share * bound.drive, coarser_share * bound.level_dB,
+                    coarser_share * bound.position_m};
 }
 
 }  // namespace turnpoint::physics

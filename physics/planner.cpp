@@ -178,7 +178,9 @@ double modes_accuracy(const Surface& surface) {
   return surface.theory == PlateTheory::kirchhoff ? plate_accuracy : thick_plate_accuracy;
 }
 
-// Estimates the error bounds of the model `modes` without solving it.
+// Estimates the error bounds of the model `modes` without solving it. They depend on how much the field is
+// larger than the motion of the drive edge. The first mode tells this, but not on a clamped plate on which
+// its error exceeds the field; there nothing can be assumed.
 RungEstimate modes_estimate(const Surface& surface, const PlanRequest& request, const Reference& reference) {
   RungEstimate e;
   e.cost_s = cost_s(surface, reference.f, Model::modes, request.points);
@@ -187,6 +189,10 @@ RungEstimate modes_estimate(const Surface& surface, const PlanRequest& request, 
   const bool drive = request.normalise != Normalise::peak;
   e.amplitude_bound = accuracy * (drive ? reference.conditioning : 1);
   e.level_bound_dB = 20 * std::log10(1 + accuracy * reference.conditioning);
+  if (reference.bound.shape > 1 && Dispersion(surface).clamped_bending() && modes_bound_applies(surface)) {
+    if (drive) e.amplitude_bound += unknown;
+    e.level_bound_dB += unknown_dB;
+  }
   const double share = surface.quality_factor < lossy_below ? lossy_edge_share : edge_share;
   e.boundary_bound_m =
       accuracy * share * cut_off_half_width_m(surface, reference.f) + placed_elsewhere_m(request, reference);

@@ -286,6 +286,8 @@ void Campaign::add(int number, const Surface& s, Normalise normalise, const Coll
         bound.level_bound_dB, coarse.level_bound_dB, prior->level_bound_dB);
   error.push_back(e.amplitude);
   write(number, "modes", e, bound);
+  write(number, "coarser", e, coarse);
+  write(number, "before", e, *prior);
   finer.add(e, bound);
   coarser.add(e, coarse);
   before.add(e, *prior);
@@ -353,6 +355,24 @@ TEST_CASE("the bound of mode includes modes that excite one another along curved
           {14, 12, 9, 3, 0.75, 0.8, 30});
   CHECK(all.error.size() == 1);
   CHECK(all.mode.outside == 0);
+}
+
+// A plan states the bounds that `modes` has before solving or from a coarser solution. On the first of these
+// stepped plates the two-dimensional field is six times as high as that of the first mode, near a resonance
+// which the first mode does not have. On the second, two solutions nearly agree in the level.
+TEST_CASE("the bounds that a plan states hold on stepped clamped plates", "[physics]") {
+  Campaign all;
+  all.surface = "thin";
+  for (const std::uint64_t number : {911306, 910609}) {
+    Draw draw(Draw(20260105 + number).next());
+    const Surface s = turnpoint::physics_test::random_thin_plate(draw);
+    all.add(static_cast<int>(number), s, draw.next() % 2 == 0 ? Normalise::peak : Normalise::drive,
+            {14, 12, 13, 3, 0.75, 0.8, 30});
+  }
+  CHECK(all.error.size() == 2);
+  CHECK(all.finer.outside == 0);
+  CHECK(all.coarser.outside == 0);
+  CHECK(all.before.outside == 0);
 }
 
 // In these scenes, the clamped end is at most half as wide as the cut-off, so the first mode reaches it only
