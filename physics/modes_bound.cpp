@@ -84,13 +84,15 @@ std::optional<ModesBound> modes_bound(const Surface& surface, double f, const Ed
   bound.shape = profile_margin * shape.relative() + floor;
   bound.drive = profile_margin * drive.relative() + floor;
   const double gain = a.ln_peak - b.ln_peak;
-  bound.level_dB = 8.686 * (peak_margin * std::abs(gain) + level_share * near_drive.relative() + floor);
-  const auto at = edge_m(a, edge), other_at = edge_m(b, edge);
-  const double cut = cut_off_half_width_m(surface, f);
   // Polynomials converge slowly where an element spans a steep step, so that its part of the difference
   // counts more.
-  const double steep = at ? Taper(surface).slope(*at) : 0;
-  bound.position_m = cut * (position_share * (1 + steep * steep) * near_shape.difference + floor);
+  const Taper taper(surface);
+  const auto steepness = [&taper](double x) { return 1 + taper.slope(x) * taper.slope(x); };
+  bound.level_dB = 8.686 * (peak_margin * std::abs(gain) +
+                            level_share * steepness(peak_m) * near_drive.relative() + floor);
+  const auto at = edge_m(a, edge), other_at = edge_m(b, edge);
+  const double cut = cut_off_half_width_m(surface, f);
+  bound.position_m = cut * (position_share * (at ? steepness(*at) : 1) * near_shape.difference + floor);
   if (at.has_value() != other_at.has_value()) bound.position_m += surface.length_m;
   if (at && other_at) bound.position_m += edge_margin * std::abs(*at - *other_at);
   if (edge.kind == Edge::Kind::turning) bound.position_m = 0;

@@ -20,8 +20,7 @@ constexpr double least_turn_rad = std::numbers::pi / 4;
 
 void check(const std::vector<ResponsePoint>& sweep, int window) {
   if (sweep.size() < 5 || window < 3)
-    throw texts::Refusal(texts::phrase("series.short_sweep",
-                                       {plain(std::to_string(sweep.size())), plain(std::to_string(window))}));
+    throw texts::Refusal(texts::phrase("series.short_sweep", {plain(sweep.size()), plain(window)}));
   for (std::size_t k = 0; k < sweep.size(); ++k) {
     const bool rising = k == 0 || sweep[k].frequency_Hz > sweep[k - 1].frequency_Hz;
     if (!rising || !(sweep[k].frequency_Hz > 0) || !(sweep[k].m_per_full_scale > 0) ||

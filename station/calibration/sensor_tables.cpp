@@ -22,8 +22,8 @@ std::string quoted(const std::string& plain) {
 
 bool same_length(text::TableReader& reader, const char* key, std::size_t length, std::size_t wanted) {
   if (length == wanted) return true;
-  reader.problem(key, phrase("problem.values", {plain(std::to_string(length))}),
-                 phrase("problem.same_length", {plain(std::to_string(wanted))}));
+  reader.problem(key, phrase("problem.values", {plain(length)}),
+                 phrase("problem.same_length", {plain(wanted)}));
   return false;
 }
 

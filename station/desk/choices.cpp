@@ -56,8 +56,7 @@ void add_tones(const simulation::Check& check, CheckWords& words) {
 /// The visit to which a block belongs, its name and instruction, and its number of trials.
 Phrase describe(const simulation::CheckedBlock& block) {
   Phrase title;
-  if (block.session > 0)
-    title.values.push_back({"check.session", "", {plain(std::to_string(block.session))}});
+  if (block.session > 0) title.values.push_back({"check.session", "", {plain(block.session)}});
   if (!block.group.empty()) {
     if (!title.values.empty()) title.values.push_back(plain(", "));
     title.values.push_back({"check.group", "", {plain(block.group)}});
@@ -157,7 +156,7 @@ CheckWords words_of(const simulation::Check& check) {
   add_tones(check, words);
   for (const auto& cue : check.cues.reports) {
     const bool leaks = cue.above_chance();
-    const auto percent = [](double share) { return plain(std::to_string(std::lround(100 * share))); };
+    const auto percent = [](double share) { return plain(std::lround(100 * share)); };
     const auto [name, advice] = cue_advice(cue.cue);
     words.cues.push_back({name,
                           {"check.alone", "", {percent(cue.accuracy), percent(cue.chance)}},

@@ -81,8 +81,8 @@ void describe_plan(SceneLook& look) {
       phrase("preview.crest", {um(plan.peak_displacement_m), shown(plan.crest_factor, 3)}));
   add("preview.lowest_friction", phrase("preview.of_rest", {shown(plan.lowest_friction, 3)}));
   for (const auto& product : plan.audible_products)
-    add("preview.product", phrase("preview.product_order",
-                                  {shown(product.frequency_Hz, 5), plain(std::to_string(product.order))}));
+    add("preview.product",
+        phrase("preview.product_order", {shown(product.frequency_Hz, 5), plain(product.order)}));
   for (const auto& warning : plan.warnings) add("preview.warning", scene::phrase_of(warning));
 }
 

@@ -28,7 +28,6 @@ constexpr double kTap_s = 3.5;                  // time in which the operator ta
 constexpr double kBlow_N = 1, kBlow_s = 0.005;  // a tap in the simulated laboratory
 constexpr double kLeastReference = 0.02;  // smallest accepted amplitude of the reference; 1 is full scale
 
-texts::Phrase count_of(int value) { return plain(std::to_string(value)); }
 texts::Phrase digits_of(double value) { return plain(fmt::format("{:.3g}", value)); }
 
 sensing::BridgeOptions bridge_options(const rig::Rig& rig, double reference_amplitude) {
@@ -95,7 +94,7 @@ class BridgeMean {
     if (!(amplitude > kLeastReference))
       throw texts::Failure(
           phrase("weights.no_excitation",
-                 {count_of(options.reference), count_of(rig_.capture->excitation_channel.value_or(0))}));
+                 {plain(options.reference), plain(rig_.capture->excitation_channel.value_or(0))}));
     return amplitude;
   }
 
@@ -108,12 +107,12 @@ class BridgeMean {
       case sensing::WireFault::reference:
         throw texts::Failure(
             phrase("weights.reference_off",
-                   {count_of(rig_.capture->reference), digits_of(point.reference), digits_of(reference_)}));
+                   {plain(rig_.capture->reference), digits_of(point.reference), digits_of(reference_)}));
       case sensing::WireFault::quadrature:
-        throw texts::Failure(phrase("weights.wire_off", {plain(cells[point.bridge]), count_of(channel),
+        throw texts::Failure(phrase("weights.wire_off", {plain(cells[point.bridge]), plain(channel),
                                                          digits_of(point.quadrature[point.bridge])}));
       case sensing::WireFault::overload:
-        throw texts::Failure(phrase("weights.overloaded", {plain(cells[point.bridge]), count_of(channel)}));
+        throw texts::Failure(phrase("weights.overloaded", {plain(cells[point.bridge]), plain(channel)}));
     }
   }
 

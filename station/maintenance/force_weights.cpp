@@ -198,8 +198,7 @@ class Weighing {
 
  private:
   void enough() const {
-    if (all_.size() < kFewest)
-      throw texts::Refusal(phrase("weights.too_few", {plain(std::to_string(kFewest))}));
+    if (all_.size() < kFewest) throw texts::Refusal(phrase("weights.too_few", {plain(kFewest)}));
   }
 
   std::optional<BridgeReading> read(const WeightStep& step) {

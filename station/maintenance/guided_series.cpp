@@ -174,9 +174,8 @@ SeriesResult finish_series(const rig::Rig& rig, Series series, const std::vector
   const auto read =
       std::count_if(points.begin(), points.end(), [](const auto& p) { return p.value.has_value(); });
   if (read < least_points(series))
-    throw texts::Refusal(texts::phrase(
-        "series.too_few", {texts::plain(std::to_string(read)), texts::plain(std::to_string(points.size())),
-                           texts::plain(std::to_string(least_points(series)))}));
+    throw texts::Refusal(texts::phrase("series.too_few", {texts::plain(read), texts::plain(points.size()),
+                                                          texts::plain(least_points(series))}));
   SeriesResult result;
   calibration::Measurements measurements;
   if (series == Series::response) {

@@ -27,7 +27,7 @@ std::vector<double> even_steps(TableReader& reader, double from, double to) {
   const double intervals = (to - from) / step;
   if (!(intervals <= most_points - 1)) {
     reader.problem("step", phrase("problem.grid_points", {plain(text::number(intervals + 1))}),
-                   phrase("problem.at_most", {plain(std::to_string(most_points))}));
+                   phrase("problem.at_most", {plain(most_points)}));
     return {from};
   }
   const double whole = std::round(intervals);

@@ -107,8 +107,8 @@ void validate_prior(const std::string& key, const Prior& prior, const Grid& grid
   if (prior.weights.empty()) return;
   const auto values = grid.values.size();
   if (prior.weights.size() != values)
-    problems.push_back({key, phrase("problem.weights", {plain(std::to_string(prior.weights.size()))}),
-                        phrase("problem.one_weight_each", {plain(std::to_string(values))})});
+    problems.push_back({key, phrase("problem.weights", {plain(prior.weights.size())}),
+                        phrase("problem.one_weight_each", {plain(values)})});
   else if (std::none_of(prior.weights.begin(), prior.weights.end(), [](double w) { return w > 0; }))
     problems.push_back({key, phrase("problem.weights_zero"), phrase("problem.weight_above_zero")});
 }

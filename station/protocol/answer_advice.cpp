@@ -133,8 +133,7 @@ void check_runs(AdviceList& advice, const Spec& spec) {
   for (const auto& [id, times] : right.times)
     if (times > *spec.max_run * (right.all - times))
       return advice.add(key_of(spec, "order.max_run"),
-                        phrase("problem.long_runs",
-                               {plain(id), plain(std::to_string(times)), plain(std::to_string(right.all))}),
+                        phrase("problem.long_runs", {plain(id), plain(times), plain(right.all)}),
                         phrase("problem.set_max_run"));
 }
 

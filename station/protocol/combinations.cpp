@@ -147,7 +147,7 @@ texts::Phrase in_case(const Combination& combination, texts::Phrase what) {
 
 texts::Phrase counted(texts::Phrase first, int cases) {
   if (cases < 2) return first;
-  return phrase("problem.more_cases", {std::move(first), plain(std::to_string(cases - 1))});
+  return phrase("problem.more_cases", {std::move(first), plain(cases - 1)});
 }
 
 std::string format(const Factors& factors) {

@@ -139,17 +139,13 @@ void check_counts(AdviceList& advice, const std::variant<Block, Sequence>& part)
       levels += spec->values.size(), constant = spec;
   const auto trials = static_cast<std::size_t>(block.trials.value_or(0));
   if (block.trials && trials < levels)
-    advice.add(
-        key_of(part, "trials"),
-        phrase("problem.never_presented", {plain(std::to_string(levels)), plain(std::to_string(trials))}),
-        phrase("problem.allow_trials", {plain(std::to_string(levels))}));
+    advice.add(key_of(part, "trials"), phrase("problem.never_presented", {plain(levels), plain(trials)}),
+               phrase("problem.allow_trials", {plain(levels)}));
   else if (block.trials && constant && block.procedures.size() == 1 && !block.practice &&
            !block.catch_trials && trials < levels * static_cast<std::size_t>(constant->repeats) &&
            trials % levels != 0)
-    advice.add(
-        key_of(part, "trials"),
-        phrase("problem.uneven_trials", {plain(std::to_string(trials)), plain(std::to_string(levels))}),
-        phrase("problem.use_multiple", {plain(std::to_string(levels))}));
+    advice.add(key_of(part, "trials"), phrase("problem.uneven_trials", {plain(trials), plain(levels)}),
+               phrase("problem.use_multiple", {plain(levels)}));
   const auto most = most_trials(advice.protocol, block);
   if (block.break_after && most && block.break_after->trials >= *most)
     advice.add(key_of(part, "break_after"), phrase("problem.no_break", {plain(number(std::floor(*most)))}),
@@ -246,11 +242,10 @@ void note_uneven(AdviceList& notes, const procedure::Spec& spec, std::size_t cel
   const auto repeats = static_cast<std::size_t>(spec.repeats), least = repeats / cells;
   if (repeats % cells == 0) return;
   const auto even = (least + 1) * cells;
-  notes.add(key_of(spec, "balance"),
-            phrase("problem.uneven_cells", {plain(std::to_string(cells)), cell_names,
-                                            plain(std::to_string(least)), plain(std::to_string(least + 1))}),
-            even > most_repeats ? phrase("problem.fewer_factors")
-                                : phrase("problem.even_repeats", {plain(std::to_string(even))}));
+  notes.add(
+      key_of(spec, "balance"),
+      phrase("problem.uneven_cells", {plain(cells), cell_names, plain(least), plain(least + 1)}),
+      even > most_repeats ? phrase("problem.fewer_factors") : phrase("problem.even_repeats", {plain(even)}));
 }
 
 }  // namespace
@@ -273,10 +268,10 @@ std::vector<Problem> notes(const Protocol& protocol) {
     for (const double value : spec.values) ++times[value];
     for (const auto& [value, listed] : times) {
       if (listed > 1)
-        notes.add(levels_key(spec), listed == 2 ? phrase("problem.level_twice", {plain(number(value))})
-                                                : phrase("problem.level_times",
-                                                         {plain(number(value)), plain(std::to_string(listed)),
-                                                          plain(std::to_string(listed))}));
+        notes.add(levels_key(spec),
+                  listed == 2
+                      ? phrase("problem.level_twice", {plain(number(value))})
+                      : phrase("problem.level_times", {plain(number(value)), plain(listed), plain(listed)}));
     }
   }
   if (protocol.timing.iti_s.high == 0) notes.add("timing.iti_s", phrase("problem.no_iti"));

@@ -127,11 +127,10 @@ void check_stop(AdviceList& advice, const Spec& spec) {
   const auto& stop = spec.stop;
   if (stop.min_trials && stop.trials && *stop.min_trials > *stop.trials)
     advice.add(key_of(spec, "stop"), phrase("problem.min_trials"),
-               phrase("problem.at_most", {plain(std::to_string(*stop.trials))}));
+               phrase("problem.at_most", {plain(*stop.trials)}));
   if (stop.reversals && stop.trials && *stop.reversals >= *stop.trials)
     advice.add(key_of(spec, "stop"),
-               phrase("problem.reversals_need",
-                      {plain(std::to_string(*stop.reversals)), plain(std::to_string(*stop.trials))}),
+               phrase("problem.reversals_need", {plain(*stop.reversals), plain(*stop.trials)}),
                phrase("problem.fewer_reversals"));
 }
 

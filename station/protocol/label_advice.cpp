@@ -46,14 +46,10 @@ void check_label(AdviceList& advice, const std::string& key, const std::string& 
   const auto room = room_for(answers);
   const auto length = length_of(label);
   if (length.word > room.word)
-    advice.add(key,
-               phrase("problem.label_words",
-                      {plain(label), plain(std::to_string(answers)), plain(std::to_string(room.word))}),
+    advice.add(key, phrase("problem.label_words", {plain(label), plain(answers), plain(room.word)}),
                phrase("problem.shorter_words"));
   else if (length.label > room.label)
-    advice.add(key,
-               phrase("problem.label_letters",
-                      {plain(label), plain(std::to_string(answers)), plain(std::to_string(room.label))}),
+    advice.add(key, phrase("problem.label_letters", {plain(label), plain(answers), plain(room.label)}),
                phrase("problem.shorter_label"));
 }
 

@@ -33,8 +33,7 @@ void check_devices(const Protocol& protocol, const rig::Rig& rig, Survey& survey
                          rig.buttons_uri->find("third=") == std::string::npos;
   const std::size_t answers = task.choices.size(), buttons = two_lines ? 2 : 3;
   if (task.device == Device::buttons && answers > buttons && rig.buttons_uri)
-    add(task.device_place,
-        phrase("problem.few_buttons", {plain(std::to_string(answers)), plain(std::to_string(buttons))}),
+    add(task.device_place, phrase("problem.few_buttons", {plain(answers), plain(buttons)}),
         answers == 3 ? phrase("problem.add_third", {plain("device = \"touch\"")})
                      : phrase("problem.set", {plain("device = \"touch\"")}));
   if (task.sound == Sound::masking_noise && !rig.noise)
@@ -69,9 +68,8 @@ void check_triggers(const Protocol& protocol, const rig::Rig& rig, Survey& surve
     survey.problems.push_back(
         {place,
          phrase("problem.codes_up_to",
-                {plain(std::to_string(most->code)),
-                 plain(std::to_string(codes.size() / protocol.triggers.send.size() - 1))}),
-         phrase("problem.outputs_up_to", {plain(std::to_string(largest))})});
+                {plain(most->code), plain(codes.size() / protocol.triggers.send.size() - 1)}),
+         phrase("problem.outputs_up_to", {plain(largest)})});
   const bool marked = rig.marker && rig.marker->kind == rig::Marker::Kind::code;
   const double code_s = marked ? rig::trigger_code_bits * rig.marker->duration_s : 0;
   if (!codes.empty() && code_s > shortest_event_s(protocol))

@@ -34,11 +34,11 @@ void read_seed(TableReader& file, Reading& reading) {
       seed->integer <= (std::int64_t{1} << 53))
     reading.protocol.seed = static_cast<std::uint64_t>(seed->integer);
   else if (seed && (seed->kind != Value::Kind::string || seed->string != "per-session"))
-    reader.problem("seed",
-                   phrase("problem.is", {plain("seed"), seed->kind == Value::Kind::integer
-                                                            ? plain(std::to_string(seed->integer))
-                                                            : describe(*seed)}),
-                   phrase("problem.allowed_seed"));
+    reader.problem(
+        "seed",
+        phrase("problem.is",
+               {plain("seed"), seed->kind == Value::Kind::integer ? plain(seed->integer) : describe(*seed)}),
+        phrase("problem.allowed_seed"));
   reader.finish();
 }
 
@@ -146,8 +146,8 @@ void read_factors(TableReader& file, Reading& reading) {
   const auto tables = file.tables("factor");
   if (tables.size() > most_factors)
     return reading.findings.add(tables[most_factors]->place,
-                                phrase("problem.factors", {plain(std::to_string(tables.size()))}),
-                                phrase("problem.at_most", {plain(std::to_string(most_factors))}));
+                                phrase("problem.factors", {plain(tables.size())}),
+                                phrase("problem.at_most", {plain(most_factors)}));
   for (const auto* table : tables) {
     auto factor = read_factor(*table, reading);
     if (find_factor(factors, factor.name))

@@ -163,8 +163,7 @@ Item read_item(const Value& table, const Interlude& here, const std::string& pat
                    phrase("problem.write_answers"));
   item.choices = read_choice_list(reader, path + ".choices", reading);
   if (reader.has("choices") && (item.choices.size() < 2 || item.choices.size() > most_choices))
-    reader.problem("choices",
-                   phrase("problem.has", {plain("choices"), plain(std::to_string(item.choices.size()))}),
+    reader.problem("choices", phrase("problem.has", {plain("choices"), plain(item.choices.size())}),
                    phrase("problem.from_to", {plain("2"), plain("9")}));
   if (const auto* rating = reader.maybe_table("rating")) {
     auto scale = read_scale(*rating, reader.path("rating"), reading);
@@ -188,9 +187,8 @@ void read_items(TableReader& reader, Interlude& interlude, const Reading& readin
   reader.require("item", phrase("problem.add_item"));
   const auto tables = reader.tables("item");
   if (tables.size() > most_items)
-    return reader.problem(
-        "item", phrase("problem.has_items", {plain(interlude.name), plain(std::to_string(tables.size()))}),
-        phrase("problem.at_most", {plain(std::to_string(most_items))}));
+    return reader.problem("item", phrase("problem.has_items", {plain(interlude.name), plain(tables.size())}),
+                          phrase("problem.at_most", {plain(most_items)}));
   for (const auto* table : tables) {
     auto item = read_item(*table, interlude, reader.path("item"), reading);
     const auto same = [&](const Item& other) { return other.id == item.id; };
@@ -252,8 +250,7 @@ void read_pages(TableReader& reader, Interlude& interlude, const Reading& readin
     page.picture_place = inner.place("picture");
     const auto examples = inner.tables("examples");
     if (examples.size() > most_examples)
-      inner.problem("examples",
-                    phrase("problem.has", {plain("examples"), plain(std::to_string(examples.size()))}),
+      inner.problem("examples", phrase("problem.has", {plain("examples"), plain(examples.size())}),
                     phrase("problem.four_on_page"));
     for (const auto* example : examples)
       page.examples.push_back(read_example(*example, inner.path("examples"), reading));

@@ -46,7 +46,7 @@ void read_session_numbers(TableReader& reader, Audience& audience, const Reading
 
 /// Returns the session and the group of a visit in words, for messages.
 texts::Phrase visit_words(const Protocol& protocol, const Visit& visit) {
-  const auto session = phrase("check.session", {plain(std::to_string(visit.session))});
+  const auto session = phrase("check.session", {plain(visit.session)});
   const auto name = group_name(protocol, visit);
   if (name.empty()) return protocol.sessions ? session : phrase("problem.the_session");
   const auto group = phrase("check.group", {plain(name)});
@@ -83,8 +83,7 @@ void check_sequences(const Reading& reading) {
     if (sessions != static_cast<int>(factor->levels.size()))
       reading.findings.add(reading.places.of("sequence." + sequence->name + ".each_session"),
                            phrase("problem.levels_and_sessions",
-                                  {plain(factor->name), plain(std::to_string(factor->levels.size())),
-                                   plain(std::to_string(sessions))}),
+                                  {plain(factor->name), plain(factor->levels.size()), plain(sessions)}),
                            phrase("problem.session_each"));
   }
 }
@@ -179,7 +178,7 @@ void check_continuing(const Reading& reading) {
 void read_sessions(TableReader& file, Reading& reading) {
   if (group_count(reading.protocol) > most_groups)
     reading.findings.add(reading.protocol.factors.front().place,
-                         phrase("problem.groups", {plain(std::to_string(group_count(reading.protocol)))}),
+                         phrase("problem.groups", {plain(group_count(reading.protocol))}),
                          phrase("problem.at_most", {plain("100")}));
   const auto* table = file.maybe_table("sessions");
   if (!table) return;

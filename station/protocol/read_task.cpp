@@ -59,8 +59,7 @@ std::vector<std::string> read_interval(const Value& item, const Reading& reading
   else
     for (const auto& value : item.items) one(value);
   if (item.kind == Value::Kind::array && item.items.size() != 1 && item.items.size() != 2)
-    reading.findings.add(item.place,
-                         phrase("problem.interval_scenes", {plain(std::to_string(item.items.size()))}),
+    reading.findings.add(item.place, phrase("problem.interval_scenes", {plain(item.items.size())}),
                          phrase("problem.one_or_two_scenes"));
   return scenes;
 }
@@ -84,9 +83,8 @@ void read_intervals(TableReader& reader, Task& task, const Reading& reading) {
   for (const auto& item : list->items) task.intervals.push_back(read_interval(item, reading));
   const std::size_t needed = task.kind == TaskKind::two_interval ? 2 : 1;
   if (task.intervals.size() != needed)
-    reader.problem("intervals",
-                   phrase("problem.has", {plain("intervals"), plain(std::to_string(task.intervals.size()))}),
-                   phrase("problem.must_be_given", {plain(std::to_string(needed))}));
+    reader.problem("intervals", phrase("problem.has", {plain("intervals"), plain(task.intervals.size())}),
+                   phrase("problem.must_be_given", {plain(needed)}));
 }
 
 void read_times(TableReader& reader, Task& task) {
@@ -263,8 +261,7 @@ void read_confidence(TableReader& reader, Task& task, const Reading& reading) {
   for (const auto* label : inner.tables("labels"))
     confidence.labels.push_back(localised_from(*label, "labels", reading));
   if (inner.has("labels") && (confidence.labels.size() < 2 || confidence.labels.size() > most_choices))
-    inner.problem("labels",
-                  phrase("problem.has", {plain("labels"), plain(std::to_string(confidence.labels.size()))}),
+    inner.problem("labels", phrase("problem.has", {plain("labels"), plain(confidence.labels.size())}),
                   phrase("problem.two_to_nine"));
   inner.finish();
   if (task.kind == TaskKind::adjustment)
@@ -285,10 +282,9 @@ void read_choices(TableReader& reader, Task& task, const TaskForm& kind, const R
   if (const auto given = list && list->kind == Value::Kind::array ? list->items.size() : fewest;
       given < fewest || given > most)
     reading.findings.add(given > most ? list->items[most].place : list->place,
-                         phrase("problem.has", {plain("choices"), plain(std::to_string(given))}),
-                         fewest < most ? phrase("problem.from_to_given",
-                                                {plain(std::to_string(fewest)), plain(std::to_string(most))})
-                                       : phrase("problem.must_be_given", {plain(std::to_string(most))}));
+                         phrase("problem.has", {plain("choices"), plain(given)}),
+                         fewest < most ? phrase("problem.from_to_given", {plain(fewest), plain(most)})
+                                       : phrase("problem.must_be_given", {plain(most)}));
   if (task.kind == TaskKind::same_different && task.choices.size() == 2 &&
       seen != std::set<std::string>{"same", "different"})
     reader.problem("choices", phrase("problem.same_different_ids"), phrase("problem.use_same"));

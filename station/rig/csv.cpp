@@ -95,17 +95,14 @@ std::vector<std::vector<double>> read_table(const std::string& path, const std::
       rows.push_back(std::move(row));
     else
       findings.add({path, lines[n].number, 1}, phrase("problem.no_row", {plain(lines[n].text)}),
-                   comma ? phrase("problem.row_decimal_commas",
-                                  {plain(std::to_string(columns.size())), plain(joined(columns))})
-                         : phrase("problem.row_numbers",
-                                  {plain(std::to_string(columns.size())), plain(joined(columns))}));
+                   comma
+                       ? phrase("problem.row_decimal_commas", {plain(columns.size()), plain(joined(columns))})
+                       : phrase("problem.row_numbers", {plain(columns.size()), plain(joined(columns))}));
   }
   if (rows.size() < least)
     findings.add({path, 0, 0},
-                 least == 2 ? phrase("problem.few_rows")
-                            : phrase("problem.rows", {plain(std::to_string(rows.size()))}),
-                 least == 2 ? phrase("problem.two_rows")
-                            : phrase("problem.needed_at_least", {plain(std::to_string(least))}));
+                 least == 2 ? phrase("problem.few_rows") : phrase("problem.rows", {plain(rows.size())}),
+                 least == 2 ? phrase("problem.two_rows") : phrase("problem.needed_at_least", {plain(least)}));
   return rows;
 }
 

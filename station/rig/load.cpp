@@ -87,7 +87,7 @@ void read_transducers(TableReader& file, Rig& rig) {
                           phrase("problem.transducers_differ"));
     if (table->find("channel") && !channels.insert(transducer.channel).second)
       file.findings().add(table->find("channel")->value.place,
-                          phrase("problem.channel_twice", {plain(std::to_string(transducer.channel))}),
+                          phrase("problem.channel_twice", {plain(transducer.channel)}),
                           phrase("problem.own_channel"));
   }
 }
@@ -120,8 +120,8 @@ void check_device_channels(TableReader& file, const Rig& rig) {
   const auto* given = table == nullptr ? nullptr : table->find("device_channels");
   if (given == nullptr || rig.output.device_channels >= channels(rig)) return;
   file.findings().add(given->value.place,
-                      phrase("problem.device_channels", {plain(std::to_string(rig.output.device_channels))}),
-                      phrase("problem.channels_used", {plain(std::to_string(channels(rig)))}));
+                      phrase("problem.device_channels", {plain(rig.output.device_channels)}),
+                      phrase("problem.channels_used", {plain(channels(rig))}));
 }
 
 void check_bands(TableReader& file, const Rig& rig) {

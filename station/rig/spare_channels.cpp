@@ -82,10 +82,10 @@ void read_loop(TableReader& reader, const Rig& rig, Capture& capture) {
   capture.reference = reader.integer("reference", 0, 31);
   const auto& pick_ups = capture.pick_ups;
   if (capture.reference >= capture.channels)
-    reader.problem("reference", phrase("problem.not_captured", {plain(std::to_string(capture.reference))}),
-                   phrase("problem.whole_to", {plain(std::to_string(capture.channels - 1))}));
+    reader.problem("reference", phrase("problem.not_captured", {plain(capture.reference)}),
+                   phrase("problem.whole_to", {plain(capture.channels - 1)}));
   else if (std::find(pick_ups.begin(), pick_ups.end(), capture.reference) != pick_ups.end())
-    reader.problem("reference", phrase("problem.in_pickups", {plain(std::to_string(capture.reference))}),
+    reader.problem("reference", phrase("problem.in_pickups", {plain(capture.reference)}),
                    phrase("problem.channel_own"));
   capture.excitation_channel = reader.integer("excitation_channel", 0, kLastChannel);
   check_spare(reader, "excitation_channel", *capture.excitation_channel, rig);
@@ -97,7 +97,7 @@ void check_captured(TableReader& reader, const std::string& key, int channel, co
   const auto number = std::to_string(channel);
   if (channel >= capture.channels)
     reader.problem(key, phrase("problem.not_captured", {plain(number)}),
-                   phrase("problem.whole_to", {plain(std::to_string(capture.channels - 1))}));
+                   phrase("problem.whole_to", {plain(capture.channels - 1)}));
   else if (std::find(pick_ups.begin(), pick_ups.end(), channel) != pick_ups.end() ||
            (capture.excitation_channel && capture.reference == channel) ||
            std::find(capture.bridges.begin(), capture.bridges.end(), channel) != capture.bridges.end())
@@ -156,7 +156,7 @@ Capture read_capture(const text::Value& table, const Rig& rig, text::Findings& f
   for (const double channel : reader.numbers("pickups", {0, 31, Range::Ends::closed})) {
     if (channel != std::floor(channel) || channel >= capture.channels || !seen.insert(channel).second)
       reader.problem("pickups", phrase("problem.no_own_channel", {plain(text::number(channel))}),
-                     phrase("problem.different_to", {plain(std::to_string(capture.channels - 1))}));
+                     phrase("problem.different_to", {plain(capture.channels - 1)}));
     capture.pick_ups.push_back(static_cast<int>(channel));
   }
   const bool has_bridges = reader.has("bridges");

@@ -118,8 +118,7 @@ void read_taper(const text::Value& table, Surface& surface, text::Findings& find
   const auto* profile = reader.take("profile_mm");
   const int forms = reader.has("slope") + reader.has("decay_length_mm") + reader.has("profile_mm");
   if (forms != 1)
-    findings.add(reader.place(), phrase("problem.taper_forms", {plain(std::to_string(forms))}),
-                 phrase("problem.one_taper"));
+    findings.add(reader.place(), phrase("problem.taper_forms", {plain(forms)}), phrase("problem.one_taper"));
   const Range half_width{0.5, 1000, Ends::closed, "mm"};
   if (profile && reader.has("half_width_mm"))
     reader.problem("half_width_mm",

@@ -194,9 +194,9 @@ void Planner::State::drive(DrivePlan& plan, const std::vector<Tone>& tones, cons
     driven.displacement_m = info.gain * tone.amplitude_m;
     assign_transducer(rig, driven);
     if (driven.frequency_Hz >= terms::kHighestShareOfRate * rig.output.rate_Hz)
-      throw Unreachable(phrase("problem.too_high",
-                               {plain(number(driven.frequency_Hz)), plain(std::to_string(rig.output.rate_Hz)),
-                                plain(number(terms::kHighestShareOfRate * rig.output.rate_Hz))}));
+      throw Unreachable(
+          phrase("problem.too_high", {plain(number(driven.frequency_Hz)), plain(rig.output.rate_Hz),
+                                      plain(number(terms::kHighestShareOfRate * rig.output.rate_Hz))}));
     plan.tones.push_back(driven);
   }
   std::stable_sort(plan.tones.begin(), plan.tones.end(),

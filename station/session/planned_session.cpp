@@ -26,8 +26,6 @@ namespace {
 using std::chrono::sys_days;
 using texts::phrase, texts::plain;
 
-texts::Phrase number_of(int count) { return plain(std::to_string(count)); }
-
 /// Returns the day of an ISO 8601 date or date and time; empty if the text does not begin with one.
 std::optional<sys_days> day_of(const std::string& date) {
   int year = 0;
@@ -121,11 +119,11 @@ NextSession next_session(const Setup& setup, const std::vector<store::SessionRec
   while (numbers.count(number) > 0) ++number;
   next.number = setup.planned_session.value_or(number);
   if (*next.number > count) {
-    next.problem = setup.planned_session
-                       ? phrase("refusal.few_sessions", {number_of(*next.number), number_of(count)})
-                       : phrase("refusal.all_done",
-                                {plain(setup.participant), number_of(count), plain(setup.protocol.id)});
-    next.allowed = phrase("refusal.repeat_session", {number_of(count)});
+    next.problem =
+        setup.planned_session
+            ? phrase("refusal.few_sessions", {plain(*next.number), plain(count)})
+            : phrase("refusal.all_done", {plain(setup.participant), plain(count), plain(setup.protocol.id)});
+    next.allowed = phrase("refusal.repeat_session", {plain(count)});
     return next;
   }
   check_days(setup, done, today, next);
@@ -162,7 +160,7 @@ procedure::EarlierTrials earlier_trials(const std::string& database_path, const 
   }
   for (const auto& [number, other] : before) {
     if (other->start.protocol_version != protocol.version)
-      throw texts::Refusal(phrase("refusal.other_version", {plain(start.participant), number_of(number),
+      throw texts::Refusal(phrase("refusal.other_version", {plain(start.participant), plain(number),
                                                             plain(other->start.protocol_version),
                                                             plain(protocol.id), plain(protocol.version)}));
     trial::add_earlier_trials(protocol, store::read_session(database, *other).blocks, earlier);

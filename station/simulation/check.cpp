@@ -274,8 +274,8 @@ Check check(const std::string& protocol_path, const std::string& rig_path, const
   if (check.duration_s.median > 60 * rig->limits.session_minutes)
     check.warnings.push_back(
         {{protocol_path, 0, 0},
-         phrase("problem.session_long", {plain(std::to_string(std::lround(check.duration_s.median / 60)))}),
-         phrase("problem.at_most", {plain(std::to_string(std::lround(rig->limits.session_minutes)))})});
+         phrase("problem.session_long", {plain(std::lround(check.duration_s.median / 60))}),
+         phrase("problem.at_most", {plain(std::lround(rig->limits.session_minutes))})});
   return check;
 }
 

@@ -246,9 +246,8 @@ std::vector<double> TableReader::maybe_numbers(const std::string& key, const Ran
   for (const auto& item : value->items)
     if (check_number(item, key, range)) list.push_back(item.number);
   if (value->items.size() < at_least)
-    findings_->add(value->place,
-                   phrase("problem.has_values", {plain(key), plain(std::to_string(value->items.size()))}),
-                   phrase("problem.needed_at_least", {plain(std::to_string(at_least))}));
+    findings_->add(value->place, phrase("problem.has_values", {plain(key), plain(value->items.size())}),
+                   phrase("problem.needed_at_least", {plain(at_least)}));
   return list;
 }
 

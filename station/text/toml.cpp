@@ -58,9 +58,9 @@ Value convert(const toml::node& node, const std::string& path) {
     case toml::node_type::array:
       value.kind = Value::Kind::array;
       if (node.as_array()->size() > most_items)
-        throw BadInput({{place_of(node.source(), path),
-                         phrase("problem.long_list", {plain(std::to_string(node.as_array()->size()))}),
-                         phrase("problem.at_most", {plain(std::to_string(most_items))})}});
+        throw BadInput(
+            {{place_of(node.source(), path), phrase("problem.long_list", {plain(node.as_array()->size())}),
+              phrase("problem.at_most", {plain(most_items)})}});
       for (const auto& item : *node.as_array()) value.items.push_back(convert(item, path));
       break;
     case toml::node_type::boolean:

@@ -106,7 +106,7 @@ class Scanner {
       parts_ = 1;
     if (parts_ > most_parts)
       throw BadInput({{{path_, line_, column_},
-                       phrase("problem.long_key", {plain(std::to_string(most_parts))}),
+                       phrase("problem.long_key", {plain(most_parts)}),
                        phrase("problem.fewer_dots")}});
   }
 

@@ -1,4 +1,5 @@
 #pragma once
+#include <concepts>
 #include <functional>
 #include <map>
 #include <string>
@@ -39,6 +40,7 @@ struct Phrase {
 };
 /// A phrase that is the same in every language.
 inline Phrase plain(std::string words) { return {"", std::move(words), {}}; }
+inline Phrase plain(std::integral auto number) { return plain(std::to_string(number)); }
 /// The text with this key, with `values` in its places.
 inline Phrase phrase(std::string key, std::vector<Phrase> values = {}) {
   return {std::move(key), "", std::move(values)};

@@ -51,6 +51,7 @@ inline std::vector<texts::Phrase> phrases_of(const std::exception& error) {
 
 /// Joins phrases, each on a line of its own.
 inline texts::Phrase in_lines(const std::vector<texts::Phrase>& phrases) {
+  if (phrases.size() == 1) return phrases.front();
   texts::Phrase lines;
   for (const auto& one : phrases) {
     if (!lines.values.empty()) lines.values.push_back(texts::plain("\n"));

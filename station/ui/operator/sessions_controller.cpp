@@ -31,17 +31,14 @@ QVariantMap to_map(const desk::SessionLine& session) {
           {"resumable", session.resumable}};
 }
 
-texts::Phrase count_of(auto count) { return plain(std::to_string(count)); }
-
 /// Describes in words what a withdrawal deletes, or would delete.
 std::vector<texts::Phrase> words_of(const store::Withdrawal& gone, bool done) {
-  std::vector<texts::Phrase> words{
-      phrase(done ? "operator.deleted" : "operator.would_delete",
-             {plain(gone.participant), count_of(gone.sessions.size()), count_of(gone.trials),
-              count_of(gone.events), count_of(gone.annotations)})};
+  std::vector<texts::Phrase> words{phrase(done ? "operator.deleted" : "operator.would_delete",
+                                          {plain(gone.participant), plain(gone.sessions.size()),
+                                           plain(gone.trials), plain(gone.events), plain(gone.annotations)})};
   if (!gone.removed_copies.empty())
     words.push_back(phrase(done ? "operator.copies_deleted" : "operator.copies_would",
-                           {count_of(gone.removed_copies.size())}));
+                           {plain(gone.removed_copies.size())}));
   for (const auto& path : gone.remaining_copies)
     words.push_back(phrase("operator.copy_remains", {plain(path)}));
   return words;
@@ -191,8 +188,7 @@ void SessionsController::exportTo(int place, bool all, const QString& format) {
   act([this, options, name, place, disks = disks_, folder = folder_of(place)] {
     const auto to = (fs::path(mounted(folder, disks, place, sources_)) / name).string();
     const auto files = store::export_data(database_, to, options);
-    return Done{{phrase("operator.exported", {count_of(files.size()), plain(to)})},
-                [this] { lookForDisks(); }};
+    return Done{{phrase("operator.exported", {plain(files.size()), plain(to)})}, [this] { lookForDisks(); }};
   });
 }
 
@@ -207,8 +203,8 @@ void SessionsController::backUpTo(int place) {
     // setting the backup refuses that.
     if (place > 0) options.destination = store::Destination::disk;
     const auto report = store::backup(database_, options);
-    std::vector<texts::Phrase> said{phrase(
-        "operator.backed_up", {plain(report.path), count_of(report.sessions), count_of(report.trials)})};
+    std::vector<texts::Phrase> said{
+        phrase("operator.backed_up", {plain(report.path), plain(report.sessions), plain(report.trials)})};
     if (place == 0) said.push_back(phrase("operator.backup_here"));
     if (!report.unrecorded.empty()) said.push_back(plain(report.unrecorded));
     return Done{said, [this] { lookForDisks(); }};
