@@ -4,8 +4,9 @@
 Usage: TURNPOINT_ERRORS=errors.txt TURNPOINT_SCENES=1000 test_physics "*random membranes"
        pool_errors.py errors.txt...
 
-Each line of a file holds surface, number of the scene, model, quantity, bound and error. A scene that occurs
-twice counts once.
+Each line of a file holds surface, number of the scene, model, quantity, bound and error. The models "coarser"
+and "before" are the bounds of `modes` from a coarser solution and before solving. A scene that occurs twice
+counts once.
 """
 import statistics
 import sys
@@ -34,6 +35,6 @@ for model, quantity in sorted({key[2:] for key in found}):
         ratios = [bound / error for bound, error in pairs if error > 0]
         least = min((bound + slack) / error for bound, error in pairs if error > 0)
         print(
-            f"{model:6} {quantity:10} {surface:9} {len(pairs):6} scenes, {outside} outside, "
+            f"{model:7} {quantity:10} {surface:9} {len(pairs):6} scenes, {outside} outside, "
             f"median {statistics.median(ratios):.1f}, least {least:.2f}"
         )
