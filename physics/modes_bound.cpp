@@ -17,7 +17,7 @@ constexpr double profile_margin = 8, peak_margin = 4, edge_margin = 5;
 // these factors, for the edge also by the cut-off half-width.
 constexpr double level_share = 2, position_share = 1.25;
 constexpr double near_rad = 3;  // phase on either side of the last maximum that counts as near
-// how much larger the bounds are when the other solution is coarser: the two are then more often wrong alike
+// how much larger the bounds are when the other solution is coarser, because it shares more of the error
 constexpr double coarser_share = 1.5;
 // largest differences that come from rounding and from effects that both solutions neglect
 constexpr double floor = 1e-8;

@@ -358,9 +358,9 @@ TEST_CASE("the bound of mode includes modes that excite one another along curved
 }
 
 // Random clamped plates on which a bound was once too small. The first two are stepped: on the first, the
-// two-dimensional field is six times as high as that of the first mode, near a resonance that the first mode
-// does not have, and on the second, two solutions nearly agree in the level by chance. The last maximum of
-// the others lies at the corners of a steep drive edge.
+// two-dimensional field is nearly five times as high as that of the first mode, near a resonance that the
+// first mode does not have, and on the second, two solutions agree by chance in the level. The last maximum
+// of the others lies at the corners of a steep drive edge.
 TEST_CASE("the bounds of modes hold on stepped and on steep clamped plates", "[physics]") {
   Campaign all;
   all.surface = "thin";
