@@ -31,6 +31,8 @@ using turnpoint::physics_test::Draw;
 using turnpoint::physics_test::first_scene;
 using turnpoint::physics_test::frequency_Hz;
 using turnpoint::physics_test::median;
+using turnpoint::physics_test::random_membrane;
+using turnpoint::physics_test::random_thin_plate;
 using turnpoint::physics_test::scenes;
 
 namespace {
@@ -207,6 +209,13 @@ struct Campaign {
   std::vector<double> map;  // error bounds of the boundary map, divided by its true errors
   int map_outside = 0;
 
+  // Adds the scene with this number from those that `make` draws.
+  template <class Make>
+  void add_scene(std::uint64_t seed, int number, const CollocationGrid& finest, Make make) {
+    Draw draw(Draw(seed + static_cast<std::uint64_t>(number)).next());
+    const Surface s = make(draw);
+    add(number, s, draw.next() % 2 == 0 ? Normalise::peak : Normalise::drive, finest);
+  }
   void add(int number, const Surface& s, Normalise normalise, const CollocationGrid& finest);
   void add_map(int number, const Surface& s, const CollocatedField& truth, const CentreLine& line);
 
@@ -313,11 +322,7 @@ void compare_scenes(const char* surface, int usual, std::uint64_t seed, const Co
   const int count = scenes(usual), first = first_scene();
   Campaign all;
   all.surface = surface;
-  for (int i = first; i < first + count; ++i) {
-    Draw draw(Draw(seed + static_cast<std::uint64_t>(i)).next());
-    const Surface s = make(draw);
-    all.add(i, s, draw.next() % 2 == 0 ? Normalise::peak : Normalise::drive, finest);
-  }
+  for (int i = first; i < first + count; ++i) all.add_scene(seed, i, finest, make);
   if (count > usual)
     WARN(all.error.size() << " scenes from number " << first << ", median error " << median(all.error)
                           << "\nfiner: " << all.finer << "\ncoarser: " << all.coarser << "\nbefore solving: "
@@ -339,20 +344,19 @@ void compare_scenes(const char* surface, int usual, std::uint64_t seed, const Co
   CHECK(median(all.map) < 10);
 }
 
+constexpr std::uint64_t membrane_seed = 20260104, thin_seed = 20260105;
+const CollocationGrid membrane_grid{14, 12, 9, 3, 0.75, 0.8, 30}, thin_grid{14, 12, 13, 3, 0.75, 0.8, 30};
+
 }  // namespace
 
 TEST_CASE("the errors of models and map lie inside their bounds on random membranes", "[physics]") {
-  compare_scenes("membrane", 40, 20260104, {14, 12, 9, 3, 0.75, 0.8, 30},
-                 turnpoint::physics_test::random_membrane);
+  compare_scenes("membrane", 40, membrane_seed, membrane_grid, random_membrane);
 }
 
 // The third mode of this scene is near a resonance, and the first mode excites it mostly through the second.
 TEST_CASE("the bound of mode includes modes that excite one another along curved sides", "[physics]") {
   Campaign all;
-  Draw draw(Draw(20260104 + 903836).next());
-  const Surface s = turnpoint::physics_test::random_membrane(draw);
-  all.add(903836, s, draw.next() % 2 == 0 ? Normalise::peak : Normalise::drive,
-          {14, 12, 9, 3, 0.75, 0.8, 30});
+  all.add_scene(membrane_seed, 903836, membrane_grid, random_membrane);
   CHECK(all.error.size() == 1);
   CHECK(all.mode.outside == 0);
 }
@@ -364,12 +368,8 @@ TEST_CASE("the bound of mode includes modes that excite one another along curved
 TEST_CASE("the bounds of modes hold on stepped and on steep clamped plates", "[physics]") {
   Campaign all;
   all.surface = "thin";
-  for (const std::uint64_t number : {911306, 910609, 910757, 930374}) {
-    Draw draw(Draw(20260105 + number).next());
-    const Surface s = turnpoint::physics_test::random_thin_plate(draw);
-    all.add(static_cast<int>(number), s, draw.next() % 2 == 0 ? Normalise::peak : Normalise::drive,
-            {14, 12, 13, 3, 0.75, 0.8, 30});
-  }
+  for (const int number : {911306, 910609, 910757, 930374})
+    all.add_scene(thin_seed, number, thin_grid, random_thin_plate);
   CHECK(all.error.size() == 4);
   CHECK(all.finer.outside == 0);
   CHECK(all.coarser.outside == 0);
@@ -381,19 +381,14 @@ TEST_CASE("the bounds of modes hold on stepped and on steep clamped plates", "[p
 TEST_CASE("the map's bound includes a reflection from a clamped end far beyond the turning point",
           "[physics]") {
   Campaign all;
-  for (const std::uint64_t number : {500627, 501401, 502651, 503320, 503377, 503766}) {
-    Draw draw(Draw(20260104 + number).next());
-    const Surface s = turnpoint::physics_test::random_membrane(draw);
-    all.add(static_cast<int>(number), s, draw.next() % 2 == 0 ? Normalise::peak : Normalise::drive,
-            {14, 12, 9, 3, 0.75, 0.8, 30});
-  }
+  for (const int number : {500627, 501401, 502651, 503320, 503377, 503766})
+    all.add_scene(membrane_seed, number, membrane_grid, random_membrane);
   CHECK(all.map.size() == 6);
   CHECK(all.map_outside == 0);
 }
 
 TEST_CASE("the errors of models and map lie inside their bounds on random thin plates", "[physics]") {
-  compare_scenes("thin", 16, 20260105, {14, 12, 13, 3, 0.75, 0.8, 30},
-                 turnpoint::physics_test::random_thin_plate);
+  compare_scenes("thin", 16, thin_seed, thin_grid, random_thin_plate);
 }
 
 TEST_CASE("the errors of models and map lie inside their bounds on random thick plates", "[physics]") {
