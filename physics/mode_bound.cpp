@@ -6,26 +6,30 @@
 
 #include "physics/centre_line.hpp"
 #include "physics/dispersion.hpp"
+#include "physics/higher_modes.hpp"
 #include "physics/taper.hpp"
-#include "physics/taylor_march.hpp"
 
 namespace turnpoint::physics {
 namespace {
 
 using std::numbers::pi;
 
-// Constants of the bounds. They were measured on random surfaces, see the header. W, W' and W'' are the
+// Margin of what higher_modes() computes to first order in the slope. On random membranes, the bound was at
+// least 2.0 times the true error of |v|, and 1.5 times that of the level (README.md).
+constexpr double first_order_margin = 3;
+// Relative error of what higher_modes() computes on small slopes: it sees the phases of the standing waves
+// only to first order. The square of the slope is added.
+constexpr double first_order_error = 0.1;
+// Constants of the other bounds. They were measured on random surfaces, see the header. W, W' and W'' are the
 // half-width and its derivatives. Shifts of an edge are in units of the cut-off half-width.
-constexpr double coupling = 0.15;  // amplitude of higher modes, divided by |W'| W(0) / (cut-off half-width)
-constexpr double piston_coupling = 0.55;  // amplitude of higher modes for a piston drive, at any slope
-// uncertainty of the phase of a higher mode's standing wave at the drive edge
-constexpr double phase_uncertainty = 0.12;
+// amplitude of higher modes of a clamped plate, divided by |W'| W(0) / (cut-off half-width)
+constexpr double coupling = 0.15;
 constexpr double curvature_shift = 0.2;  // shift of an edge, divided by |W''| W
 constexpr double slope_shift = 0.1;      // shift of an edge, divided by |W'|^3
 // On a clamped plate, the transverse shape of `mode` is exact only at the cut-off, so its phase drifts
 // between the drive edge and the cut-off.
 constexpr double plate_drift = 1.5e-3;  // phase error in radians, divided by k times the turning point's x
-constexpr double plate_piston = 0.9;
+constexpr double plate_piston = 0.9;    // amplitude of higher modes for a piston drive, at any slope
 // cut-off half-width of the second symmetric mode divided by that of the first
 constexpr double plate_second_mode = 2.3246;
 constexpr double plate_shift = 1.2e-3;  // shift of an edge, which occurs on every taper
@@ -39,65 +43,22 @@ constexpr double plate_slope_shift = 0.15;  // shift of an edge divided by W'^2
 // shift of an edge caused by a clamped end: just beyond the turning point, divided by W'^2; farther away,
 // divided by W'^2 and by the wave's decay on its way to the end and back; at the turning point, divided by W'
 constexpr double end_shift = 0.15, far_end_shift = 7, close_end_shift = 0.09;
-// shift of an edge, divided by the amplitude of higher modes near this edge
-constexpr double shallow = 6;
+// shift of an edge, divided by the amplitude of higher modes near this edge: on a clamped plate; on a
+// membrane, in Airy lengths (|v| falls by a factor of e^0.9 in an Airy length at half of the last maximum,
+// and both the edge and the maximum may change by that amplitude)
+constexpr double shallow = 6, airy_shift = 2.3;
 // if higher modes shift the last maximum by more than this, another maximum may become the last one
 constexpr double other_peak = 0.5;
-constexpr double largest = 2;  // bounds are limited to this value, because a larger one would say nothing
+// bounds are limited to these values, because larger ones would say nothing
+constexpr double largest = 2, largest_dB = 120;
 
-// The equation of the n-th symmetric transverse mode, n = 1, 2, ... On a wedge the solution is a Bessel
-// function; its order is accurate up to the square of the slope.
-MarchEquation equation(const Surface& surface, double f, int n) {
-  const double k = wavenumber_per_m(surface, f);
-  const std::complex<double> lossy(1, -0.5 / surface.quality_factor);
-  const double odd = 2 * n - 1;
-  MarchEquation e;
-  e.a = k * k * lossy * lossy;
-  e.b = odd * odd * pi * pi / 4;
-  e.c = odd * odd * pi * pi / 6 - 0.25;
-  e.w_power = 0.5;
-  return e;
-}
-
-// Largest amplitude of a higher mode on the surface divided by its amplitude at the drive edge.
-double amplification(const Surface& surface, double f, int n) {
-  const bool linear = std::holds_alternative<LinearTaper>(surface.taper);
-  const Taper taper(linear ? surface : moving_part(surface, f));
-  const double k = wavenumber_per_m(surface, f);
-  const auto turning = taper.position_continued_m((2 * n - 1) * cut_off_half_width_m(surface, f));
-  const double reach = std::clamp(turning.value_or(taper.length_m()), 0.0, taper.length_m());
-  const double loss = std::tanh(0.5 * k * reach / surface.quality_factor);
-  const TaylorMarch march(taper, equation(surface, f, n));
-  const double ln_drive = march.value(0).ln_magnitude();
-  double most = ln_drive;
-  for (int i = 1; i <= 200; ++i) most = std::max(most, march.value(reach * i / 200).ln_magnitude());
-  // Near a resonance, the amplitude of the standing wave at the drive edge depends on its phase, which is
-  // known only to `phase_uncertainty`.
-  const double standing = std::exp(ln_drive - most);
-  return 1 / std::max({standing - phase_uncertainty, loss, 1e-3});
-}
-
-// Like amplification(), for a clamped plate. The standing wave of a higher mode is unknown here, because the
-// higher modes of a plate are not solved for. So loss alone is assumed to limit the amplification.
+// Largest amplitude of a higher mode of a clamped plate divided by its amplitude at the drive edge. The
+// standing wave of a higher mode is unknown here, because the higher modes of a plate are not solved for. So
+// loss alone is assumed to limit the amplification.
 double plate_amplification(const Surface& surface, const Taper& taper, double f) {
   const auto turning = taper.position_continued_m(plate_second_mode * cut_off_half_width_m(surface, f));
   const double reach = std::clamp(turning.value_or(0), 0.0, taper.length_m());
   return 1 / std::max(std::tanh(0.5 * wavenumber_per_m(surface, f) * reach / surface.quality_factor), 0.01);
-}
-
-// Natural logarithm of the factor by which the n-th symmetric mode decays from one position to another, where
-// the strip is too narrow for it.
-double ln_decay(const Surface& surface, double f, int n, double from_m, double to_m) {
-  const Taper taper(surface);
-  const double k = wavenumber_per_m(surface, f);
-  double ln = 0;
-  constexpr int panels = 24;
-  for (int i = 0; i < panels; ++i) {
-    const double w = taper.half_width_m(from_m + (to_m - from_m) * (i + 0.5) / panels);
-    const double across = (2 * n - 1) * pi / (2 * w);
-    ln += (to_m - from_m) / panels * std::sqrt(std::max(0.0, across * across - k * k));
-  }
-  return ln;
 }
 
 // The factor by which the first mode decays on the way from the turning point to the clamped end and back.
@@ -119,8 +80,9 @@ double airy_length_m(double cut, double slope) {
 // How steep and how curved the taper is at the places where this disturbs the first mode.
 struct Steepness {
   double at_turning = 0;  // |W'| near the turning point
-  double before = 0;  // largest |W'| W / (cut-off half-width) between the drive edge and the turning point
-  double bend = 0;    // largest |W''| W near the turning point
+  double before = 0;    // largest |W'| W / (cut-off half-width) between the drive edge and the turning point
+  double steepest = 0;  // largest |W'| between the drive edge and the turning point
+  double bend = 0;      // largest |W''| W near the turning point
   // distance from the turning point that counts as near: two cut-off half-widths, or more where the strip is
   // nearly even
   double reach_m = 0;
@@ -131,11 +93,16 @@ Steepness steepness(const Taper& taper, double cut, double x0, double last_peak)
   s.at_turning = std::max(std::abs(taper.slope(x0)), std::abs(taper.slope(std::max(0.0, x0 - 2 * cut))));
   for (int i = 0; i <= 48; ++i) {
     const double x = x0 * i / 48;
+    s.steepest = std::max(s.steepest, std::abs(taper.slope(x)));
     s.before = std::max(s.before, std::abs(taper.slope(x)) * taper.half_width_m(x) / cut);
   }
   // Where the strip is nearly even, the mode decays slowly, and an edge may lie far from the turning point.
-  s.reach_m = std::max(2 * cut, 1.2 * airy_length_m(cut, std::abs(taper.slope(x0))));
-  const double low = std::clamp(std::min(x0 - s.reach_m, last_peak), 0.0, taper.length_m());
+  const double airy_m = airy_length_m(cut, std::abs(taper.slope(x0)));
+  s.reach_m = std::max(2 * cut, 1.2 * airy_m);
+  // The last maximum and the edges beyond it are determined by the field from there to the tip. A bend
+  // farther left acts on them only through higher modes, which decay within half of a cut-off half-width.
+  const double left = std::min(last_peak, x0 - std::min(s.reach_m, 1.1 * airy_m + 0.5 * cut));
+  const double low = std::clamp(left, 0.0, taper.length_m());
   const double high = std::clamp(x0 + 0.5 * s.reach_m, 0.0, taper.length_m());
   constexpr int points = 24;
   for (int i = 0; i <= points; ++i)
@@ -151,11 +118,47 @@ double plate_shift_of(const Surface& surface, const Dispersion& dispersion, doub
   return plate_shift + layer_shift * std::min(1.0, layers / 3);
 }
 
-}  // namespace
-
-double higher_mode_decay(const Surface& surface, double f, double x) {
-  return std::exp(-ln_decay(surface, f, 2, 0, x));
+// The following two functions set the bounds of the displacement, and return a bound of the higher modes at
+// `near`, relative to the first mode. `equation` is the error of |v| near the turning point that the equation
+// of `mode` causes.
+double bound_membrane(ModeBound& bound, const Surface& surface, double f, double near,
+                      const Steepness& taper_is, double equation, double conditioning) {
+  const HigherModes higher = higher_modes(surface, f, near);
+  const double square = taper_is.steepest * taper_is.steepest, margin = first_order_margin * (1 + square);
+  const double gain = first_order_margin * (higher.gain + (first_order_error + square) * higher.change) +
+                      equation * conditioning;
+  bound.resonance = higher.resonance;
+  bound.shape = std::min(largest, margin * (higher.field + higher.phase) + equation);
+  bound.drive = bound.shape + std::min(1e6, std::expm1(std::min(gain, 20.0)));
+  bound.level_dB = std::min(largest_dB, 20 / std::numbers::ln10 * gain);
+  // On sides with a slope above 1, an expansion in the slope says little: higher modes of any size may start
+  // from the drive edge.
+  const double unknown = std::max(0.0, square - 1) * std::exp(-ln_decay(surface, f, 2, 0, near));
+  return margin * higher.near + unknown;
 }
+
+double bound_plate(ModeBound& bound, const Surface& surface, double f, double near, const Steepness& taper_is,
+                   double equation, double conditioning) {
+  const Taper taper(surface);
+  const Dispersion dispersion(surface);
+  const double cut = dispersion.cut_off_half_width_m(f), ratio = taper.half_width_m(0) / cut;
+  const double x0 = taper.position_m(cut).value_or(taper.length_m());
+  const double coupled = coupling * std::max(taper_is.before, taper_is.at_turning * ratio) +
+                         coupling * taper_is.bend + (surface.drive == DriveShape::piston ? plate_piston : 0);
+  bound.resonance = coupled > 0 && ratio > plate_second_mode ? plate_amplification(surface, taper, f) : 1;
+  const double modes = coupled * bound.resonance;
+  const double drift = plate_drift * dispersion.wavenumber_per_m(f) * x0;
+  bound.shape = std::min(largest, modes + drift + equation);
+  // phase error of the first mode at the drive edge
+  const double phase = coupled + taper_is.bend + 1.5 * drift;
+  bound.drive = std::min(1e6, bound.shape + 2 * (phase + modes) * conditioning);
+  // The phase error and the higher modes may raise or lower the wave at the drive edge. Assume that they
+  // lower it.
+  bound.level_dB = -20 * std::log10(std::max(1e-6, 1 - (phase + modes) * conditioning));
+  return modes * std::exp(-ln_decay(surface, f, 2, 0, near));
+}
+
+}  // namespace
 
 ModeBound mode_bound(const Surface& surface, double f, double conditioning,
                      std::optional<double> last_peak_m) {
@@ -163,35 +166,19 @@ ModeBound mode_bound(const Surface& surface, double f, double conditioning,
   const Dispersion dispersion(surface);
   const Taper taper(surface);
   const double cut = dispersion.cut_off_half_width_m(f);
-  const double ratio = taper.half_width_m(0) / cut;
   const double x0 = taper.position_m(cut).value_or(taper.length_m());
   const Steepness taper_is = steepness(taper, cut, x0, last_peak_m.value_or(x0));
   const double steepest = taper_is.at_turning, bend = taper_is.bend;
   const bool membrane = !dispersion.clamped_bending();
-  const bool piston = surface.drive == DriveShape::piston;
-  const double coupled = coupling * std::max(taper_is.before, steepest * ratio) + coupling * bend +
-                         (!piston    ? 0
-                          : membrane ? piston_coupling
-                                     : plate_piston);
-  double modes = coupled;
-  for (int n = 2; membrane && 2 * n - 1 < ratio; ++n) {
-    modes = std::max(modes, coupled / (n - 1) * amplification(surface, f, n));
-  }
-  const double drift = membrane ? 0 : plate_drift * dispersion.wavenumber_per_m(f) * x0;
-  if (!membrane && ratio > plate_second_mode) modes *= plate_amplification(surface, taper, f);
-  bound.resonance = coupled > 0 ? modes / coupled : 1;
-  bound.higher_modes = std::min(largest, modes);
-  bound.shape = std::min(largest, modes + drift + 0.3 * bend + slope_shift * steepest * steepest);
-  const double phase = coupled + bend + 1.5 * drift;  // phase error of the first mode at the drive edge
-  bound.drive = std::min(1e6, bound.shape + 2 * (phase + modes) * conditioning);
-  // The phase error and the higher modes may raise or lower the wave at the drive edge. Assume that they
-  // lower it.
-  bound.level_dB = -20 * std::log10(std::max(1e-6, 1 - (phase + modes) * conditioning));
   // The outermost maximum is about one Airy length before the turning point. If the turning point is close to
   // the drive edge, the maximum is shallow, and even weak higher modes move it far.
   const double airy_length = airy_length_m(cut, steepest);
   const double near = std::max(0.0, std::min(x0 - 1.1 * airy_length, last_peak_m.value_or(x0)));
-  const double polluted = shallow * modes * higher_mode_decay(surface, f, near);
+  const double equation = 0.3 * bend + slope_shift * steepest * steepest;
+  const double polluted =
+      membrane ? airy_shift * airy_length / cut *
+                     bound_membrane(bound, surface, f, near, taper_is, equation, conditioning)
+               : shallow * bound_plate(bound, surface, f, near, taper_is, equation, conditioning);
   // The curved wave fronts do not meet the straight clamped end evenly, which shifts the edge.
   const double end_width = taper.half_width_m(taper.length_m()) / cut;
   double end = std::min(end_shift, far_end_shift * round_trip_decay(surface, f, x0)) * steepest * steepest;
@@ -201,7 +188,7 @@ ModeBound mode_bound(const Surface& surface, double f, double conditioning,
   bound.drive_m = cut * (end + (same_peak ? polluted : 1)) + (same_peak ? 0 : x0);
   if (!same_peak) {
     bound.shape = bound.drive = std::max(largest, bound.drive);
-    bound.level_dB = 120;
+    bound.level_dB = largest_dB;
   }
   const double even = taper_is.reach_m / (2 * cut);
   bound.equation_m = cut * (curvature_shift * bend * even * even + slope_shift * std::pow(steepest, 3));

@@ -22,7 +22,6 @@ struct ModeBound {
   double position_m() const { return equation_m + drive_m; }
   // factor by which resonance makes the higher modes on the surface larger than the drive edge alone would
   double resonance = 1;
-  double higher_modes = 0;  // the part of `shape` that higher modes from the drive edge cause
 };
 
 // Computes the bounds. `conditioning` is CentreLine::drive_conditioning of the first mode. `last_peak_m` is
@@ -30,9 +29,5 @@ struct ModeBound {
 // where higher modes are stronger.
 ModeBound mode_bound(const Surface& surface, double frequency_Hz, double conditioning,
                      std::optional<double> last_peak_m);
-
-// The displacement of the higher modes at a position, divided by their displacement at the drive edge. It
-// decays where the strip is too narrow for these modes.
-double higher_mode_decay(const Surface& surface, double frequency_Hz, double x_m);
 
 }  // namespace turnpoint::physics

@@ -6,6 +6,7 @@
 #include "physics/centre_line.hpp"
 #include "physics/dispersion.hpp"
 #include "physics/modal_field.hpp"
+#include "physics/taper.hpp"
 
 namespace turnpoint::physics {
 namespace {
@@ -16,6 +17,8 @@ constexpr double profile_margin = 8, peak_margin = 4, edge_margin = 5;
 // these factors, for the edge also by the cut-off half-width.
 constexpr double level_share = 2, position_share = 1.25;
 constexpr double near_rad = 3;  // phase on either side of the last maximum that counts as near
+// how much larger the bounds are when the other solution is coarser, because it shares more of the error
+constexpr double coarser_share = 1.5;
 // largest differences that come from rounding and from effects that both solutions neglect
 constexpr double floor = 1e-8;
 
@@ -81,14 +84,21 @@ std::optional<ModesBound> modes_bound(const Surface& surface, double f, const Ed
   bound.shape = profile_margin * shape.relative() + floor;
   bound.drive = profile_margin * drive.relative() + floor;
   const double gain = a.ln_peak - b.ln_peak;
-  bound.level_dB = 8.686 * (peak_margin * std::abs(gain) + level_share * near_drive.relative() + floor);
+  // Polynomials converge slowly where an element spans a steep step, so that its part of the difference
+  // counts more.
+  const Taper taper(surface);
+  const auto steepness = [&taper](double x) { return 1 + taper.slope(x) * taper.slope(x); };
+  bound.level_dB = 8.686 * (peak_margin * std::abs(gain) +
+                            level_share * steepness(peak_m) * near_drive.relative() + floor);
   const auto at = edge_m(a, edge), other_at = edge_m(b, edge);
   const double cut = cut_off_half_width_m(surface, f);
-  bound.position_m = cut * (position_share * near_shape.difference + floor);
+  bound.position_m = cut * (position_share * (at ? steepness(*at) : 1) * near_shape.difference + floor);
   if (at.has_value() != other_at.has_value()) bound.position_m += surface.length_m;
   if (at && other_at) bound.position_m += edge_margin * std::abs(*at - *other_at);
   if (edge.kind == Edge::Kind::turning) bound.position_m = 0;
-  return bound;
+  if (finer) return bound;
+  return ModesBound{coarser_share * bound.shape, coarser_share * bound.drive, coarser_share * bound.level_dB,
+                    coarser_share * bound.position_m};
 }
 
 }  // namespace turnpoint::physics

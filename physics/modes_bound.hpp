@@ -15,8 +15,7 @@ struct ModesBound {
 };
 
 // True if the error of `modes` can be bounded by comparing two solutions. It cannot for a clamped plate that
-// is driven by a piston, because both solutions have much the same error at the corners. It is not done for
-// thick plates, because it would take seconds.
+// is driven by a piston, because both solutions have much the same error at the corners.
 bool modes_bound_applies(const Surface& surface);
 
 // Which solution `modes` is compared with.

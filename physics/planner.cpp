@@ -178,7 +178,9 @@ double modes_accuracy(const Surface& surface) {
   return surface.theory == PlateTheory::kirchhoff ? plate_accuracy : thick_plate_accuracy;
 }
 
-// Estimates the error bounds of the model `modes` without solving it.
+// Estimates the error bounds of the model `modes` without solving it. They depend on how much the field is
+// larger than the motion of the drive edge. The first mode tells this, but not on a clamped plate on which
+// its error exceeds the field; there nothing can be assumed.
 RungEstimate modes_estimate(const Surface& surface, const PlanRequest& request, const Reference& reference) {
   RungEstimate e;
   e.cost_s = cost_s(surface, reference.f, Model::modes, request.points);
@@ -187,6 +189,10 @@ RungEstimate modes_estimate(const Surface& surface, const PlanRequest& request, 
   const bool drive = request.normalise != Normalise::peak;
   e.amplitude_bound = accuracy * (drive ? reference.conditioning : 1);
   e.level_bound_dB = 20 * std::log10(1 + accuracy * reference.conditioning);
+  if (reference.bound.shape > 1 && Dispersion(surface).clamped_bending() && modes_bound_applies(surface)) {
+    if (drive) e.amplitude_bound += unknown;
+    e.level_bound_dB += unknown_dB;
+  }
   const double share = surface.quality_factor < lossy_below ? lossy_edge_share : edge_share;
   e.boundary_bound_m =
       accuracy * share * cut_off_half_width_m(surface, reference.f) + placed_elsewhere_m(request, reference);
@@ -240,6 +246,19 @@ RungEstimate profile_estimate(const Surface& surface, const PlanRequest& request
   e.amplitude_bound += d.amplitude;
   e.level_bound_dB += d.level_dB;
   e.boundary_bound_m += d.position_m;
+  return e;
+}
+
+// Computes the error bounds of the model `mode` by solving for `modes`. The error of |v| is at most the
+// difference between the two plus the error of `modes`.
+RungEstimate compared_mode_estimate(const Surface& surface, const PlanRequest& request,
+                                    const Reference& reference) {
+  RungEstimate e = profile_estimate(surface, request, reference, Model::mode);
+  const RungEstimate modes = modes_estimate(surface, request, reference);
+  const Difference d =
+      compare(surface, request, reference.mode, probe(surface, request, reference.f, Model::modes));
+  e.amplitude_bound = std::min(e.amplitude_bound, modes.amplitude_bound + d.amplitude);
+  e.level_bound_dB = std::min(e.level_bound_dB, modes.level_bound_dB + probe_margin * d.level_dB);
   return e;
 }
 
@@ -299,9 +318,13 @@ std::string numbers(const RungEstimate& e, const Tolerance& tolerance) {
 
 RungEstimate estimate(const Surface& surface, const PlanRequest& request, Model model) {
   const auto references = references_for(surface, request);
-  return model == Model::modes && modes_bound_applies(surface)
-             ? compared_modes(surface, request, references, Comparison::finer)
-             : estimate_with(surface, request, references, model);
+  if (model == Model::modes && modes_bound_applies(surface))
+    return compared_modes(surface, request, references, Comparison::finer);
+  if (model != Model::mode || !modes_bound_applies(surface) || !Dispersion(surface).clamped_bending())
+    return estimate_with(surface, request, references, model);
+  RungEstimate all;
+  for (const Reference& one : references) merge(all, compared_mode_estimate(surface, request, one));
+  return all;
 }
 
 PlanChoice choose_model(const Surface& surface, const PlanRequest& request) {

@@ -21,8 +21,9 @@ struct Tolerance {
 };
 
 // The error bounds of a model for a set of tones. They are estimated before the model is evaluated, except
-// that estimate() solves for `modes` twice and compares. For membranes and simply supported plates the errors
-// are differences from the two-dimensional field; for clamped plates, from the one-mode equation.
+// that estimate() solves for `modes` twice and compares, and for `mode` of a clamped plate compares it with
+// `modes`. For membranes and simply supported plates the errors are differences from the two-dimensional
+// field; for clamped plates, from the one-mode equation.
 struct RungEstimate {
   Model model = Model::mode;
   bool usable = true;           // false if the model cannot be used here at all (`reason` says why)

@@ -69,8 +69,8 @@ std::vector<Judgements> judgements(const std::vector<TrialRecord>& trials,
       one.levels.push_back(std::move(found));
     }
     if (zeros > 0)
-      one.statements.push_back({"zero-magnitudes", texts::phrase("statement.zero_magnitudes",
-                                                                 {texts::plain(std::to_string(zeros))})});
+      one.statements.push_back(
+          {"zero-magnitudes", texts::phrase("statement.zero_magnitudes", {texts::plain(zeros)})});
     if (judged != Judged::ratings) add_exponent(one, judged == Judged::magnitudes_dB);
     all.push_back(std::move(one));
   }

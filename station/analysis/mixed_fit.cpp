@@ -202,8 +202,8 @@ MixedResult fit_mixed(const std::vector<PersonCounts>& data, const MixedOptions&
   auto people = scaled(data, options);
   if (people.people.size() < kFewestPeople)
     return {std::nullopt,
-            {{"few-participants", texts::phrase("statement.few_participants",
-                                                {texts::plain(std::to_string(people.people.size()))})}}};
+            {{"few-participants",
+              texts::phrase("statement.few_participants", {texts::plain(people.people.size())})}}};
   const auto pooled = together(people, options);
   if (!pooled.parameters) return {std::nullopt, pooled.statements};
   const double rate = rate_from_slope(options.function, pooled.parameters->slope) * people.width;

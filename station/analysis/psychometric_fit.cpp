@@ -84,7 +84,7 @@ std::optional<Statement> refusal(const std::vector<LevelCount>& data, const FitO
   if (levels > 0 && levels < options.minimum_levels)
     return Statement{"too-few-levels",
                      phrase(levels == 1 ? "statement.one_level" : "statement.too_few_levels",
-                            {plain(std::to_string(levels)), plain(std::to_string(options.minimum_levels))})};
+                            {plain(levels), plain(options.minimum_levels)})};
   if (auto reason = unusable(data, options)) return reason;
   if (positive == trials) return Statement{"all-positive", phrase("statement.all_positive")};
   if (positive == 0) return Statement{"none-positive", phrase("statement.none_positive")};
@@ -138,8 +138,7 @@ std::optional<Statement> unusable(const std::vector<LevelCount>& data, const Fit
   if (trials == 0) return Statement{"no-trials", phrase("statement.no_trials")};
   if (trials < options.minimum_trials)
     return Statement{"too-few-trials",
-                     phrase("statement.too_few_trials",
-                            {plain(std::to_string(trials)), plain(std::to_string(options.minimum_trials))})};
+                     phrase("statement.too_few_trials", {plain(trials), plain(options.minimum_trials)})};
   const double z = trend(axis_counts(data, options.function, options.scale));
   if (z < -1.645) return Statement{"reversed", phrase("statement.reversed", {plain(text::number(z, 3))})};
   return std::nullopt;

@@ -120,8 +120,8 @@ class Reading {
     using texts::phrase, texts::plain;
     result_.fit.statements.push_back(
         {code + "-undetermined",
-         phrase("statement.undetermined", {plain(std::to_string(trials_)), phrase(name),
-                                           plain(text::number(low, 3)), plain(text::number(high, 3))})});
+         phrase("statement.undetermined",
+                {plain(trials_), phrase(name), plain(text::number(low, 3)), plain(text::number(high, 3))})});
   }
 
   bool off_centre(Parameter parameter) const {

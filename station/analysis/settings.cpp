@@ -52,8 +52,8 @@ void estimate(Settings& s, const std::vector<double>& below, const std::vector<d
   s.from_below = side_of(below), s.from_above = side_of(above);
   s.side_difference = student_difference(below, above);
   if (s.values.size() < kFewest) {
-    s.statements.push_back({"few-settings", texts::phrase("statement.few_settings",
-                                                          {texts::plain(std::to_string(s.values.size()))})});
+    s.statements.push_back(
+        {"few-settings", texts::phrase("statement.few_settings", {texts::plain(s.values.size())})});
     return;
   }
   s.mean = student_mean(s.values);

@@ -84,8 +84,7 @@ std::vector<texts::Phrase> problems(const Calibration& calibration, const std::s
   if (calibration.rig_sha256 != rig_sha256)
     found.push_back(phrase("refusal.other_rig", {plain(calibration.rig_name)}));
   const int left = days_left(calibration, today);
-  if (left < 0)
-    found.push_back(phrase("refusal.expired", {plain(calibration.made_on), plain(std::to_string(-left))}));
+  if (left < 0) found.push_back(phrase("refusal.expired", {plain(calibration.made_on), plain(-left)}));
   if (left > calibration.valid_days) found.push_back(phrase("refusal.future", {plain(calibration.made_on)}));
   if (calibration.transducers.empty() && !calibration.panel && !calibration.boundary &&
       calibration.pick_ups.empty() && !calibration.forces)

@@ -7,6 +7,8 @@
 #include "station/text/reader.hpp"
 
 namespace turnpoint::calibration {
+
+using texts::phrase, texts::plain;
 namespace {
 
 using text::exact;
@@ -72,7 +74,7 @@ std::optional<Delay> read_delay(text::TableReader& reader, const std::string& na
 PanelLatency read_panel(const text::Value& table, text::Findings& findings) {
   text::TableReader reader(table, "panel", findings);
   PanelLatency panel;
-  panel.made_on = reader.string("made_on", "write the date as YYYY-MM-DD");
+  panel.made_on = reader.string("made_on", phrase("problem.write_date"));
   panel.quality = reader.word("quality", {"kernel", "toolkit"});
   panel.touch = read_delay(reader, "response_offset");
   panel.flash = read_delay(reader, "flash");
@@ -83,7 +85,7 @@ PanelLatency read_panel(const text::Value& table, text::Findings& findings) {
 Calibration::Transducer read_transducer(const text::Value& table, text::Findings& findings) {
   text::TableReader reader(table, text::titled("transducer", table), findings);
   Calibration::Transducer transducer;
-  transducer.name = reader.string("name", "write the name that the rig file gives to the transducer");
+  transducer.name = reader.string("name", phrase("problem.rig_transducer"));
   if (const auto band = reader.maybe_interval("band_kHz", {0, 1000, Ends::open_low, "kHz"})) {
     transducer.response.low_Hz = band->first * 1e3;
     transducer.response.high_Hz = band->second * 1e3;
@@ -97,7 +99,7 @@ Calibration::Transducer read_transducer(const text::Value& table, text::Findings
       same_length(reader, "phase_deg", phase.size(), frequency.size()))
     for (std::size_t k = 0; k < frequency.size(); ++k) {
       if (k > 0 && frequency[k] <= frequency[k - 1])
-        reader.problem("frequency_Hz", "the values are not in ascending order");
+        reader.problem("frequency_Hz", phrase("problem.not_ascending"));
       transducer.response.points.push_back({frequency[k], response[k] * 1e-6, phase[k] * kDegree_rad});
     }
   reader.finish();
@@ -108,9 +110,9 @@ rig::SurfaceFit::Parameter read_parameter(const text::Value& table, std::size_t 
                                           text::Findings& findings) {
   text::TableReader reader(table, text::titled("boundary.parameter", table), findings);
   rig::SurfaceFit::Parameter parameter;
-  parameter.name = reader.string("name", "write the name of a parameter of the surface");
+  parameter.name = reader.string("name", phrase("problem.surface_parameter"));
   if (!physics::find_parameter(parameter.name))
-    reader.problem("name", "\"" + parameter.name + "\" is not a parameter of a surface");
+    reader.problem("name", phrase("problem.no_surface_parameter", {plain(parameter.name)}));
   parameter.change = reader.number("change", {-large, large});
   parameter.sd = reader.number("sd", {0, large});
   parameter.stated_sd = reader.number("stated_sd", {0, large, Ends::open_low});
@@ -125,7 +127,7 @@ std::optional<BoundaryFit> read_boundary(const text::Value& table, text::Finding
   text::TableReader reader(table, "boundary", findings);
   if (reader.has("law")) return std::nullopt;
   BoundaryFit fit;
-  fit.edge = reader.string("edge", "write the edge that was measured");
+  fit.edge = reader.string("edge", phrase("problem.measured_edge"));
   const Range mm{-1e6, 1e6, Ends::closed, "mm"};
   const auto frequency = reader.numbers("frequency_Hz", {0, 1e6, Ends::open_low, "Hz"}),
              boundary = reader.numbers("boundary_mm", mm), sd = reader.numbers("sd_mm", mm),
@@ -218,9 +220,9 @@ Calibration parse(const std::string& source, const std::string& path) {
   text::TableReader reader(document, "", findings);
   Calibration calibration;
   reader.word("format", {"friction-calibration/1"});
-  calibration.rig_name = reader.string("rig", "write the rig's name");
-  calibration.rig_sha256 = reader.string("rig_sha256", "write the rig file's SHA-256");
-  calibration.made_on = reader.string("made_on", "write the date as YYYY-MM-DD");
+  calibration.rig_name = reader.string("rig", phrase("problem.rig_name"));
+  calibration.rig_sha256 = reader.string("rig_sha256", phrase("problem.rig_sha"));
+  calibration.made_on = reader.string("made_on", phrase("problem.write_date"));
   calibration.valid_days = reader.integer("valid_days", 1, 3650);
   calibration.note = reader.maybe_string("note").value_or("");
   calibration.quality_factor = reader.maybe_number("quality_factor", {0, 1e9, Ends::open_low});

@@ -6,10 +6,12 @@
 
 #include "station/analysis/least_squares.hpp"
 #include "station/calibration/fits.hpp"
-#include "station/terms/usage_error.hpp"
+#include "station/texts/refusal.hpp"
 
 namespace turnpoint::calibration {
 namespace {
+
+using texts::plain;
 
 // A peak counts as a resonance only if the phase turns by at least this angle. Between the half-power points
 // of a resonance, the phase turns by 90 degrees; at a hump of the transducer's response it turns only a
@@ -18,17 +20,13 @@ constexpr double least_turn_rad = std::numbers::pi / 4;
 
 void check(const std::vector<ResponsePoint>& sweep, int window) {
   if (sweep.size() < 5 || window < 3)
-    throw terms::UsageError(fmt::format(
-        "sweep of {} points with window {}; at least 5 points and a window of 3 or more are needed",
-        sweep.size(), window));
+    throw texts::Refusal(texts::phrase("series.short_sweep", {plain(sweep.size()), plain(window)}));
   for (std::size_t k = 0; k < sweep.size(); ++k) {
     const bool rising = k == 0 || sweep[k].frequency_Hz > sweep[k - 1].frequency_Hz;
     if (!rising || !(sweep[k].frequency_Hz > 0) || !(sweep[k].m_per_full_scale > 0) ||
         !std::isfinite(sweep[k].phase_rad))
-      throw terms::UsageError(
-          fmt::format("sweep at {} Hz: frequencies must be above 0 and in ascending order, displacements "
-                      "above 0, and phases finite",
-                      sweep[k].frequency_Hz));
+      throw texts::Refusal(
+          texts::phrase("series.sweep_point", {plain(fmt::format("{}", sweep[k].frequency_Hz))}));
   }
 }
 
@@ -143,10 +141,9 @@ FrictionFit fit_friction(std::vector<FrictionPoint> measured) {
   std::vector<std::size_t> pool_size;
   for (const FrictionPoint& point : measured) {
     if (!(point.displacement_m >= 0 && point.relative_friction > 0 && point.relative_friction <= 1.5))
-      throw terms::UsageError(
-          fmt::format("friction {} at {} m; friction must be above 0 and at most 1.5, and displacement must "
-                      "not be negative",
-                      point.relative_friction, point.displacement_m));
+      throw texts::Refusal(
+          texts::phrase("series.friction_point", {plain(fmt::format("{}", point.relative_friction)),
+                                                  plain(fmt::format("{}", point.displacement_m))}));
     pools.push_back({point.relative_friction, 1});
     while (pools.size() > 1) {
       const Pool last = pools.back(), before = pools[pools.size() - 2];
@@ -166,8 +163,7 @@ FrictionFit fit_friction(std::vector<FrictionPoint> measured) {
       fit.points.push_back({measured[k].displacement_m, value});
     }
   fit.residual = std::sqrt(fit.residual);
-  if (fit.points.size() < 2)
-    throw terms::UsageError("friction was measured at fewer than two different displacements");
+  if (fit.points.size() < 2) throw texts::Refusal(texts::phrase("series.few_displacements"));
   return fit;
 }
 

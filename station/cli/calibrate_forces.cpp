@@ -19,8 +19,8 @@ using text::number;
 /// Asks the operator to place a weight. The operator types an empty line when the weight stands, or "s" to
 /// leave this step out. Returns false for "s".
 bool stands(std::istream& in, std::ostream& out, const maintenance::WeightStep& step) {
-  if (!step.remark.empty() && step.tare) fmt::print(out, "{}\n", step.remark);
-  fmt::print(out, "{} {} (s: leave this step out) ", step.text(),
+  if (!step.remark.empty() && step.tare) fmt::print(out, "{}\n", texts::say(step.remark, "en"));
+  fmt::print(out, "{} {} (s: leave this step out) ", texts::say(step.text(), "en"),
              step.tap == maintenance::Tap::none ? "Then press Enter" : "Enter begins the reading");
   out.flush();
   std::string line;
@@ -46,7 +46,8 @@ void print(std::ostream& out, const ForceResult& result) {
     fmt::print(out, "{:5.0f} g {:4.0f} mm {:7.0f} g {:15.2f} mN {:6.2f} mN {:7.2f} mm\n", step.mass_g,
                step.position_mm, step.pull_g, 1e3 * rest.normal_N, 1e3 * rest.lateral_N, rest.position_mm);
   }
-  for (const auto& step : result.repeated) fmt::print(out, "weighed again: {}\n", step.name());
+  for (const auto& step : result.repeated)
+    fmt::print(out, "weighed again: {}\n", texts::say(step.name(), "en"));
   const auto share = [](double misfit) { return number(misfit, 2); };
   fmt::print(
       out,
@@ -86,7 +87,7 @@ Json to_json(const ForceResult& result, const std::string& out) {
               {"friction", json_number(result.sd.friction)}}},
             {"repeated", Json::array()},
             {"weights", Json::array()}};
-  for (const auto& step : result.repeated) json["repeated"].push_back(step.name());
+  for (const auto& step : result.repeated) json["repeated"].push_back(texts::say(step.name(), "en"));
   for (std::size_t k = 0; k < result.steps.size(); ++k)
     json["weights"].push_back({{"mass_g", result.steps[k].mass_g},
                                {"pull_g", result.steps[k].pull_g},
@@ -104,7 +105,7 @@ void calibrate_forces(const SensorOptions& options, const rig::Rig& rig, Context
   const auto bridges = maintenance::open_bridges(rig);
   const auto result = maintenance::weigh(
       rig, *bridges, [&](const auto& step) { return stands(std::cin, context.err, step); },
-      [&](const auto& why) { return again(std::cin, context.err, why); });
+      [&](const auto& why) { return again(std::cin, context.err, texts::say(why, "en")); });
   const auto out = maintenance::write_forces(rig, result.cells, options.out);
   if (context.json) {
     context.out << to_json(result, out).dump(2) << "\n";

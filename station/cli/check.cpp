@@ -38,8 +38,8 @@ Json problems_json(const std::vector<text::Problem>& problems) {
     list.push_back({{"file", problem.place.file},
                     {"line", problem.place.line > 0 ? Json(problem.place.line) : Json(nullptr)},
                     {"column", problem.place.line > 0 ? Json(problem.place.column) : Json(nullptr)},
-                    {"what", problem.what},
-                    {"allowed", problem.allowed}});
+                    {"what", texts::say(problem.what, "en")},
+                    {"allowed", texts::say(problem.allowed, "en")}});
   return list;
 }
 
@@ -254,10 +254,10 @@ void check(const Options& options, Context& context) {
   const auto signal = work.end(context);
   if (result.problems.empty())
     for (const auto& name : rig::unproven_transducers(calibrated.value()))
-      result.notes.push_back(
-          {{rig, 0, 0},
-           "no pick-up is calibrated for the transducer \"" + name + "\", so its stimuli will be unproven",
-           "add [[pickup]] to the calibration"});
+      result.notes.push_back({{rig, 0, 0},
+                              texts::plain("no pick-up is calibrated for the transducer \"" + name +
+                                           "\", so its stimuli will be unproven"),
+                              texts::plain("add [[pickup]] to the calibration")});
   if (!result.problems.empty()) context.exit_code = 2;
   for (const auto& problem : result.problems) fmt::print(context.err, "{}\n", format(problem));
   for (const auto& warning : result.warnings) fmt::print(context.err, "warning: {}\n", format(warning));

@@ -212,15 +212,17 @@ void give_out(const std::vector<text::Problem>& remarks, const Document& documen
     for (auto& section : sections)
       for (auto& group : section.groups) {
         if (!begins_with(path, group.path)) continue;
-        auto* field = field_for(group, path, remarks[i].what);
+        auto* field = field_for(group, path, texts::say(remarks[i].what, "en"));
         (field == nullptr ? group.remarks : field->remarks).push_back(i);
         ++section.remarks;
       }
   }
 }
 
-[[noreturn]] void refuse(const Field& field, const std::string& typed, const std::string& allowed) {
-  throw text::BadInput({{{}, field.path.back() + ": \"" + typed + "\" is not possible", allowed}});
+[[noreturn]] void refuse(const Field& field, const std::string& typed, const char* allowed) {
+  using texts::phrase, texts::plain;
+  throw text::BadInput(
+      {{{}, phrase("problem.not_possible", {plain(field.path.back()), plain(typed)}), phrase(allowed)}});
 }
 
 std::vector<std::string> items_of(const std::string& typed, const char* separators) {
@@ -300,16 +302,16 @@ std::string encoded(const Field& field, const std::string& typed) {
     case RuleKind::number:
     case RuleKind::integer:
       if (!is_number(typed, field.kind == RuleKind::integer))
-        refuse(field, typed, field.kind == RuleKind::integer ? "a whole number" : "a number");
+        refuse(field, typed, field.kind == RuleKind::integer ? "problem.a_whole_number" : "problem.a_number");
       return typed;
     case RuleKind::boolean:
-      if (typed != "true" && typed != "false") refuse(field, typed, "true or false");
+      if (typed != "true" && typed != "false") refuse(field, typed, "problem.true_or_false");
       return typed;
     case RuleKind::expression:
       return is_number(typed, false) ? typed : toml_string(typed);
     case RuleKind::numbers:
       return list(", ", [&](const std::string& item) {
-        if (!is_number(item, false)) refuse(field, item, "numbers, separated by commas");
+        if (!is_number(item, false)) refuse(field, item, "problem.numbers_commas");
         return item;
       });
     case RuleKind::names:

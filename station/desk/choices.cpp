@@ -13,6 +13,7 @@
 #include "station/store/read.hpp"
 #include "station/system/clocks.hpp"
 #include "station/text/number.hpp"
+#include "station/texts/refusal.hpp"
 
 namespace turnpoint::desk {
 
@@ -55,8 +56,7 @@ void add_tones(const simulation::Check& check, CheckWords& words) {
 /// The visit to which a block belongs, its name and instruction, and its number of trials.
 Phrase describe(const simulation::CheckedBlock& block) {
   Phrase title;
-  if (block.session > 0)
-    title.values.push_back({"check.session", "", {plain(std::to_string(block.session))}});
+  if (block.session > 0) title.values.push_back({"check.session", "", {plain(block.session)}});
   if (!block.group.empty()) {
     if (!title.values.empty()) title.values.push_back(plain(", "));
     title.values.push_back({"check.group", "", {plain(block.group)}});
@@ -93,10 +93,10 @@ std::vector<ProtocolEntry> list_protocols(const std::string& folder) {
       entry.id = protocol.id, entry.version = protocol.version, entry.title = protocol.title;
       entry.languages = protocol.languages;
     } catch (const text::BadInput& bad) {
-      for (const auto& problem : bad.problems()) entry.problems.push_back(format(problem));
+      for (const auto& problem : bad.problems()) entry.problems.push_back(phrase_of(problem));
     } catch (const std::exception& error) {
       // Keep the error with this file and continue, so that the list contains the other files too.
-      entry.problems = {error.what()};
+      entry.problems = {texts::phrase_of(error)};
     }
     list.push_back(std::move(entry));
   }
@@ -141,8 +141,8 @@ std::optional<InterruptedNote> interrupted_note(const std::string& database) {
 
 CheckWords words_of(const simulation::Check& check) {
   CheckWords words;
-  for (const auto& problem : check.problems) words.problems.push_back(format(problem));
-  for (const auto& warning : check.warnings) words.warnings.push_back(format(warning));
+  for (const auto& problem : check.problems) words.problems.push_back(phrase_of(problem));
+  for (const auto& warning : check.warnings) words.warnings.push_back(phrase_of(warning));
   using Kind = CheckWords::Remark::Kind;
   add_remarks(check.problems, Kind::problem, words);
   add_remarks(check.warnings, Kind::warning, words);
@@ -156,7 +156,7 @@ CheckWords words_of(const simulation::Check& check) {
   add_tones(check, words);
   for (const auto& cue : check.cues.reports) {
     const bool leaks = cue.above_chance();
-    const auto percent = [](double share) { return plain(std::to_string(std::lround(100 * share))); };
+    const auto percent = [](double share) { return plain(std::lround(100 * share)); };
     const auto [name, advice] = cue_advice(cue.cue);
     words.cues.push_back({name,
                           {"check.alone", "", {percent(cue.accuracy), percent(cue.chance)}},

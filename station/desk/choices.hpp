@@ -14,7 +14,7 @@ struct ProtocolEntry {
   std::string path, id, version, title;
   std::vector<std::string> languages;
   /// why the file cannot be used; if there are any, all other fields except `path` are empty
-  std::vector<std::string> problems;
+  std::vector<texts::Phrase> problems;
 };
 
 /// Returns the protocol files of a folder in the order of their names, including those that cannot be used.
@@ -52,9 +52,9 @@ struct InterruptedNote {
 std::optional<InterruptedNote> interrupted_note(const std::string& database);
 
 /// The result of a check as texts for a page: what the session consists of, and which cues could give answers
-/// away. Problems, warnings and remarks are about places of a file, and in English.
+/// away. Problems, warnings and remarks are about places of a file.
 struct CheckWords {
-  std::vector<std::string> problems, warnings;
+  std::vector<texts::Phrase> problems, warnings;
   /// what the session consists of, as pairs of a label and a value
   std::vector<std::pair<texts::Phrase, texts::Phrase>> facts;
   /// An unwanted cue: `says` is the proportion correct of an observer who uses nothing but this cue, and
@@ -71,7 +71,7 @@ struct CheckWords {
     enum class Kind { problem, warning, note } kind = Kind::problem;
     std::string file;  ///< name of the file, without its folder
     int line = 0;      ///< line in the file; 0: the file as a whole
-    std::string what, hint;
+    texts::Phrase what, hint;
   };
   std::vector<Remark> remarks;
 };

@@ -54,7 +54,8 @@ bool is_hash(const std::string& text) {
 }
 
 text::BadInput bad_file(const std::string& file, const std::string& what) {
-  return text::BadInput({{{file, 1, 1}, what, "store a code with `turnpoint operator-code`"}});
+  return text::BadInput(
+      {{{file, 1, 1}, texts::plain(what), texts::plain("store a code with `turnpoint operator-code`")}});
 }
 
 }  // namespace

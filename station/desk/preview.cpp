@@ -35,12 +35,6 @@ Phrase in_mm(const std::optional<double>& value_m, int digits = 5) {
 
 Phrase um(double value_m) { return plain(number(1e6 * value_m, 3) + " \u00b5m"); }
 
-Phrase phrase_of(const physics::Warning& warning) {
-  std::vector<Phrase> values;
-  for (const auto& value : warning.values) values.push_back(plain(value));
-  return phrase("physics_warning." + warning.code, std::move(values));
-}
-
 std::optional<Knob> knob_of(const protocol::Factor& factor) {
   Knob knob;
   knob.name = factor.name;
@@ -87,9 +81,9 @@ void describe_plan(SceneLook& look) {
       phrase("preview.crest", {um(plan.peak_displacement_m), shown(plan.crest_factor, 3)}));
   add("preview.lowest_friction", phrase("preview.of_rest", {shown(plan.lowest_friction, 3)}));
   for (const auto& product : plan.audible_products)
-    add("preview.product", phrase("preview.product_order",
-                                  {shown(product.frequency_Hz, 5), plain(std::to_string(product.order))}));
-  for (const auto& warning : plan.warnings) add("preview.warning", phrase_of(warning));
+    add("preview.product",
+        phrase("preview.product_order", {shown(product.frequency_Hz, 5), plain(product.order)}));
+  for (const auto& warning : plan.warnings) add("preview.warning", scene::phrase_of(warning));
 }
 
 void describe_cues(SceneLook& look) {

@@ -24,7 +24,7 @@ namespace {
 
 using texts::Phrase, texts::phrase, texts::plain;
 
-Phrase whole(std::integral auto number) { return plain(std::to_string(number)); }
+Phrase whole(std::integral auto number) { return plain(number); }
 
 /// Adds a part to a list, after a separator if there are others already.
 void append(Phrase& list, Phrase part, const char* separator = ", ") {

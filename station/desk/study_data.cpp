@@ -181,8 +181,8 @@ report::Study head_of(const StudyChoice& choice, const std::vector<Found>& all, 
                  {"Recorded by version", fmt::format("{}", fmt::join(versions, ", "))}};
   if (copies > 0)
     study.statements.push_back(
-        {"copies", texts::phrase(copies == 1 ? "statement.one_copy" : "statement.copies",
-                                 {texts::plain(std::to_string(copies))})});
+        {"copies",
+         texts::phrase(copies == 1 ? "statement.one_copy" : "statement.copies", {texts::plain(copies)})});
   return study;
 }
 
@@ -203,8 +203,7 @@ report::Study study_data(const StudyChoice& choice, const StudySink& sink, const
   for (const auto& [person, sessions] : people) {
     if (!progress(done, static_cast<int>(people.size()))) {
       study.statements.push_back(
-          {"stopped", texts::phrase("statement.stopped", {texts::plain(std::to_string(done)),
-                                                          texts::plain(std::to_string(people.size()))})});
+          {"stopped", texts::phrase("statement.stopped", {texts::plain(done), texts::plain(people.size())})});
       break;
     }
     ++done;

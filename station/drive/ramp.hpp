@@ -1,4 +1,5 @@
 #pragma once
+#include <cstdint>
 #include "station/drive/burst.hpp"
 #include "station/drive/sine.hpp"
 

@@ -1,6 +1,7 @@
 #pragma once
 #include <poll.h>
 
+#include <cstdint>
 #include <string>
 #include <vector>
 

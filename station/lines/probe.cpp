@@ -38,8 +38,7 @@ Finding check_line(const Phrase& device, const std::string& role, const std::str
       check.mend = phrase("doctor.line_used_mend");
     } else {
       check.status = Status::ok;
-      check.what =
-          phrase("doctor.line_good", {plain(line), plain(std::to_string(state->offset)), plain(state->chip)});
+      check.what = phrase("doctor.line_good", {plain(line), plain(state->offset), plain(state->chip)});
     }
   } catch (const std::exception& error) {
     check.what = reported(error);

@@ -15,16 +15,20 @@
 #include "station/session/stage.hpp"
 #include "station/system/clocks.hpp"
 #include "station/terms/force_carrier.hpp"
-#include "station/terms/usage_error.hpp"
+#include "station/texts/refusal.hpp"
 
 namespace turnpoint::maintenance {
 
 namespace {
 
+using texts::phrase, texts::plain;
+
 constexpr double kSettle_s = 1, kRead_s = 1, kGlance_s = 0.12, kPatience_s = 5;
 constexpr double kTap_s = 3.5;                  // time in which the operator taps, and the plate rings
 constexpr double kBlow_N = 1, kBlow_s = 0.005;  // a tap in the simulated laboratory
 constexpr double kLeastReference = 0.02;  // smallest accepted amplitude of the reference; 1 is full scale
+
+texts::Phrase digits_of(double value) { return plain(fmt::format("{:.3g}", value)); }
 
 sensing::BridgeOptions bridge_options(const rig::Rig& rig, double reference_amplitude) {
   const auto& capture = *rig.capture;
@@ -75,7 +79,7 @@ class BridgeMean {
       // skip the first 17 ms, in which the filter is still settling
       if (point.index >= 20) points.push_back(point);
     });
-    if (points.empty()) throw std::runtime_error("force cells: nothing was captured");
+    if (points.empty()) throw texts::Failure(phrase("weights.nothing_captured"));
     for (const auto& point : points) check(point);
     return points;
   }
@@ -88,9 +92,9 @@ class BridgeMean {
       if (point.index >= 20) amplitude = point.reference;
     });
     if (!(amplitude > kLeastReference))
-      throw std::runtime_error(fmt::format(
-          "the reference on captured channel {} carries no excitation; check the wire from output channel {}",
-          options.reference, rig_.capture->excitation_channel.value_or(0)));
+      throw texts::Failure(
+          phrase("weights.no_excitation",
+                 {plain(options.reference), plain(rig_.capture->excitation_channel.value_or(0))}));
     return amplitude;
   }
 
@@ -101,19 +105,14 @@ class BridgeMean {
       case sensing::WireFault::none:
         return;
       case sensing::WireFault::reference:
-        throw std::runtime_error(
-            fmt::format("the reference on captured channel {} is {:.3g} of full scale instead of {:.3g}; "
-                        "check the wire of "
-                        "the excitation",
-                        rig_.capture->reference, point.reference, reference_));
+        throw texts::Failure(
+            phrase("weights.reference_off",
+                   {plain(rig_.capture->reference), digits_of(point.reference), digits_of(reference_)}));
       case sensing::WireFault::quadrature:
-        throw std::runtime_error(fmt::format(
-            "cell {} on captured channel {}: a wire or a shield is off (quadrature {:.3g} of the excitation)",
-            cells[point.bridge], channel, point.quadrature[point.bridge]));
+        throw texts::Failure(phrase("weights.wire_off", {plain(cells[point.bridge]), plain(channel),
+                                                         digits_of(point.quadrature[point.bridge])}));
       case sensing::WireFault::overload:
-        throw std::runtime_error(
-            fmt::format("cell {} on captured channel {}: a wire is off, or the cell is overloaded",
-                        cells[point.bridge], channel));
+        throw texts::Failure(phrase("weights.overloaded", {plain(cells[point.bridge]), plain(channel)}));
     }
   }
 
@@ -220,7 +219,7 @@ class CardBridges : public BridgeReader {
     const auto until_ns = system::monotonic_ns() + static_cast<std::int64_t>(1e9 * (seconds + kPatience_s));
     while (samples.size() < wanted) {
       if (system::monotonic_ns() > until_ns)
-        throw std::runtime_error(uri + ": the sound device captures nothing");
+        throw texts::Failure(phrase("weights.device_silent", {plain(uri)}));
       while (stream.poll()) {
       }
       bool taken = false;
@@ -232,10 +231,10 @@ class CardBridges : public BridgeReader {
       if (!taken) devices_.pause();
     }
     const auto after = capture.counters();
-    if (!after.present) throw std::runtime_error(uri + ": the sound device was disconnected");
+    if (!after.present) throw texts::Failure(phrase("weights.device_gone", {plain(uri)}));
     if (after.lost_frames != before.lost_frames || after.numbering != before.numbering ||
         stream.counters().underruns != underruns)
-      throw std::runtime_error(uri + ": frames were lost");
+      throw texts::Failure(phrase("weights.frames_lost", {plain(uri)}));
     return samples;
   }
 
@@ -252,9 +251,7 @@ std::unique_ptr<BridgeReader> card_bridges(const rig::Rig& rig, BridgeDevices de
 
 std::unique_ptr<BridgeReader> open_bridges(const rig::Rig& rig,
                                            const std::function<void(plant::Setup&)>& laboratory) {
-  if (!rig::has_force_cells(rig))
-    throw terms::UsageError("the rig \"" + rig.name +
-                            "\" has no force cells; add bridges to its [capture], or [force_cells]");
+  if (!rig::has_force_cells(rig)) throw texts::Refusal(phrase("weights.no_cells", {plain(rig.name)}));
   if (rig.capture->converter) return converter_bridges(*rig.capture->converter);
   if (session::simulates_capture(rig)) return std::make_unique<SimulatedBridges>(rig, laboratory);
   const auto card = session::card_capture_of(rig).value().device;

@@ -19,6 +19,7 @@
 #include <system_error>
 
 #include "station/system/file_descriptor.hpp"
+#include "station/texts/refusal.hpp"
 
 namespace turnpoint::maintenance {
 
@@ -163,15 +164,18 @@ std::string mount(const Disk& disk, const DiskSources& sources) {
   const auto ended = ask_udisks(sources, "mount", disk.device);
   for (const auto& now : removable_disks(sources))
     if (now.device == disk.device && !now.folder.empty()) return now.folder;
-  throw std::runtime_error(fmt::format("{} ({}) could not be mounted: {}", disk.name, disk.device,
-                                       ended.said.empty() ? "udisks gave no reason" : ended.said));
+  throw texts::Failure(
+      texts::phrase("operator.cannot_mount",
+                    {texts::plain(disk.name), texts::plain(disk.device),
+                     ended.said.empty() ? texts::phrase("operator.no_reason") : texts::plain(ended.said)}));
 }
 
 void eject(const Disk& disk, const DiskSources& sources) {
   ::sync();
   if (const auto ended = ask_udisks(sources, "unmount", disk.device); ended.status != 0)
-    throw std::runtime_error(
-        fmt::format("{} ({}) is still in use, so do not unplug it: {}", disk.name, disk.device, ended.said));
+    throw texts::Failure(
+        texts::phrase("operator.still_in_use",
+                      {texts::plain(disk.name), texts::plain(disk.device), texts::plain(ended.said)}));
   ask_udisks(sources, "power-off", disk.device);
 }
 

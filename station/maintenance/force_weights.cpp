@@ -14,10 +14,13 @@
 #include "station/terms/force_carrier.hpp"
 #include "station/terms/usage_error.hpp"
 #include "station/text/number.hpp"
+#include "station/texts/refusal.hpp"
 
 namespace turnpoint::maintenance {
 
 namespace {
+
+using texts::phrase, texts::plain;
 
 constexpr double kRatedLoad_N = 10;
 // largest allowed change and SD of the zero reading; sessions use the same limits before a trial
@@ -37,6 +40,14 @@ constexpr double kMostMisfit = 20;
 constexpr std::array<const char*, 3> kCells{"a", "b", "lateral"};
 
 double newtons(double grams) { return 1e-3 * grams * kGravity_m_s2; }
+
+/// Grams and place of a weight, and the grams that pull if there are any.
+std::vector<texts::Phrase> values_of(const WeightStep& step) {
+  std::vector<texts::Phrase> values{texts::plain(text::number(step.mass_g)),
+                                    texts::plain(text::number(step.position_mm, 4))};
+  if (step.pull_g != 0) values.push_back(texts::plain(text::number(std::abs(step.pull_g))));
+  return values;
+}
 
 /// The reading with one weight, and the reading without a weight (tare) before it.
 struct Weighed {
@@ -61,8 +72,7 @@ std::array<double, 3> rotations(const std::vector<Weighed>& all) {
   const double most = *std::max_element(largest.begin(), largest.end());
   for (std::size_t cell = 0; cell < 3; ++cell)
     if (!(largest[cell] > kDeaf_share * most))
-      throw terms::UsageError(fmt::format(
-          "cell {} does not respond to any weight; check its wires and its amplifier", kCells[cell]));
+      throw texts::Refusal(phrase("weights.no_response", {plain(kCells[cell])}));
   return rotation;
 }
 
@@ -124,10 +134,7 @@ sensing::WeightFit fit_of(const std::vector<sensing::DeadWeight>& weights) {
   try {
     return sensing::fit_weights(weights);
   } catch (const terms::UsageError&) {
-    throw terms::UsageError(
-        "the readings do not tell normal force, lateral force and position apart; check the lateral cell, "
-        "and "
-        "that the string pulls at the surface");
+    throw texts::Refusal(phrase("weights.not_apart"));
   }
 }
 
@@ -135,7 +142,7 @@ sensing::WeightFit fit_of(const std::vector<sensing::DeadWeight>& weights) {
 class Weighing {
  public:
   Weighing(BridgeReader& bridges, const std::function<bool(const WeightStep&)>& ready,
-           const std::function<bool(const std::string&)>& failed)
+           const std::function<bool(const texts::Phrase&)>& failed)
       : bridges_(bridges), ready_(ready), failed_(failed) {}
 
   void take(const WeightStep& step) {
@@ -144,7 +151,7 @@ class Weighing {
     if (step.tare)
       tares_.push_back(*reading);
     else if (tares_.empty())
-      throw terms::UsageError("the first step, without a weight, cannot be left out");
+      throw texts::Refusal(phrase("weights.first_step"));
     else
       all_.push_back({step, *reading, tares_.back()});
   }
@@ -162,13 +169,8 @@ class Weighing {
       auto step = all_[index].step;
       const auto found = found_without(weights, index);
       if (!step.remark.empty() || repeated_.size() == kMostRepeats)
-        throw terms::UsageError(
-            fmt::format("{} does not agree with the other weights: {}. Check the weights, their places, and "
-                        "that the string "
-                        "pulls at the height of the surface; then start again",
-                        step.name(), found));
-      step.remark =
-          fmt::format("{} does not agree with the other weights: {}. Weigh it again.", step.name(), found);
+        throw texts::Refusal(phrase("weights.still_disagrees", {step.name(), found}));
+      step.remark = texts::phrase("weights.disagrees", {step.name(), found});
       repeated_.push_back(step);
       all_.erase(all_.begin() + static_cast<std::ptrdiff_t>(index));
       take({true, 0, 0, 0, step.remark});
@@ -183,10 +185,9 @@ class Weighing {
     step.tap = where;
     for (int k = 0; k < kMostTaps && ready_(step); ++k) try {
         if (const auto found_Hz = bridges_.tapped_Hz(where)) return found_Hz;
-        if (!failed_("the plate did not ring after a tap; tap harder, with a fingernail or a pencil"))
-          return std::nullopt;
+        if (!failed_(phrase("weights.no_ring"))) return std::nullopt;
       } catch (const std::runtime_error& error) {
-        if (!failed_(error.what())) throw;
+        if (!failed_(texts::phrase_of(error))) throw;
       }
     return std::nullopt;
   }
@@ -197,9 +198,7 @@ class Weighing {
 
  private:
   void enough() const {
-    if (all_.size() < kFewest)
-      throw terms::UsageError(
-          fmt::format("at least {} weights are needed for a calibration of the forces", kFewest));
+    if (all_.size() < kFewest) throw texts::Refusal(phrase("weights.too_few", {plain(kFewest)}));
   }
 
   std::optional<BridgeReading> read(const WeightStep& step) {
@@ -210,7 +209,7 @@ class Weighing {
       } catch (const terms::UsageError&) {
         throw;
       } catch (const std::runtime_error& error) {
-        if (!failed_(error.what())) throw;
+        if (!failed_(texts::phrase_of(error))) throw;
       }
     return std::nullopt;
   }
@@ -220,27 +219,28 @@ class Weighing {
     for (std::size_t cell = 0; cell < 3; ++cell) {
       const double before = tares_.front().sd[cell];
       if (reading.sd[cell] > kRestlessShare * before + kRipple * std::abs(reading.ratio[cell]))
-        throw std::runtime_error(
-            fmt::format("cell {} did not rest: it varied {:.0f} times as much as in the first step; let the "
-                        "weight come to rest",
-                        kCells[cell], reading.sd[cell] / before));
+        throw texts::Failure(
+            phrase("weights.restless",
+                   {plain(kCells[cell]), plain(fmt::format("{:.0f}", reading.sd[cell] / before))}));
     }
   }
 
   /// Returns the load that a calibration with the other weights finds for weight `index`, as text.
-  static std::string found_without(std::vector<sensing::DeadWeight> weights, std::size_t index) {
+  static texts::Phrase found_without(std::vector<sensing::DeadWeight> weights, std::size_t index) {
     const auto readings = weights[index].readings;
     weights.erase(weights.begin() + static_cast<std::ptrdiff_t>(index));
     const auto force = sensing::fit_weights(weights).calibration.force(readings);
-    const auto tenths = [](double value) { return text::number(std::round(10 * value) / 10 + 0.0, 5); };
+    const auto tenths = [](double value) {
+      return texts::plain(text::number(std::round(10 * value) / 10 + 0.0, 5));
+    };
     const auto grams = [&](double force_N) { return tenths(1e3 * force_N / kGravity_m_s2); };
-    return fmt::format("according to them, it is {} g at {} mm with a pull of {} g", grams(force.normal_N),
-                       tenths(force.moment_Nmm / force.normal_N), grams(force.lateral_N));
+    return texts::phrase("weights.found", {grams(force.normal_N), tenths(force.moment_Nmm / force.normal_N),
+                                           grams(force.lateral_N)});
   }
 
   BridgeReader& bridges_;
   const std::function<bool(const WeightStep&)>& ready_;
-  const std::function<bool(const std::string&)>& failed_;
+  const std::function<bool(const texts::Phrase&)>& failed_;
   std::vector<Weighed> all_;
   std::vector<BridgeReading> tares_;
   std::vector<WeightStep> repeated_;
@@ -249,56 +249,35 @@ class Weighing {
 /// Throws if the weights do not agree with each other, or if the readings without a weight vary or drift too
 /// much.
 void check(const ForceResult& made, const std::vector<BridgeReading>& tares) {
-  constexpr std::array<const char*, 3> loads{"normal force", "pull along the surface", "place"};
+  constexpr std::array<const char*, 3> loads{"weights.normal", "weights.pull", "weights.place"};
   for (std::size_t k = 0; k < 3; ++k)
     if (!(made.misfit[k] < kMostMisfit))
-      throw terms::UsageError(
-          fmt::format("the weights do not agree with each other: the residuals of the {} are {} times what "
-                      "careful weighing leaves; check the masses, the places and the string",
-                      loads[k], text::number(made.misfit[k], 2)));
+      throw texts::Refusal(
+          phrase("weights.misfit", {phrase(loads[k]), plain(text::number(made.misfit[k], 2))}));
   double shaken_N = 0;
   for (const auto& tare : tares)
     for (std::size_t cell = 0; cell < 3; ++cell)
       shaken_N = std::max(shaken_N, kRatedLoad_N * tare.sd[cell] / made.cells.rated_ratio[cell]);
   if (shaken_N > kRestless_N)
-    throw terms::UsageError(
-        fmt::format("the force cells are not steady without a weight: the reading of a cell varies by {} mN; "
-                    "a calibration needs less than {} mN",
-                    text::number(1e3 * shaken_N, 2), text::number(1e3 * kRestless_N, 2)));
+    throw texts::Refusal(phrase("weights.unsteady", {plain(text::number(1e3 * shaken_N, 2)),
+                                                     plain(text::number(1e3 * kRestless_N, 2))}));
   if (made.zero_moved_mN > 1e3 * kMoved_N)
-    throw terms::UsageError(fmt::format(
-        "the zero of the cells moved by {} mN between two readings without a weight; something lay "
-        "on the surface, or a cell is damaged",
-        text::number(made.zero_moved_mN, 3)));
+    throw texts::Refusal(phrase("weights.zero_moved", {plain(text::number(made.zero_moved_mN, 3))}));
 }
 
 }  // namespace
 
-std::string WeightStep::name() const {
-  using text::number;
-  if (tare) return "the empty surface";
-  if (tap != Tap::none) return tap == Tap::from_above ? "the tap from above" : "the tap along the plate";
-  auto said = fmt::format("{} g at {} mm", number(mass_g), number(position_mm, 4));
-  if (pull_g != 0)
-    said += fmt::format(" with a pull of {} g towards the {} edge", number(std::abs(pull_g)),
-                        pull_g > 0 ? "narrow" : "wide");
-  return said;
+texts::Phrase WeightStep::name() const {
+  if (pull_g == 0) return texts::phrase("weights.weight", values_of(*this));
+  return texts::phrase(pull_g > 0 ? "weights.weight_narrow" : "weights.weight_wide", values_of(*this));
 }
 
-std::string WeightStep::text() const {
-  using text::number;
-  if (tare) return "Take everything off the surface.";
-  if (tap == Tap::from_above)
-    return "Leave the surface empty. When the reading begins, tap the middle of the plate once from "
-           "above with a fingernail, within three seconds.";
-  if (tap == Tap::along)
-    return "When the reading begins, tap the narrow end of the plate once along the plate with a fingernail, "
-           "within three seconds.";
-  if (pull_g == 0)
-    return fmt::format("Put {} g at {} mm from the wide edge.", number(mass_g), number(position_mm, 4));
-  return fmt::format(
-      "Put {} g at {} mm from the wide edge, and hang {} g on the string that pulls towards the {} edge.",
-      number(mass_g), number(position_mm, 4), number(std::abs(pull_g)), pull_g > 0 ? "narrow" : "wide");
+texts::Phrase WeightStep::text() const {
+  if (tare) return texts::phrase("weights.clear");
+  if (tap == Tap::from_above) return texts::phrase("weights.tap_above");
+  if (tap == Tap::along) return texts::phrase("weights.tap_along");
+  if (pull_g == 0) return texts::phrase("weights.put", values_of(*this));
+  return texts::phrase(pull_g > 0 ? "weights.pull_narrow" : "weights.pull_wide", values_of(*this));
 }
 
 std::vector<WeightStep> weight_steps(double length_mm) {
@@ -328,7 +307,7 @@ std::optional<double> ringing_of(const std::array<std::vector<double>, 3>& readi
 
 ForceResult weigh(const rig::Rig& rig, BridgeReader& bridges,
                   const std::function<bool(const WeightStep&)>& ready,
-                  const std::function<bool(const std::string&)>& failed) {
+                  const std::function<bool(const texts::Phrase&)>& failed) {
   Weighing weighing(bridges, ready, failed);
   for (const auto& step : weight_steps(1e3 * rig.surface.length_m)) weighing.take(step);
   weighing.repeat_outliers();

@@ -13,6 +13,7 @@
 #include "station/plant/setup.hpp"
 #include "station/rig/rig.hpp"
 #include "station/sensing/force_calibration.hpp"
+#include "station/texts/texts.hpp"
 
 namespace turnpoint::maintenance {
 
@@ -27,12 +28,12 @@ struct WeightStep {
   double mass_g = 0, position_mm = 0;
   /// mass that hangs on the string and so pulls along the surface; negative if it pulls towards the wide edge
   double pull_g = 0;
-  std::string remark = {};  ///< why the step is repeated; usually empty
+  texts::Phrase remark = {};  ///< why the step is repeated; usually empty
   Tap tap = Tap::none;
 
-  /// text() is what the operator is asked to do; name() is what messages call the step.
-  std::string text() const;
-  std::string name() const;
+  /// text() is what the operator is asked to do; name() is what messages call a weight.
+  texts::Phrase text() const;
+  texts::Phrase name() const;
 };
 
 /// The steps for a surface of this length: a tare (a reading without a weight), then 20, 50, 100 and 200 g at
@@ -115,7 +116,7 @@ struct ForceResult {
 /// were left out, if a cell does not respond, if a weight still does not agree, or if the zero moved.
 ForceResult weigh(const rig::Rig& rig, BridgeReader& bridges,
                   const std::function<bool(const WeightStep&)>& ready,
-                  const std::function<bool(const std::string&)>& failed);
+                  const std::function<bool(const texts::Phrase&)>& failed);
 
 /// Adds the force cells to the newest valid calibration of the rig, and writes it: to `path`, or beside the
 /// rig file with today's date if `path` is empty. Returns the path.

@@ -17,6 +17,7 @@
 #include "station/system/write_file.hpp"
 #include "station/terms/limits.hpp"
 #include "station/terms/usage_error.hpp"
+#include "station/texts/refusal.hpp"
 
 namespace turnpoint::maintenance {
 
@@ -173,8 +174,8 @@ SeriesResult finish_series(const rig::Rig& rig, Series series, const std::vector
   const auto read =
       std::count_if(points.begin(), points.end(), [](const auto& p) { return p.value.has_value(); });
   if (read < least_points(series))
-    throw terms::UsageError(fmt::format("{} of {} points were read; at least {} are needed", read,
-                                        points.size(), least_points(series)));
+    throw texts::Refusal(texts::phrase("series.too_few", {texts::plain(read), texts::plain(points.size()),
+                                                          texts::plain(least_points(series))}));
   SeriesResult result;
   calibration::Measurements measurements;
   if (series == Series::response) {

@@ -7,10 +7,12 @@
 #include "station/lines/buttons.hpp"
 #include "station/setup/open_touch.hpp"
 #include "station/system/write_file.hpp"
-#include "station/terms/usage_error.hpp"
+#include "station/texts/refusal.hpp"
 #include "station/touch/touch_reader.hpp"
 
 namespace turnpoint::maintenance {
+
+using texts::phrase;
 
 namespace {
 
@@ -28,9 +30,9 @@ std::optional<calibration::Calibration> in_force(const rig::Rig& rig, const std:
 
 LatencyDevices::LatencyDevices(const rig::Rig& rig, OnEdge on_edge) {
   if (!rig.buttons_uri || *rig.buttons_uri == "sim:")
-    throw terms::UsageError(
-        "the panel's latency is measured against a button or a photodiode, but the rig's [buttons] are " +
-        rig.buttons_uri.value_or("absent") + "; they must be gpio:NAME=LINE");
+    throw texts::Refusal(
+        phrase("refusal.no_button_lines",
+               {rig.buttons_uri ? texts::plain(*rig.buttons_uri) : phrase("refusal.buttons_absent")}));
   touch_ = setup::open_touch(rig, [](touch::TouchPanelState) {});
   lines::ButtonsHandlers handlers;
   handlers.press = [edge = std::move(on_edge)](const lines::Press& press) { edge(press.time_ns); };
@@ -46,9 +48,7 @@ std::optional<std::int64_t> LatencyDevices::claim(double x, double y, std::int64
 calibration::Calibration known_calibration(const rig::Rig& rig, const std::string& out) {
   const bool continued = !out.empty() && std::filesystem::exists(out);
   const auto found = in_force(rig, continued ? out : calibration::newest_for(rig.path));
-  if (continued && !found)
-    throw terms::UsageError(out + " is a calibration that has expired or belongs to another rig file, and " +
-                            "would be overwritten; choose another file, or remove it");
+  if (continued && !found) throw texts::Refusal(phrase("refusal.other_calibration", {texts::plain(out)}));
   auto made = found.value_or(calibration::Calibration{});
   if (made.rig_sha256.empty()) {
     made.rig_name = rig.name;

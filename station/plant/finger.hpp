@@ -32,6 +32,8 @@ class FingerModel {
   void touch(const Touch& touch);
   /// Ends every touch at this frame at the latest.
   void lift(std::int64_t frame);
+  /// From now on, force and friction no longer vary at random.
+  void steady() { finger_.normal_noise = finger_.friction_noise = 0; }
   /// Position at which the finger will touch in the next step. step() needs the friction there.
   double contact_m() const { return state_.contact_m; }
   /// Advances to the step that begins at audio frame `frame`. `relative_friction` is the factor

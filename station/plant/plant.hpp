@@ -61,6 +61,8 @@ class Plant {
   void touch(std::int64_t frames);
   /// Makes the finger leave the surface after this many frames, unless its touch ends earlier.
   void lift(std::int64_t frames);
+  /// From now on, the finger's force and friction no longer vary at random.
+  void steady_finger() { finger_.steady(); }
   /// Replaces the load on the surface from the next frame on. An empty load removes it.
   void set_load(const Load& load) { load_ = load; }
 

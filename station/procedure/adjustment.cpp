@@ -11,6 +11,8 @@
 
 namespace turnpoint::procedure {
 
+using texts::phrase, texts::plain;
+
 void Adjustment::record_setting(double setting) {
   if (!std::isfinite(setting)) throw std::invalid_argument("adjustment: a setting must be a finite number");
   settings_.push_back(setting);
@@ -59,12 +61,10 @@ void read_starts(text::TableReader& reader, Spec& spec) {
     return;
   }
   if (reader.has("start"))
-    reader.problem("start", "\"start\" is not allowed together with \"start_below\" or \"start_above\"",
-                   "give either \"start\", or \"start_below\" and \"start_above\"");
+    reader.problem("start", phrase("problem.starts_together"), phrase("problem.give_starts"));
   if (below.size() != above.size())
     reader.problem(reader.has("start_below") ? "start_below" : "start_above",
-                   "there must be as many starts from below as from above",
-                   "list equally many levels in \"start_below\" and \"start_above\"");
+                   phrase("problem.starts_unequal"), phrase("problem.starts_equal"));
   spec.values = below;
   spec.values.insert(spec.values.end(), above.begin(), above.end());
 }
@@ -81,12 +81,13 @@ extern const Description adjustment{
     },
     [](const Spec& spec, std::vector<Problem>& problems) {
       if (spec.values.empty())
-        problems.push_back({"start", "missing", "list one or more levels to start from"});
+        problems.push_back({"start", phrase("problem.missing"), phrase("problem.list_starts")});
       const auto &below = spec.ascending.values, &above = spec.descending.values;
       if (!below.empty() && !above.empty() && spec.ascending.ends().second >= spec.descending.ends().first)
-        problems.push_back({"start_below", "a start from below lies above a start from above",
-                            "choose all of them below all of \"start_above\""});
-      if (spec.repeats < 1) problems.push_back({"repeats", "below 1", "write a whole number of 1 or more"});
+        problems.push_back(
+            {"start_below", phrase("problem.start_crossed"), phrase("problem.start_all_below")});
+      if (spec.repeats < 1)
+        problems.push_back({"repeats", phrase("problem.below_one"), phrase("problem.one_or_more_whole")});
     },
     [](const Spec& spec, const Context& context, const random::Key& key) -> std::unique_ptr<Procedure> {
       return std::make_unique<Adjustment>(spec, context, key);

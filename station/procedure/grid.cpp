@@ -7,14 +7,18 @@
 
 namespace turnpoint::procedure {
 
+using texts::phrase, texts::plain;
+
 namespace {
 
 using text::Range;
 using text::TableReader;
 
 constexpr int most_points = 10001;
-constexpr const char* forms =
-    "{ from, to, step }, { from, to, count }, { log_from, log_to, count } or { values = [...] }";
+texts::Phrase forms() {
+  return phrase("problem.allowed_grids", {plain("{ from, to, step }"), plain("{ from, to, count }"),
+                                          plain("{ log_from, log_to, count }"), plain("{ values = [...] }")});
+}
 
 // Computes each value as from + i * step, because adding the step again and again would accumulate rounding
 // errors.
@@ -22,16 +26,16 @@ std::vector<double> even_steps(TableReader& reader, double from, double to) {
   const double step = reader.number("step", {0, 1e6, Range::Ends::open_low});
   const double intervals = (to - from) / step;
   if (!(intervals <= most_points - 1)) {
-    reader.problem("step", "the grid would have " + text::number(intervals + 1) + " points",
-                   "at most " + std::to_string(most_points));
+    reader.problem("step", phrase("problem.grid_points", {plain(text::number(intervals + 1))}),
+                   phrase("problem.at_most", {plain(most_points)}));
     return {from};
   }
   const double whole = std::round(intervals);
   if (std::fabs(intervals - whole) > 1e-6 || whole < 0)
     reader.problem("to",
-                   "the steps from " + text::number(from) + " by " + text::number(step) +
-                       " do not end exactly at " + text::number(to),
-                   "a possible end is " + text::number(from + std::max(whole, 0.0) * step));
+                   phrase("problem.grid_end",
+                          {plain(text::number(from)), plain(text::number(step)), plain(text::number(to))}),
+                   phrase("problem.possible_end", {plain(text::number(from + std::max(whole, 0.0) * step))}));
   std::vector<double> values;
   for (int i = 0; i <= static_cast<int>(whole); ++i) values.push_back(from + i * step);
   return values;
@@ -40,7 +44,8 @@ std::vector<double> even_steps(TableReader& reader, double from, double to) {
 std::vector<double> linear_axis(TableReader& reader) {
   const double from = reader.number("from", {-1e6, 1e6}), to = reader.number("to", {-1e6, 1e6});
   if (reader.has("to") && to < from) {
-    reader.problem("to", "\"to\" is less than \"from\"", "at least " + text::number(from));
+    reader.problem("to", phrase("problem.is_less", {plain("\"to\""), plain("\"from\"")}),
+                   phrase("problem.at_least", {plain(text::number(from))}));
     return {from};
   }
   if (!reader.has("count")) return even_steps(reader, from, to);
@@ -55,7 +60,8 @@ std::vector<double> log_axis(TableReader& reader) {
   const double from = reader.number("log_from", positive), to = reader.number("log_to", positive);
   const int count = reader.integer("count", 2, most_points);
   if (reader.has("log_to") && to <= from) {
-    reader.problem("log_to", "\"log_to\" must be greater than \"log_from\"", "above " + text::number(from));
+    reader.problem("log_to", phrase("problem.log_order"),
+                   phrase("problem.above", {plain(text::number(from))}));
     return {from};
   }
   std::vector<double> values{from};
@@ -70,7 +76,7 @@ std::vector<double> log_axis(TableReader& reader) {
 Grid read_grid(const text::Value& table, const std::string& name, Axis axis, text::Findings& findings) {
   Grid grid;
   if (table.kind != text::Value::Kind::table) {
-    findings.add(table.place, "\"" + name + "\" is " + describe(table), std::string("allowed: ") + forms);
+    findings.add(table.place, phrase("problem.is", {plain(name), describe(table)}), forms());
     return grid;
   }
   TableReader reader(table, name, findings);
@@ -80,8 +86,7 @@ Grid read_grid(const text::Value& table, const std::string& name, Axis axis, tex
     grid.values = reader.numbers("values", {-1e6, 1e6});
     for (std::size_t i = 1; i < grid.values.size(); ++i)
       if (grid.values[i] <= grid.values[i - 1]) {
-        reader.problem("values", "\"values\" are not in ascending order",
-                       "each value must be greater than the one before");
+        reader.problem("values", phrase("problem.values_order"), phrase("problem.greater_than_before"));
         break;
       }
   } else if (reader.has("log_from")) {
@@ -89,7 +94,7 @@ Grid read_grid(const text::Value& table, const std::string& name, Axis axis, tex
   } else if (reader.has("from")) {
     grid.values = linear_axis(reader);
   } else {
-    findings.add(table.place, "\"" + name + "\" does not describe a grid", std::string("allowed: ") + forms);
+    findings.add(table.place, phrase("problem.no_grid", {plain(name)}), forms());
     for (const auto* key : {"values", "from", "to", "step", "count", "log_from", "log_to"}) reader.take(key);
   }
   reader.finish();
@@ -99,16 +104,19 @@ Grid read_grid(const text::Value& table, const std::string& name, Axis axis, tex
 Prior read_prior(const text::Value& table, const std::string& name, text::Findings& findings) {
   Prior prior;
   if (table.kind != text::Value::Kind::table) {
-    findings.add(table.place, "\"" + name + "\" is " + describe(table),
-                 "write { normal = { mean, sd } } or { weights = [...] }");
+    findings.add(
+        table.place, phrase("problem.is", {plain(name), describe(table)}),
+        phrase("problem.write_either", {plain("{ normal = { mean, sd } }"), plain("{ weights = [...] }")}));
     return prior;
   }
   TableReader reader(table, name, findings);
   const auto* normal = reader.maybe_table("normal");
   prior.weights = reader.maybe_numbers("weights", {0, 1e12});
   if (reader.has("normal") == reader.has("weights"))
-    findings.add(table.place, "\"" + name + "\" has " + (normal ? "two forms" : "no form"),
-                 "write either \"normal\" or \"weights\"");
+    findings.add(
+        table.place,
+        normal ? phrase("problem.two_forms", {plain(name)}) : phrase("problem.no_form", {plain(name)}),
+        phrase("problem.normal_or_weights"));
   if (normal) {
     TableReader inner(*normal, name + ".normal", findings);
     const double mean = inner.number("mean", {-1e6, 1e6});

@@ -5,6 +5,8 @@
 
 namespace turnpoint::procedure {
 
+using texts::phrase, texts::plain;
+
 using text::Range;
 using text::TableReader;
 
@@ -37,7 +39,7 @@ void read_scale(TableReader& reader, Spec& spec) {
 }
 
 void read_stop(TableReader& reader, Spec& spec) {
-  const auto* table = reader.table("stop", "say when the procedure ends: { trials = 40 }");
+  const auto* table = reader.table("stop", phrase("problem.say_stop", {plain("{ trials = 40 }")}));
   if (!table) return;
   TableReader inner(*table, reader.path("stop"), reader.findings());
   spec.stop.trials = inner.maybe_integer("trials", 1, 100000);
@@ -49,12 +51,10 @@ void read_stop(TableReader& reader, Spec& spec) {
   const int rules = inner.has("right") + inner.has("trials") + inner.has("reversals") +
                     inner.has("threshold_sd") + inner.has("entropy_nats");
   if (rules == 0)
-    reader.findings().add(table->place, "\"stop\" does not contain a stopping rule",
-                          "add \"trials\", \"reversals\", \"threshold_sd\", \"entropy_nats\" or \"right\"");
+    reader.findings().add(table->place, phrase("problem.stop_no_stopping"), phrase("problem.add_stopping"));
   if (rules > 1 && !inner.has("rule"))
-    reader.findings().add(
-        table->place, "\"stop\" contains several stopping rules",
-        "add rule = \"or\" (any of them ends the procedure) or rule = \"and\" (all must be met)");
+    reader.findings().add(table->place, phrase("problem.stop_several"),
+                          phrase("problem.add_rule", {plain("rule = \"or\""), plain("rule = \"and\"")}));
   spec.stop.rule =
       inner.maybe_word("rule", {"or", "and"}).value_or("or") == "and" ? StopRule::all : StopRule::any;
   inner.finish();
@@ -64,10 +64,10 @@ void read_right_of_last(TableReader& stop, Spec& spec) {
   spec.stop.right = stop.maybe_integer("right", 1, 1000);
   spec.stop.of_last = stop.maybe_integer("of_last", 1, 1000);
   if (stop.has("right") != stop.has("of_last"))
-    stop.problem(stop.has("right") ? "right" : "of_last", "\"right\" and \"of_last\" belong together",
-                 "right = 8, of_last = 10 ends after 8 right answers among the last 10");
+    stop.problem(stop.has("right") ? "right" : "of_last", phrase("problem.right_of_last"),
+                 phrase("problem.eight_of_ten", {plain("right = 8, of_last = 10")}));
   else if (spec.stop.right && spec.stop.of_last && *spec.stop.right > *spec.stop.of_last)
-    stop.problem("right", "more right answers than answers", "at most \"of_last\"");
+    stop.problem("right", phrase("problem.more_right"), phrase("problem.at_most_last"));
   if (!spec.stop.right || !spec.stop.of_last) spec.stop.right.reset(), spec.stop.of_last.reset();
 }
 
@@ -84,15 +84,13 @@ void read_span(TableReader& reader, Spec& spec) {
 }
 
 void validate_span(const Spec& spec, std::vector<Problem>& problems) {
-  if (!spec.start) problems.push_back({"start", "missing", "write the first level as a number"});
+  if (!spec.start) problems.push_back({"start", phrase("problem.missing"), phrase("problem.first_level")});
   if (spec.min && spec.max && *spec.min >= *spec.max)
-    problems.push_back({"min", "\"min\" is not less than \"max\"", "min < max"});
+    problems.push_back({"min", phrase("problem.min_max"), plain("min < max")});
   if (spec.start && ((spec.min && *spec.start < *spec.min) || (spec.max && *spec.start > *spec.max)))
-    problems.push_back(
-        {"start", "the first level is not between min and max", "write a level between min and max"});
+    problems.push_back({"start", phrase("problem.start_outside"), phrase("problem.level_between")});
   if (spec.scale != Scale::linear && spec.start && !(*spec.start > 0))
-    problems.push_back(
-        {"start", "on a logarithmic scale the first level must be above 0", "write a level above 0"});
+    problems.push_back({"start", phrase("problem.log_start"), phrase("problem.level_above_zero")});
 }
 
 bool positive(const std::vector<double>& values) {

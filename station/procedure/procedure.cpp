@@ -7,6 +7,8 @@
 
 namespace turnpoint::procedure {
 
+using texts::phrase, texts::plain;
+
 // The kinds are listed here explicitly. They could not register themselves: a linker leaves out an object
 // file of a static library if nothing refers to it.
 extern const Description constant_stimuli;
@@ -54,7 +56,8 @@ std::vector<std::string> kind_names() {
 
 std::vector<Problem> validate(const Spec& spec) {
   std::vector<Problem> problems;
-  if (spec.level.empty()) problems.push_back({"level", "missing", "write the name of a factor"});
+  if (spec.level.empty())
+    problems.push_back({"level", phrase("problem.missing"), phrase("problem.factor_name")});
   description(spec.kind).validate(spec, problems);
   return problems;
 }
@@ -70,7 +73,8 @@ random::Key key_of(std::uint64_t seed, int block, std::size_t place, int attempt
 std::unique_ptr<Procedure> make_procedure(const Spec& spec, const Context& context, const random::Key& key) {
   if (const auto problems = validate(spec); !problems.empty())
     throw std::invalid_argument("procedure " + spec.name + ": " + problems.front().key + ": " +
-                                problems.front().what + "; " + problems.front().allowed);
+                                texts::say(problems.front().what, "en") + "; " +
+                                texts::say(problems.front().allowed, "en"));
   return description(spec.kind).make(spec, context, key);
 }
 

@@ -15,6 +15,8 @@
 // The descriptions of all procedures with a posterior: their keys, and which specifications are wrong.
 namespace turnpoint::procedure {
 
+using texts::phrase, texts::plain;
+
 namespace {
 
 /// True if this parameter must have a grid: `grid.gradient` with a second dimension, `grid.criterion` with
@@ -27,19 +29,18 @@ bool needs_grid(const Spec& spec, const std::string& parameter) {
 }
 
 void read_axes(text::TableReader& reader, Spec& spec) {
-  std::string needed;
+  std::string needed;  // besides the lapse rate, which is the last parameter
   for (const auto& parameter : kParameters)
-    if (needs_grid(spec, parameter.name))
-      needed += (needed.empty()                           ? "grid."
-                 : std::string(parameter.name) == "lapse" ? " and grid."
-                                                          : ", grid.") +
-                std::string(parameter.name);
-  if (const auto* grid = reader.table("grid", "give " + needed)) {
+    if (needs_grid(spec, parameter.name) && std::string(parameter.name) != "lapse")
+      needed += (needed.empty() ? "grid." : ", grid.") + std::string(parameter.name);
+  if (const auto* grid = reader.table("grid", phrase("problem.give_grids", {plain(needed)}))) {
     text::TableReader inner(*grid, reader.path("grid"), reader.findings());
     for (const auto& [key, axis, prior] : kParameters) {
-      const auto* value = needs_grid(spec, key)
-                              ? inner.require(key, "write a grid: { from, to, step } or { values = [...] }")
-                              : inner.take(key);
+      const auto* value =
+          needs_grid(spec, key)
+              ? inner.require(key, phrase("problem.write_grid",
+                                          {plain("{ from, to, step }"), plain("{ values = [...] }")}))
+              : inner.take(key);
       if (value) spec.*axis = read_grid(*value, inner.path(key), Axis::parameter, reader.findings());
     }
     inner.finish();
@@ -58,9 +59,9 @@ void read_second(text::TableReader& reader, Spec& spec) {
   if (!table) return;
   text::TableReader inner(*table, reader.path("second"), reader.findings());
   auto& second = spec.second.emplace();
-  second.level = inner.string("level", "write the name of a factor");
+  second.level = inner.string("level", phrase("problem.factor_name"));
   if (const auto* stimuli =
-          inner.require("stimuli", "give the values from which to choose: { from, to, step }"))
+          inner.require("stimuli", phrase("problem.give_values", {plain("{ from, to, step }")})))
     second.stimuli = read_grid(*stimuli, inner.path("stimuli"), Axis::stimuli, reader.findings());
   second.origin = inner.number("origin", any_level, 0);
   inner.finish();
@@ -76,7 +77,7 @@ void read_grids(text::TableReader& reader, Spec& spec) {
                   : function == "logistic" ? terms::Function::logistic
                                            : terms::Function::weibull;
   if (const auto* stimuli =
-          reader.require("stimuli", "give the levels from which to choose: { from, to, step }"))
+          reader.require("stimuli", phrase("problem.give_levels", {plain("{ from, to, step }")})))
     spec.stimuli = read_grid(*stimuli, reader.path("stimuli"), Axis::stimuli, reader.findings());
   read_axes(reader, spec);
   read_stop(reader, spec);
@@ -90,16 +91,15 @@ void read_posterior(text::TableReader& reader, Spec& spec) {
   spec.nuisance = reader.maybe_strings("nuisance");
   for (const auto& name : spec.nuisance)
     if (std::find(parameters.begin(), parameters.end(), name) == parameters.end())
-      reader.problem("nuisance", "\"" + name + "\" is not a parameter of the psychometric function",
-                     "allowed: " + text::quoted_list(parameters));
+      reader.problem("nuisance", phrase("problem.no_parameter", {plain(name)}),
+                     phrase("problem.allowed", {text::quoted_list(parameters)}));
   reader.word("select", {"min-expected-entropy"}, "min-expected-entropy");
 }
 
 void validate_rate(const char* key, const Grid& grid, std::vector<Problem>& problems) {
   for (const double rate : grid.values)
     if (!(rate >= 0 && rate < 1))
-      return problems.push_back({key, "a rate is outside the range from 0 to 1",
-                                 "write probabilities of at least 0 and less than 1"});
+      return problems.push_back({key, phrase("problem.rate_outside"), phrase("problem.rates")});
 }
 
 void validate_prior(const std::string& key, const Prior& prior, const Grid& grid,
@@ -107,10 +107,10 @@ void validate_prior(const std::string& key, const Prior& prior, const Grid& grid
   if (prior.weights.empty()) return;
   const auto values = grid.values.size();
   if (prior.weights.size() != values)
-    problems.push_back({key, std::to_string(prior.weights.size()) + " weights",
-                        "there must be one weight for each value of the grid: " + std::to_string(values)});
+    problems.push_back({key, phrase("problem.weights", {plain(prior.weights.size())}),
+                        phrase("problem.one_weight_each", {plain(values)})});
   else if (std::none_of(prior.weights.begin(), prior.weights.end(), [](double w) { return w > 0; }))
-    problems.push_back({key, "all weights are 0", "at least one weight must be above 0"});
+    problems.push_back({key, phrase("problem.weights_zero"), phrase("problem.weight_above_zero")});
 }
 
 /// Adds a problem if the tables of the posterior would be too large: choosing a stimulus would take too long,
@@ -124,19 +124,22 @@ void validate_size(const Spec& spec, std::vector<Problem>& problems) {
   double parameters = 1;
   for (const auto& parameter : kParameters) parameters *= count(spec.*parameter.grid);
   const double places = count(spec.threshold) * count(spec.gradient) * count(spec.floor);
-  const char* what = spec.second ? " thresholds, gradients and floors" : " thresholds";
   if (stimuli * parameters > most)
-    problems.push_back({"grid.threshold",
-                        text::number(stimuli) + " stimuli and " + text::number(parameters) +
-                            " points of the grid make " + text::number(stimuli * parameters, 3) +
-                            " combinations, too many to choose a level in time (up to " +
-                            text::number(stimuli * parameters * bytes_each / 1e6, 3) + " MB)",
-                        "allow at most 50 million combinations (up to 400 MB)"});
+    problems.push_back(
+        {"grid.threshold",
+         phrase("problem.combinations", {plain(text::number(stimuli)), plain(text::number(parameters)),
+                                         plain(text::number(stimuli * parameters, 3)),
+                                         plain(text::number(stimuli * parameters * bytes_each / 1e6, 3))}),
+         phrase("problem.most_combinations")});
   else if (stimuli * places > most_distances)
-    problems.push_back({"grid.threshold",
-                        text::number(stimuli) + " stimuli and " + text::number(places) + what + " make " +
-                            text::number(stimuli * places, 3) + " pairs, too many for the memory",
-                        "allow at most 5 million pairs"});
+    problems.push_back(
+        {"grid.threshold",
+         spec.second
+             ? phrase("problem.pairs_of_all", {plain(text::number(stimuli)), plain(text::number(places)),
+                                               plain(text::number(stimuli * places, 3))})
+             : phrase("problem.pairs", {plain(text::number(stimuli)), plain(text::number(places)),
+                                        plain(text::number(stimuli * places, 3))}),
+         phrase("problem.most_pairs")});
 }
 
 void validate_second(const Spec& spec, std::vector<Problem>& problems) {
@@ -145,59 +148,58 @@ void validate_second(const Spec& spec, std::vector<Problem>& problems) {
          {std::pair("grid.", !grid.values.empty() || !grid.tied.empty()),
           std::pair("prior.", prior.normal.has_value() || !prior.weights.empty())})
       if (given && !spec.second)
-        problems.push_back({table + std::string(parameter), "there is no second dimension",
-                            "leave it out, or add second = { level, stimuli }"});
+        problems.push_back({table + std::string(parameter), phrase("problem.no_second"),
+                            phrase("problem.leave_or_add", {plain("second = { level, stimuli }")})});
   };
   unused("gradient", spec.gradient, spec.prior_gradient);
   unused("floor", spec.floor, spec.prior_floor);
   if (!spec.second) return;
   if (spec.second->stimuli.values.empty())
-    problems.push_back({"second.stimuli", "missing", "give the values from which to choose"});
+    problems.push_back({"second.stimuli", phrase("problem.missing"), phrase("problem.give_the_values")});
   if (spec.second->level == spec.level)
-    problems.push_back(
-        {"second.level", "\"" + spec.level + "\" is the first dimension too", "another factor"});
+    problems.push_back({"second.level", phrase("problem.first_dimension_too", {plain(spec.level)}),
+                        phrase("problem.another_factor")});
   if (spec.gradient.values.empty())
-    problems.push_back({"grid.gradient", "missing",
-                        "give the values of the change of the threshold per unit of the second dimension"});
+    problems.push_back({"grid.gradient", phrase("problem.missing"), phrase("problem.give_gradient")});
   if (spec.scale != Scale::linear && !positive(spec.floor.values))
-    problems.push_back({"grid.floor", "on a logarithmic scale each floor must be above 0", "above 0"});
+    problems.push_back({"grid.floor", phrase("problem.log_floor"), phrase("problem.above", {plain("0")})});
 }
 
 void validate_detection(const Spec& spec, std::vector<Problem>& problems) {
   if (!spec.signal_detection) {
     if (!spec.criterion.values.empty() || !spec.criterion.tied.empty())
-      problems.push_back({"grid.criterion", "only function = \"signal-detection\" has a criterion",
-                          "leave it out, or set this function"});
+      problems.push_back({"grid.criterion",
+                          phrase("problem.only_has_criterion", {plain("function = \"signal-detection\"")}),
+                          phrase("problem.leave_or_function")});
     return;
   }
   if (!spec.guess.values.empty() || !spec.guess.tied.empty())
-    problems.push_back({"grid.guess", "in signal detection, false alarms follow from the criterion",
-                        "leave it out, and give grid.criterion"});
+    problems.push_back(
+        {"grid.guess", phrase("problem.false_alarms"), phrase("problem.leave_give_criterion")});
   if (spec.criterion.values.empty())
-    problems.push_back({"grid.criterion", "missing", "give the values of the criterion, such as 0 to 2"});
+    problems.push_back({"grid.criterion", phrase("problem.missing"), phrase("problem.give_criterion")});
   if (spec.tracks.empty())
-    problems.push_back({"tracks", "missing", "write the id of the answer that means \"yes\""});
+    problems.push_back({"tracks", phrase("problem.missing"), phrase("problem.write_yes")});
   for (const double lapse : spec.lapse.values)
     if (lapse >= 0.5)
-      return problems.push_back(
-          {"grid.lapse", "both asymptotes would be on the wrong side", "less than 0.5"});
+      return problems.push_back({"grid.lapse", phrase("problem.asymptotes"), phrase("problem.below_half")});
 }
 
 void validate_posterior(const Spec& spec, std::vector<Problem>& problems) {
   if (spec.stimuli.values.empty())
-    problems.push_back({"stimuli", "missing", "give the levels from which to choose"});
+    problems.push_back({"stimuli", phrase("problem.missing"), phrase("problem.give_the_levels")});
   if (spec.threshold.values.empty())
-    problems.push_back({"grid.threshold", "missing", "give the values of the threshold"});
+    problems.push_back({"grid.threshold", phrase("problem.missing"), phrase("problem.give_threshold")});
   if (spec.slope.values.empty())
-    problems.push_back({"grid.slope", "missing", "give the values of the slope"});
+    problems.push_back({"grid.slope", phrase("problem.missing"), phrase("problem.give_slope")});
   if (!positive(spec.slope.values))
-    problems.push_back({"grid.slope", "each slope must be above 0", "above 0"});
+    problems.push_back(
+        {"grid.slope", phrase("problem.slope_above_zero"), phrase("problem.above", {plain("0")})});
   for (const auto& parameter : kParameters)
     if (const auto& tied = (spec.*parameter.grid).tied;
         !tied.empty() && std::string(parameter.name) != "guess" && std::string(parameter.name) != "lapse")
-      problems.push_back({std::string("grid.") + parameter.name,
-                          "only the guess rate can be tied to the lapse rate",
-                          "write the values of this parameter"});
+      problems.push_back({std::string("grid.") + parameter.name, phrase("problem.only_guess_tied"),
+                          phrase("problem.parameter_values")});
   validate_rate("grid.guess", spec.guess, problems);
   validate_rate("grid.lapse", spec.lapse, problems);
   for (const auto& [key, grid, prior] : kParameters)
@@ -206,19 +208,19 @@ void validate_posterior(const Spec& spec, std::vector<Problem>& problems) {
   validate_detection(spec, problems);
   validate_size(spec, problems);
   if (!spec.stop.trials && !spec.stop.threshold_sd && !spec.stop.entropy_nats && !spec.stop.right)
-    problems.push_back({"stop", "no rule ends the procedure", "add trials or threshold_sd"});
+    problems.push_back({"stop", phrase("problem.no_rule_ends"), phrase("problem.add_trials_sd")});
 }
 
 void validate_at_threshold(const Spec& spec, std::vector<Problem>& problems) {
   validate_posterior(spec, problems);
   for (const auto& [key, grid, unused] : kParameters)
     if (grid != &Spec::threshold && (spec.*grid).values.size() > 1)
-      problems.push_back({std::string("grid.") + key, "only the threshold is estimated",
-                          "one value, or quest-plus or psi instead"});
+      problems.push_back(
+          {std::string("grid.") + key, phrase("problem.only_threshold"), phrase("problem.one_value")});
   const auto& prior = spec.prior_threshold;
   if (spec.kind == Kind::best_pest && (prior.normal || !prior.weights.empty()))
-    problems.push_back({"prior.threshold", "the most likely threshold has no prior",
-                        "leave it out, or write kind = \"zest\""});
+    problems.push_back({"prior.threshold", phrase("problem.no_prior"),
+                        phrase("problem.leave_or_write", {plain("kind = \"zest\"")})});
 }
 
 std::unique_ptr<Procedure> make_quest_plus(const Spec& spec, const Context&, const random::Key&) {

@@ -10,6 +10,7 @@
 
 #include "station/terms/psychometric.hpp"
 #include "station/text/toml.hpp"
+#include "station/texts/texts.hpp"
 
 namespace turnpoint::procedure {
 
@@ -187,7 +188,8 @@ double series_trials(const Spec& spec);
 
 /// One problem of a specification: the key, what is wrong, and what is allowed.
 struct Problem {
-  std::string key, what, allowed;
+  std::string key;
+  texts::Phrase what, allowed;
 };
 
 /// Returns all problems of a specification; empty if a procedure can run with it.

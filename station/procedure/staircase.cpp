@@ -9,6 +9,8 @@
 
 namespace turnpoint::procedure {
 
+using texts::phrase, texts::plain;
+
 Staircase::Staircase(const Spec& spec) : Track(spec) {
   steps_down_ = spec.step_down.empty() ? spec.step : spec.step_down;
   steps_up_ = spec.step_up.empty() ? spec.step : spec.step_up;
@@ -75,10 +77,10 @@ void read_steps(text::TableReader& reader, Spec& spec) {
   spec.step_down = reader.maybe_numbers("step_down", step);
   spec.step_up = reader.maybe_numbers("step_up", step);
   if (reader.has("step") == reader.has("step_down"))
-    reader.findings().add(
-        reader.has("step") ? reader.place("step_down") : reader.place("step_up"),
-        reader.title() + (reader.has("step") ? " has both \"step\" and \"step_down\"" : " has no steps"),
-        "give either \"step\" (for both directions) or \"step_down\"");
+    reader.findings().add(reader.has("step") ? reader.place("step_down") : reader.place("step_up"),
+                          reader.has("step") ? phrase("problem.both_steps", {reader.title()})
+                                             : phrase("problem.no_steps", {reader.title()}),
+                          phrase("problem.step_or_down"));
 }
 
 void read_staircase(text::TableReader& reader, Spec& spec) {
@@ -94,8 +96,8 @@ void read_staircase(text::TableReader& reader, Spec& spec) {
   } else {
     spec.target = reader.number("target", {0, 1, text::Range::Ends::open});
     if (reader.has("step_up"))
-      reader.problem("step_up", "\"step_up\" is not allowed together with \"target\"",
-                     "leave it out: the step up follows from the target and the step down");
+      reader.problem("step_up", phrase("problem.not_together", {plain("step_up"), plain("target")}),
+                     phrase("problem.leave_step_up"));
   }
   read_stop(reader, spec);
 }
@@ -103,24 +105,20 @@ void read_staircase(text::TableReader& reader, Spec& spec) {
 void validate_staircase(const Spec& spec, std::vector<Problem>& problems) {
   validate_span(spec, problems);
   if (spec.step.empty() && spec.step_down.empty() && spec.step_up.empty())
-    problems.push_back({"step_down", "missing", "give one or more steps above 0"});
+    problems.push_back({"step_down", phrase("problem.missing"), phrase("problem.give_steps")});
   if (!positive(spec.step) || !positive(spec.step_down) || !positive(spec.step_up))
-    problems.push_back({"step_down", "every step must be above 0", "steps above 0"});
+    problems.push_back({"step_down", phrase("problem.steps_above_zero"), phrase("problem.steps_positive")});
   if (spec.kind == Kind::weighted_up_down && (!spec.target || !(*spec.target > 0 && *spec.target < 1)))
-    problems.push_back(
-        {"target", "the target is missing, or not between 0 and 1", "give a probability between 0 and 1"});
+    problems.push_back({"target", phrase("problem.target_missing"), phrase("problem.give_probability")});
   if (spec.kind == Kind::up_down && (spec.n_down < 1 || spec.n_up < 1))
-    problems.push_back({"n_down", "below 1", "write whole numbers of 1 or more"});
+    problems.push_back({"n_down", phrase("problem.below_one"), phrase("problem.whole_numbers")});
   if (spec.kind == Kind::up_down && spec.step.empty() && (spec.step_down.empty() || spec.step_up.empty()))
-    problems.push_back(
-        {"step", "the step is missing for one direction", "give step, or both step_down and step_up"});
+    problems.push_back({"step", phrase("problem.step_one_way"), phrase("problem.step_or_both")});
   if (!spec.stop.trials && !spec.stop.reversals && !spec.stop.right)
-    problems.push_back({"stop", "no rule ends the procedure", "add trials or reversals"});
+    problems.push_back({"stop", phrase("problem.no_rule_ends"), phrase("problem.add_trials_reversals")});
   if (spec.discard_reversals < 0 || (spec.stop.reversals && spec.stop.rule == StopRule::any &&
                                      spec.discard_reversals + 2 > *spec.stop.reversals))
-    problems.push_back(
-        {"discard_reversals", "fewer than two reversals would be left to average",
-         "it must be at least two less than the number of reversals at which the staircase stops"});
+    problems.push_back({"discard_reversals", phrase("problem.two_reversals"), phrase("problem.two_less")});
 }
 
 std::unique_ptr<Procedure> make_staircase(const Spec& spec, const Context&, const random::Key&) {

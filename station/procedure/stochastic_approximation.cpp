@@ -6,6 +6,8 @@
 
 namespace turnpoint::procedure {
 
+using texts::phrase, texts::plain;
+
 namespace {
 
 /// Accelerated stochastic approximation (Kesten 1958, Ann. Math. Stat. 29, 41-59) in the form of Treutwein
@@ -62,11 +64,11 @@ extern const Description accelerated_stochastic_approximation{
     [](const Spec& spec, std::vector<Problem>& problems) {
       validate_span(spec, problems);
       if (spec.step.size() != 1 || !positive(spec.step))
-        problems.push_back({"step", "missing or not above 0", "one number above 0"});
+        problems.push_back({"step", phrase("problem.missing_or_zero"), phrase("problem.one_above_zero")});
       if (!spec.target || !(*spec.target > 0 && *spec.target < 1))
-        problems.push_back({"target", "missing or outside (0, 1)", "a probability between 0 and 1"});
+        problems.push_back({"target", phrase("problem.missing_outside"), phrase("problem.probability")});
       if (!spec.stop.trials && !spec.stop.reversals && !spec.stop.right)
-        problems.push_back({"stop", "no rule ends the procedure", "add trials or reversals"});
+        problems.push_back({"stop", phrase("problem.no_rule_ends"), phrase("problem.add_trials_reversals")});
     },
     [](const Spec& spec, const Context&, const random::Key&) -> std::unique_ptr<Procedure> {
       return std::make_unique<StochasticApproximation>(spec);

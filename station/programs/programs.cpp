@@ -9,6 +9,8 @@
 
 namespace turnpoint::programs {
 
+using texts::phrase, texts::plain;
+
 std::string path_of(const std::string& program, const std::string& protocol_path) {
   return (std::filesystem::absolute(protocol_path).parent_path() / program).lexically_normal().string();
 }
@@ -45,12 +47,12 @@ std::vector<text::Problem> problems_of(const protocol::Protocol& protocol) {
     try {
       const auto procedure = programs.procedure(spec, procedure::key_of(protocol.seed.value_or(0), 0, 0, 0));
       if (!procedure->next())
-        problems.push_back({spec.program.place,
-                            "procedure \"" + spec.name + "\": the program is done before its first trial",
-                            "a program that gives at least one level"});
+        problems.push_back({spec.program.place, phrase("problem.program_done", {plain(spec.name)}),
+                            phrase("problem.program_level")});
     } catch (const terms::ProgramFailed& failed) {
-      problems.push_back({spec.program.place, "procedure \"" + spec.name + "\": " + failed.what(),
-                          "a program that works as protocols/programs.md says"});
+      problems.push_back({spec.program.place,
+                          phrase("problem.of_procedure", {plain(spec.name), plain(failed.what())}),
+                          phrase("problem.program_works")});
     }
   }
   return problems;

@@ -9,6 +9,8 @@
 
 namespace turnpoint::protocol {
 
+using texts::phrase, texts::plain;
+
 namespace {
 
 using text::number;
@@ -45,19 +47,20 @@ void check_fineness(AdviceList& advice, const procedure::Spec& spec) {
   if (spec.kind != procedure::Kind::constant_stimuli || smallest(spec.values) == 0) return;
   for (const auto& name : scenes_used(advice.protocol)) {
     const auto& scene = advice.protocol.scenes.at(name);
-    const auto tell = [&](double per_unit, double tolerance, const std::string& unit) {
+    const auto tell = [&](double per_unit, double tolerance, const char* key) {
       const double step = smallest(spec.values) * per_unit, enough = 4 * tolerance * (1 - 1e-9);
       if (step > 0 && step < enough)
-        advice.add(largest(spec.values) * per_unit < enough ? "scene." + name + ".tolerance"
-                                                            : key_of(spec, "values"),
-                   "the smallest level of \"" + spec.name + "\" moves scene \"" + name + "\" by " +
-                       number(step) + unit + ", but the scene's tolerance is " + number(tolerance) + unit,
-                   "use levels of at least four times the tolerance");
+        advice.add(
+            largest(spec.values) * per_unit < enough ? "scene." + name + ".tolerance"
+                                                     : key_of(spec, "values"),
+            phrase(key, {plain(spec.name), plain(name), plain(number(step)), plain(number(tolerance))}),
+            phrase("problem.four_tolerances"));
     };
-    tell(coefficient(scene.boundary_mm, spec.level), scene.tolerance.boundary_mm.value_or(0), " mm");
+    tell(coefficient(scene.boundary_mm, spec.level), scene.tolerance.boundary_mm.value_or(0),
+         "problem.fine_boundary");
     if (scene.zone)
       tell(coefficient(scene.zone->friction, spec.level), scene.tolerance.friction.value_or(0),
-           " of friction");
+           "problem.fine_friction");
   }
 }
 
@@ -72,9 +75,8 @@ void check_coarseness(AdviceList& advice, const procedure::Spec& spec) {
   const auto tell = [&](double fraction) {
     if (fraction > felt_by_all)
       advice.add("procedure." + spec.name,
-                 "the smallest level of \"" + spec.name + "\" is a friction difference of " +
-                     number(100 * fraction, 3) + " %, which everybody feels",
-                 "add levels down to a Weber fraction of 0.1 or less (-20 dB)");
+                 phrase("problem.felt_by_all", {plain(spec.name), plain(number(100 * fraction, 3))}),
+                 phrase("problem.add_weber"));
   };
   for (const auto& name : scenes_used(advice.protocol)) {
     const auto& scene = advice.protocol.scenes.at(name);
@@ -93,11 +95,9 @@ void check_unequal_steps(AdviceList& advice, const procedure::Spec& spec) {
   const double down = spec.step_down.back(), up = spec.step_up.back();
   if (down == up) return;
   const double target = std::pow(up / (up + down), 1.0 / spec.n_down);
-  advice.add(
-      key_of(spec, "step_up"),
-      "the unequal steps of \"" + spec.name + "\" let it converge near " + number(100 * target, 3) +
-          " % right",
-      "with equal steps it would converge at " + number(100 * std::pow(0.5, 1.0 / spec.n_down), 4) + " %");
+  advice.add(key_of(spec, "step_up"),
+             phrase("problem.unequal_steps", {plain(spec.name), plain(number(100 * target, 3))}),
+             phrase("problem.equal_steps", {plain(number(100 * std::pow(0.5, 1.0 / spec.n_down), 4))}));
 }
 
 void check_unused(AdviceList& advice) {
@@ -108,7 +108,7 @@ void check_unused(AdviceList& advice) {
     const auto sets = [&](const Source& source) { return source.sets.count(factor.name) > 0; };
     // a factor that divides participants into groups need not change what the surface presents
     if (!is_group(factor) && !used.count(factor.name) && std::none_of(sources.begin(), sources.end(), sets))
-      advice.add("factor." + factor.name + ".name", "the factor \"" + factor.name + "\" is not used", "");
+      advice.add("factor." + factor.name + ".name", phrase("problem.factor_unused", {plain(factor.name)}));
   }
   auto scenes = scenes_used(protocol);
   for (const auto& interlude : protocol.interludes)
@@ -119,12 +119,12 @@ void check_unused(AdviceList& advice) {
     const auto is_base = [&, base = name](const auto& other) { return other.second.base == base; };
     if (std::find(scenes.begin(), scenes.end(), name) == scenes.end() &&
         std::none_of(protocol.scenes.begin(), protocol.scenes.end(), is_base))
-      advice.add("scene." + name, "the scene \"" + name + "\" is not used", "");
+      advice.add("scene." + name, phrase("problem.scene_unused", {plain(name)}));
   }
   for (const auto& spec : protocol.procedures) {
     const auto runs = [&](const Source& source) { return source.spec == &spec; };
     if (std::none_of(sources.begin(), sources.end(), runs))
-      advice.add(key_of(spec, "name"), "the procedure \"" + spec.name + "\" is not used in any block", "");
+      advice.add(key_of(spec, "name"), phrase("problem.procedure_unused", {plain(spec.name)}));
   }
 }
 
@@ -148,7 +148,8 @@ std::vector<text::Problem> advice(const Protocol& protocol) {
   AdviceList advice(protocol);
   for (const auto& spec : protocol.procedures)
     for (const auto& fault : procedure::advise(spec))
-      advice.add(key_of(spec, fault.key), "procedure \"" + spec.name + "\": " + fault.what, fault.allowed);
+      advice.add(key_of(spec, fault.key), phrase("problem.of_procedure", {plain(spec.name), fault.what}),
+                 fault.allowed);
   advise_on_levels(advice);
   advise_on_answers(advice);
   advise_on_times(advice);

@@ -13,7 +13,7 @@ namespace turnpoint::protocol {
 struct AdviceList {
   explicit AdviceList(const Protocol& of) : protocol(of), places(of.source, of.path) {}
 
-  void add(const std::string& key, const std::string& what, const std::string& allowed) {
+  void add(const std::string& key, const texts::Phrase& what, const texts::Phrase& allowed = {}) {
     found.push_back({places.of(key), what, allowed});
   }
 

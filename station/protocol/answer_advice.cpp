@@ -9,6 +9,8 @@
 
 namespace turnpoint::protocol {
 
+using texts::phrase, texts::plain;
+
 namespace {
 
 using procedure::Spec;
@@ -72,11 +74,11 @@ void check_each_answer(AdviceList& advice) {
   for (const auto& [id, comparison] : protocol.task.correct_answer) {
     const int times = right.times[id];
     if (times == 0)
-      advice.add("task.correct." + id, "the answer \"" + id + "\" is never right",
-                 "write a comparison that is true for some levels");
+      advice.add("task.correct." + id, phrase("problem.never_right", {plain(id)}),
+                 phrase("problem.true_for_some"));
     else if (times == right.all)
-      advice.add("task.correct." + id, "the answer \"" + id + "\" is always right",
-                 "write a comparison that is false for some levels");
+      advice.add("task.correct." + id, phrase("problem.always_right", {plain(id)}),
+                 phrase("problem.false_for_some"));
   }
 }
 
@@ -89,8 +91,7 @@ void check_block(AdviceList& advice, const std::variant<Block, Sequence>& part) 
   const auto count = [&](const std::string& at, const std::string& level, const std::vector<double>& levels) {
     const auto here = right_at(protocol, level, levels);
     if (here.all > 0 && here.scored == 0)
-      advice.add(at, "no answer is right at any of these levels",
-                 "use levels for which \"correct\" makes one answer right");
+      advice.add(at, phrase("problem.none_right"), phrase("problem.levels_for_correct"));
     if (key.empty()) key = at;
     right += here;
   };
@@ -103,8 +104,8 @@ void check_block(AdviceList& advice, const std::variant<Block, Sequence>& part) 
   }
   if (!block.level.empty()) count(key_of(part, "levels"), block.level, block.levels);
   if (right.scored > 0 && right.times.size() == 1 && !block.pass)
-    advice.add(key, "\"" + right.times.begin()->first + "\" is right at all of these levels",
-               "use levels at which each answer is right equally often");
+    advice.add(key, phrase("problem.right_everywhere", {plain(right.times.begin()->first)}),
+               phrase("problem.equally_right"));
 }
 
 // A staircase or a Bayesian procedure assumes that the task becomes easier in one direction only, either
@@ -115,18 +116,13 @@ void check_followed(AdviceList& advice, const Source& source) {
   const auto kind = answer_rule(advice.protocol, spec->level).kind;
   if (kind == AnswerKind::category)
     return advice.add(key_of(*spec, "level"),
-                      "\"" + spec->name + "\" follows right answers, but \"" + spec->level +
-                          "\" decides which answer is right, not how difficult the trial is",
-                      "use kind = \"constant-stimuli\"");
+                      phrase("problem.follows_which", {plain(spec->name), plain(spec->level)}),
+                      phrase("problem.use", {plain("kind = \"constant-stimuli\"")}));
   const auto& levels = source.levels;
   if (levels.empty() || levels.front() >= 0 || levels.back() <= 0) return;
   if (kind == AnswerKind::side)
-    advice.add(
-        key_of(*spec, "level"),
-        "\"" + spec->name +
-            "\" follows right answers over levels on both sides of zero, but the task is easy on both sides",
-        "set \"tracks\" to the answer that the procedure should follow, or use levels on one side of zero "
-        "only");
+    advice.add(key_of(*spec, "level"), phrase("problem.follows_both_sides", {plain(spec->name)}),
+               phrase("problem.set_tracks"));
 }
 
 // Checks that some order of the trials satisfies `max_run`. Only a trial with another right answer can end a
@@ -136,11 +132,9 @@ void check_runs(AdviceList& advice, const Spec& spec) {
   const auto right = right_at(advice.protocol, spec.level, spec.values);
   for (const auto& [id, times] : right.times)
     if (times > *spec.max_run * (right.all - times))
-      return advice.add(
-          key_of(spec, "order.max_run"),
-          "\"" + id + "\" is right in " + std::to_string(times) + " of " + std::to_string(right.all) +
-              " trials: longer runs cannot be avoided",
-          "set a larger \"max_run\", or use levels at which each answer is right equally often");
+      return advice.add(key_of(spec, "order.max_run"),
+                        phrase("problem.long_runs", {plain(id), plain(times), plain(right.all)}),
+                        phrase("problem.set_max_run"));
 }
 
 // The fraction of practice trials that a participant gets right by always pressing the same key.
@@ -159,17 +153,16 @@ void check_pass(AdviceList& advice, const std::variant<Block, Sequence>& part) {
   const double share = one_key_share(advice.protocol, block);
   if (share >= block.pass->accuracy)
     advice.add(key_of(part, "pass"),
-               "practice \"" + block.name + "\" can be passed by always pressing the same key (" +
-                   number(100 * share, 3) + " % right)",
-               "use levels at which each answer is right equally often, and require a higher accuracy");
+               phrase("problem.same_key", {plain(block.name), plain(number(100 * share, 3))}),
+               phrase("problem.equally_and_higher"));
 }
 
 // Suggests the ends of the factor's range, which are its easiest levels, for catch trials.
-std::string easy_on_both_sides(const Protocol& protocol, const std::string& name) {
+texts::Phrase easy_on_both_sides(const Protocol& protocol, const std::string& name) {
   const auto* factor = find_factor(protocol.factors, name);
-  if (!factor || !factor->range) return "include easy levels for each answer";
-  return "include easy levels for each answer, such as " + name + " = [" + number(factor->range->first) +
-         ", " + number(factor->range->second) + "]";
+  if (!factor || !factor->range) return phrase("problem.easy_levels");
+  return phrase("problem.easy_levels_such",
+                {plain(name), plain(number(factor->range->first)), plain(number(factor->range->second))});
 }
 
 void check_catch(AdviceList& advice, const std::variant<Block, Sequence>& part) {
@@ -180,8 +173,8 @@ void check_catch(AdviceList& advice, const std::variant<Block, Sequence>& part) 
     const auto right = right_at(protocol, trials->factor, trials->levels);
     if (right.all > 0 && right.times.size() < 2)
       return advice.add(key_of(part, "catch"),
-                        "the catch trials of \"" + block_of(part).name + "\" have " +
-                            (right.times.empty() ? "no right answer" : "only one right answer"),
+                        right.times.empty() ? phrase("problem.catch_none_right", {plain(block_of(part).name)})
+                                            : phrase("problem.catch_one_right", {plain(block_of(part).name)}),
                         easy_on_both_sides(protocol, trials->factor));
     // In two cases there is nothing to advise: catch trials without a signal are easy, and if the answers are
     // categories, no level is easier than another.
@@ -197,9 +190,8 @@ void check_catch(AdviceList& advice, const std::variant<Block, Sequence>& part) 
   const double middle = middle_level(protocol, trials->factor);
   for (const double level : trials->levels)
     if ((decibel ? level : std::fabs(level)) < middle)
-      return advice.add(key_of(part, "catch"),
-                        "catch trials at " + number(level) + " are harder than most trials",
-                        "use easy levels, well above " + number(middle));
+      return advice.add(key_of(part, "catch"), phrase("problem.catch_hard", {plain(number(level))}),
+                        phrase("problem.well_above", {plain(number(middle))}));
 }
 
 }  // namespace

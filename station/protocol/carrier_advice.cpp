@@ -5,11 +5,14 @@
 #include <map>
 #include <string>
 
+#include "station/protocol/combinations.hpp"
 #include "station/scene/force_carrier.hpp"
 #include "station/terms/force_carrier.hpp"
 #include "station/text/number.hpp"
 
 namespace turnpoint::protocol {
+
+using texts::phrase, texts::plain;
 
 namespace {
 
@@ -17,7 +20,7 @@ using scene::ToneProduct;
 using text::number;
 
 /// Says how far one tone must be moved so that the filter of the force stops the product.
-std::string remedy(const ToneProduct& product, double carrier_Hz, int rate_Hz) {
+texts::Phrase remedy(const ToneProduct& product, double carrier_Hz, int rate_Hz) {
   const double shift_Hz = std::ceil((scene::force_stop_Hz - product.distance_Hz) / std::abs(product.first));
   const auto distance_at = [&](double first_Hz) {
     const double sum_Hz = product.first * first_Hz + product.second * product.second_Hz;
@@ -25,9 +28,8 @@ std::string remedy(const ToneProduct& product, double carrier_Hz, int rate_Hz) {
   };
   const double higher_Hz = product.first_Hz + shift_Hz, lower_Hz = product.first_Hz - shift_Hz;
   const bool up = distance_at(higher_Hz) > distance_at(lower_Hz);
-  return "move a tone (that of " + number(product.first_Hz, 7) + " Hz to " +
-         number(up ? higher_Hz : lower_Hz, 7) + " Hz or " + (up ? "higher" : "lower") +
-         "), or compare the forces with those of trials without these tones before you rely on them";
+  return up ? phrase("problem.move_higher", {plain(number(product.first_Hz, 7)), plain(number(higher_Hz, 7))})
+            : phrase("problem.move_lower", {plain(number(product.first_Hz, 7)), plain(number(lower_Hz, 7))});
 }
 
 struct Worst {
@@ -59,12 +61,11 @@ std::vector<text::Problem> carrier_warnings(const Protocol& protocol, const rig:
     const auto& sight = *found.sight;
     warnings.push_back(
         {protocol.scenes.at(name).place,
-         "scene \"" + name + "\" in block \"" + sight.block + "\"" +
-             (sight.factors.empty() ? "" : " at " + format(sight.factors)) + ": " +
-             scene::name(found.product) + " is only " + number(found.product.distance_Hz, 3) +
-             " Hz from the carrier of the force cells (" + number(carrier_Hz) +
-             " Hz), so distortion can appear as an oscillation of the force" +
-             (found.cases > 1 ? " (and in " + std::to_string(found.cases - 1) + " more cases)" : ""),
+         counted(in_case({name, sight.block, sight.factors},
+                         phrase("problem.near_carrier",
+                                {plain(scene::name(found.product)),
+                                 plain(number(found.product.distance_Hz, 3)), plain(number(carrier_Hz))})),
+                 found.cases),
          remedy(found.product, carrier_Hz, rate_Hz)});
   }
   return warnings;

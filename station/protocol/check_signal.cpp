@@ -10,6 +10,8 @@
 
 namespace turnpoint::protocol {
 
+using texts::phrase, texts::plain;
+
 namespace {
 
 using By = ResponseSignal::By;
@@ -17,20 +19,17 @@ using text::number;
 
 /// True if the time of a signal within the stimulus is known before the stimulus begins. Otherwise reports
 /// why it is not.
-bool time_is_known(const Protocol& protocol, const std::string& what, text::Findings& findings) {
+bool time_is_known(const Protocol& protocol, const texts::Phrase& what, text::Findings& findings) {
   const auto& signal = *protocol.timing.signal;
   if (!explored(protocol.task)) {
-    findings.add(signal.by_place,
-                 what + " is part of the stimulus, but this task is answered after its intervals",
-                 "by = \"screen\" or \"flash\", or a task with a single interval");
+    findings.add(signal.by_place, phrase("problem.signal_after", {what}),
+                 phrase("problem.signal_by", {plain("by = \"screen\"")}));
     return false;
   }
   const auto zero = protocol.timing.response_zero;
   if (zero == ResponseZero::go_cue || zero == ResponseZero::change) return true;
-  findings.add(signal.by_place,
-               what + " is part of the stimulus, but \"response_zero\" is \"" + name(zero) +
-                   "\", whose time is not known when the stimulus begins",
-               "by = \"screen\" or \"flash\", or a \"response_zero\" of \"go_cue\" or \"change\"");
+  findings.add(signal.by_place, phrase("problem.signal_zero", {what, plain(name(zero))}),
+               phrase("problem.signal_by_zero", {plain("by = \"screen\"")}));
   return false;
 }
 
@@ -42,10 +41,8 @@ void check_same_buzz(const Reading& reading) {
   for (auto at = scenes.find(reading.protocol.timing.signal->scene); at != scenes.end();
        at = scenes.find(at->second.base))
     for (const auto& name : factors_of(at->second))
-      return reading.findings.add(
-          reading.places.of("timing.response_signal.scene"),
-          "the buzz depends on \"" + name + "\", so it could tell something of the answer",
-          "a scene that is the same in all trials");
+      return reading.findings.add(reading.places.of("timing.response_signal.scene"),
+                                  phrase("problem.buzz_tells", {plain(name)}), phrase("problem.same_scene"));
 }
 
 /// A lag that depends on what makes an answer right would tell something of the answer.
@@ -56,10 +53,9 @@ void check_telling_lag(const Reading& reading) {
       for (const auto& name : factors_in(*side)) deciding.insert(name);
   for (const auto& name : factors_in(reading.protocol.timing.signal->after_s))
     if (deciding.count(name))
-      return reading.findings.add(
-          reading.places.of("timing.response_signal.after_s"),
-          "the time of the signal depends on \"" + name + "\", which decides the right answer",
-          "other factors");
+      return reading.findings.add(reading.places.of("timing.response_signal.after_s"),
+                                  phrase("problem.lag_tells", {plain(name)}),
+                                  phrase("problem.other_factors"));
 }
 
 /// A buzz takes the place of the last scene, which must have been reached, and be long enough before to be
@@ -72,17 +68,15 @@ void check_buzz(const Reading& reading) {
   if (!changes) return;
   const auto& signal = *protocol.timing.signal;
   if (protocol.timing.response_zero != ResponseZero::change)
-    return reading.findings.add(
-        signal.by_place, "a buzz that is timed from \"go_cue\" could meet the change to the second scene",
-        "response_zero = \"change\", or an interval of one scene");
+    return reading.findings.add(signal.by_place, phrase("problem.buzz_meets"),
+                                phrase("problem.or_one_scene", {plain("response_zero = \"change\"")}));
   const double first_s = bounds(signal.after_s, protocol.factors).first;
   const double changed_s = 1e-3 * task.transition_ms.value_or(0) + terms::kBetweenChanges_s;
   if (first_s < changed_s)
-    reading.findings.add(reading.places.of("timing.response_signal.after_s"),
-                         "the buzz can begin " + number(first_s) +
-                             " s after the change begins, which takes " +
-                             number(task.transition_ms.value_or(0)) + " ms",
-                         "at least " + number(changed_s) + " s");
+    reading.findings.add(
+        reading.places.of("timing.response_signal.after_s"),
+        phrase("problem.buzz_early", {plain(number(first_s)), plain(number(task.transition_ms.value_or(0)))}),
+        phrase("problem.at_least", {plain(number(changed_s) + " s")}));
 }
 
 /// All lags of a signal, if they are a list; empty if a factor varies over a range.
@@ -112,20 +106,18 @@ void check_flash(const Reading& reading) {
   const auto& factors = reading.protocol.factors;
   const double first_s = bounds(after_s, factors).first;
   if (first_s < terms::kSignalLate_s - 1e-9)
-    reading.findings.add(place,
-                         "the flash can be due " + number(first_s) + " s after \"" +
-                             name(reading.protocol.timing.response_zero) +
-                             "\", but a screen may need three frames to show it",
-                         "at least " + number(terms::kSignalLate_s) + " s, or by = \"tone\"");
+    reading.findings.add(
+        place,
+        phrase("problem.flash_early",
+               {plain(number(first_s)), plain(name(reading.protocol.timing.response_zero))}),
+        phrase("problem.at_least_or", {plain(number(terms::kSignalLate_s)), plain("by = \"tone\"")}));
   std::optional<double> before_s;
   for (const double lag_s : lags_of(after_s, factors)) {
     const double apart_s = lag_s - before_s.value_or(-1);
     if (apart_s > 1e-9 && apart_s < terms::kFrame_s - 1e-9)
       return reading.findings.add(
-          place,
-          "the lags " + number(*before_s) + " and " + number(lag_s) +
-              " s differ by less than a frame of the screen, so a flash cannot present both",
-          "lags that differ by at least " + number(terms::kFrame_s, 3) + " s, or by = \"tone\"");
+          place, phrase("problem.lags_close", {plain(number(*before_s)), plain(number(lag_s))}),
+          phrase("problem.lags_apart", {plain(number(terms::kFrame_s, 3)), plain("by = \"tone\"")}));
     before_s = lag_s;
   }
 }
@@ -140,17 +132,21 @@ void check_signal(const Reading& reading) {
   if (signal->by == By::screen) return;
   if (signal->by == By::flash) return check_flash(reading);
   const bool tone = signal->by == By::tone;
-  if (!time_is_known(protocol, tone ? "a tone" : "a buzz", reading.findings)) return;
+  if (!time_is_known(protocol, tone ? phrase("problem.a_tone") : phrase("problem.a_buzz"), reading.findings))
+    return;
   if (!tone) check_buzz(reading);
   const auto end = stimulus_end(protocol);
   const double length_s = tone ? terms::kSignal_s : signal->length_s + terms::kBuzzRamp_s;
   const double latest_s = bounds(signal->after_s, protocol.factors).second + length_s;
   if (end && latest_s > end->earliest_s)
     reading.findings.add(reading.places.of("timing.response_signal.after_s"),
-                         std::string("the ") + (tone ? "tone" : "buzz") + " can end " + number(latest_s) +
-                             " s after \"" + name(protocol.timing.response_zero) +
-                             "\", but the stimulus can end " + number(end->earliest_s) + " s after it",
-                         "a longer \"explore_s\", or at most " + number(end->earliest_s - length_s) + " s");
+                         tone ? phrase("problem.tone_late",
+                                       {plain(number(latest_s)), plain(name(protocol.timing.response_zero)),
+                                        plain(number(end->earliest_s))})
+                              : phrase("problem.buzz_late",
+                                       {plain(number(latest_s)), plain(name(protocol.timing.response_zero)),
+                                        plain(number(end->earliest_s))}),
+                         phrase("problem.longer_explore", {plain(number(end->earliest_s - length_s))}));
 }
 
 }  // namespace turnpoint::protocol

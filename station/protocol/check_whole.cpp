@@ -11,6 +11,8 @@
 
 namespace turnpoint::protocol {
 
+using texts::phrase, texts::plain;
+
 namespace {
 
 using text::Findings;
@@ -24,10 +26,9 @@ void check_values(const std::vector<Source>& sources, const std::string& name, c
   const bool set_somewhere = std::any_of(sources.begin(), sources.end(), sets);
   for (const auto& source : sources) {
     if (sets(source)) continue;
-    reading.findings.add(
-        factor && !set_somewhere ? factor->place : source.block->place,
-        "in block \"" + source.block->name + "\", " + source.what + ", \"" + name + "\" has no value",
-        "set this factor with a procedure or fixed levels, or give it \"levels\" from which to draw");
+    reading.findings.add(factor && !set_somewhere ? factor->place : source.block->place,
+                         phrase("problem.no_value", {plain(source.block->name), source.what, plain(name)}),
+                         phrase("problem.set_factor"));
     if (!set_somewhere) return;
   }
 }
@@ -42,10 +43,12 @@ void check_answers(const std::vector<Source>& sources, const Reading& reading) {
       const auto right = [&](const auto& answer) { return holds(answer.second, factors); };
       if (std::count_if(answers.begin(), answers.end(), right) < 2) continue;
       const auto last = std::find_if(answers.rbegin(), answers.rend(), right);
-      return reading.findings.add(last->second.left.place,
-                                  "at " + source.level + " = " + text::number(level) + " " +
-                                      (answers.size() > 2 ? "two" : "both") + " answers are right",
-                                  "write comparisons that cannot both be true");
+      return reading.findings.add(
+          last->second.left.place,
+          answers.size() > 2
+              ? phrase("problem.two_right", {plain(source.level), plain(text::number(level))})
+              : phrase("problem.both_right", {plain(source.level), plain(text::number(level))}),
+          phrase("problem.not_both_true"));
     }
   }
 }
@@ -68,8 +71,9 @@ void check_present(const std::vector<Source>& sources, const Reading& reading) {
     }
   }
   if (with != without)
-    reading.findings.add(present->left.place, with ? "every trial has a signal" : "no trial has a signal",
-                         "levels with a signal and levels without one, such as 0");
+    reading.findings.add(present->left.place,
+                         with ? phrase("problem.all_signal") : phrase("problem.no_signal"),
+                         phrase("problem.signal_levels"));
 }
 
 // Without correct answers, a procedure cannot follow right answers, and practice cannot be passed. Reports
@@ -83,13 +87,11 @@ void check_scored(text::TableReader& file, const Reading& reading) {
   for (const auto& spec : protocol.procedures) {
     if (procedure::follows_answers(spec) && judges(task))
       reading.findings.add(reading.places.of(key_of(spec, "kind")),
-                           "the procedure \"" + spec.name + "\" needs answers that are right or wrong",
-                           "kind = \"constant-stimuli\"");
+                           phrase("problem.needs_right", {plain(spec.name)}),
+                           plain("kind = \"constant-stimuli\""));
     else if (procedure::follows_answers(spec) && spec.tracks.empty())
-      reading.findings.add(
-          table->place,
-          "the procedure \"" + spec.name + "\" depends on correct answers, but no answer is correct",
-          "set \"correct\" in [task], or \"tracks\" in the procedure");
+      reading.findings.add(table->place, phrase("problem.needs_correct", {plain(spec.name)}),
+                           phrase("problem.correct_or_tracks"));
   }
   for (const auto& part : protocol.plan) {
     const auto& block = block_of(part);
@@ -98,8 +100,8 @@ void check_scored(text::TableReader& file, const Reading& reading) {
     for (const auto* key : {"pass", "feedback"})
       if (key == std::string("pass") ? block.pass.has_value() : block.feedback != Feedback::none)
         reading.findings.add(reading.places.of(key_of(part, key)),
-                             "block \"" + block.name + "\" judges answers, but no answer is correct",
-                             "set \"correct\" in [task]");
+                             phrase("problem.block_judges", {plain(block.name)}),
+                             phrase("problem.set_correct"));
   }
 }
 
@@ -109,25 +111,24 @@ void check_limits(const Reading& reading) {
   const auto& task = protocol.task;
   for (const auto& spec : protocol.procedures) {
     if (spec.kind != procedure::Kind::limits) continue;
-    const auto report = [&](const char* key, const std::string& what, const std::string& allowed) {
-      reading.findings.add(reading.places.of(key_of(spec, key)), "procedure \"" + spec.name + "\": " + what,
-                           allowed);
+    const auto report = [&](const char* key, const texts::Phrase& what, const texts::Phrase& allowed) {
+      reading.findings.add(reading.places.of(key_of(spec, key)),
+                           phrase("problem.of_procedure", {plain(spec.name), what}), allowed);
     };
     if (task.kind != TaskKind::single_interval && task.kind != TaskKind::same_different) {
-      report("kind", "in this kind of task no answer becomes more frequent as the level rises",
-             "use kind = \"single-interval\" or \"same-different\" in [task]");
+      report("kind", phrase("problem.none_more_frequent"),
+             phrase("problem.single_or_same", {plain("kind = \"single-interval\"")}));
       continue;
     }
     const auto rule = answer_rule(protocol, spec.level);
     if (rule.kind != AnswerKind::side && rule.kind != AnswerKind::presence) continue;
     const auto& risen = task.choices.at(static_cast<std::size_t>(rule.positive)).id;
     if (!spec.tracks.empty() && spec.tracks != risen)
-      report("tracks", "the answer \"" + spec.tracks + "\" does not become more frequent as the level rises",
-             "tracks = \"" + risen + "\"");
+      report("tracks", phrase("problem.not_more_frequent", {plain(spec.tracks)}),
+             plain("tracks = \"" + risen + "\""));
     const bool magnitude = task.kind == TaskKind::single_interval && rule.kind == AnswerKind::presence;
     if (magnitude && spec.min && *spec.min < 0)
-      report("min", "below 0 the answer \"" + risen + "\" becomes more frequent as the level falls",
-             "use levels of 0 and above");
+      report("min", phrase("problem.frequent_below", {plain(risen)}), phrase("problem.levels_from_zero"));
   }
 }
 
@@ -140,19 +141,16 @@ void check_detection(const Reading& reading) {
     const auto rule = answer_rule(protocol, spec.level);
     const bool scored = !task.correct_answer.empty();
     if (task.kind != TaskKind::single_interval || (scored && rule.kind != AnswerKind::presence)) {
-      reading.findings.add(
-          reading.places.of(key_of(spec, "function")),
-          "procedure \"" + spec.name +
-              "\": signal detection needs a task in which people say whether there was a signal",
-          "use kind = \"single-interval\" in [task], with one answer that is right at level 0 and "
-          "another that is right above");
+      reading.findings.add(reading.places.of(key_of(spec, "function")),
+                           phrase("problem.detection_task", {plain(spec.name)}),
+                           phrase("problem.detection_use", {plain("kind = \"single-interval\"")}));
       continue;
     }
     const auto& yes = task.choices.at(static_cast<std::size_t>(rule.positive)).id;
     if (scored && spec.tracks != yes)
       reading.findings.add(reading.places.of(key_of(spec, "tracks")),
-                           "procedure \"" + spec.name + "\": the answer \"" + spec.tracks + "\" means \"no\"",
-                           "tracks = \"" + yes + "\"");
+                           phrase("problem.means_no", {plain(spec.name), plain(spec.tracks)}),
+                           plain("tracks = \"" + yes + "\""));
   }
 }
 
@@ -165,14 +163,13 @@ void check_adjustment(const Reading& reading) {
       const auto* spec = find_procedure(protocol, name);
       if (!spec) continue;
       if ((spec->kind == procedure::Kind::adjustment) != adjusting)
-        reading.findings.add(reading.places.of(key_of(*spec, "kind")),
-                             "the procedure \"" + name + "\" does not fit the kind of task",
-                             adjusting ? "kind = \"adjustment\"" : "use any kind except \"adjustment\"");
-      else if (adjusting && spec->level != protocol.task.adjusts)
         reading.findings.add(
-            reading.places.of(key_of(*spec, "level")),
-            "the procedure \"" + name + "\" sets \"" + spec->level + "\"",
-            "it must set the factor that the slider moves: \"" + protocol.task.adjusts + "\"");
+            reading.places.of(key_of(*spec, "kind")), phrase("problem.does_not_fit", {plain(name)}),
+            adjusting ? plain("kind = \"adjustment\"") : phrase("problem.except_adjustment"));
+      else if (adjusting && spec->level != protocol.task.adjusts)
+        reading.findings.add(reading.places.of(key_of(*spec, "level")),
+                             phrase("problem.procedure_sets", {plain(name), plain(spec->level)}),
+                             phrase("problem.slider_factor", {plain(protocol.task.adjusts)}));
     }
   }
 }
@@ -208,33 +205,26 @@ void check_timing(text::TableReader& file, const Reading& reading) {
   auto& findings = reading.findings;
   const bool one_interval = explored(protocol.task);
   if (one_interval && !table->find("explore_s") && !protocol.task.duration_s)
-    findings.add(
-        table->place, "nothing ends the interval: [timing] has no \"explore_s\"",
-        "set it to the longest time that the tones last, in seconds (or set \"duration_s\" in [task])");
+    findings.add(table->place, phrase("problem.nothing_ends"), phrase("problem.set_longest"));
   if (!one_interval && table->find("explore_s"))
-    findings.add(place("explore_s"), "\"explore_s\" does not apply to a task with several intervals",
-                 "use \"duration_s\" in [task] instead");
+    findings.add(place("explore_s"), phrase("problem.explore_several"), phrase("problem.use_duration"));
   if (timing.signal && protocol.task.kind == TaskKind::adjustment)
-    findings.add(place("response_signal"),
-                 "a slider is not set at a signal: \"response_signal\" does not apply to \"adjustment\"",
-                 "use \"deadline_s\"");
+    findings.add(place("response_signal"), phrase("problem.slider_signal"), phrase("problem.use_deadline"));
   if (timing.response_zero == ResponseZero::change && !has_change(protocol.task))
-    findings.add(place("response_zero"),
-                 "\"response_zero\" is \"change\", but no interval has a second scene",
-                 "use an interval of two scenes: intervals = [[\"a\", \"b\"]]");
+    findings.add(place("response_zero"), phrase("problem.zero_change"),
+                 phrase("problem.two_scenes", {plain("intervals = [[\"a\", \"b\"]]")}));
   if (!table->find("deadline_s") && !table->find("response_signal"))
     if (const auto block = block_without_deadline(protocol))
-      findings.add(table->place, "block \"" + *block + "\" has no deadline: [timing] has no \"deadline_s\"",
-                   "set \"deadline_s\" here, or in the block's [instructions.NAME]");
+      findings.add(table->place, phrase("problem.no_deadline", {plain(*block)}),
+                   phrase("problem.set_deadline"));
   // Reports anticipation_s if it is not shorter than a deadline. If the deadline is shorter than any person's
   // response, the deadline is to blame; otherwise it is anticipation_s, which is normally about 0.15 s.
   const double anticipation_s = bounds(timing.anticipation_s, protocol.factors).second;
   const auto check_anticipation = [&](const std::string& key, const Linear& deadline) {
     const double deadline_s = bounds(deadline, protocol.factors).first;
     if (anticipation_s >= deadline_s)
-      findings.add(
-          deadline_s < shortest_deadline_s ? reading.places.of(key) : place("anticipation_s"),
-          "\"anticipation_s\" must be shorter than the deadline of " + text::number(deadline_s) + " s", "");
+      findings.add(deadline_s < shortest_deadline_s ? reading.places.of(key) : place("anticipation_s"),
+                   phrase("problem.anticipation", {plain(text::number(deadline_s))}));
   };
   if (timing.deadline_s) check_anticipation("timing.deadline_s", *timing.deadline_s);
   for (const auto& [name, instruction] : protocol.instructions)
@@ -242,8 +232,8 @@ void check_timing(text::TableReader& file, const Reading& reading) {
       const auto key = "instructions." + name + ".deadline_s";
       check_anticipation(key, *instruction.deadline_s);
       if (timing.signal)
-        findings.add(reading.places.of(key), "a deadline does not apply if there is a response signal",
-                     "answers count from the signal to the end of its \"window_s\"");
+        findings.add(reading.places.of(key), phrase("problem.signal_no_deadline"),
+                     phrase("problem.signal_window"));
     }
 }
 

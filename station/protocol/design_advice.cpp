@@ -12,6 +12,8 @@
 
 namespace turnpoint::protocol {
 
+using texts::phrase, texts::plain;
+
 namespace {
 
 using procedure::Kind;
@@ -37,14 +39,14 @@ void check_words(AdviceList& advice) {
       const auto label = found == choice.label.end() ? "" : trimmed(found->second);
       const auto key = "task.choices." + std::to_string(i) + ".label." + language;
       if (label.empty())
-        advice.add(key, "the label of \"" + choice.id + "\" is blank",
-                   "write what the participant reads on the button");
+        advice.add(key, phrase("problem.label_blank", {plain(choice.id)}), phrase("problem.write_label"));
       else if (!seen.insert(label).second)
-        advice.add(key, "two answers have the label \"" + label + "\"", "give each answer a different label");
+        advice.add(key, phrase("problem.label_twice", {plain(label)}), phrase("problem.labels_differ"));
     }
     const auto question = task.question.find(language);
     if (question != task.question.end() && trimmed(question->second).empty())
-      advice.add("task.question." + language, "the question is blank", "write what the participant is asked");
+      advice.add("task.question." + language, phrase("problem.question_blank"),
+                 phrase("problem.write_question"));
   }
 }
 
@@ -56,12 +58,11 @@ void check_ramps(AdviceList& advice) {
     const double ramp_ms = protocol.scenes.at(name).ramp_ms;
     if (longest_s <= 0 || 2e-3 * ramp_ms < longest_s) continue;
     const bool stated = advice.places.has("scene." + name + ".ramp_ms") && ramp_ms > 500;
-    return advice.add(
-        stated    ? "scene." + name + ".ramp_ms"
-        : several ? "task.duration_s"
-                  : "timing.explore_s",
-        "the ramps of scene \"" + name + "\" take as long as its tones, " + number(longest_s) + " s",
-        "the tones must last longer than both ramps together");
+    return advice.add(stated    ? "scene." + name + ".ramp_ms"
+                      : several ? "task.duration_s"
+                                : "timing.explore_s",
+                      phrase("problem.ramps_long", {plain(name), plain(number(longest_s))}),
+                      phrase("problem.ramps_shorter"));
   }
 }
 
@@ -78,16 +79,16 @@ void check_scenes(AdviceList& advice) {
          {std::pair{&scene.displacement_um, "displacement_um"},
           std::pair{&scene.displacement_under_finger_um, "displacement_under_finger_um"}})
       if (*displacement && bounds(**displacement, advice.protocol.factors).second < least_displacement_um)
-        advice.add(key + of, "nobody feels a displacement of " + (*displacement)->source + " um",
-                   "use about 0.2 to 3 um");
+        advice.add(key + of, phrase("problem.not_felt", {plain((*displacement)->source)}),
+                   phrase("problem.about_um"));
     for (std::size_t i = 0; i < scene.tones.size(); ++i)
       for (std::size_t j = 0; j < i; ++j) {
         const auto &a = scene.tones[i], &b = scene.tones[j];
         if (same(a.frequency_Hz, b.frequency_Hz) ||
             (same(a.boundary_mm, b.boundary_mm) && a.edge.name == b.edge.name &&
              a.edge.friction == b.edge.friction))
-          advice.add(key + "tones." + std::to_string(i), "this tone is the same as another tone of the scene",
-                     "use one stronger tone, or place this tone elsewhere");
+          advice.add(key + "tones." + std::to_string(i), phrase("problem.tone_twice"),
+                     phrase("problem.one_tone"));
       }
   }
 }
@@ -97,18 +98,17 @@ void check_task(AdviceList& advice) {
   const auto& task = protocol.task;
   for (const auto& interval : task.intervals)
     if (interval.size() == 2 && interval[0] == interval[1])
-      advice.add("task.intervals",
-                 "the scene \"" + interval[0] + "\" is followed by itself, so nothing changes",
-                 "use two different scenes");
+      advice.add("task.intervals", phrase("problem.scene_itself", {plain(interval[0])}),
+                 phrase("problem.use_two_scenes"));
   const auto* slider = find_factor(protocol.factors, task.adjusts);
   if (slider && slider->range && task.step && *task.step >= slider->range->second - slider->range->first)
-    advice.add("task.step", "a step of " + number(*task.step) + " is as large as the slider's whole range",
-               "use steps well below " + number(slider->range->second - slider->range->first));
+    advice.add("task.step", phrase("problem.slider_step", {plain(number(*task.step))}),
+               phrase("problem.well_below", {plain(number(slider->range->second - slider->range->first))}));
   const auto& plan = protocol.plan;
   for (const auto& part : plan)
     if (task.kind == TaskKind::adjustment && block_of(part).feedback != Feedback::none)
-      advice.add(key_of(part, "feedback"), "a setting of the slider is neither right nor wrong",
-                 "set feedback = \"none\"");
+      advice.add(key_of(part, "feedback"), phrase("problem.setting_unscored"),
+                 phrase("problem.set", {plain("feedback = \"none\"")}));
 }
 
 /// Returns the largest number of trials in a block, including catch trials; empty if the answers decide when
@@ -139,22 +139,17 @@ void check_counts(AdviceList& advice, const std::variant<Block, Sequence>& part)
       levels += spec->values.size(), constant = spec;
   const auto trials = static_cast<std::size_t>(block.trials.value_or(0));
   if (block.trials && trials < levels)
-    advice.add(key_of(part, "trials"),
-               "the block has " + std::to_string(levels) + " levels but only " + std::to_string(trials) +
-                   " trials, so some levels are never presented",
-               "allow at least " + std::to_string(levels) + " trials");
+    advice.add(key_of(part, "trials"), phrase("problem.never_presented", {plain(levels), plain(trials)}),
+               phrase("problem.allow_trials", {plain(levels)}));
   else if (block.trials && constant && block.procedures.size() == 1 && !block.practice &&
            !block.catch_trials && trials < levels * static_cast<std::size_t>(constant->repeats) &&
            trials % levels != 0)
-    advice.add(key_of(part, "trials"),
-               std::to_string(trials) + " trials cannot be divided evenly among " + std::to_string(levels) +
-                   " levels",
-               "use a multiple of " + std::to_string(levels) + ", or leave out \"trials\"");
+    advice.add(key_of(part, "trials"), phrase("problem.uneven_trials", {plain(trials), plain(levels)}),
+               phrase("problem.use_multiple", {plain(levels)}));
   const auto most = most_trials(advice.protocol, block);
   if (block.break_after && most && block.break_after->trials >= *most)
-    advice.add(key_of(part, "break_after"),
-               "there will be no break: the block has only " + number(std::floor(*most)) + " trials",
-               "have the break after fewer trials");
+    advice.add(key_of(part, "break_after"), phrase("problem.no_break", {plain(number(std::floor(*most)))}),
+               phrase("problem.break_earlier"));
 }
 
 void check_blocks(AdviceList& advice) {
@@ -166,31 +161,29 @@ void check_blocks(AdviceList& advice) {
     check_counts(advice, part);
     if (block.kind != BlockKind::trials) continue;
     if (advice.places.has(key_of(part, "interleave")) && block.procedures.size() < 2)
-      advice.add(key_of(part, "interleave"), "\"interleave\" has no effect in a block with one procedure",
-                 "use two or more procedures");
+      advice.add(key_of(part, "interleave"), phrase("problem.interleave_one"),
+                 phrase("problem.two_procedures"));
     const auto* sequence = std::get_if<Sequence>(&part);
     if (sequence && sequence->mirror && sequence->cycles < 2)
-      advice.add("sequence." + sequence->name + ".mirror", "\"mirror\" has no effect with a single cycle",
-                 "set cycles to 2 or more");
+      advice.add("sequence." + sequence->name + ".mirror", phrase("problem.mirror_one"),
+                 phrase("problem.set_cycles"));
     for (const auto& name : block.procedures)
       if (const auto* spec = find_procedure(protocol, name);
           sequence && spec &&
           std::find(spec->balance.begin(), spec->balance.end(), sequence->over) != spec->balance.end())
         advice.add(key_of(*spec, "balance"),
-                   "the sequence \"" + sequence->name + "\" holds \"" + sequence->over +
-                       "\" constant in each block, but \"balance\" would change it",
-                   "remove one of the two");
+                   phrase("problem.sequence_holds", {plain(sequence->name), plain(sequence->over)}),
+                   phrase("problem.remove_one"));
     const double trials = most_trials(protocol, block).value_or(1e9);
     (block.practice ? practice : rest) += trials;
     if (block.practice)
       practice_key = key_of(part, advice.places.has(key_of(part, "trials")) ? "trials" : "practice");
   }
   if (practice > 0 && rest == 0)
-    advice.add(key_of(protocol.plan.back(), "practice"), "all blocks are practice: nothing is measured",
-               "add a block without \"practice\"");
+    advice.add(key_of(protocol.plan.back(), "practice"), phrase("problem.all_practice"),
+               phrase("problem.add_no_practice"));
   else if (practice > rest)
-    advice.add(practice_key, "there are more practice trials than other trials",
-               "plan fewer practice trials");
+    advice.add(practice_key, phrase("problem.more_practice"), phrase("problem.less_practice"));
 }
 
 void check_instructions(AdviceList& advice) {
@@ -201,13 +194,12 @@ void check_instructions(AdviceList& advice) {
       return fixed != block.fixed.end() && fixed->second == wanted;
     };
     if (std::none_of(blocks.begin(), blocks.end(), shows))
-      advice.add("instructions." + name, "no block shows the instruction \"" + name + "\"",
-                 "set instruction = \"" + name +
-                     "\" in a block, or use a sequence over a factor named \"instruction\"");
+      advice.add("instructions." + name, phrase("problem.instruction_unused", {plain(name)}),
+                 phrase("problem.set_instruction", {plain("instruction = \"" + name + "\"")}));
     const auto& target = instruction.target_accuracy;
     if (target && target->second <= chance(advice.protocol))
-      advice.add("instructions." + name + ".target_accuracy", "guessing already reaches this target accuracy",
-                 "between " + number(chance(advice.protocol), 3) + " and 1");
+      advice.add("instructions." + name + ".target_accuracy", phrase("problem.guessing_reaches"),
+                 phrase("problem.between", {plain(number(chance(advice.protocol), 3)), plain("1")}));
   }
 }
 
@@ -216,12 +208,12 @@ void check_analysis(AdviceList& advice) {
   const auto moves = [](const auto& term) { return term.second != 0; };
   if (analysis.difficulty && analysis.difficulty->products.empty() &&
       std::none_of(analysis.difficulty->terms.begin(), analysis.difficulty->terms.end(), moves))
-    advice.add("analysis.difficulty", "\"difficulty\" is the same in all trials",
-               "write arithmetic that depends on a factor");
+    advice.add("analysis.difficulty", phrase("problem.difficulty_same"), phrase("problem.write_arithmetic"));
   std::set<std::string> seen;
   for (const auto& word : analysis.show.value_or(std::vector<std::string>{}))
     if (!seen.insert(word).second)
-      advice.add("analysis.show", "\"" + word + "\" appears twice in \"show\"", "list each only once");
+      advice.add("analysis.show", phrase("problem.twice_in", {plain(word), plain("show")}),
+                 phrase("problem.list_once"));
 }
 
 }  // namespace
@@ -245,15 +237,15 @@ constexpr std::size_t most_cells = 1'000'000'000'000;
 
 /// Reports a procedure whose `repeats` cannot be spread evenly over `cells` combinations of factors; `what`
 /// describes these combinations.
-void note_uneven(AdviceList& notes, const procedure::Spec& spec, std::size_t cells, const std::string& what) {
+void note_uneven(AdviceList& notes, const procedure::Spec& spec, std::size_t cells,
+                 const texts::Phrase& cell_names) {
   const auto repeats = static_cast<std::size_t>(spec.repeats), least = repeats / cells;
   if (repeats % cells == 0) return;
   const auto even = (least + 1) * cells;
-  notes.add(key_of(spec, "balance"),
-            "each level is combined with each of the " + std::to_string(cells) + " " + what + " " +
-                std::to_string(least) + " or " + std::to_string(least + 1) + " times",
-            even > most_repeats ? "use fewer factors or fewer levels"
-                                : "for equal counts, set repeats = " + std::to_string(even));
+  notes.add(
+      key_of(spec, "balance"),
+      phrase("problem.uneven_cells", {plain(cells), cell_names, plain(least), plain(least + 1)}),
+      even > most_repeats ? phrase("problem.fewer_factors") : phrase("problem.even_repeats", {plain(even)}));
 }
 
 }  // namespace
@@ -265,27 +257,27 @@ std::vector<Problem> notes(const Protocol& protocol) {
     std::string all;
     for (const auto& name : spec.balance) {
       const auto levels = find_factor(protocol.factors, name)->levels.size();
-      note_uneven(notes, spec, levels, "values of \"" + name + "\"");
+      note_uneven(notes, spec, levels, phrase("problem.cell_values", {plain(name)}));
       crossed = std::min(crossed * levels, most_cells);
-      all += (all.empty() ? "\"" : name == spec.balance.back() ? " and \"" : ", \"") + name + "\"";
+      if (name != spec.balance.back()) all += (all.empty() ? "\"" : ", \"") + name + "\"";
     }
-    if (spec.balance.size() > 1) note_uneven(notes, spec, crossed, "combinations of " + all);
+    if (spec.balance.size() > 1)
+      note_uneven(notes, spec, crossed,
+                  phrase("problem.cell_combinations", {plain(all), plain(spec.balance.back())}));
     std::map<double, int> times;
     for (const double value : spec.values) ++times[value];
     for (const auto& [value, listed] : times) {
-      const auto often = listed == 2 ? "twice" : std::to_string(listed) + " times";
       if (listed > 1)
         notes.add(levels_key(spec),
-                  "the level " + number(value) + " is listed " + often + ", so it is presented " + often +
-                      " as often",
-                  "");
+                  listed == 2
+                      ? phrase("problem.level_twice", {plain(number(value))})
+                      : phrase("problem.level_times", {plain(number(value)), plain(listed), plain(listed)}));
     }
   }
-  if (protocol.timing.iti_s.high == 0) notes.add("timing.iti_s", "there is no pause between trials", "");
-  if (protocol.task.gap_s == 0.0)
-    notes.add("task.gap_s", "there is no pause between the intervals of a trial", "");
+  if (protocol.timing.iti_s.high == 0) notes.add("timing.iti_s", phrase("problem.no_iti"));
+  if (protocol.task.gap_s == 0.0) notes.add("task.gap_s", phrase("problem.no_gap"));
   if (protocol.task.foreperiod_s && protocol.task.foreperiod_s->high == 0)
-    notes.add("task.foreperiod_s", "the second scene begins at once, without a foreperiod", "");
+    notes.add("task.foreperiod_s", phrase("problem.no_foreperiod"));
   return std::move(notes.found);
 }
 

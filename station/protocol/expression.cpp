@@ -10,11 +10,13 @@
 
 namespace turnpoint::protocol {
 
+using texts::phrase, texts::plain;
+
 namespace {
 
 struct SyntaxError {
   std::size_t at;
-  std::string what, allowed;
+  texts::Phrase what, allowed;
 };
 
 // A recursive-descent parser for an expression, or for one side of a comparison. Every result is linear in
@@ -28,22 +30,24 @@ class Parser {
   Linear whole() {
     auto result = sum();
     if (peek() != '\0')
-      throw SyntaxError{at_, std::string("\"") + source_[at_] + "\" is not allowed here", form};
-    if (!std::isfinite(result.constant)) throw SyntaxError{0, "the result is not finite", form};
+      throw SyntaxError{at_, phrase("problem.not_here", {plain(std::string(1, source_[at_]))}), form()};
+    if (!std::isfinite(result.constant)) throw SyntaxError{0, phrase("problem.not_finite"), form()};
     for (const auto& [name, coefficient] : result.terms)
       if (!std::isfinite(coefficient))
-        throw SyntaxError{0, "the coefficient of " + name + " is not finite", form};
+        throw SyntaxError{0, phrase("problem.coefficient_infinite", {plain(name)}), form()};
     for (const auto& product : result.products)
-      if (!std::isfinite(product.coefficient)) throw SyntaxError{0, "a coefficient is not finite", form};
+      if (!std::isfinite(product.coefficient))
+        throw SyntaxError{0, phrase("problem.a_coefficient_infinite"), form()};
     if (factors_in(result).size() > most_factors)
-      throw SyntaxError{0, "the expression depends on more than 10 factors", form};
+      throw SyntaxError{0, phrase("problem.many_factors"), form()};
     return result;
   }
 
  private:
-  static constexpr const char* form =
-      "allowed: sums and products of factors, such as \"150 - 0.5 * spread_mm\" or \"ref * (1 + weber)\", or "
-      "abs(...) around the whole expression";
+  static texts::Phrase form() {
+    return phrase("problem.allowed_sums",
+                  {plain("\"150 - 0.5 * spread_mm\""), plain("\"ref * (1 + weber)\"")});
+  }
   static constexpr std::size_t most_factors = 10;
 
   char peek() {
@@ -70,8 +74,8 @@ class Parser {
         left = multiplied(left, signed_term(), at);
       } else if (accept('/')) {
         const auto right = signed_term();
-        if (!right.is_constant()) throw SyntaxError{at, "dividing by a factor is not allowed", form};
-        if (right.constant == 0) throw SyntaxError{at, "division by 0", form};
+        if (!right.is_constant()) throw SyntaxError{at, phrase("problem.divide_factor"), form()};
+        if (right.constant == 0) throw SyntaxError{at, phrase("problem.divide_zero"), form()};
         scale(left, 1 / right.constant, at);
       } else {
         return left;
@@ -88,7 +92,7 @@ class Parser {
     return term;
   }
   Linear signed_term_deeper() {
-    if (++depth_ > 50) throw SyntaxError{at_, "the expression is nested too deeply", form};
+    if (++depth_ > 50) throw SyntaxError{at_, phrase("problem.nested"), form()};
     auto term = signed_term();
     --depth_;
     return term;
@@ -100,23 +104,25 @@ class Parser {
     if ((c >= '0' && c <= '9') || c == '.') return number();
     if (std::isalpha(static_cast<unsigned char>(c)) || c == '_') return name();
     throw SyntaxError{
-        at_, c == '\0' ? "the expression ends too early" : std::string("\"") + c + "\" is not allowed here",
-        form};
+        at_,
+        c == '\0' ? phrase("problem.ends_early") : phrase("problem.not_here", {plain(std::string(1, c))}),
+        form()};
   }
 
   Linear parenthesised() {
     ++at_;
-    if (++depth_ > 50) throw SyntaxError{at_, "the expression is nested too deeply", form};
+    if (++depth_ > 50) throw SyntaxError{at_, phrase("problem.nested"), form()};
     auto inner = sum();
     --depth_;
-    if (!accept(')')) throw SyntaxError{at_, "a \")\" is missing", form};
+    if (!accept(')')) throw SyntaxError{at_, phrase("problem.bracket_missing"), form()};
     return inner;
   }
 
   Linear number() {
     Linear result;
     const auto [end, error] = std::from_chars(source_.data() + at_, source_.data() + end_, result.constant);
-    if (error != std::errc() || !std::isfinite(result.constant)) throw SyntaxError{at_, "not a number", form};
+    if (error != std::errc() || !std::isfinite(result.constant))
+      throw SyntaxError{at_, phrase("problem.not_number"), form()};
     at_ = static_cast<std::size_t>(end - source_.data());
     return result;
   }
@@ -134,16 +140,17 @@ class Parser {
     }
     const auto* factor = find_factor(factors_, word);
     if (!factor)
-      throw SyntaxError{begin, "unknown factor \"" + word + "\"", suggestion(word, names(factors_))};
+      throw SyntaxError{begin, phrase("problem.unknown_factor", {plain(word)}),
+                        text::suggestion(word, names(factors_))};
     if (!span(*factor) && !is_broken(*factor))
-      throw SyntaxError{begin, "the factor \"" + word + "\" has names as values, not numbers", form};
+      throw SyntaxError{begin, phrase("problem.factor_names", {plain(word)}), form()};
     Linear result;
     result.terms.emplace_back(word, 1.0);
     return result;
   }
 
   static void add(Linear& left, const Linear& right, double sign, std::size_t at) {
-    if (left.absolute || right.absolute) throw SyntaxError{at, "abs(...) is not allowed inside a sum", form};
+    if (left.absolute || right.absolute) throw SyntaxError{at, phrase("problem.abs_sum"), form()};
     left.constant += sign * right.constant;
     for (const auto& [name, coefficient] : right.terms) {
       const auto same = [&, word = name](const auto& term) { return term.first == word; };
@@ -175,8 +182,7 @@ class Parser {
   }
 
   static Linear multiplied(const Linear& left, const Linear& right, std::size_t at) {
-    if (left.absolute || right.absolute)
-      throw SyntaxError{at, "abs(...) is not allowed inside a product", form};
+    if (left.absolute || right.absolute) throw SyntaxError{at, phrase("problem.abs_product"), form()};
     Linear result = left.is_constant() ? right : left;
     if (left.is_constant() || right.is_constant()) {
       scale(result, left.is_constant() ? left.constant : right.constant, at);
@@ -188,7 +194,7 @@ class Parser {
         std::vector<std::string> both;
         std::merge(a.begin(), a.end(), b.begin(), b.end(), std::back_inserter(both));
         if (std::adjacent_find(both.begin(), both.end()) != both.end())
-          throw SyntaxError{at, "a factor is multiplied by itself", form};
+          throw SyntaxError{at, phrase("problem.factor_squared"), form()};
         if (x * y != 0) parts[both] += x * y;
       }
     result = {};
@@ -201,7 +207,7 @@ class Parser {
   }
 
   static void scale(Linear& expression, double by, std::size_t at) {
-    if (expression.absolute) throw SyntaxError{at, "abs(...) is not allowed inside a product", form};
+    if (expression.absolute) throw SyntaxError{at, phrase("problem.abs_product"), form()};
     expression.constant *= by;
     for (auto& term : expression.terms) term.second *= by;
     for (auto& product : expression.products) product.coefficient *= by;
@@ -231,7 +237,8 @@ std::optional<Linear> side(const std::string& source, std::size_t begin, std::si
     result.place = place;
     return result;
   } catch (const SyntaxError& error) {
-    findings.add(inside(place, source, error.at), "\"" + source + "\": " + error.what, error.allowed);
+    findings.add(inside(place, source, error.at),
+                 phrase("problem.of_expression", {plain(source), error.what}), error.allowed);
     return std::nullopt;
   }
 }
@@ -259,8 +266,8 @@ std::optional<Comparison> parse_comparison(const std::string& source, const text
     comparison.relation = two[0] == '<' ? Relation::less : Relation::greater;
     length = 1;
   } else {
-    findings.add(place, "\"" + source + "\" is not a comparison",
-                 "write two sides with one of < <= == >= > between them, such as \"offset_mm < 0\"");
+    findings.add(place, phrase("problem.no_comparison", {plain(source)}),
+                 phrase("problem.write_sides", {plain("< <= == >= >"), plain("\"offset_mm < 0\"")}));
     return std::nullopt;
   }
   const auto left = side(source, 0, at, place, factors, findings);
@@ -282,9 +289,8 @@ std::optional<Linear> linear_from(const text::Value& value, const std::string& k
     result->source = text::exact(value.number);
     result->place = value.place;
   } else {
-    findings.add(
-        value.place, "\"" + key + "\" is " + describe(value),
-        "write a number, or a linear expression of factors in quotes, such as \"mark_mm + offset_mm\"");
+    findings.add(value.place, phrase("problem.is", {plain(key), describe(value)}),
+                 phrase("problem.write_linear", {plain("\"mark_mm + offset_mm\"")}));
     return std::nullopt;
   }
   const auto broken = [&](const std::string& name) { return is_broken(*find_factor(factors, name)); };
@@ -293,12 +299,12 @@ std::optional<Linear> linear_from(const text::Value& value, const std::string& k
   const auto [low, high] = bounds(*result, factors);
   if (text::inside_range(low, range) && inside_range(high, range)) return result;
   if (result->is_constant())
-    findings.add(value.place, "\"" + key + "\" is " + text::number(low), "allowed: " + describe(range));
+    findings.add(value.place, phrase("problem.is", {plain(key), plain(text::number(low))}),
+                 phrase("problem.allowed", {describe(range)}));
   else
     findings.add(value.place,
-                 "\"" + key + "\" runs from " + text::number(low) + " to " + text::number(high) +
-                     " depending on the values of its factors",
-                 "allowed: " + describe(range));
+                 phrase("problem.runs", {plain(key), plain(text::number(low)), plain(text::number(high))}),
+                 phrase("problem.allowed", {describe(range)}));
   return std::nullopt;
 }
 
@@ -359,14 +365,6 @@ std::vector<std::string> names(const std::vector<Factor>& factors) {
   std::vector<std::string> list;
   for (const auto& factor : factors) list.push_back(factor.name);
   return list;
-}
-
-std::string suggestion(const std::string& word, const std::vector<std::string>& known) {
-  if (known.empty()) return "nothing of this kind is defined in this file";
-  const auto near = text::nearest(word, known);
-  std::string all;
-  for (const auto& name : known) all += (all.empty() ? "" : ", ") + name;
-  return (near.empty() ? "" : "did you mean \"" + near + "\"? ") + "known: " + all;
 }
 
 }  // namespace turnpoint::protocol

@@ -38,7 +38,4 @@ bool is_broken(const Factor& factor);
 const Factor* find_factor(const std::vector<Factor>& factors, const std::string& name);
 std::vector<std::string> names(const std::vector<Factor>& factors);
 
-/// Returns a text for messages: `did you mean "x"? known: a, b, c`.
-std::string suggestion(const std::string& word, const std::vector<std::string>& known);
-
 }  // namespace turnpoint::protocol

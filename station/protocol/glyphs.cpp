@@ -6,6 +6,8 @@
 
 namespace turnpoint::protocol {
 
+using texts::phrase, texts::plain;
+
 namespace {
 
 // True for characters that need not be looked up: fonts for any script also have the Latin letters of Europe,
@@ -48,11 +50,8 @@ class Search {
     std::string missing;
     collect(value, missing);
     if (!missing.empty())
-      found.push_back({place,
-                       "\"" + key + "\" has characters that no font on this machine can draw: " + missing,
-                       "use other characters, or install a font for them; fonts-noto-core and fonts-noto-cjk "
-                       "together cover "
-                       "almost all scripts"});
+      found.push_back({place, phrase("problem.undrawable", {plain(key), plain(missing)}),
+                       phrase("problem.other_characters")});
     for (const auto& entry : value.entries) look(key + "." + entry.key, entry.place, entry.value);
     for (const auto& item : value.items)
       for (const auto& entry : item.entries) look(key + "." + entry.key, entry.place, entry.value);

@@ -6,6 +6,8 @@
 
 namespace turnpoint::protocol {
 
+using texts::phrase, texts::plain;
+
 namespace {
 
 /// For each of the station's languages, words that occur in questions for personal data, such as a name or an
@@ -85,11 +87,8 @@ void check_privacy(AdviceList& advice, const std::string& key, const Item& item)
   auto word = identifying_word(item.question);
   if (word.empty() && std::find(ids.begin(), ids.end(), lower(item.id)) != ids.end()) word = item.id;
   if (!word.empty())
-    advice.add(
-        key + ".id",
-        "the item \"" + item.id + "\" seems to ask for what identifies a person (\"" + word + "\")",
-        "ask only for what the analysis needs, such as the age in years; keep a list of names and codes "
-        "elsewhere");
+    advice.add(key + ".id", phrase("problem.identifies", {plain(item.id), plain(word)}),
+               phrase("problem.ask_only"));
 }
 
 void check_item_words(AdviceList& advice, const std::string& key, const Item& item) {
@@ -99,8 +98,7 @@ void check_item_words(AdviceList& advice, const std::string& key, const Item& it
         const auto &a = item.choices[i].label, &b = item.choices[j].label;
         if (a.count(language) && b.count(language) && a.at(language) == b.at(language))
           advice.add(key + ".choices." + std::to_string(i) + ".label." + language,
-                     "two answers have the label \"" + a.at(language) + "\"",
-                     "give each answer a different label");
+                     phrase("problem.label_twice", {plain(a.at(language))}), phrase("problem.labels_differ"));
       }
 }
 
@@ -132,9 +130,7 @@ void check_asked(AdviceList& advice, const Interlude& screening) {
                          within(screening.audience.groups, asked.audience.groups);
         if (all && std::all_of(item.when.begin(), item.when.end(), required)) continue;
         advice.found.push_back(
-            {rule.place,
-             "\"" + rule.about + "\" is not asked of everybody, and nobody passes without an answer",
-             "ask it of everybody, with an answer for those to whom it does not apply"});
+            {rule.place, phrase("problem.not_asked", {plain(rule.about)}), phrase("problem.ask_everybody")});
       }
 }
 

@@ -5,6 +5,8 @@
 
 namespace turnpoint::protocol {
 
+using texts::phrase, texts::plain;
+
 namespace {
 
 /// How much room labels have on a button, in letters of the smallest size (2.4 mm), on the smallest screens:
@@ -43,14 +45,12 @@ Length length_of(const std::string& label) {
 void check_label(AdviceList& advice, const std::string& key, const std::string& label, std::size_t answers) {
   const auto room = room_for(answers);
   const auto length = length_of(label);
-  const auto places = [&](int letters) { return std::to_string(letters) + " letters"; };
-  const auto beside = " does not fit a screen of 7 inches, where each of " + std::to_string(answers) +
-                      " answers has room for ";
   if (length.word > room.word)
-    advice.add(key, "\"" + label + "\"" + beside + "words of " + places(room.word),
-               "shorter words, fewer answers, or a soft hyphen (\\u00AD) where a word may be divided");
+    advice.add(key, phrase("problem.label_words", {plain(label), plain(answers), plain(room.word)}),
+               phrase("problem.shorter_words"));
   else if (length.label > room.label)
-    advice.add(key, "\"" + label + "\"" + beside + places(room.label), "a shorter label, or fewer answers");
+    advice.add(key, phrase("problem.label_letters", {plain(label), plain(answers), plain(room.label)}),
+               phrase("problem.shorter_label"));
 }
 
 }  // namespace

@@ -7,6 +7,8 @@
 
 namespace turnpoint::protocol {
 
+using texts::phrase, texts::plain;
+
 namespace {
 
 /// True if the first bytes of the file are those of a PNG or JPEG file.
@@ -55,9 +57,8 @@ Protocol load(const std::string& path) {
   text::Findings findings;
   for (const auto& picture : pictures(protocol))
     if (!is_picture(picture.path))
-      findings.add(picture.place,
-                   "the picture " + picture.path + " does not exist, or is neither PNG nor JPEG",
-                   "write a path relative to the protocol file");
+      findings.add(picture.place, phrase("problem.picture", {plain(picture.path)}),
+                   phrase("problem.relative_protocol"));
   findings.throw_if_any();
   return protocol;
 }

@@ -12,44 +12,40 @@
 
 namespace turnpoint::protocol {
 
+using texts::phrase, texts::plain;
+
 namespace {
 
 void check_devices(const Protocol& protocol, const rig::Rig& rig, Survey& survey) {
-  const auto add = [&](const Place& place, const std::string& what, const std::string& allowed) {
+  const auto add = [&](const Place& place, const texts::Phrase& what, const texts::Phrase& allowed) {
     survey.problems.push_back({place, what, allowed});
   };
   const auto& task = protocol.task;
   if (task.device == Device::buttons && !rig.buttons_uri)
-    add(task.device_place, "the task needs buttons, but the rig has none",
-        "use a rig with [buttons], or set device = \"touch\"");
+    add(task.device_place, phrase("problem.needs_buttons"),
+        phrase("problem.use_buttons", {plain("device = \"touch\"")}));
   if (task.device == Device::touch && !rig.touch_uri)
-    add(task.device_place, "the task needs a touchscreen, but the rig has none",
-        "use a rig with [touch], or set device = \"buttons\"");
+    add(task.device_place, phrase("problem.needs_touch"),
+        phrase("problem.use_touch", {plain("device = \"buttons\"")}));
   if (task.device == Device::either && !rig.touch_uri && !rig.buttons_uri)
-    add(task.device_place, "the rig has neither touchscreen nor buttons",
-        "use a rig with [touch] or [buttons]");
+    add(task.device_place, phrase("problem.no_device"), phrase("problem.use_touch_buttons"));
   const bool two_lines = rig.buttons_uri && rig.buttons_uri->rfind("gpio:", 0) == 0 &&
                          rig.buttons_uri->find("third=") == std::string::npos;
   const std::size_t answers = task.choices.size(), buttons = two_lines ? 2 : 3;
   if (task.device == Device::buttons && answers > buttons && rig.buttons_uri)
-    add(task.device_place,
-        "the task has " + std::to_string(answers) + " answers, but the rig has only " +
-            std::to_string(buttons) + " buttons",
-        answers == 3 ? "add a line \"third\" to [buttons], or set device = \"touch\""
-                     : "set device = \"touch\"");
+    add(task.device_place, phrase("problem.few_buttons", {plain(answers), plain(buttons)}),
+        answers == 3 ? phrase("problem.add_third", {plain("device = \"touch\"")})
+                     : phrase("problem.set", {plain("device = \"touch\"")}));
   if (task.sound == Sound::masking_noise && !rig.noise)
-    add(task.sound_place, "the task needs masking noise, but the rig has none",
-        "use a rig with [noise] (headphones on a spare channel), or leave out \"sound\"");
+    add(task.sound_place, phrase("problem.needs_noise"), phrase("problem.use_noise"));
   const auto& signal = protocol.timing.signal;
   if (signal && signal->by == ResponseSignal::By::tone && !(rig.noise && rig.noise->signal))
-    add(signal->by_place, "the response signal is a tone, but the rig has none",
-        "use a rig with [noise] (headphones on a spare channel) and its \"signal\", or set by = \"screen\"");
+    add(signal->by_place, phrase("problem.needs_signal_tone"),
+        phrase("problem.use_noise_signal", {plain("by = \"screen\"")}));
   const auto zero = protocol.timing.response_zero;
   const bool contact = zero == ResponseZero::first_contact || zero == ResponseZero::lift_off;
   if (contact && !rig.contact_uri)
-    add(protocol.timing.response_zero_place,
-        "response times are measured from the finger's contact, but the rig cannot sense contact",
-        "use a rig with [contact], or another \"response_zero\"");
+    add(protocol.timing.response_zero_place, phrase("problem.needs_contact"), phrase("problem.use_contact"));
 }
 
 /// The shortest time from the beginning of an interval, or of its second scene, to the next event.
@@ -71,17 +67,14 @@ void check_triggers(const Protocol& protocol, const rig::Rig& rig, Survey& surve
   if (most != codes.end() && most->code > largest)
     survey.problems.push_back(
         {place,
-         "the trigger codes go up to " + std::to_string(most->code) + ", for " +
-             std::to_string(codes.size() / protocol.triggers.send.size() - 1) + " conditions",
-         "the rig's outputs give codes up to " + std::to_string(largest) +
-             "; send fewer events (\"send\" in [triggers]), or use a rig with more trigger lines"});
+         phrase("problem.codes_up_to",
+                {plain(most->code), plain(codes.size() / protocol.triggers.send.size() - 1)}),
+         phrase("problem.outputs_up_to", {plain(largest)})});
   const bool marked = rig.marker && rig.marker->kind == rig::Marker::Kind::code;
   const double code_s = marked ? rig::trigger_code_bits * rig.marker->duration_s : 0;
   if (!codes.empty() && code_s > shortest_event_s(protocol))
-    survey.problems.push_back({place,
-                               "a trigger code lasts " + text::number(1e3 * code_s, 3) +
-                                   " ms, longer than the shortest time between two events",
-                               "shorten \"duration_ms\" in [marker] of the rig"});
+    survey.problems.push_back({place, phrase("problem.code_long", {plain(text::number(1e3 * code_s, 3))}),
+                               phrase("problem.shorten_code")});
 }
 
 void check_sensing(const Protocol& protocol, const rig::Rig& rig, Survey& survey) {
@@ -89,14 +82,12 @@ void check_sensing(const Protocol& protocol, const rig::Rig& rig, Survey& survey
   if (rig::has_force_cells(rig)) {
     if (rig.capture->uri != "sim:" && !rig.capture->forces)
       survey.problems.push_back(
-          {protocol.sensing->place,
-           "the rig's force cells are not calibrated, so the finger's movement is not known",
-           "calibrate them with `turnpoint calibrate --forces`, or leave out [sensing]"});
+          {protocol.sensing->place, phrase("problem.forces_uncalibrated"),
+           phrase("problem.calibrate_forces", {plain("`turnpoint calibrate --forces`")})});
     return;
   }
   survey.problems.push_back(
-      {protocol.sensing->place, "the rig has no force cells, so the finger's movement is not known",
-       "leave out [sensing], or use a rig with \"bridges\" in [capture] or with [force_cells]"});
+      {protocol.sensing->place, phrase("problem.no_forces"), phrase("problem.leave_sensing")});
 }
 
 /// Plans each friction table's trials with the largest displacement, and reports those that the rig cannot
@@ -113,11 +104,12 @@ void check_friction_tables(const Protocol& protocol, const rig::Rig& rig, Survey
           scene::mean_displacement_m(planner, plan, {1e-3 * strokes.from_mm, 1e-3 * strokes.to_mm});
       scene::refuse_beyond_limits(
           rig, scene::scaled(planner, plan, 1e-6 * strokes.levels_um.back() / reference_m));
-    } catch (const terms::UsageError& error) {
-      survey.problems.push_back({block.place,
-                                 "friction table \"" + block.name + "\" at " +
-                                     text::number(strokes.levels_um.back()) + " um: " + error.what(),
-                                 "use smaller displacements, or another scene"});
+    } catch (const scene::Unreachable& error) {
+      survey.problems.push_back(
+          {block.place,
+           phrase("problem.friction_table",
+                  {plain(block.name), plain(text::number(strokes.levels_um.back())), error.why()}),
+           phrase("problem.smaller_displacement")});
     }
   }
 }

@@ -7,6 +7,8 @@
 
 namespace turnpoint::protocol {
 
+using texts::phrase, texts::plain;
+
 using text::Range;
 using text::TableReader;
 
@@ -28,49 +30,49 @@ void read_by(TableReader& reader, Reading& reading) {
   for (const auto& name : by) {
     const auto* factor = find_factor(factors, name);
     if (!factor)
-      reader.problem("by", "unknown factor \"" + name + "\"", suggestion(name, names(factors)));
+      reader.problem("by", phrase("problem.unknown_factor", {plain(name)}),
+                     text::suggestion(name, names(factors)));
     else if (factor->levels.empty())
-      reader.problem("by", "the factor \"" + name + "\" has a range, not levels",
-                     "use factors with \"levels\", because one curve is fitted for each level");
+      reader.problem("by", phrase("problem.factor_range", {plain(name)}),
+                     phrase("problem.levels_for_curves"));
     else if (!seen.insert(name).second)
-      reader.problem("by", "\"" + name + "\" appears twice in \"by\"", "list each factor only once");
+      reader.problem("by", phrase("problem.twice_in_list", {plain(name), plain("\"by\"")}),
+                     phrase("problem.factor_once"));
     for (const auto& spec : reading.protocol.procedures)
       if (spec.level == name)
-        reader.problem("by", "the procedure \"" + spec.name + "\" sets \"" + name + "\"",
-                       "use factors that no procedure sets, because each curve needs several levels of the "
-                       "procedure's own factor");
+        reader.problem("by", phrase("problem.procedure_sets", {plain(spec.name), plain(name)}),
+                       phrase("problem.unset_factors"));
   }
 }
 
-/// Why a value of `show` would add nothing to the report of this protocol; "" if it would add something.
-std::string without_effect(const std::string& word, const Protocol& protocol) {
+/// Why a value of `show` would add nothing to the report of this protocol; empty if it would add something.
+texts::Phrase without_effect(const std::string& word, const Protocol& protocol) {
   const auto& task = protocol.task;
   const auto level = protocol.procedures.empty() ? std::string() : protocol.procedures.front().level;
   // do not add a second message: the reader of [task] has reported a task without choices
-  if (word == "trace" || task.choices.empty()) return "";
-  if (task.kind == TaskKind::adjustment) return "an adjustment task has settings instead of answers";
-  if (word == "dprime" && task.present) return "";
-  if (judges(task)) return "ratings and numbers are neither right nor wrong";
+  if (word == "trace" || task.choices.empty()) return {};
+  if (task.kind == TaskKind::adjustment) return phrase("problem.adjustment_settings");
+  if (word == "dprime" && task.present) return {};
+  if (judges(task)) return phrase("problem.judgements_unscored");
   if ((word == "psychometric" || word == "dprime") &&
       answer_rule(protocol, level).kind == AnswerKind::category)
-    return "the level decides which answer is right, not how difficult the trial is";
+    return phrase("problem.level_decides");
   if (word == "ez" && task.choices.size() > 2 && task.kind != TaskKind::oddity)
-    return "EZ-diffusion is a model of two answers";
+    return phrase("problem.ez_two");
   const auto& by = protocol.analysis.by;
   for (const auto& spec : protocol.procedures)
     if (word == "psychometric" && spec.second &&
         std::find(by.begin(), by.end(), spec.second->level) == by.end())
-      return "the threshold depends on \"" + spec.second->level +
-             "\", so one curve does not describe all trials";
-  if (word == "psychometric") return "";
+      return phrase("problem.threshold_depends", {plain(spec.second->level)});
+  if (word == "psychometric") return {};
   if (task.kind == TaskKind::single_interval && task.correct_answer.empty())
-    return "without \"correct\" in [task], no answer is right or wrong";
-  if (word == "response-signal" && !protocol.timing.signal) return "[timing] has no \"response_signal\"";
+    return phrase("problem.without_correct");
+  if (word == "response-signal" && !protocol.timing.signal) return phrase("problem.no_signal_key");
   if (word == "dprime" && (task.kind == TaskKind::oddity || task.kind == TaskKind::same_different))
-    return "d' is not estimated for \"oddity\" and \"same-different\"";
+    return phrase("problem.no_dprime");
   if (word == "bis" && protocol.analysis.by.empty() && protocol.instructions.size() < 2)
-    return "BIS compares conditions, and there is only one";
-  return "";
+    return phrase("problem.bis_one");
+  return {};
 }
 
 void read_show(TableReader& reader, Reading& reading) {
@@ -85,13 +87,14 @@ void read_show(TableReader& reader, Reading& reading) {
     if (without_effect(word, reading.protocol).empty()) useful.push_back(word);
   for (const auto& word : *analysis.show) {
     if (std::find(kShown.begin(), kShown.end(), word) == kShown.end()) {
-      reader.problem("show", "\"show\" has \"" + word + "\"", suggestion(word, kShown));
+      reader.problem("show", phrase("problem.has_word", {plain("show"), plain(word)}),
+                     text::suggestion(word, kShown));
       continue;
     }
     const auto reason = without_effect(word, reading.protocol);
     if (!reason.empty())
-      reader.problem("show", "\"" + word + "\" would show nothing: " + reason,
-                     "allowed here: " + text::quoted_list(useful));
+      reader.problem("show", phrase("problem.shows_nothing", {plain(word), reason}),
+                     phrase("problem.allowed_here", {text::quoted_list(useful)}));
   }
 }
 

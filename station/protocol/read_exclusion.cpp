@@ -3,6 +3,8 @@
 
 namespace turnpoint::protocol {
 
+using texts::phrase, texts::plain;
+
 using text::Range;
 using text::TableReader;
 
@@ -18,15 +20,14 @@ void check_rules(TableReader& reader, const Reading& reading) {
               (std::holds_alternative<Block>(part) ? std::get<Block>(part) : std::get<Sequence>(part).block)
                   .catch_trials.has_value();
   if (rules.catch_accuracy_below && !catches)
-    reader.problem("catch_accuracy_below", "no block has catch trials",
-                   "add \"catch\" to a block, or leave this rule out");
+    reader.problem("catch_accuracy_below", phrase("problem.no_catch"), phrase("problem.add_catch"));
   const auto& task = protocol.task;
   // Do not report a task without choices again: the reader of [task] has reported that mistake.
   const bool unscored =
       judges(task) || task.kind == TaskKind::adjustment ||
       (task.kind == TaskKind::single_interval && !task.choices.empty() && task.correct_answer.empty());
   if (rules.accuracy_below && unscored)
-    reader.problem("accuracy_below", "no answer of this task is right or wrong", "leave this rule out");
+    reader.problem("accuracy_below", phrase("problem.task_unscored"), phrase("problem.leave_rule"));
 }
 
 }  // namespace
@@ -49,13 +50,11 @@ void read_exclusion(TableReader& file, Reading& reading) {
   rules.incomplete = reader.boolean("incomplete", "false");
   if (rules.median_time_below_s && rules.median_time_above_s &&
       *rules.median_time_below_s >= *rules.median_time_above_s)
-    reader.problem("median_time_below_s", "every median time would be excluded",
-                   "write a value below \"median_time_above_s\"");
+    reader.problem("median_time_below_s", phrase("problem.all_medians"), phrase("problem.below_median"));
   check_rules(reader, reading);
   reader.finish();
   if (table->entries.empty())
-    reading.findings.add(table->place, "[exclusion] has no rule",
-                         "state at least one, or leave the table out");
+    reading.findings.add(table->place, phrase("problem.exclusion_no_rule"), phrase("problem.state_one"));
 }
 
 }  // namespace turnpoint::protocol

@@ -8,6 +8,8 @@
 
 namespace turnpoint::protocol {
 
+using texts::phrase, texts::plain;
+
 using text::Range;
 using text::TableReader;
 using text::Value;
@@ -16,7 +18,7 @@ namespace {
 
 void read_what(TableReader& reader, Block& block, const Reading& reading) {
   if (reader.has("procedures"))
-    block.procedures = reader.strings("procedures", "name at least one procedure");
+    block.procedures = reader.strings("procedures", phrase("problem.name_procedure"));
   std::vector<std::string> known, whole;
   for (const auto& spec : reading.protocol.procedures) known.push_back(spec.name);
   for (const auto& name : block.procedures) {
@@ -31,20 +33,21 @@ void read_what(TableReader& reader, Block& block, const Reading& reading) {
   for (const auto& name : block.procedures) {
     // `known` is empty if no procedure could be read. Do not report every name in the list as unknown then.
     if (!known.empty() && std::find(known.begin(), known.end(), name) == known.end())
-      reader.problem("procedures", "unknown procedure \"" + name + "\"", suggestion(name, known));
+      reader.problem("procedures", phrase("problem.unknown_procedure", {plain(name)}),
+                     text::suggestion(name, known));
     if (!seen.insert(name).second)
-      reader.problem("procedures", "\"" + name + "\" appears twice", "list each procedure only once");
+      reader.problem("procedures", phrase("problem.twice", {plain(name)}), phrase("problem.procedure_once"));
   }
   const bool levels = reader.has("level") || reader.has("levels");
   reader.take("level"), reader.take("levels");
   if (reader.has("procedures") == levels)
-    return reading.findings.add(
-        reader.place(),
-        reader.title() + (levels ? " has both procedures and fixed levels" : " presents nothing"),
-        "write either \"procedures\" or both \"level\" and \"levels\"");
+    return reading.findings.add(reader.place(),
+                                levels ? phrase("problem.both_ways", {reader.title()})
+                                       : phrase("problem.presents_nothing", {reader.title()}),
+                                phrase("problem.procedures_or_levels"));
   if (!levels) return;
   const auto* factor = read_numeric_factor(reader, "level", reading);
-  const auto* list = reader.require("levels", "list the levels to present");
+  const auto* list = reader.require("levels", phrase("problem.levels_to_present"));
   reader.numbers("levels", {-1e6, 1e6});
   if (!factor || !list || list->kind != Value::Kind::array) return;
   block.level = factor->name;
@@ -63,25 +66,25 @@ void read_catch(TableReader& reader, Block& block, const Reading& reading) {
     const auto* value = inner.take(factor.name);
     if (!value) continue;
     if (!trials.factor.empty())
-      inner.problem(factor.name, "\"catch\" sets a second factor", "\"catch\" may set only one factor");
+      inner.problem(factor.name, phrase("problem.catch_second"), phrase("problem.catch_one"));
     trials.factor = factor.name;
     const auto one = [&](const Value& item) {
       const auto read = read_factor_value(item, factor, reading.findings);
       if (const auto* number = read ? std::get_if<double>(&*read) : nullptr)
         trials.levels.push_back(*number);
       else if (read)
-        inner.problem(factor.name, "\"catch\" sets a factor whose values are names", "a numeric factor");
+        inner.problem(factor.name, phrase("problem.catch_names"), phrase("problem.numeric_factor"));
     };
     if (value->kind != Value::Kind::array)
       one(*value);
     else
       for (const auto& item : value->items) one(item);
     if (value->kind == Value::Kind::array && value->items.empty())
-      inner.problem(factor.name, "\"catch\" has an empty list", "list at least one easy level");
+      inner.problem(factor.name, phrase("problem.catch_empty"), phrase("problem.one_easy"));
   }
   if (trials.factor.empty() && table->entries.size() <= 1)
-    reading.findings.add(table->place, "\"catch\" does not say what to present",
-                         "name a factor and its easy levels: { rate = 0.06, offset_mm = [-25.0, 25.0] }");
+    reading.findings.add(table->place, phrase("problem.catch_nothing"),
+                         phrase("problem.name_easy", {plain("{ rate = 0.06, offset_mm = [-25.0, 25.0] }")}));
   inner.finish();
   block.catch_trials = trials;
 }
@@ -91,7 +94,8 @@ void read_practice(TableReader& reader, Block& block, const Reading& reading) {
   const auto* table = reader.maybe_table("pass");
   if (!table) return;
   if (!block.practice)
-    reader.problem("pass", "\"pass\" is only allowed in a practice block", "set practice = true");
+    reader.problem("pass", phrase("problem.pass_practice"),
+                   phrase("problem.set", {plain("practice = true")}));
   TableReader inner(*table, reader.path("pass"), reading.findings);
   block.pass = Pass{inner.number("accuracy", {0, 1, Range::Ends::open_low}), inner.integer("retries", 0, 20)};
   inner.finish();
@@ -112,14 +116,15 @@ void read_block_keys(TableReader& reader, Block& block, const Reading& reading) 
                      : order == "alternate" ? Interleave::alternate
                                             : Interleave::none;
   if (std::set(block.procedures.begin(), block.procedures.end()).size() > 1)
-    reader.require("interleave", "allowed: \"none\" (one after the other), \"random\" or \"alternate\"");
+    reader.require("interleave", phrase("problem.allowed_interleave"));
   read_catch(reader, block, reading);
   read_break(reader, block, reading);
   if (const auto name = reader.maybe_string("instruction")) {
     std::vector<std::string> known;
     for (const auto& [key, instruction] : reading.protocol.instructions) known.push_back(key);
     if (std::find(known.begin(), known.end(), *name) == known.end())
-      reader.problem("instruction", "there is no [instructions." + *name + "]", suggestion(*name, known));
+      reader.problem("instruction", phrase("problem.no_instructions", {plain(*name)}),
+                     text::suggestion(*name, known));
     block.fixed["instruction"] = *name;
   }
 }
@@ -127,7 +132,7 @@ void read_block_keys(TableReader& reader, Block& block, const Reading& reading) 
 Block read_block(const Value& table, const Reading& reading) {
   TableReader reader(table, titled("block", table), reading.findings);
   Block block;
-  block.name = read_name(reader, "name", "choose a name, which is stored with the data");
+  block.name = read_name(reader, "name", phrase("problem.choose_name"));
   read_audience(reader, block.audience, reading);
   const auto kind = reader.word("kind", {"trials", "training", "friction-table"}, "trials");
   if (kind == "trials")
@@ -143,32 +148,30 @@ void check_instruction_levels(const Factor& factor, TableReader& reader, const R
   for (const auto& level : factor.levels) {
     const auto* name = std::get_if<std::string>(&level);
     if (name && !reading.protocol.instructions.count(*name))
-      reader.problem("over", "there is no [instructions." + *name + "]",
-                     "add such a table for each level of the factor \"instruction\"");
+      reader.problem("over", phrase("problem.no_instructions", {plain(*name)}), phrase("problem.add_tables"));
   }
 }
 
 Sequence read_sequence(const Value& table, const Reading& reading) {
   TableReader reader(table, titled("sequence", table), reading.findings);
   Sequence sequence;
-  sequence.name = read_name(reader, "name", "choose a name, which is stored with the data");
+  sequence.name = read_name(reader, "name", phrase("problem.choose_name"));
   reader.word("design", {"latin-square"});
-  sequence.over = reader.string("over", "name the factor that differs between the blocks");
+  sequence.over = reader.string("over", phrase("problem.name_over"));
   const auto& factors = reading.protocol.factors;
   const auto* factor = find_factor(factors, sequence.over);
   if (!sequence.over.empty() && !factor)
-    reader.problem("over", "unknown factor \"" + sequence.over + "\"",
-                   suggestion(sequence.over, names(factors)));
+    reader.problem("over", phrase("problem.unknown_factor", {plain(sequence.over)}),
+                   text::suggestion(sequence.over, names(factors)));
   if (factor && factor->levels.size() < 2)
-    reader.problem("over",
-                   "the factor \"" + sequence.over + "\" does not have several levels to put in order",
-                   "use a factor with two or more \"levels\"");
+    reader.problem("over", phrase("problem.few_levels", {plain(sequence.over)}),
+                   phrase("problem.two_levels"));
   if (factor) check_instruction_levels(*factor, reader, reading);
   sequence.cycles = reader.integer("cycles", 1, 100, 1);
   sequence.mirror = reader.boolean("mirror", "false");
   sequence.one_per_session = reader.word("each_session", {"all", "one"}, "all") == "one";
   if (const auto* block =
-          reader.table("block", "describe what each block presents: { procedures = [\"levels\"] }")) {
+          reader.table("block", phrase("problem.describe_block", {plain("{ procedures = [\"levels\"] }")}))) {
     TableReader inner(*block, reader.path("block"), reading.findings);
     read_block_keys(inner, sequence.block, reading);
     inner.finish();
@@ -212,13 +215,11 @@ void read_plan(TableReader& file, Reading& reading) {
       reading.protocol.plan.emplace_back(std::move(block));
     }
     if (!name.empty() && !seen.insert(name).second)
-      reading.findings.add(table->find("name")->place,
-                           "there is already a block or sequence named \"" + name + "\"",
-                           "each block and sequence needs a different name");
+      reading.findings.add(table->find("name")->place, phrase("problem.block_again", {plain(name)}),
+                           phrase("problem.blocks_differ"));
   }
   if (tables.empty() && !file.has("block") && !file.has("sequence"))
-    reading.findings.add(file.place(), "the file has no [[block]] and no [[sequence]]",
-                         "add at least one of them");
+    reading.findings.add(file.place(), phrase("problem.no_blocks"), phrase("problem.add_one"));
 }
 
 }  // namespace turnpoint::protocol

@@ -10,6 +10,8 @@
 
 namespace turnpoint::protocol {
 
+using texts::phrase, texts::plain;
+
 using procedure::Kind;
 using procedure::Spec;
 using text::Range;
@@ -44,13 +46,13 @@ void check_balance(TableReader& reader, const Spec& spec, const Reading& reading
   for (const auto& name : spec.balance) {
     const auto* factor = find_factor(factors, name);
     if (!factor)
-      reader.problem("balance", "unknown factor \"" + name + "\"", suggestion(name, names(factors)));
+      reader.problem("balance", phrase("problem.unknown_factor", {plain(name)}),
+                     text::suggestion(name, names(factors)));
     else if (factor->levels.empty())
-      reader.problem("balance", "the factor \"" + name + "\" has a range, not levels",
-                     "use a factor with \"levels\"");
+      reader.problem("balance", phrase("problem.factor_range", {plain(name)}),
+                     phrase("problem.factor_with_levels"));
     if (name == spec.level || !seen.insert(name).second)
-      reader.problem("balance", "\"" + name + "\" is set twice",
-                     "list each factor only once, and not the factor that the procedure sets");
+      reader.problem("balance", phrase("problem.set_twice", {plain(name)}), phrase("problem.once_and_not"));
   }
 }
 
@@ -58,8 +60,8 @@ void check_tracks(TableReader& reader, const Spec& spec, const Reading& reading)
   std::vector<std::string> ids;
   for (const auto& choice : reading.protocol.task.choices) ids.push_back(choice.id);
   if (!spec.tracks.empty() && !ids.empty() && std::find(ids.begin(), ids.end(), spec.tracks) == ids.end())
-    reader.problem("tracks", "\"" + spec.tracks + "\" is not a choice of the task",
-                   suggestion(spec.tracks, ids));
+    reader.problem("tracks", phrase("problem.no_choice", {plain(spec.tracks)}),
+                   text::suggestion(spec.tracks, ids));
 }
 
 // Checks that every level that the procedure can present is a value of its factor.
@@ -70,10 +72,11 @@ void check_levels(TableReader& reader, const Spec& spec, const Factor& factor) {
                             ? level >= factor.range->first && level <= factor.range->second
                             : std::find(levels.begin(), levels.end(), FactorValue(level)) != levels.end();
     if (inside || !reader.has(key)) return true;
-    reader.problem(key, "\"" + std::string(key) + "\" has " + text::number(level),
-                   factor.range ? "the range of \"" + factor.name + "\" is " +
-                                      describe(Range{factor.range->first, factor.range->second})
-                                : "a level of \"" + factor.name + "\"");
+    reader.problem(key, phrase("problem.has", {plain(std::string(key)), plain(text::number(level))}),
+                   factor.range ? phrase("problem.range_of",
+                                         {plain(factor.name),
+                                          describe(Range{factor.range->first, factor.range->second})})
+                                : phrase("problem.level_of", {plain(factor.name)}));
     return false;
   };
   const auto check_all = [&](const char* key, const std::vector<double>& levels) {
@@ -108,7 +111,7 @@ void check_spec(const Value& table, const Spec& spec, text::Findings& findings) 
       at = &entry->value;
       rest = dot == std::string::npos ? "" : rest.substr(dot + 1);
     }
-    findings.add(at->place, "procedure \"" + spec.name + "\": \"" + fault.key + "\": " + fault.what,
+    findings.add(at->place, phrase("problem.of_key", {plain(spec.name), plain(fault.key), fault.what}),
                  fault.allowed);
   }
 }
@@ -126,10 +129,12 @@ void check_second(const Value& table, const Spec& spec, const Reading& reading, 
                             ? value >= factor->range->first && value <= factor->range->second
                             : std::find(levels.begin(), levels.end(), FactorValue(value)) != levels.end();
     if (inside) continue;
-    return reader.problem("stimuli", "\"stimuli\" has " + text::number(value),
-                          factor->range ? "the range of \"" + factor->name + "\" is " +
-                                              describe(Range{factor->range->first, factor->range->second})
-                                        : "a level of \"" + factor->name + "\"");
+    return reader.problem(
+        "stimuli", phrase("problem.has", {plain("stimuli"), plain(text::number(value))}),
+        factor->range
+            ? phrase("problem.range_of",
+                     {plain(factor->name), describe(Range{factor->range->first, factor->range->second})})
+            : phrase("problem.level_of", {plain(factor->name)}));
   }
 }
 
@@ -148,9 +153,9 @@ void read_with(TableReader& reader, Spec& spec, const Reading& reading, text::Fi
                        std::find(spec.balance.begin(), spec.balance.end(), entry.key) != spec.balance.end();
     if (!factor || twice)
       findings.add(entry.place,
-                   twice ? "\"" + entry.key + "\" is set twice" : "unknown factor \"" + entry.key + "\"",
-                   twice ? "set factors that the procedure does not set otherwise"
-                         : suggestion(entry.key, names(factors)));
+                   twice ? phrase("problem.set_twice", {plain(entry.key)})
+                         : phrase("problem.unknown_factor", {plain(entry.key)}),
+                   twice ? phrase("problem.otherwise_unset") : text::suggestion(entry.key, names(factors)));
     else if (const auto value = read_factor_value(entry.value, *factor, findings))
       spec.with[entry.key] = *value;
   }
@@ -166,11 +171,8 @@ std::vector<Spec> family_of(const Value& table, const Spec& spec, const Reading&
                            : nullptr;
   const bool twice = factor && (chooses(spec, factor->name) || spec.with.count(factor->name) > 0);
   if (!factor || factor->levels.empty() || twice) {
-    findings.add(key->value.place,
-                 "\"for_each\" is " + describe(key->value) +
-                     ", which is not a factor with levels that the "
-                     "procedure does not set",
-                 "name a factor with \"levels\"");
+    findings.add(key->value.place, phrase("problem.for_each_is", {describe(key->value)}),
+                 phrase("problem.name_with_levels"));
     return {};
   }
   std::vector<Spec> family;
@@ -200,8 +202,8 @@ void add_family(const Value& table, const std::string& name, std::vector<Spec> f
       const auto same = [&](const Spec& other) { return other.name == one.name; };
       if (std::any_of(procedures.begin(), procedures.end(), same))
         return reading.findings.add(table.find("for_each")->value.place,
-                                    "\"for_each\" makes a second procedure named \"" + one.name + "\"",
-                                    "choose another name for the table or for the level");
+                                    phrase("problem.for_each_again", {plain(one.name)}),
+                                    phrase("problem.other_name"));
       reading.families[name].push_back(one.name);
     }
     reading.protocol.procedures.push_back(std::move(one));
@@ -211,7 +213,7 @@ void add_family(const Value& table, const std::string& name, std::vector<Spec> f
 Spec read_procedure(const Value& table, const Reading& reading, text::Findings& findings) {
   TableReader reader(table, titled("procedure", table), findings);
   Spec spec;
-  spec.name = read_name(reader, "name", "choose a name, which is stored with the data");
+  spec.name = read_name(reader, "name", phrase("problem.choose_name"));
   reader.take("copy");
   spec.kind =
       procedure::parse_kind(reader.word("kind", procedure::kind_names())).value_or(Kind::constant_stimuli);
@@ -243,9 +245,8 @@ Value with_copies(const Value& table, const std::map<std::string, Value>& above,
   for (const auto& [name, value] : above) known.push_back(name);
   const auto found = copy->value.kind == Value::Kind::string ? above.find(copy->value.string) : above.end();
   if (found != above.end()) return overlay(found->second, table);
-  findings.add(copy->value.place,
-               "\"copy\" is " + describe(copy->value) + ", which is not a procedure above this one",
-               suggestion(copy->value.string, known));
+  findings.add(copy->value.place, phrase("problem.copy_is", {describe(copy->value)}),
+               text::suggestion(copy->value.string, known));
   return table;
 }
 
@@ -270,8 +271,8 @@ void read_procedures(TableReader& file, Reading& reading) {
     auto& defaults = reading.findings.defaults_used;
     defaults.insert(defaults.end(), found.defaults_used.begin(), found.defaults_used.end());
     if (!name.empty() && !above.emplace(name, whole).second)
-      reading.findings.add(table->find("name")->place, "there is already a procedure named \"" + name + "\"",
-                           "each procedure needs a different name");
+      reading.findings.add(table->find("name")->place, phrase("problem.procedure_again", {plain(name)}),
+                           phrase("problem.procedures_differ"));
     else if (!name.empty())
       add_family(*table, name, std::move(family), reading);
   }

@@ -9,6 +9,8 @@
 
 namespace turnpoint::protocol {
 
+using texts::phrase, texts::plain;
+
 using text::Findings;
 using text::Range;
 using text::TableReader;
@@ -32,9 +34,8 @@ std::optional<Linear> read_linear(TableReader& reader, const std::string& key, c
 
 Edge read_edge(TableReader& reader) {
   Edge edge;
-  const auto* value =
-      reader.require("edge", "say which edge \"boundary_mm\" means: " + text::quoted_list(edge_names) +
-                                 ", or { friction = 0.7 }");
+  const auto* value = reader.require(
+      "edge", phrase("problem.which_edge", {text::quoted_list(edge_names), plain("{ friction = 0.7 }")}));
   if (!value) return edge;
   if (value->kind != Value::Kind::table) {
     edge.name = reader.maybe_word("edge", edge_names).value_or("");
@@ -54,13 +55,14 @@ SceneTone read_tone(const Value& table, const std::string& name, Findings& findi
   tone.frequency_Hz = read_linear(reader, "frequency_Hz", {0, 1e6, Ends::open_low, "Hz"}, reading);
   if (reader.has("boundary_mm") == reader.has("frequency_Hz"))
     findings.add(table.place,
-                 "a tone of " + name + " has " + (reader.has("boundary_mm") ? "two places" : "no place"),
-                 "give either \"boundary_mm\" or \"frequency_Hz\"");
+                 reader.has("boundary_mm") ? phrase("problem.tone_two_places", {plain(name)})
+                                           : phrase("problem.tone_no_place", {plain(name)}),
+                 phrase("problem.boundary_or_frequency"));
   if (reader.has("boundary_mm"))
     tone.edge = read_edge(reader);
   else if (reader.take("edge"))
-    reader.problem("edge", "\"edge\" needs \"boundary_mm\"", "a tone placed by its frequency has no edge");
-  reader.require("displacement_um", "give the peak displacement at the tone's last maximum, in um");
+    reader.problem("edge", phrase("problem.edge_needs"), phrase("problem.no_edge"));
+  reader.require("displacement_um", phrase("problem.give_peak"));
   if (const auto displacement = read_linear(reader, "displacement_um", displacement_um, reading))
     tone.displacement_um = *displacement;
   tone.phase_deg = reader.maybe_number("phase_deg", {-360, 360, Ends::closed, "degrees"}).value_or(0);
@@ -72,7 +74,7 @@ Zone read_zone(const Value& table, const std::string& name, Findings& findings, 
   TableReader reader(table, name, findings);
   Zone zone;
   zone.from_mm = reader.number("from_mm", {0, 1e5, Ends::closed, "mm"});
-  reader.require("friction", "give the mean relative friction inside the zone, above 0 and below 1");
+  reader.require("friction", phrase("problem.give_zone_friction"));
   zone.friction = read_linear(reader, "friction", relative_friction, reading);
   zone.tones = reader.integer("tones", 1, 16);
   reader.finish();
@@ -93,32 +95,25 @@ Tolerance read_tolerance(const Value& table, const std::string& name, Findings& 
 void check_finger(TableReader& reader, const Scene& scene) {
   const bool wanted = reader.has("displacement_under_finger_um");
   if (wanted && !reader.has("finger_mm"))
-    reader.problem("displacement_under_finger_um", "\"displacement_under_finger_um\" needs \"finger_mm\"",
-                   "say where the finger is, in mm from the wide end");
+    reader.problem("displacement_under_finger_um", phrase("problem.finger_needed"),
+                   phrase("problem.where_finger"));
   if (!wanted && reader.has("finger_mm"))
-    reader.problem("finger_mm", "\"finger_mm\" needs \"displacement_under_finger_um\"",
-                   "leave it out: \"displacement_um\" and \"friction\" are those of the free surface");
+    reader.problem("finger_mm", phrase("problem.finger_unneeded"), phrase("problem.free_surface"));
   if (wanted && scene.edge.friction)
-    reader.problem("edge",
-                   "an edge that friction defines is not allowed with \"displacement_under_finger_um\"",
-                   "use an edge by name, or \"displacement_um\"");
+    reader.problem("edge", phrase("problem.friction_edge"), phrase("problem.edge_by_name"));
 }
 
 // Checks that a scene is given in exactly one of the three possible forms.
 void check_form(TableReader& reader, const Scene& scene, Findings& findings) {
-  const auto form =
-      "use one of three forms: one boundary (\"boundary_mm\", \"edge\" and \"displacement_um\" or "
-      "\"friction\"), a \"zone\" with "
-      "\"boundary_mm\" and \"edge\", or explicit \"tones\"";
+  const auto form = phrase("problem.three_forms");
   const bool tones = reader.has("tones"), zone = reader.has("zone"), boundary = reader.has("boundary_mm");
-  if (!tones && !boundary) return findings.add(reader.place(), reader.title() + " presents nothing", form);
+  if (!tones && !boundary)
+    return findings.add(reader.place(), phrase("problem.presents_nothing", {reader.title()}), form);
   if (tones) {
     for (const auto* key : {"boundary_mm", "edge", "zone", "displacement_um", "friction",
                             "displacement_under_finger_um", "finger_mm", "friction_contrast_dB"})
       if (reader.has(key))
-        reader.problem(
-            key, std::string("\"") + key + "\" is not allowed together with \"tones\" in " + reader.title(),
-            form);
+        reader.problem(key, phrase("problem.not_with_tones", {plain(key), reader.title()}), form);
     return;
   }
   std::vector<std::string> stated;
@@ -127,26 +122,24 @@ void check_form(TableReader& reader, const Scene& scene, Findings& findings) {
   if (zone) {
     for (const auto* key : {"displacement_um", "friction", "displacement_under_finger_um", "finger_mm"})
       if (reader.has(key))
-        reader.problem(key, std::string("\"") + key + "\" is not allowed together with \"zone\"",
-                       "set \"friction\" inside \"zone\" instead");
+        reader.problem(key, phrase("problem.not_together", {plain(key), plain("zone")}),
+                       phrase("problem.friction_in_zone"));
   } else if (stated.size() != 1) {
-    const auto problem = stated.size() > 1 ? " has both \"" + stated[0] + "\" and \"" + stated[1] + "\""
-                                           : " does not say how strong it is";
-    findings.add(stated.size() > 1 ? reader.place(stated[1]) : reader.place(), reader.title() + problem,
-                 "give exactly one of \"displacement_um\" (at the last maximum), \"friction\" and "
-                 "\"displacement_under_finger_um\"");
+    findings.add(stated.size() > 1 ? reader.place(stated[1]) : reader.place(),
+                 stated.size() > 1
+                     ? phrase("problem.has_both", {reader.title(), plain(stated[0]), plain(stated[1])})
+                     : phrase("problem.no_strength", {reader.title()}),
+                 phrase("problem.one_strength"));
   } else {
     check_finger(reader, scene);
   }
   if (scene.friction_contrast_dB && !zone && !reader.has("friction"))
-    reader.problem("friction_contrast_dB", "\"friction_contrast_dB\" needs a base that states friction",
-                   "use a base with \"friction\" or with a \"zone\"");
+    reader.problem("friction_contrast_dB", phrase("problem.contrast_needs"), phrase("problem.base_with"));
   if (scene.zone && scene.boundary_mm && scene.zone->from_mm) {
     const auto least = bounds(*scene.boundary_mm, {}).first;
     if (scene.boundary_mm->is_constant() && *scene.zone->from_mm >= least)
-      reader.problem("zone",
-                     "the zone begins at " + text::number(*scene.zone->from_mm) + " mm, beyond its boundary",
-                     "\"from_mm\" must be less than \"boundary_mm\"");
+      reader.problem("zone", phrase("problem.zone_beyond", {plain(text::number(*scene.zone->from_mm))}),
+                     phrase("problem.from_less"));
   }
 }
 
@@ -162,7 +155,7 @@ Scene read_scene(const Value& table, const std::string& name, const Value& own, 
   if (reader.has("boundary_mm"))
     scene.edge = read_edge(reader);
   else if (reader.take("edge"))
-    reader.problem("edge", "\"edge\" needs \"boundary_mm\"", "give the boundary to which the edge belongs");
+    reader.problem("edge", phrase("problem.edge_needs"), phrase("problem.give_boundary"));
   scene.displacement_um = read_linear(reader, "displacement_um", displacement_um, reading);
   scene.friction = read_linear(reader, "friction", relative_friction, reading);
   scene.displacement_under_finger_um =
@@ -171,14 +164,13 @@ Scene read_scene(const Value& table, const std::string& name, const Value& own, 
   for (const auto* tone : reader.tables("tones"))
     scene.tones.push_back(read_tone(*tone, path + ".tones", findings, reading));
   if (reader.has("tones") && scene.tones.empty())
-    reader.problem("tones", "\"tones\" has no tone", "add at least one tone: { ... }");
+    reader.problem("tones", phrase("problem.no_tone"), phrase("problem.add_tone", {plain("{ ... }")}));
   if (const auto* zone = reader.maybe_table("zone"))
     scene.zone = read_zone(*zone, path + ".zone", findings, reading);
   scene.friction_contrast_dB =
       read_linear(reader, "friction_contrast_dB", {-infinity, 0, Ends::open_high, "dB"}, reading);
   if (own.find("friction_contrast_dB") && scene.base.empty())
-    reader.problem("friction_contrast_dB", "\"friction_contrast_dB\" needs a \"base\"",
-                   "name the scene whose friction is to be lowered");
+    reader.problem("friction_contrast_dB", phrase("problem.contrast_base"), phrase("problem.name_lowered"));
   scene.rove_dB = reader.number("rove_dB", {0, 40, Ends::closed, "dB"}, 0);
   scene.ramp_ms = reader.number("ramp_ms", {1, 2000, Ends::closed, "ms"}, 50);
   if (const auto* tolerance = reader.maybe_table("tolerance"))
@@ -235,13 +227,11 @@ class Resolver {
       const auto* below = base_of(name, base->value);
       if (!below) return open_.erase(name), nullptr;
       if (own.find("friction_contrast_dB") && below->find("friction_contrast_dB"))
-        reading_.findings.add(base->value.place,
-                              "the base \"" + base->value.string + "\" has a friction contrast itself",
-                              "use a base without \"friction_contrast_dB\"");
+        reading_.findings.add(base->value.place, phrase("problem.base_contrast", {plain(base->value.string)}),
+                              phrase("problem.base_without"));
       if (own.find("friction_contrast_dB") && (own.find("zone") || own.find("friction")))
-        reading_.findings.add(own.find("friction_contrast_dB")->place,
-                              "the scene has both a contrast to its base and its own friction",
-                              "remove one of the two");
+        reading_.findings.add(own.find("friction_contrast_dB")->place, phrase("problem.contrast_and_own"),
+                              phrase("problem.remove_one"));
       table = laid_over(*below, own);
     }
     open_.erase(name);
@@ -255,14 +245,13 @@ class Resolver {
     for (const auto& entry : scenes_.entries)
       if (entry.key != name) others.push_back(entry.key);
     if (open_.count(base.string)) {
-      reading_.findings.add(base.place, "the bases of \"" + name + "\" run in a circle",
-                            "use a base that does not depend on this scene");
+      reading_.findings.add(base.place, phrase("problem.circle", {plain(name)}), phrase("problem.no_circle"));
       return nullptr;
     }
     const auto* found = scenes_.find(base.string);
     if (found && found->value.kind == Value::Kind::table) return resolve(base.string);
-    reading_.findings.add(base.place, "unknown scene \"" + base.string + "\"",
-                          suggestion(base.string, others));
+    reading_.findings.add(base.place, phrase("problem.unknown_scene", {plain(base.string)}),
+                          text::suggestion(base.string, others));
     return nullptr;
   }
 
@@ -289,7 +278,7 @@ class Resolver {
 }  // namespace
 
 void read_scenes(TableReader& file, Reading& reading) {
-  const auto* scenes = file.table("scene", "add at least one table [scene.NAME]");
+  const auto* scenes = file.table("scene", phrase("problem.add_scene"));
   if (!scenes) return;
   for (const auto& entry : scenes->entries) reading.declared_scenes.push_back(entry.key);
   Resolver resolver(*scenes, reading);
@@ -297,8 +286,8 @@ void read_scenes(TableReader& file, Reading& reading) {
     if (entry.value.kind == Value::Kind::table)
       resolver.resolve(entry.key);
     else
-      reading.findings.add(entry.place, "\"scene." + entry.key + "\" is " + describe(entry.value),
-                           "write a table [scene.NAME]");
+      reading.findings.add(entry.place, phrase("problem.scene_is", {plain(entry.key), describe(entry.value)}),
+                           phrase("problem.write_table", {plain("[scene.NAME]")}));
   }
 }
 

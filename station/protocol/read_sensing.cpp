@@ -2,6 +2,8 @@
 
 namespace turnpoint::protocol {
 
+using texts::phrase, texts::plain;
+
 using text::Range;
 using text::TableReader;
 
@@ -10,8 +12,8 @@ void read_sensing(TableReader& file, Reading& reading) {
   if (!table) {
     for (const auto& part : reading.protocol.plan)
       if (const auto* block = std::get_if<Block>(&part); block && block->kind != BlockKind::trials)
-        reading.findings.add(block->place, "the block \"" + block->name + "\" needs a [sensing] table",
-                             "add [sensing] with the movement to make");
+        reading.findings.add(block->place, phrase("problem.needs_sensing", {plain(block->name)}),
+                             phrase("problem.add_sensing"));
     return;
   }
   TableReader reader(*table, "sensing", reading.findings);
@@ -25,16 +27,18 @@ void read_sensing(TableReader& file, Reading& reading) {
   if (outside == "repeat")
     sensing.repeats = reader.integer("repeats", 1, 10, 2);
   else if (reader.maybe_integer("repeats", 1, 10))
-    reader.problem("repeats", "\"repeats\" has no effect", "outside = \"repeat\", or leave \"repeats\" out");
+    reader.problem("repeats", phrase("problem.no_effect", {plain("repeats")}),
+                   phrase("problem.or_leave_repeats", {plain("outside = \"repeat\"")}));
   if (reading.protocol.task.kind == TaskKind::adjustment && sensing.repeats > 0)
-    reader.problem("outside", "an adjustment is not presented again", "outside = \"mark\"");
+    reader.problem("outside", phrase("problem.adjustment_again"), plain("outside = \"mark\""));
   sensing.guidance = reader.boolean("guidance", "false");
   if (sensing.guidance && !sensing.normal_N && !sensing.speed_mm_s)
-    reader.problem("guidance", "there is nothing to guide to", "add \"normal_N\" or \"speed_mm_s\"");
+    reader.problem("guidance", phrase("problem.no_guide"), phrase("problem.add_guide"));
   if (sensing.guidance)
     sensing.live_guidance = reader.boolean("live_guidance", "false");
   else if (reader.take("live_guidance"))
-    reader.problem("live_guidance", "\"live_guidance\" has no effect", "guidance = true");
+    reader.problem("live_guidance", phrase("problem.no_effect", {plain("live_guidance")}),
+                   plain("guidance = true"));
   reader.finish();
 }
 

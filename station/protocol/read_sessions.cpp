@@ -10,6 +10,8 @@
 
 namespace turnpoint::protocol {
 
+using texts::phrase, texts::plain;
+
 using text::TableReader;
 using text::Value;
 
@@ -30,22 +32,25 @@ void read_session_numbers(TableReader& reader, Audience& audience, const Reading
   if (!list) return;
   const auto& plan = reading.protocol.sessions;
   if (!plan)
-    return reader.problem("sessions", "\"sessions\" is set, but the file has no [sessions]",
-                          "add [sessions] with the number of sessions: count = 2");
+    return reader.problem("sessions", phrase("problem.sessions_unplanned"),
+                          phrase("problem.add_session_count", {plain("count = 2")}));
   for (const double number : reader.numbers("sessions", {1, static_cast<double>(plan->count)})) {
     const int whole = static_cast<int>(number);
     const auto& before = audience.sessions;
     if (whole != number || std::find(before.begin(), before.end(), whole) != before.end())
-      reader.problem("sessions", "\"sessions\" must have whole numbers, each only once",
-                     "such as [1, " + std::to_string(plan->count) + "]");
+      reader.problem("sessions", phrase("problem.sessions_whole"),
+                     phrase("problem.such_as", {plain("[1, " + std::to_string(plan->count) + "]")}));
     audience.sessions.push_back(whole);
   }
 }
 
 /// Returns the session and the group of a visit in words, for messages.
-std::string visit_words(const Protocol& protocol, const Visit& visit) {
-  const auto words = in_words(protocol, visit);
-  return words.empty() ? "the session" : words;
+texts::Phrase visit_words(const Protocol& protocol, const Visit& visit) {
+  const auto session = phrase("check.session", {plain(visit.session)});
+  const auto name = group_name(protocol, visit);
+  if (name.empty()) return protocol.sessions ? session : phrase("problem.the_session");
+  const auto group = phrase("check.group", {plain(name)});
+  return protocol.sessions ? texts::Phrase{"", "", {session, plain(", "), group}} : group;
 }
 
 /// Reports a planned session in which a group has no block.
@@ -56,8 +61,7 @@ void check_blocks(const Reading& reading) {
     if (protocol.plan.empty() || std::any_of(protocol.plan.begin(), protocol.plan.end(), mine)) continue;
     return reading.findings.add(
         protocol.sessions ? protocol.sessions->place : block_of(protocol.plan.front()).place,
-        visit_words(protocol, visit) + " has no block",
-        "give at least one block or sequence to each session of each group");
+        phrase("problem.no_block", {visit_words(protocol, visit)}), phrase("problem.give_block"));
   }
 }
 
@@ -71,16 +75,16 @@ void check_sequences(const Reading& reading) {
     if (!factor) continue;
     const auto place = reading.places.of("sequence." + sequence->name + ".over");
     if (is_group(*factor))
-      reading.findings.add(place, "each participant has only one level of \"" + factor->name + "\"",
-                           "use a factor whose \"draw\" is not \"per-participant\"");
+      reading.findings.add(place, phrase("problem.one_level_each", {plain(factor->name)}),
+                           phrase("problem.not_per_participant"));
     if (!sequence->one_per_session) continue;
     const auto& listed = sequence->block.audience.sessions;
     const auto sessions = listed.empty() ? session_count(protocol) : static_cast<int>(listed.size());
     if (sessions != static_cast<int>(factor->levels.size()))
       reading.findings.add(reading.places.of("sequence." + sequence->name + ".each_session"),
-                           "\"" + factor->name + "\" has " + std::to_string(factor->levels.size()) +
-                               " levels, but the sequence has " + std::to_string(sessions) + " sessions",
-                           "there must be one session for each level");
+                           phrase("problem.levels_and_sessions",
+                                  {plain(factor->name), plain(factor->levels.size()), plain(sessions)}),
+                           phrase("problem.session_each"));
   }
 }
 
@@ -92,15 +96,15 @@ void check_group_factors(const Reading& reading) {
     if (!is_group(factor)) continue;
     for (const auto& source : sources_of(protocol))
       if (source.sets.count(factor.name) > 0 && source.spec)
-        return reading.findings.add(source.block->place,
-                                    "in block \"" + source.block->name + "\", " + source.what + " sets \"" +
-                                        factor.name + "\", of which each participant has only one level",
-                                    "let nothing else set a factor that is drawn per participant");
+        return reading.findings.add(
+            source.block->place,
+            phrase("problem.sets_group", {plain(source.block->name), source.what, plain(factor.name)}),
+            phrase("problem.nothing_sets"));
     if (factor.name != "instruction") continue;
     for (const auto& level : factor.levels)
       if (const auto* name = std::get_if<std::string>(&level); !name || !protocol.instructions.count(*name))
-        return reading.findings.add(factor.place, "not every level of \"instruction\" has a table",
-                                    "add [instructions.NAME] for each level of the factor \"instruction\"");
+        return reading.findings.add(factor.place, phrase("problem.instruction_tables"),
+                                    phrase("problem.add_instructions"));
   }
 }
 
@@ -118,10 +122,9 @@ void check_rules(const Reading& reading) {
     const auto* needed = audience_of(rule.about.substr(0, rule.about.find('.')));
     for (const auto& visit : different_visits(protocol))
       if (needed && is_for(interlude.audience, protocol, visit) && !is_for(*needed, protocol, visit))
-        return reading.findings.add(rule.place,
-                                    "\"" + rule.source + "\" is about something that " +
-                                        visit_words(protocol, visit) + " does not have",
-                                    "give both the same \"sessions\" and \"groups\"");
+        return reading.findings.add(
+            rule.place, phrase("problem.not_in_session", {plain(rule.source), visit_words(protocol, visit)}),
+            phrase("problem.same_sessions"));
   };
   for (const auto& interlude : protocol.interludes) {
     for (const auto& rule : interlude.pass) check(interlude, rule);
@@ -140,13 +143,13 @@ void check_days_of(const procedure::Spec& spec, const Protocol& protocol, const 
       if (std::find(block.procedures.begin(), block.procedures.end(), spec.name) == block.procedures.end())
         continue;
       if (block.practice)
-        return report("block \"" + block.name + "\" is practice", "use it in a block that is no practice");
+        return report(phrase("problem.block_practice", {plain(block.name)}),
+                      phrase("problem.use_no_practice"));
       if (!block.trials)
-        return report("block \"" + block.name + "\" does not say how many trials a day has",
-                      "add \"trials\" to the block");
+        return report(phrase("problem.day_trials", {plain(block.name)}), phrase("problem.add_trials"));
       if (++blocks > 1)
-        return report(visit_words(protocol, visit) + " has two blocks with it",
-                      "use it in one block of a session");
+        return report(phrase("problem.two_blocks", {visit_words(protocol, visit)}),
+                      phrase("problem.use_one_block"));
     }
   }
 }
@@ -156,16 +159,15 @@ void check_continuing(const Reading& reading) {
   const auto& protocol = reading.protocol;
   for (const auto& spec : protocol.procedures) {
     if (!spec.continues) continue;
-    const auto report = [&](const std::string& what, const std::string& allowed) {
+    const auto report = [&](const texts::Phrase& what, const texts::Phrase& allowed) {
       reading.findings.add(reading.places.of(key_of(spec, "continues")),
-                           "procedure \"" + spec.name + "\" continues on another day, but " + what, allowed);
+                           phrase("problem.continues", {plain(spec.name), what}), allowed);
     };
     const auto choice = procedure::description(spec.kind).choice;
     if (choice != procedure::Choice::track && choice != procedure::Choice::posterior)
-      report("this kind of procedure does not follow from its answers alone",
-             "use a staircase, QUEST+ or another procedure with a posterior");
+      report(phrase("problem.not_from_answers"), phrase("problem.use_staircase"));
     else if (!protocol.sessions)
-      report("the file plans no sessions", "add [sessions]");
+      report(phrase("problem.no_sessions"), phrase("problem.add_sessions"));
     else
       check_days_of(spec, protocol, report);
   }
@@ -176,7 +178,8 @@ void check_continuing(const Reading& reading) {
 void read_sessions(TableReader& file, Reading& reading) {
   if (group_count(reading.protocol) > most_groups)
     reading.findings.add(reading.protocol.factors.front().place,
-                         std::to_string(group_count(reading.protocol)) + " groups", "at most 100");
+                         phrase("problem.groups", {plain(group_count(reading.protocol))}),
+                         phrase("problem.at_most", {plain("100")}));
   const auto* table = file.maybe_table("sessions");
   if (!table) return;
   TableReader reader(*table, "sessions", reading.findings);
@@ -198,14 +201,13 @@ void read_audience(TableReader& reader, Audience& audience, const Reading& readi
   for (const auto& name : audience.groups) {
     const auto count = std::count(known.begin(), known.end(), name);
     if (count == 0)
-      reader.problem("groups", "there is no group \"" + name + "\"",
-                     known.empty() ? "name levels of a factor with draw = \"per-participant\""
-                                   : suggestion(name, known));
+      reader.problem("groups", phrase("problem.no_group", {plain(name)}),
+                     known.empty() ? phrase("problem.name_levels", {plain("draw = \"per-participant\"")})
+                                   : text::suggestion(name, known));
     else if (count > 1)
-      reader.problem("groups", "two factors have the level \"" + name + "\"",
-                     "give the groups different names");
+      reader.problem("groups", phrase("problem.group_twice", {plain(name)}), phrase("problem.groups_differ"));
     else if (!seen.insert(name).second)
-      reader.problem("groups", "\"" + name + "\" appears twice", "list each group only once");
+      reader.problem("groups", phrase("problem.twice", {plain(name)}), phrase("problem.group_once"));
   }
 }
 

@@ -9,6 +9,8 @@
 
 namespace turnpoint::protocol {
 
+using texts::phrase, texts::plain;
+
 using text::TableReader;
 
 namespace {
@@ -28,9 +30,11 @@ void read_send(TableReader& reader, Triggers& triggers) {
   triggers.send.clear();
   for (const auto& word : reader.maybe_strings("send")) {
     if (std::find(kEvents.begin(), kEvents.end(), word) == kEvents.end())
-      reader.problem("send", "\"send\" has \"" + word + "\"", "allowed: " + text::quoted_list(kEvents));
+      reader.problem("send", phrase("problem.has_word", {plain("send"), plain(word)}),
+                     phrase("problem.allowed", {text::quoted_list(kEvents)}));
     else if (std::find(triggers.send.begin(), triggers.send.end(), event_of(word)) != triggers.send.end())
-      reader.problem("send", "\"" + word + "\" appears twice in \"send\"", "list each event only once");
+      reader.problem("send", phrase("problem.twice_in", {plain(word), plain("send")}),
+                     phrase("problem.event_once"));
     else
       triggers.send.push_back(event_of(word));
   }
@@ -43,16 +47,14 @@ void read_code(const text::Value& table, Reading& reading) {
   const auto known = conditions(reading.protocol);
   code.condition = reader.maybe_string("condition").value_or("");
   if (!code.condition.empty() && std::find(known.begin(), known.end(), code.condition) == known.end())
-    reader.problem("condition", "there is no condition \"" + code.condition + "\"",
-                   known.empty()
-                       ? "leave out \"condition\": no factor is in [analysis] \"by\", and no block has "
-                         "an instruction"
-                       : suggestion(code.condition, known));
+    reader.problem("condition", phrase("problem.no_condition", {plain(code.condition)}),
+                   known.empty() ? phrase("problem.leave_condition", {plain("\"by\"")})
+                                 : text::suggestion(code.condition, known));
   code.code = reader.integer("code", 1, 255);
   const auto& send = reading.protocol.triggers.send;
   if (std::find(send.begin(), send.end(), code.event) == send.end())
-    reader.problem("event", std::string("\"") + name(code.event) + "\" is not in \"send\"",
-                   "add it to \"send\" in [triggers]");
+    reader.problem("event", phrase("problem.not_in_send", {plain(name(code.event))}),
+                   phrase("problem.add_to_send"));
   reader.finish();
   reading.protocol.triggers.stated.push_back(code);
 }
@@ -68,9 +70,9 @@ void check_unique(TableReader& reader, const Reading& reading) {
     const auto [first, fresh] = seen.emplace(code.code, code);
     if (!fresh)
       reader.problem("code",
-                     "the code " + text::number(code.code) + " stands for " + described(first->second) +
-                         " and for " + described(code),
-                     "give each event of each condition its own code");
+                     phrase("problem.code_twice", {plain(text::number(code.code)),
+                                                   plain(described(first->second)), plain(described(code))}),
+                     phrase("problem.codes_differ"));
   }
 }
 

@@ -66,14 +66,14 @@ ValueAnswer read_typed(text::TableReader& reader);
 std::vector<Choice> read_choice_list(text::TableReader& reader, const std::string& path,
                                      const Reading& reading);
 /// Reads the name of a scene. Reports a problem if the file has no such scene.
-std::string read_scene_name(text::TableReader& reader, const std::string& key, const std::string& what,
+std::string read_scene_name(text::TableReader& reader, const std::string& key, const texts::Phrase& what,
                             const Reading& reading);
 
 /// Reads a number, or { uniform = [low, high] }.
 std::optional<Distribution> read_distribution(text::TableReader& reader, const std::string& key);
 
 /// Reads a name made of letters, digits, _ and -. Reports a problem for any other character.
-std::string read_name(text::TableReader& reader, const std::string& key, const std::string& what);
+std::string read_name(text::TableReader& reader, const std::string& key, const texts::Phrase& what);
 
 /// Reads a value of a factor and checks it against the factor's range or levels.
 std::optional<FactorValue> read_factor_value(const text::Value& value, const Factor& factor,

@@ -6,6 +6,8 @@
 
 namespace turnpoint::protocol {
 
+using texts::phrase, texts::plain;
+
 namespace {
 
 void add(const Linear& expression, std::set<std::string>& names) {
@@ -36,7 +38,7 @@ void add_block(const Protocol& protocol, const Block& block, const std::string& 
   std::set<std::string> fixed;
   for (const auto& [name, value] : block.fixed) fixed.insert(name);
   if (!over.empty()) fixed.insert(over);
-  const auto push = [&](const std::string& what, const std::string& level, std::vector<double> levels,
+  const auto push = [&](const texts::Phrase& what, const std::string& level, std::vector<double> levels,
                         const procedure::Spec* spec) {
     auto sets = fixed;
     sets.insert(level);
@@ -55,10 +57,10 @@ void add_block(const Protocol& protocol, const Block& block, const std::string& 
   };
   for (const auto& name : block.procedures)
     if (const auto* spec = find_procedure(protocol, name); spec && !spec->level.empty())
-      push("procedure \"" + name + "\"", spec->level, levels_of(protocol, *spec), spec);
-  if (!block.level.empty()) push("fixed levels", block.level, block.levels, nullptr);
+      push(phrase("problem.the_procedure", {plain(name)}), spec->level, levels_of(protocol, *spec), spec);
+  if (!block.level.empty()) push(phrase("problem.fixed_levels"), block.level, block.levels, nullptr);
   if (block.catch_trials && !block.catch_trials->factor.empty())
-    push("catch trials", block.catch_trials->factor, block.catch_trials->levels, nullptr);
+    push(phrase("problem.catch_trials"), block.catch_trials->factor, block.catch_trials->levels, nullptr);
 }
 
 }  // namespace

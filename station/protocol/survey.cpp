@@ -22,6 +22,8 @@
 
 namespace turnpoint::protocol {
 
+using texts::phrase, texts::plain;
+
 namespace {
 
 // Limits of the number of plans, because a check should feel immediate: planning a zone takes about 15 ms, a
@@ -31,8 +33,8 @@ constexpr std::size_t most_plans_of_a_scene = 120, most_plans_of_a_zone = 6, mos
 
 // Returns a text for messages that says where this rig can place a boundary that is defined in the same way
 // as the scene's edge.
-std::string reach(const scene::Scene& scene, const rig::Rig& rig, const scene::Planner& planner) {
-  if (!scene.boundary_m) return "";
+texts::Phrase reach(const scene::Scene& scene, const rig::Rig& rig, const scene::Planner& planner) {
+  if (!scene.boundary_m) return {};
   physics::MapOptions options;
   options.edge = scene.edge;
   if (scene.edge.kind == physics::Edge::Kind::friction)
@@ -48,10 +50,10 @@ std::string reach(const scene::Scene& scene, const rig::Rig& rig, const scene::P
       nearest = std::min(nearest.value_or(*x), *x);
       furthest = std::max(furthest.value_or(*x), *x);
     }
-  if (!nearest) return "this rig cannot present any boundary with this edge";
-  return "with this edge the rig can present boundaries from " + text::number(1e3 * *nearest, 4) + " to " +
-         text::number(1e3 * *furthest, 4) + " mm (" + text::number(1e-3 * low_Hz, 4) + " to " +
-         text::number(1e-3 * high_Hz, 4) + " kHz)";
+  if (!nearest) return phrase("problem.no_boundary");
+  return phrase("problem.boundaries_from",
+                {plain(text::number(1e3 * *nearest, 4)), plain(text::number(1e3 * *furthest, 4)),
+                 plain(text::number(1e-3 * low_Hz, 4)), plain(text::number(1e-3 * high_Hz, 4))});
 }
 
 Sight sight_of(const Combination& combination, const scene::DrivePlan& plan) {
@@ -77,20 +79,10 @@ Sight sight_of(const Combination& combination, const scene::DrivePlan& plan) {
 // A problem that may occur in several combinations. It is reported once, with the first combination and the
 // number of the others.
 struct Trouble {
-  std::string first, allowed;
+  texts::Phrase first, allowed;
   Place place = {};
   int cases = 0;
 };
-
-std::string in_case(const Combination& combination) {
-  return "scene \"" + combination.scene + "\" in block \"" + combination.block + "\"" +
-         (combination.factors.empty() ? "" : " at " + format(combination.factors));
-}
-
-std::string counted(const Trouble& trouble) {
-  return trouble.first +
-         (trouble.cases > 1 ? " (and in " + std::to_string(trouble.cases - 1) + " more cases)" : "");
-}
 
 std::vector<Combination> planned(const Protocol& protocol, const std::vector<Combination>& all) {
   std::vector<Combination> chosen;
@@ -113,7 +105,7 @@ std::vector<Combination> planned(const Protocol& protocol, const std::vector<Com
 struct Answer {
   std::optional<scene::DrivePlan> plan;
   std::optional<scene::Cues> cues_roved_down;
-  std::string refused, allowed;
+  texts::Phrase refused, allowed;
   Place place;  ///< place in the file of the key that the rig cannot satisfy
 };
 
@@ -196,7 +188,7 @@ void plan_range(const Protocol& protocol, const rig::Rig& rig, const std::vector
         answers[i].cues_roved_down =
             planner.plan(resolve(protocol, combination.scene, combination.factors, -from.rove_dB)).cues;
     } catch (const scene::Unreachable& error) {
-      answers[i].refused = error.what();
+      answers[i].refused = error.why();
       answers[i].place = from.place;
       if (explained.insert(combination.scene).second) try {
           answers[i].place = blamed_place(protocol, places, from, scene, planner);
@@ -243,13 +235,13 @@ void plan_scenes(const Protocol& protocol, const rig::Rig& rig, const std::stop_
   const auto answers = plan_all(protocol, rig, combinations, stop, progress);
   std::map<std::string, Trouble> unreachable, inexact;
   // the text of the first warning with each warning code, because each code is reported only once
-  std::map<std::string, std::string> told;
+  std::map<std::string, texts::Phrase> told;
   for (std::size_t i = 0; i < answers.size(); ++i) {
     const auto& combination = combinations[i];
     if (!answers[i].plan) {
       auto& trouble = unreachable[combination.scene];
       if (trouble.cases++ == 0)
-        trouble = {in_case(combination) + ": " + answers[i].refused, answers[i].allowed, answers[i].place, 1};
+        trouble = {in_case(combination, answers[i].refused), answers[i].allowed, answers[i].place, 1};
       continue;
     }
     const auto& plan = *answers[i].plan;
@@ -257,29 +249,28 @@ void plan_scenes(const Protocol& protocol, const rig::Rig& rig, const std::stop_
     survey.sights.back().cues_roved_down = answers[i].cues_roved_down;
     survey.models.emplace(physics::name(plan.model));
     if (!plan.inside_tolerance && inexact[combination.scene].cases++ == 0)
-      inexact[combination.scene].first = in_case(combination) + ": " + plan.reason;
+      inexact[combination.scene].first = in_case(combination, plain(plan.reason));
     for (const auto& warning : plan.warnings)
-      told.emplace(warning.code, in_case(combination) + ": " + warning.text);
+      told.emplace(warning.code, in_case(combination, scene::phrase_of(warning)));
   }
   for (const auto& [name, trouble] : unreachable)
-    survey.problems.push_back({trouble.place, counted(trouble), trouble.allowed});
+    survey.problems.push_back({trouble.place, counted(trouble.first, trouble.cases), trouble.allowed});
   for (const auto& [name, trouble] : inexact)
-    survey.warnings.push_back({protocol.scenes.at(name).place, counted(trouble),
-                               "no physical model is known to meet the scene's tolerance"});
+    survey.warnings.push_back(
+        {protocol.scenes.at(name).place, counted(trouble.first, trouble.cases), phrase("problem.no_model")});
   // this rig reproduces an historical one, whose weaknesses are known, so leave out the planner's warnings
   if (rig.reproduction) return;
-  for (const auto& [code, warning] : told) survey.warnings.push_back({{protocol.path, 0, 0}, warning, ""});
+  for (const auto& [code, warning] : told) survey.warnings.push_back({{protocol.path, 0, 0}, warning, {}});
 }
 
 void check_limits(const Protocol& protocol, const rig::Rig& rig, Survey& survey) {
   const double longest_s =
       protocol.task.duration_s ? *protocol.task.duration_s : protocol.timing.explore_s.value_or(0);
   if (longest_s > rig.limits.continuous_s)
-    survey.problems.push_back(
-        {KeyPlaces(protocol.source, protocol.path)
-             .of(protocol.task.duration_s ? "task.duration_s" : "timing.explore_s"),
-         "tones last up to " + text::number(longest_s) + " s without a pause",
-         "the rig allows at most continuous_s = " + text::number(rig.limits.continuous_s) + " s"});
+    survey.problems.push_back({KeyPlaces(protocol.source, protocol.path)
+                                   .of(protocol.task.duration_s ? "task.duration_s" : "timing.explore_s"),
+                               phrase("problem.tones_last", {plain(text::number(longest_s))}),
+                               phrase("problem.rig_allows", {plain(text::number(rig.limits.continuous_s))})});
 }
 
 }  // namespace

@@ -8,6 +8,8 @@
 
 namespace turnpoint::protocol {
 
+using texts::phrase, texts::plain;
+
 namespace {
 
 using text::number;
@@ -17,8 +19,9 @@ constexpr double longest_s = 120;
 
 void check_length(AdviceList& advice, const std::string& key, double seconds) {
   if (seconds > longest_s)
-    advice.add(key, number(seconds) + " s are " + number(seconds / 60, 3) + " minutes",
-               "times are in seconds: write 0.8 for 800 ms");
+    advice.add(key,
+               phrase("problem.seconds_minutes", {plain(number(seconds)), plain(number(seconds / 60, 3))}),
+               phrase("problem.in_seconds"));
 }
 
 // A person may think about what was felt, but nobody remembers it for longer than this. Typing a number takes
@@ -33,17 +36,15 @@ void check_reach(AdviceList& advice, const std::string& key, double shortest, do
   const std::string zero = name(advice.protocol.timing.response_zero);
   const double answers_from_s = explored(advice.protocol.task) ? 0 : end->latest_s;
   if (answers_from_s > 0 && shortest < answers_from_s + shortest_deadline_s)
-    advice.add(
-        key,
-        "the deadline of " + number(shortest) +
-            " s cannot be met: answers are accepted when the last "
-            "interval has ended, up to " +
-            number(answers_from_s) + " s after \"" + zero + "\"",
-        number(answers_from_s + shortest_deadline_s) + " s or more, or response_zero = \"interval_off\"");
+    advice.add(key,
+               phrase("problem.deadline_unmet",
+                      {plain(number(shortest)), plain(number(answers_from_s)), plain(zero)}),
+               phrase("problem.seconds_or", {plain(number(answers_from_s + shortest_deadline_s)),
+                                             plain("response_zero = \"interval_off\"")}));
   else if (!advice.protocol.task.value && longest - end->latest_s > longest_after_s && longest <= longest_s)
-    advice.add(key, "the deadline is " + number(longest - end->latest_s) + " s after the stimulus has ended",
-               "nobody remembers for longer than " + number(longest_after_s) + " s what was felt: at most " +
-                   number(end->latest_s + longest_after_s) + " s");
+    advice.add(key, phrase("problem.deadline_late", {plain(number(longest - end->latest_s))}),
+               phrase("problem.nobody_remembers",
+                      {plain(number(longest_after_s)), plain(number(end->latest_s + longest_after_s))}));
 }
 
 void check_deadline(AdviceList& advice, const std::string& key, const Linear& deadline) {
@@ -51,14 +52,13 @@ void check_deadline(AdviceList& advice, const std::string& key, const Linear& de
   check_length(advice, key, longest);
   if (seconds >= shortest_deadline_s) check_reach(advice, key, seconds, longest);
   if (seconds < shortest_deadline_s)
-    advice.add(key, "nobody can answer within " + number(seconds) + " s",
-               number(shortest_deadline_s) + " s or more");
+    advice.add(key, phrase("problem.nobody_answers", {plain(number(seconds))}),
+               phrase("problem.seconds_or_more", {plain(number(shortest_deadline_s))}));
   const double below_s = advice.protocol.analysis.exclude_below_s;
   if (below_s >= seconds)
     advice.add("analysis.response_time_exclude.below_s",
-               "\"below_s\" excludes all answers up to " + number(below_s) + " s, but the deadline is only " +
-                   number(seconds) + " s",
-               "set it well below every deadline");
+               phrase("problem.excludes_all", {plain(number(below_s)), plain(number(seconds))}),
+               phrase("problem.below_deadlines"));
 }
 
 // Checks that the change to the second scene, which follows the foreperiod, is complete before the tones end.
@@ -69,9 +69,8 @@ void check_change(AdviceList& advice) {
   const double latest_s = task.foreperiod_s->high + 1e-3 * task.transition_ms.value_or(0);
   if (whole_s > 0 && latest_s >= whole_s)
     advice.add("task.foreperiod_s",
-               "the change can end " + number(latest_s) +
-                   " s after the tones begin, but the tones last only " + number(whole_s) + " s",
-               "the foreperiod plus the transition must be well below " + number(whole_s) + " s");
+               phrase("problem.change_late", {plain(number(latest_s)), plain(number(whole_s))}),
+               phrase("problem.change_below", {plain(number(whole_s))}));
 }
 
 // A person who slides over the surface judges what it does at the signal. After the tones there is nothing to
@@ -84,10 +83,10 @@ void check_lag(AdviceList& advice, const ResponseSignal& signal) {
       explored(advice.protocol.task) && advice.protocol.timing.response_zero != ResponseZero::interval_off;
   if (end && is_felt && !in_stimulus(signal) && latest_s > end->earliest_s)
     advice.add(key,
-               "the signal can come " + number(latest_s) + " s after \"" +
-                   name(advice.protocol.timing.response_zero) + "\", when the tones may have ended " +
-                   number(latest_s - end->earliest_s) + " s before",
-               "at most " + number(end->earliest_s) + " s, or longer tones");
+               phrase("problem.signal_late",
+                      {plain(number(latest_s)), plain(name(advice.protocol.timing.response_zero)),
+                       plain(number(latest_s - end->earliest_s))}),
+               phrase("problem.or_longer_tones", {plain(number(end->earliest_s))}));
 }
 
 }  // namespace
@@ -101,8 +100,8 @@ void advise_on_times(AdviceList& advice) {
       check_deadline(advice, "instructions." + name + ".deadline_s", *instruction.deadline_s);
   if (timing.signal && timing.signal->window_s < shortest_deadline_s)
     advice.add("timing.response_signal.window_s",
-               "nobody can answer within " + number(timing.signal->window_s) + " s of a signal",
-               number(shortest_deadline_s) + " s or more");
+               phrase("problem.nobody_signal", {plain(number(timing.signal->window_s))}),
+               phrase("problem.seconds_or_more", {plain(number(shortest_deadline_s))}));
   if (timing.signal) check_lag(advice, *timing.signal);
   check_length(advice, "timing.iti_s", timing.iti_s.high);
   check_length(advice, "timing.explore_s", timing.explore_s.value_or(0));

@@ -168,7 +168,7 @@ texts::Phrase describe_intervals(const NamedFit& named, const SessionData& data)
   const auto& intervals = named.intervals;
   if (intervals.method == analysis::IntervalMethod::none) return {};
   if (intervals.method == analysis::IntervalMethod::bootstrap)
-    return phrase("statement.likelihood", {plain(std::to_string(intervals.replicates))});
+    return phrase("statement.likelihood", {plain(intervals.replicates)});
   const auto& prior = *intervals.prior;
   const auto& options = named.fit.options;
   const auto flat = analysis::flat_part(options.function, options.scale, prior);

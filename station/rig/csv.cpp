@@ -8,6 +8,8 @@
 
 namespace turnpoint::rig {
 
+using texts::phrase, texts::plain;
+
 namespace {
 
 /// Returns the separator of a table, which is found in the table's first line. A semicolon is looked for
@@ -70,8 +72,8 @@ std::vector<std::vector<double>> read_table(const std::string& path, const std::
   try {
     bytes = text::read_text_file(path);
   } catch (const std::runtime_error& error) {
-    findings.add(needed_by, "cannot read " + std::string(error.what()),
-                 "write a path relative to the rig file");
+    findings.add(needed_by, phrase("problem.cannot_read", {plain(std::string(error.what()))}),
+                 phrase("problem.relative_rig"));
     return {};
   }
   const auto lines = lines_of(bytes);
@@ -80,8 +82,8 @@ std::vector<std::vector<double>> read_table(const std::string& path, const std::
                        return line.text.find(',') != std::string::npos;
                      });
   if (!lines.empty() && split(lines.front().text, separator) != columns)
-    findings.add({path, lines.front().number, 1}, "the first line is \"" + lines.front().text + "\"",
-                 "the column names must be: " + joined(columns));
+    findings.add({path, lines.front().number, 1}, phrase("problem.first_line", {plain(lines.front().text)}),
+                 phrase("problem.column_names", {plain(joined(columns))}));
   std::vector<std::vector<double>> rows;
   for (std::size_t n = 1; n < lines.size(); ++n) {
     const auto cells = split(lines[n].text, separator);
@@ -92,16 +94,15 @@ std::vector<std::vector<double>> read_table(const std::string& path, const std::
     if (good)
       rows.push_back(std::move(row));
     else
-      findings.add({path, lines[n].number, 1}, "\"" + lines[n].text + "\" is not a row of numbers",
-                   std::to_string(columns.size()) + " numbers are needed in each row: " + joined(columns) +
-                       (comma ? "; this file has decimal commas, so its numbers may not have points" : ""));
+      findings.add({path, lines[n].number, 1}, phrase("problem.no_row", {plain(lines[n].text)}),
+                   comma
+                       ? phrase("problem.row_decimal_commas", {plain(columns.size()), plain(joined(columns))})
+                       : phrase("problem.row_numbers", {plain(columns.size()), plain(joined(columns))}));
   }
   if (rows.size() < least)
-    findings.add(
-        {path, 0, 0},
-        least == 2 ? "the file has fewer than two rows of numbers"
-                   : "the file has " + std::to_string(rows.size()) + " rows of numbers",
-        least == 2 ? "at least two rows are needed" : "at least " + std::to_string(least) + " are needed");
+    findings.add({path, 0, 0},
+                 least == 2 ? phrase("problem.few_rows") : phrase("problem.rows", {plain(rows.size())}),
+                 least == 2 ? phrase("problem.two_rows") : phrase("problem.needed_at_least", {plain(least)}));
   return rows;
 }
 

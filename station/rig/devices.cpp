@@ -6,18 +6,20 @@
 
 namespace turnpoint::rig {
 
+using texts::phrase, texts::plain;
+
 using text::TableReader;
 
-std::string read_uri(TableReader& reader, const std::vector<std::string>& schemes,
-                     const std::string& allowed) {
+std::string read_uri(TableReader& reader, const std::vector<std::string>& forms) {
+  const auto allowed = text::quoted_list(forms);
   const auto uri = reader.string("uri", allowed);
   if (uri.empty()) return uri;
-  for (const auto& scheme : schemes) {
-    const bool bare = scheme.back() == ':';
-    const auto prefix = bare ? scheme : scheme.substr(0, scheme.size() - 1);
-    if (bare ? uri == prefix : uri.rfind(prefix, 0) == 0 && uri.size() > prefix.size()) return uri;
+  for (const auto& form : forms) {
+    const auto scheme = form.substr(0, form.find(':') + 1);
+    if (scheme == form ? uri == form : uri.starts_with(scheme) && uri.size() > scheme.size()) return uri;
   }
-  reader.problem("uri", "\"uri\" is \"" + uri + "\"", "allowed: " + allowed);
+  reader.problem("uri", phrase("problem.is_word", {plain("uri"), plain(uri)}),
+                 phrase("problem.allowed", {allowed}));
   return uri;
 }
 
@@ -36,39 +38,39 @@ void check_gpio(TableReader& reader, const std::string& uri, const std::vector<s
     const auto name = part.substr(0, equals);
     const bool known = std::find(all.begin(), all.end(), name) != all.end();
     if (!known || equals == std::string::npos || equals + 1 == part.size() || !seen.insert(name).second)
-      return reader.problem("uri", "\"" + part + "\" in \"" + uri + "\" does not name a line",
-                            "each of " + text::quoted_list(all) + " once, as name=LINE");
+      return reader.problem("uri", phrase("problem.names_no_line", {plain(part), plain(uri)}),
+                            phrase("problem.each_line_once", {text::quoted_list(all)}));
   }
   for (const auto& name : needed)
     if (!seen.count(name))
-      return reader.problem("uri", "\"" + uri + "\" has no line \"" + name + "\"",
-                            "needed: " + text::quoted_list(needed));
+      return reader.problem("uri", phrase("problem.no_line", {plain(uri), plain(name)}),
+                            phrase("problem.needed", {text::quoted_list(needed)}));
 }
 
 namespace {
 
 std::optional<std::string> read_device(TableReader& file, const std::string& key,
-                                       const std::vector<std::string>& schemes, const std::string& allowed,
+                                       const std::vector<std::string>& forms,
                                        const std::vector<std::string>& lines,
                                        const std::vector<std::string>& optional_lines = {}) {
   const auto* table = file.maybe_table(key);
   if (!table) return std::nullopt;
   TableReader reader(*table, key, file.findings());
-  const auto uri = read_uri(reader, schemes, allowed);
+  const auto uri = read_uri(reader, forms);
   check_gpio(reader, uri, lines, optional_lines);
   reader.finish();
   return uri;
 }
 
 std::string read_thermometer(TableReader& reader, const std::string& key) {
-  const std::string allowed =
-      "\"hwmon:NAME/tempN\" or \"iio:NAME/temp\", such as \"hwmon:lm75/temp1\"; NAME@DEVICE if several have "
-      "that name";
+  const auto allowed =
+      phrase("problem.thermometer",
+             {plain("\"hwmon:NAME/tempN\""), plain("\"iio:NAME/temp\""), plain("\"hwmon:lm75/temp1\"")});
   const auto uri = reader.string(key, allowed);
   static const std::regex form("hwmon:[^/]+/temp[0-9]+|iio:[^/]+/temp[0-9a-z_]*");
   const bool good = std::regex_match(uri, form);
   if (!uri.empty() && !good)
-    reader.problem(key, "\"" + uri + "\" does not name a temperature sensor", "allowed: " + allowed);
+    reader.problem(key, phrase("problem.no_sensor", {plain(uri)}), phrase("problem.allowed", {allowed}));
   return uri;
 }
 
@@ -86,23 +88,19 @@ std::optional<Thermometers> read_thermometers(TableReader& file) {
 }  // namespace
 
 void read_devices(TableReader& file, Rig& rig) {
-  if (!file.has("amplifier")) file.require("amplifier", "add a table [amplifier] with uri");
+  if (!file.has("amplifier")) file.require("amplifier", phrase("problem.add_amplifier"));
   rig.amplifier_uri =
-      read_device(file, "amplifier", {"sim:", "gpio:*"},
-                  "\"sim:\" or \"gpio:enable=LINE,fault=LINE,stop=LINE,heartbeat=LINE\"", {"enable"},
-                  {"fault", "stop", "heartbeat", "active", "fault_active", "stop_active"})
+      read_device(file, "amplifier", {"sim:", "gpio:enable=LINE,fault=LINE,stop=LINE,heartbeat=LINE"},
+                  {"enable"}, {"fault", "stop", "heartbeat", "active", "fault_active", "stop_active"})
           .value_or("");
-  rig.buttons_uri =
-      read_device(file, "buttons", {"sim:", "gpio:*"}, "\"sim:\" or \"gpio:left=LINE,right=LINE\"",
-                  {"left", "right"}, {"third", "active", "hold_ms", "refractory_ms"});
-  rig.contact_uri = read_device(file, "contact", {"sim:", "gpio:*", "evdev:*"},
-                                "\"sim:\", \"gpio:line=LINE\" or \"evdev:DEVICE\"", {"line"},
+  rig.buttons_uri = read_device(file, "buttons", {"sim:", "gpio:left=LINE,right=LINE"}, {"left", "right"},
+                                {"third", "active", "hold_ms", "refractory_ms"});
+  rig.contact_uri = read_device(file, "contact", {"sim:", "gpio:line=LINE", "evdev:DEVICE"}, {"line"},
                                 {"active", "hold_ms", "refractory_ms"});
-  rig.trigger_lines_uri = read_device(
-      file, "trigger_lines", {"sim:", "gpio:*"}, "\"sim:\" or \"gpio:bit0=LINE,bit1=LINE,strobe=LINE\"",
-      {"bit0"}, {"bit1", "bit2", "bit3", "bit4", "bit5", "bit6", "bit7", "strobe", "pulse_ms"});
-  rig.touch_uri =
-      read_device(file, "touch", {"sim:", "qt:", "evdev:*"}, "\"sim:\", \"qt:\" or \"evdev:DEVICE\"", {});
+  rig.trigger_lines_uri =
+      read_device(file, "trigger_lines", {"sim:", "gpio:bit0=LINE,bit1=LINE,strobe=LINE"}, {"bit0"},
+                  {"bit1", "bit2", "bit3", "bit4", "bit5", "bit6", "bit7", "strobe", "pulse_ms"});
+  rig.touch_uri = read_device(file, "touch", {"sim:", "qt:", "evdev:DEVICE"}, {});
   rig.thermometers = read_thermometers(file);
 }
 

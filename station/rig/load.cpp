@@ -13,6 +13,8 @@
 
 namespace turnpoint::rig {
 
+using texts::phrase, texts::plain;
+
 namespace {
 
 using text::Findings;
@@ -30,8 +32,8 @@ void read_response(TableReader& reader, const std::string& rig_path, Transducer&
   const auto file = reader.maybe_string("response_csv");
   const auto um = reader.maybe_number("um_per_full_scale", {0, 1000, Ends::open_low, "um"});
   if (reader.has("response_csv") == reader.has("um_per_full_scale"))
-    reader.findings().add(reader.place(), reader.title() + " needs exactly one response",
-                          "give either \"um_per_full_scale\" or \"response_csv\"");
+    reader.findings().add(reader.place(), phrase("problem.one_response", {reader.title()}),
+                          phrase("problem.give_response"));
   if (um) transducer.m_per_full_scale = 1e-6 * *um;
   if (!file) return;
   const auto csv = beside(rig_path, *file);
@@ -42,8 +44,8 @@ void read_response(TableReader& reader, const std::string& rig_path, Transducer&
     const auto& points = transducer.response;
     if (row[0] <= (points.empty() ? 0 : points.back().frequency_Hz) || row[1] <= 0)
       return reader.findings().add(
-          place, csv + " has a row " + text::number(row[0]) + " Hz with a value that is not allowed",
-          "frequencies must be above 0 and in ascending order; um_per_full_scale must be above 0");
+          place, phrase("problem.bad_response_row", {plain(csv), plain(text::number(row[0]))}),
+          phrase("problem.response_rows"));
     transducer.response.push_back({row[0], 1e-6 * row[1], row[2] * pi / 180});
   }
 }
@@ -51,9 +53,9 @@ void read_response(TableReader& reader, const std::string& rig_path, Transducer&
 Transducer read_transducer(const text::Value& table, const std::string& rig_path, Findings& findings) {
   TableReader reader(table, titled("transducer", table), findings);
   Transducer transducer;
-  transducer.name = reader.string("name", "give the transducer a name, which messages use");
+  transducer.name = reader.string("name", phrase("problem.name_transducer"));
   transducer.channel = reader.integer("channel", 0, kLastChannel);
-  reader.require("band_kHz", "give the usable band as [low, high] in kHz");
+  reader.require("band_kHz", phrase("problem.give_band", {plain("[low, high]")}));
   if (const auto band = reader.maybe_interval("band_kHz", {0, 1000, Ends::open_low, "kHz"})) {
     transducer.low_Hz = 1e3 * band->first;
     transducer.high_Hz = 1e3 * band->second;
@@ -63,9 +65,9 @@ Transducer read_transducer(const text::Value& table, const std::string& rig_path
   if (response.size() >= 2 && transducer.high_Hz > 0 &&
       (transducer.low_Hz < response.front().frequency_Hz ||
        transducer.high_Hz > response.back().frequency_Hz))
-    reader.problem("band_kHz", "the band extends beyond the measured response",
-                   "it must lie within " + text::number(1e-3 * response.front().frequency_Hz) + " to " +
-                       text::number(1e-3 * response.back().frequency_Hz) + " kHz");
+    reader.problem("band_kHz", phrase("problem.band_beyond"),
+                   phrase("problem.band_within", {plain(text::number(1e-3 * response.front().frequency_Hz)),
+                                                  plain(text::number(1e-3 * response.back().frequency_Hz))}));
   reader.finish();
   return transducer;
 }
@@ -73,29 +75,29 @@ Transducer read_transducer(const text::Value& table, const std::string& rig_path
 void read_transducers(TableReader& file, Rig& rig) {
   const auto tables = file.tables("transducer");
   if (tables.empty() && !file.has("transducer"))
-    file.findings().add({rig.path, 0, 0}, "the file has no [[transducer]] table",
-                        "add one table for each drive element");
+    file.findings().add({rig.path, 0, 0}, phrase("problem.no_transducer"),
+                        phrase("problem.table_each_drive"));
   std::set<std::string> names;
   std::set<int> channels;
   for (const auto* table : tables) {
     rig.transducers.push_back(read_transducer(*table, rig.path, file.findings()));
     const auto& transducer = rig.transducers.back();
     if (!transducer.name.empty() && !names.insert(transducer.name).second)
-      file.findings().add(table->place, "there is already a transducer named \"" + transducer.name + "\"",
-                          "each transducer needs a different name");
+      file.findings().add(table->place, phrase("problem.transducer_again", {plain(transducer.name)}),
+                          phrase("problem.transducers_differ"));
     if (table->find("channel") && !channels.insert(transducer.channel).second)
       file.findings().add(table->find("channel")->value.place,
-                          "channel " + std::to_string(transducer.channel) + " is used by two transducers",
-                          "give each transducer its own channel");
+                          phrase("problem.channel_twice", {plain(transducer.channel)}),
+                          phrase("problem.own_channel"));
   }
 }
 
 void read_output(TableReader& file, Rig& rig) {
-  const auto* table = file.table("output", "add a table [output] with uri and rate_Hz");
+  const auto* table = file.table("output", phrase("problem.add_output"));
   if (!table) return;
   TableReader reader(*table, "output", file.findings());
   auto& output = rig.output;
-  output.uri = read_uri(reader, {"null:", "wav:*", "alsa:*"}, "\"null:\", \"wav:FILE\" or \"alsa:DEVICE\"");
+  output.uri = read_uri(reader, {"null:", "wav:FILE", "alsa:DEVICE"});
   output.rate_Hz = reader.integer("rate_Hz", 8000, 1536000);
   output.bits = reader.integer("bits", 16, 32, 24);
   output.period_frames = reader.integer("period_frames", 16, 65536, 384);
@@ -104,11 +106,10 @@ void read_output(TableReader& file, Rig& rig) {
   if (reader.has("device_channels")) output.device_channels = reader.integer("device_channels", 1, 64);
   if (const double period_s = static_cast<double>(output.period_frames) / std::max(output.rate_Hz, 1);
       output.rate_Hz > 0 && period_s > longest_period_s)
-    reader.problem("period_frames",
-                   "a period lasts " + text::number(1e3 * period_s, 3) +
-                       " ms; the amplifier's guard would conclude that the audio thread has stopped",
-                   "at most " + text::number(1e3 * longest_period_s) +
-                       " ms: " + text::number(std::floor(longest_period_s * output.rate_Hz)) + " frames");
+    reader.problem("period_frames", phrase("problem.long_period", {plain(text::number(1e3 * period_s, 3))}),
+                   phrase("problem.at_most_frames",
+                          {plain(text::number(1e3 * longest_period_s)),
+                           plain(text::number(std::floor(longest_period_s * output.rate_Hz)))}));
   if (!reader.has("allow_plugin")) reader.defaulted("allow_plugin", "[]");
   output.allow_plugin = reader.maybe_strings("allow_plugin");
   reader.finish();
@@ -118,9 +119,9 @@ void check_device_channels(TableReader& file, const Rig& rig) {
   const auto* table = file.maybe_table("output");
   const auto* given = table == nullptr ? nullptr : table->find("device_channels");
   if (given == nullptr || rig.output.device_channels >= channels(rig)) return;
-  file.findings().add(
-      given->value.place, "device_channels is " + std::to_string(rig.output.device_channels),
-      "at least " + std::to_string(channels(rig)) + ", the number of channels that the rig uses");
+  file.findings().add(given->value.place,
+                      phrase("problem.device_channels", {plain(rig.output.device_channels)}),
+                      phrase("problem.channels_used", {plain(channels(rig))}));
 }
 
 void check_bands(TableReader& file, const Rig& rig) {
@@ -131,9 +132,9 @@ void check_bands(TableReader& file, const Rig& rig) {
   for (const auto* table : file.tables("transducer")) {
     const auto* band = table->find("band_kHz");
     if (!band || band->value.items.size() != 2 || band->value.items[1].number * 1e3 <= limit_Hz) continue;
-    file.findings().add(
-        band->value.place, "the band ends at " + text::number(band->value.items[1].number) + " kHz",
-        "it may extend at most to 0.45 of rate_Hz, which is " + text::number(1e-3 * limit_Hz) + " kHz");
+    file.findings().add(band->value.place,
+                        phrase("problem.band_ends", {plain(text::number(band->value.items[1].number))}),
+                        phrase("problem.band_limit", {plain(text::number(1e-3 * limit_Hz))}));
   }
 }
 
@@ -147,9 +148,8 @@ void read_friction_table(TableReader& reader, const std::string& file, Rig& rig)
     const bool rises = table.empty() ? row[0] >= 0 : displacement_m > table.back().first;
     if (!rises || row[1] <= 0 || row[1] > 1 || (!table.empty() && row[1] > table.back().second))
       return reader.findings().add(
-          place, csv + " has a row " + text::number(row[0]) + " um with a value that is not allowed",
-          "displacements must be in ascending order from 0; friction must be above 0, at most 1, and never "
-          "increase");
+          place, phrase("problem.bad_friction_row", {plain(csv), plain(text::number(row[0]))}),
+          phrase("problem.friction_rows"));
     table.emplace_back(displacement_m, row[1]);
   }
   rig.friction.measured = true;
@@ -167,8 +167,8 @@ void read_friction(TableReader& file, Rig& rig) {
   if (reader.has("table_csv")) {
     for (const auto* key : {"model", "pressure_kPa", "floor"})
       if (reader.take(key))
-        reader.problem(key, std::string("\"") + key + "\" is not allowed together with \"table_csv\"",
-                       "leave it out: the measured table replaces it");
+        reader.problem(key, phrase("problem.not_together", {plain(key), plain("table_csv")}),
+                       phrase("problem.table_replaces"));
     if (csv) read_friction_table(reader, *csv, rig);
   } else {
     reader.word("model", {"load-sharing"}, "load-sharing");
@@ -195,7 +195,7 @@ void read_finger(TableReader& file, Rig& rig) {
 }
 
 void read_limits(TableReader& file, Rig& rig) {
-  const auto* table = file.table("limits", "add a table [limits] with displacement_um");
+  const auto* table = file.table("limits", phrase("problem.add_limits"));
   if (!table) return;
   TableReader reader(*table, "limits", file.findings());
   rig.limits.displacement_m = 1e-6 * reader.number("displacement_um", {0, 1000, Ends::open_low, "um"});
@@ -214,9 +214,9 @@ Rig parse(const std::string& source, const std::string& path) {
   rig.path = path, rig.source = source, rig.sha256 = text::sha256(source);
   TableReader file(document, "", findings);
   file.word("format", {"friction-rig/1"});
-  rig.name = file.string("name", "give the rig a name that people recognise");
+  rig.name = file.string("name", phrase("problem.name_rig"));
   rig.reproduction = file.boolean("reproduction", "false");
-  if (const auto* surface = file.table("surface", "a table [surface]"))
+  if (const auto* surface = file.table("surface", phrase("problem.a_table_of", {plain("[surface]")})))
     rig.surface = read_surface(*surface, findings);
   read_transducers(file, rig);
   read_output(file, rig);

@@ -10,20 +10,25 @@
 
 namespace turnpoint::rig {
 
+using texts::phrase, texts::plain;
+
 using text::Range;
 using text::TableReader;
 
 namespace {
 
 void check_spare(TableReader& reader, const std::string& key, int channel, const Rig& rig) {
-  const auto what = "channel " + std::to_string(channel);
+  const auto number = std::to_string(channel);
   for (const auto& transducer : rig.transducers)
     if (transducer.channel == channel)
-      reader.problem(key, what + " drives \"" + transducer.name + "\"", "use a channel without a transducer");
+      reader.problem(key, phrase("problem.channel_drives", {plain(number), plain(transducer.name)}),
+                     phrase("problem.channel_free"));
   const bool marker = rig.marker && rig.marker->channel == channel;
   if (marker || (rig.noise && rig.noise->channel == channel))
-    reader.problem(key, what + " is used by the " + (marker ? "marker" : "noise"),
-                   "use a channel of its own");
+    reader.problem(key,
+                   marker ? phrase("problem.channel_marker", {plain(number)})
+                          : phrase("problem.channel_noise", {plain(number)}),
+                   phrase("problem.channel_own"));
 }
 
 double highest_Hz(const Rig& rig) { return terms::kHighestShareOfRate * std::max(rig.output.rate_Hz, 8000); }
@@ -77,11 +82,11 @@ void read_loop(TableReader& reader, const Rig& rig, Capture& capture) {
   capture.reference = reader.integer("reference", 0, 31);
   const auto& pick_ups = capture.pick_ups;
   if (capture.reference >= capture.channels)
-    reader.problem("reference", "channel " + std::to_string(capture.reference) + " is not captured",
-                   "a whole number from 0 to " + std::to_string(capture.channels - 1));
+    reader.problem("reference", phrase("problem.not_captured", {plain(capture.reference)}),
+                   phrase("problem.whole_to", {plain(capture.channels - 1)}));
   else if (std::find(pick_ups.begin(), pick_ups.end(), capture.reference) != pick_ups.end())
-    reader.problem("reference", "channel " + std::to_string(capture.reference) + " is also in \"pickups\"",
-                   "use a channel of its own");
+    reader.problem("reference", phrase("problem.in_pickups", {plain(capture.reference)}),
+                   phrase("problem.channel_own"));
   capture.excitation_channel = reader.integer("excitation_channel", 0, kLastChannel);
   check_spare(reader, "excitation_channel", *capture.excitation_channel, rig);
 }
@@ -89,14 +94,14 @@ void read_loop(TableReader& reader, const Rig& rig, Capture& capture) {
 /// Reports a captured channel that does not exist or that is used for something else.
 void check_captured(TableReader& reader, const std::string& key, int channel, const Capture& capture) {
   const auto& pick_ups = capture.pick_ups;
-  const auto what = "channel " + std::to_string(channel);
+  const auto number = std::to_string(channel);
   if (channel >= capture.channels)
-    reader.problem(key, what + " is not captured",
-                   "a whole number from 0 to " + std::to_string(capture.channels - 1));
+    reader.problem(key, phrase("problem.not_captured", {plain(number)}),
+                   phrase("problem.whole_to", {plain(capture.channels - 1)}));
   else if (std::find(pick_ups.begin(), pick_ups.end(), channel) != pick_ups.end() ||
            (capture.excitation_channel && capture.reference == channel) ||
            std::find(capture.bridges.begin(), capture.bridges.end(), channel) != capture.bridges.end())
-    reader.problem(key, what + " is also captured for something else", "use a channel of its own");
+    reader.problem(key, phrase("problem.captured_else", {plain(number)}), phrase("problem.channel_own"));
 }
 
 void read_bridges(TableReader& reader, Capture& capture) {
@@ -105,9 +110,7 @@ void read_bridges(TableReader& reader, Capture& capture) {
     const int channel = static_cast<int>(number);
     const auto same = std::count(channels.begin(), channels.end(), number);
     if (channels.size() != 3 || number != channel || same > 1) {
-      reader.problem(
-          "bridges", "\"bridges\" needs the channels of three cells",
-          "write three different whole numbers: two cells below the surface, and the lateral cell");
+      reader.problem("bridges", phrase("problem.three_cells"), phrase("problem.three_numbers"));
       return;
     }
     check_captured(reader, "bridges", channel, capture);
@@ -123,19 +126,20 @@ void read_marker_channel(TableReader& reader, const Rig& rig, Capture& capture) 
   capture.marker_channel = reader.integer("marker_channel", 0, 31);
   check_captured(reader, "marker_channel", *capture.marker_channel, capture);
   if (!rig.marker || rig.marker->kind != Marker::Kind::code)
-    reader.problem("marker_channel", "the rig has no marker with codes",
-                   "add [marker] with kind = \"code\", or leave this out");
+    reader.problem("marker_channel", phrase("problem.no_marker"),
+                   phrase("problem.add_marker", {plain("kind = \"code\"")}));
 }
 
 Sync read_sync(const text::Value& table, const Rig& rig, text::Findings& findings) {
   TableReader reader(table, "sync", findings);
   Sync sync;
-  sync.uri = read_uri(reader, {"sim:", "gpio:*", "capture:"}, "\"sim:\", \"gpio:line=LINE\" or \"capture:\"");
+  sync.uri = read_uri(reader, {"sim:", "gpio:line=LINE", "capture:"});
   check_gpio(reader, sync.uri, {"line"}, {"active"});
   if (sync.uri == "capture:") {
     sync.channel = reader.integer("channel", 0, 31);
     if (!rig.capture)
-      reader.problem("uri", "the rig captures nothing", "add [capture], or use \"gpio:line=LINE\"");
+      reader.problem("uri", phrase("problem.captures_nothing"),
+                     phrase("problem.add_capture_or", {plain("\"gpio:line=LINE\"")}));
     else
       check_captured(reader, "channel", *sync.channel, *rig.capture);
   }
@@ -146,13 +150,13 @@ Sync read_sync(const text::Value& table, const Rig& rig, text::Findings& finding
 Capture read_capture(const text::Value& table, const Rig& rig, text::Findings& findings) {
   TableReader reader(table, "capture", findings);
   Capture capture;
-  capture.uri = read_uri(reader, {"sim:", "alsa:*"}, "\"sim:\" or \"alsa:NAME\"");
+  capture.uri = read_uri(reader, {"sim:", "alsa:NAME"});
   capture.channels = reader.integer("channels", 1, 32);
   std::set<double> seen;
   for (const double channel : reader.numbers("pickups", {0, 31, Range::Ends::closed})) {
     if (channel != std::floor(channel) || channel >= capture.channels || !seen.insert(channel).second)
-      reader.problem("pickups", "channel " + text::number(channel) + " is not a captured channel of its own",
-                     "write different whole numbers from 0 to " + std::to_string(capture.channels - 1));
+      reader.problem("pickups", phrase("problem.no_own_channel", {plain(text::number(channel))}),
+                     phrase("problem.different_to", {plain(capture.channels - 1)}));
     capture.pick_ups.push_back(static_cast<int>(channel));
   }
   const bool has_bridges = reader.has("bridges");
@@ -169,23 +173,22 @@ Capture read_capture(const text::Value& table, const Rig& rig, text::Findings& f
 /// A name of the kernel, which may not contain what separates names in messages and files.
 void check_name(TableReader& reader, const std::string& key, const std::string& name) {
   if (name.find_first_of(" \t/,\"") == std::string::npos) return;
-  reader.problem(key, "\"" + name + "\" is not the name of a channel or trigger",
-                 "a name without spaces, slashes and commas, such as \"voltage0-voltage1\"");
+  reader.problem(key, phrase("problem.no_channel_name", {plain(name)}), phrase("problem.name_without"));
 }
 
 CellConverter read_converter(const text::Value& table, Rig& rig, text::Findings& findings) {
   TableReader reader(table, "force_cells", findings);
   CellConverter converter;
-  converter.uri = read_uri(reader, {"iio:*"}, "\"iio:DEVICE\", with the name or label of an IIO device");
+  converter.uri = read_uri(reader, {"iio:DEVICE"});
   const std::array keys{"a", "b", "lateral"};
   for (std::size_t k = 0; k < keys.size(); ++k) {
     auto& name = converter.channels[k];
-    name = reader.string(keys[k], "the name of a channel, such as \"voltage0-voltage1\"");
+    name = reader.string(keys[k], phrase("problem.channel_name"));
     check_name(reader, keys[k], name);
     for (std::size_t other = 0; other < k; ++other)
       if (!name.empty() && converter.channels[other] == name)
-        reader.problem(keys[k], "channel \"" + name + "\" is also that of \"" + keys[other] + "\"",
-                       "a channel of its own for each cell");
+        reader.problem(keys[k], phrase("problem.channel_also", {plain(name), plain(keys[other])}),
+                       phrase("problem.cell_channel"));
   }
   // Below 80 samples a second the contact of a finger is not seen in time; the grid has 1000 points a second.
   converter.rate_Hz = reader.number("rate_Hz", {80, 1000, Range::Ends::closed, "Hz"});
@@ -195,10 +198,10 @@ CellConverter read_converter(const text::Value& table, Rig& rig, text::Findings&
   converter.delay_s = 1e-3 * reader.number("delay_ms", {0, 1000, Range::Ends::closed, "ms"}, 0);
   reader.finish();
   if (!rig.capture || !rig.capture->uri.starts_with("alsa:"))
-    reader.problem("uri", "force cells on a converter need pick-ups on the card that plays",
-                   "add [capture] with uri = \"alsa:NAME\"");
+    reader.problem("uri", phrase("problem.cells_need"),
+                   phrase("problem.add_capture", {plain("uri = \"alsa:NAME\"")}));
   else if (!rig.capture->bridges.empty())
-    reader.problem("uri", "[capture] already has force cells", "leave out \"bridges\" or [force_cells]");
+    reader.problem("uri", phrase("problem.capture_has_cells"), phrase("problem.leave_bridges"));
   return converter;
 }
 

@@ -5,6 +5,8 @@
 
 namespace turnpoint::rig {
 
+using texts::phrase, texts::plain;
+
 namespace {
 
 using text::Range;
@@ -50,9 +52,7 @@ void read_material(text::TableReader& reader, Surface& surface) {
   const auto bending = reader.word("bending", words, "auto");
   surface.bending = bending == "on" ? Bending::on : bending == "off" ? Bending::off : Bending::automatic;
   if (surface.tension_Pa == 0 && surface.bending == Bending::off)
-    reader.problem("bending",
-                   "\"bending\" is off although there is no tension, so nothing would hold the surface",
-                   "set \"tension_Pa\" above 0, or \"bending\" to \"auto\" or \"on\"");
+    reader.problem("bending", phrase("problem.bending_off"), phrase("problem.set_bending"));
   const bool needs_bending = surface.tension_Pa == 0 || surface.bending == Bending::on;
   const Range modulus{1e-6, 2000, Ends::closed, "GPa"}, poisson{-1, 0.5, Ends::open_low};
   if (filled || needs_bending || reader.has("modulus_GPa")) {
@@ -74,43 +74,40 @@ double read_quality_factor(text::TableReader& reader) {
 }
 
 void read_profile(const text::Value& list, text::TableReader& reader, Taper& taper) {
-  const char* allowed =
-      "write a list of [x, half-width] pairs in mm, with x in ascending order from 0 and half-widths above 0 "
-      "that never increase";
-  const auto bad = [&](const text::Place& place, const std::string& what) {
+  const auto allowed = phrase("problem.write_profile", {plain("[x, half-width]")});
+  const auto bad = [&](const text::Place& place, const texts::Phrase& what) {
     reader.findings().add(place, what, allowed);
   };
-  if (list.kind != text::Value::Kind::array) return bad(list.place, "\"profile_mm\" is " + describe(list));
+  if (list.kind != text::Value::Kind::array)
+    return bad(list.place, phrase("problem.is", {plain("profile_mm"), describe(list)}));
   for (const auto& item : list.items) {
     const bool pair = item.kind == text::Value::Kind::array && item.items.size() == 2;
-    if (!pair) return bad(item.place, "a point of \"profile_mm\" is not a pair");
+    if (!pair) return bad(item.place, phrase("problem.profile_pair"));
     for (const auto& x : item.items)
       if ((x.kind != text::Value::Kind::number && x.kind != text::Value::Kind::integer) ||
           !std::isfinite(x.number))
-        return bad(x.place, "a point of \"profile_mm\" contains " + describe(x));
+        return bad(x.place, phrase("problem.profile_contains", {describe(x)}));
     const double x_m = 1e-3 * item.items[0].number, w_m = 1e-3 * item.items[1].number;
     const auto& points = taper.profile_m;
     if (points.empty() ? x_m != 0 : x_m <= points.back().first)
-      return bad(item.place, "the x values of \"profile_mm\" are not in ascending order from 0");
+      return bad(item.place, phrase("problem.profile_order"));
     if (w_m <= 0 || (!points.empty() && w_m > points.back().second))
-      return bad(item.place,
-                 "a half-width of \"profile_mm\" is not above 0, or is larger than the one before");
+      return bad(item.place, phrase("problem.profile_width"));
     taper.profile_m.emplace_back(x_m, w_m);
   }
-  if (taper.profile_m.size() < 2) return bad(list.place, "\"profile_mm\" has fewer than two points");
+  if (taper.profile_m.size() < 2) return bad(list.place, phrase("problem.profile_points"));
   taper.half_width_m = taper.profile_m.front().second;
 }
 
 void check_length(const Surface& surface, text::TableReader& reader) {
   const auto& taper = surface.taper;
   if (taper.slope && taper.half_width_m - *taper.slope * surface.length_m < -1e-9)
-    reader.problem("slope",
-                   "the half-width reaches 0 at " + std::to_string(1e3 * taper.half_width_m / *taper.slope) +
-                       " mm, before the end of the surface",
-                   "\"length_mm\" must be at most half_width_mm / slope");
+    reader.problem(
+        "slope",
+        phrase("problem.width_zero", {plain(std::to_string(1e3 * taper.half_width_m / *taper.slope))}),
+        phrase("problem.length_at_most", {plain("half_width_mm / slope")}));
   if (!taper.profile_m.empty() && taper.profile_m.back().first < surface.length_m - 1e-9)
-    reader.problem("profile_mm", "the profile ends before the surface does",
-                   "the last point must be at \"length_mm\" or beyond");
+    reader.problem("profile_mm", phrase("problem.profile_short"), phrase("problem.last_point"));
 }
 
 void read_taper(const text::Value& table, Surface& surface, text::Findings& findings) {
@@ -121,12 +118,12 @@ void read_taper(const text::Value& table, Surface& surface, text::Findings& find
   const auto* profile = reader.take("profile_mm");
   const int forms = reader.has("slope") + reader.has("decay_length_mm") + reader.has("profile_mm");
   if (forms != 1)
-    findings.add(reader.place(), "[surface.taper] has " + std::to_string(forms) + " forms",
-                 "give exactly one of \"slope\", \"decay_length_mm\" and \"profile_mm\"");
+    findings.add(reader.place(), phrase("problem.taper_forms", {plain(forms)}), phrase("problem.one_taper"));
   const Range half_width{0.5, 1000, Ends::closed, "mm"};
   if (profile && reader.has("half_width_mm"))
-    reader.problem("half_width_mm", "\"half_width_mm\" is not allowed together with \"profile_mm\"",
-                   "leave it out: the profile already contains it");
+    reader.problem("half_width_mm",
+                   phrase("problem.not_together", {plain("half_width_mm"), plain("profile_mm")}),
+                   phrase("problem.profile_has_it"));
   if (!profile) taper.half_width_m = 1e-3 * reader.number("half_width_mm", half_width);
   reader.take("half_width_mm");
   taper.slope = slope;
@@ -139,7 +136,7 @@ void read_taper(const text::Value& table, Surface& surface, text::Findings& find
       1e-3 * reader.maybe_number("decay_length_sd_mm", {0, 1e6, Ends::closed, "mm"}).value_or(0);
   surface.clamp_line_sd_m = 1e-3 * reader.maybe_number("clamp_line_sd_mm", sd_mm).value_or(0);
   if (surface.clamp_line_sd_m > 0 && taper.decay_length_m)
-    reader.problem("clamp_line_sd_mm", "an exponential taper has no clamp line", "use \"half_width_sd_mm\"");
+    reader.problem("clamp_line_sd_mm", phrase("problem.no_clamp_line"), phrase("problem.use_half_width_sd"));
   check_length(surface, reader);
   reader.finish();
 }
@@ -161,8 +158,8 @@ void read_deviations(text::TableReader& reader, Surface& surface) {
   surface.modulus_per_K =
       reader.maybe_number("modulus_per_K", softening).value_or(filled ? filled->modulus_per_K : 0);
   if (surface.temperature_sd_K > 0 && surface.expansion_per_K == 0 && surface.modulus_per_K == 0)
-    reader.problem("temperature_sd_K", "nothing says how this surface changes with temperature",
-                   "add \"expansion_per_K\" and \"modulus_per_K\"");
+    reader.problem("temperature_sd_K", phrase("problem.temperature_unknown"),
+                   phrase("problem.add_expansion"));
 }
 
 void read_plate_theory(text::TableReader& reader, Surface& surface) {
@@ -174,8 +171,8 @@ void read_plate_theory(text::TableReader& reader, Surface& surface) {
   const bool needed = word == "mindlin" || word == "elastic";
   const double poisson = surface.poisson.value_or(-1);
   if (needed && (surface.tension_Pa > 0 || surface.edges != Edges::clamped || poisson < 0 || poisson > 0.49))
-    reader.problem("plate_theory", "\"plate_theory\" is \"" + word + "\" on this surface",
-                   "\"edges\" \"clamped\", \"tension_Pa\" 0 and \"poisson\" from 0 to 0.49 with it");
+    reader.problem("plate_theory", phrase("problem.plate_theory", {plain(word)}),
+                   phrase("problem.plate_needs"));
 }
 
 }  // namespace
@@ -199,7 +196,7 @@ Surface read_surface(const text::Value& table, text::Findings& findings) {
   surface.wide_end =
       reader.word("wide_end", {"left", "right"}, "left") == "left" ? WideEnd::left : WideEnd::right;
   read_deviations(reader, surface);
-  if (const auto* taper = reader.table("taper", "add a table [surface.taper]"))
+  if (const auto* taper = reader.table("taper", phrase("problem.add_table", {plain("[surface.taper]")})))
     read_taper(*taper, surface, findings);
   reader.finish();
   return surface;

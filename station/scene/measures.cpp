@@ -1,7 +1,5 @@
 #include "station/scene/measures.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -10,6 +8,8 @@
 #include "station/text/number.hpp"
 
 namespace turnpoint::scene {
+
+using texts::phrase, texts::plain;
 
 namespace {
 
@@ -33,7 +33,7 @@ ZoneFriction zone_friction(const std::vector<double>& x_m, const std::vector<dou
     if (x_m[i] < scene.zone->from_m || x_m[i] > *scene.boundary_m) continue;
     sum += felt[i], squares += felt[i] * felt[i], n += 1;
   }
-  if (n == 0) throw Unreachable("the zone is empty: it must begin before the boundary");
+  if (n == 0) throw Unreachable(phrase("problem.zone_empty"));
   const double mean = sum / n;
   return {mean, std::sqrt(std::max(0.0, squares / n - mean * mean))};
 }
@@ -128,9 +128,8 @@ double scale_to_friction(const physics::Surface& surface, const physics::Frictio
   double low = 0, high = 1;
   while (mean_at(high) > scene.zone->friction) {
     if (high > 64)
-      throw Unreachable(
-          fmt::format("no amplitude gives the zone a mean friction of {}; the lowest is about {}",
-                      text::number(scene.zone->friction, 4), text::number(mean_at(high), 4)));
+      throw Unreachable(phrase("problem.zone_friction", {plain(text::number(scene.zone->friction, 4)),
+                                                         plain(text::number(mean_at(high), 4))}));
     low = high, high *= 2;
   }
   // Find the scale by regula falsi (Illinois variant): the mean friction falls smoothly as the scale rises,

@@ -24,6 +24,8 @@
 
 namespace turnpoint::scene {
 
+using texts::phrase, texts::plain;
+
 using physics::Model;
 using physics::Tone;
 using text::number;
@@ -192,9 +194,9 @@ void Planner::State::drive(DrivePlan& plan, const std::vector<Tone>& tones, cons
     driven.displacement_m = info.gain * tone.amplitude_m;
     assign_transducer(rig, driven);
     if (driven.frequency_Hz >= terms::kHighestShareOfRate * rig.output.rate_Hz)
-      throw Unreachable(fmt::format("{} Hz is too high for a converter at {} Hz; tones stay below {} Hz",
-                                    number(driven.frequency_Hz), rig.output.rate_Hz,
-                                    number(terms::kHighestShareOfRate * rig.output.rate_Hz)));
+      throw Unreachable(
+          phrase("problem.too_high", {plain(number(driven.frequency_Hz)), plain(rig.output.rate_Hz),
+                                      plain(number(terms::kHighestShareOfRate * rig.output.rate_Hz))}));
     plan.tones.push_back(driven);
   }
   std::stable_sort(plan.tones.begin(), plan.tones.end(),
@@ -208,8 +210,8 @@ void Planner::State::drive(DrivePlan& plan, const std::vector<Tone>& tones, cons
 double Planner::State::drive_under_finger_m(const Scene& scene, double frequency_Hz) {
   const double finger_m = scene.under_finger->finger_m;
   if (finger_m > surface.length_m)
-    throw Unreachable(fmt::format("the finger at {} mm is beyond the surface, which ends at {} mm",
-                                  number(1e3 * finger_m), number(1e3 * surface.length_m)));
+    throw Unreachable(phrase("problem.finger_beyond",
+                             {plain(number(1e3 * finger_m)), plain(number(1e3 * surface.length_m))}));
   auto found = moved_under_finger_.find({frequency_Hz, finger_m});
   if (found == moved_under_finger_.end()) {
     if (moved_under_finger_.size() >= kRemembered) moved_under_finger_.clear();
@@ -218,11 +220,14 @@ double Planner::State::drive_under_finger_m(const Scene& scene, double frequency
   }
   const double wanted_m = scene.under_finger->displacement_m * std::pow(10.0, scene.rove_dB / 20);
   if (!(found->second * kMostDrive_m > wanted_m))
-    throw Unreachable(
-        fmt::format("the surface hardly moves under a finger at {} mm; place the finger before "
-                    "the boundary",
-                    number(1e3 * finger_m)));
+    throw Unreachable(phrase("problem.finger_still", {plain(number(1e3 * finger_m))}));
   return wanted_m / found->second;
+}
+
+texts::Phrase phrase_of(const physics::Warning& warning) {
+  std::vector<texts::Phrase> values;
+  for (const auto& value : warning.values) values.push_back(plain(value));
+  return phrase("physics_warning." + warning.code, std::move(values));
 }
 
 Planner::Planner(const rig::Rig& rig) : state_(std::make_unique<State>(rig)) {}
@@ -267,9 +272,9 @@ DrivePlan Planner::plan(const Scene& scene) {
   try {
     return plans.emplace(key, make(scene)).first->second;
   } catch (const std::domain_error& error) {
-    throw Unreachable(error.what());
+    throw Unreachable(plain(error.what()));
   } catch (const std::invalid_argument& error) {
-    throw Unreachable(error.what());
+    throw Unreachable(plain(error.what()));
   }
 }
 
@@ -322,12 +327,10 @@ DrivePlan Planner::make(const Scene& scene) {
 
 void refuse_beyond_limits(const rig::Rig& rig, const DrivePlan& plan) {
   if (plan.peak_displacement_m > rig.limits.displacement_m)
-    throw Unreachable(fmt::format("the surface would move {} um at its highest; the rig's limit is {} um",
-                                  number(plan.peak_displacement_m * 1e6, 4),
-                                  number(rig.limits.displacement_m * 1e6, 4)));
+    throw Unreachable(phrase("problem.moves_too_far", {plain(number(plan.peak_displacement_m * 1e6, 4)),
+                                                       plain(number(rig.limits.displacement_m * 1e6, 4))}));
   if (plan.peak_full_scale > 1)
-    throw Unreachable(fmt::format("the drive would need {} of full scale, but at most 1 is possible",
-                                  number(plan.peak_full_scale, 4)));
+    throw Unreachable(phrase("problem.drive_too_strong", {plain(number(plan.peak_full_scale, 4))}));
 }
 
 Planner::Profile Planner::profile(const DrivePlan& plan, int points) {

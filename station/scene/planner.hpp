@@ -22,8 +22,15 @@ namespace turnpoint::scene {
 /// Thrown for a scene that this rig cannot present. The message says why, and what would be possible.
 class Unreachable : public terms::UsageError {
  public:
-  using terms::UsageError::UsageError;
+  explicit Unreachable(texts::Phrase why) : UsageError(texts::say(why, "en")), why_(std::move(why)) {}
+  const texts::Phrase& why() const { return why_; }
+
+ private:
+  texts::Phrase why_;
 };
+
+/// Says a warning of the physics library in a language that is chosen later.
+texts::Phrase phrase_of(const physics::Warning& warning);
 
 /// One tone as the drive will play it.
 struct DrivenTone {

@@ -1,13 +1,14 @@
 #include "station/scene/scaled.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 
 #include "station/scene/measures.hpp"
+#include "station/text/number.hpp"
 
 namespace turnpoint::scene {
+
+using texts::phrase, texts::plain;
 
 double mean_displacement_m(Planner& planner, const DrivePlan& plan, const Stretch& stretch) {
   const auto profile = planner.profile(plan, profile_points);
@@ -17,9 +18,10 @@ double mean_displacement_m(Planner& planner, const DrivePlan& plan, const Stretc
     if (profile.x_m[i] >= stretch.from_m && profile.x_m[i] <= stretch.to_m)
       sum += std::pow(profile.displacement_m[i], 2), ++points;
   if (points == 0 || stretch.to_m > planner.surface().length_m)
-    throw terms::UsageError(fmt::format("{:g} to {:g} mm is not a part of the surface, which is {:g} mm long",
-                                        1e3 * stretch.from_m, 1e3 * stretch.to_m,
-                                        1e3 * planner.surface().length_m));
+    throw Unreachable(
+        phrase("problem.not_on_surface",
+               {plain(text::number(1e3 * stretch.from_m)), plain(text::number(1e3 * stretch.to_m)),
+                plain(text::number(1e3 * planner.surface().length_m))}));
   return std::sqrt(sum / points);
 }
 

@@ -10,6 +10,8 @@
 
 namespace turnpoint::scene {
 
+using texts::phrase, texts::plain;
+
 using text::number;
 
 static_assert(terms::kAudible_Hz == physics::audible_limit_Hz);
@@ -51,8 +53,9 @@ double ToneDesigner::frequency_for(double boundary_m, const physics::Edge& edge,
   // the message can say whether any other frequency does.
   const physics::BoundaryMap whole(surface, options);
   if (const auto frequency = whole.frequency_Hz(boundary_m)) return *frequency;
-  throw Unreachable(fmt::format("no frequency puts the {} edge at {} mm: {}", physics::format(edge),
-                                number(1e3 * boundary_m), whole.at_boundary(boundary_m).reason));
+  throw Unreachable(
+      phrase("problem.no_frequency", {plain(physics::format(edge)), plain(number(1e3 * boundary_m)),
+                                      plain(whole.at_boundary(boundary_m).reason)}));
 }
 
 double ToneDesigner::target_displacement(const Scene& scene) const {
@@ -60,8 +63,8 @@ double ToneDesigner::target_displacement(const Scene& scene) const {
   if (scene.under_finger) return scene.under_finger->displacement_m;  // the planner computes the drive later
   const double wanted = scene.friction.value_or(1.0);
   if (const auto displacement = friction.displacement_m(wanted)) return *displacement;
-  throw Unreachable(fmt::format("relative friction {} is below the lowest that this surface gives, {}",
-                                number(wanted), number(friction.lowest_friction())));
+  throw Unreachable(
+      phrase("problem.friction_too_low", {plain(number(wanted)), plain(number(friction.lowest_friction()))}));
 }
 
 std::vector<WantedTone> ToneDesigner::single(const Scene& scene) {

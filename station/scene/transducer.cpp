@@ -1,13 +1,13 @@
 #include "station/scene/transducer.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <utility>
 
 #include "station/text/number.hpp"
 
 namespace turnpoint::scene {
+
+using texts::phrase, texts::plain;
 
 namespace {
 
@@ -28,7 +28,7 @@ std::pair<double, double> response_at(const rig::Transducer& transducer, double 
 }  // namespace
 
 void assign_transducer(const rig::Rig& rig, DrivenTone& tone) {
-  std::string bands;
+  texts::Phrase bands;
   for (const auto& transducer : rig.transducers) {
     if (tone.frequency_Hz >= transducer.low_Hz && tone.frequency_Hz <= transducer.high_Hz) {
       const auto [gain_m, phase_rad] = response_at(transducer, tone.frequency_Hz);
@@ -38,11 +38,12 @@ void assign_transducer(const rig::Rig& rig, DrivenTone& tone) {
       tone.output_phase_rad = tone.phase_rad - phase_rad;
       return;
     }
-    bands += fmt::format("{}{} {} to {} kHz", bands.empty() ? "" : ", ", transducer.name,
-                         text::number(transducer.low_Hz / 1e3), text::number(transducer.high_Hz / 1e3));
+    if (!bands.values.empty()) bands.values.push_back(plain(", "));
+    bands.values.push_back(
+        phrase("problem.named_band", {plain(transducer.name), plain(text::number(transducer.low_Hz / 1e3)),
+                                      plain(text::number(transducer.high_Hz / 1e3))}));
   }
-  throw Unreachable(fmt::format("{} kHz is outside every transducer's band: {}",
-                                text::number(tone.frequency_Hz / 1e3), bands));
+  throw Unreachable(phrase("problem.outside_bands", {plain(text::number(tone.frequency_Hz / 1e3)), bands}));
 }
 
 double lowest_frequency(const rig::Rig& rig, double preferred_Hz) {

@@ -3,6 +3,7 @@
 // newer processor with the rest of the program.
 #pragma once
 #include <cmath>
+#include <cstdint>
 
 #include "station/sensing/sample_loops.hpp"
 

@@ -17,13 +17,14 @@
 #include "station/store/open.hpp"
 #include "station/store/people.hpp"
 #include "station/store/read.hpp"
-#include "station/terms/usage_error.hpp"
+#include "station/texts/refusal.hpp"
 
 namespace turnpoint::session {
 
 namespace {
 
 using std::chrono::sys_days;
+using texts::phrase, texts::plain;
 
 /// Returns the day of an ISO 8601 date or date and time; empty if the text does not begin with one.
 std::optional<sys_days> day_of(const std::string& date) {
@@ -88,8 +89,9 @@ void check_days(const Setup& setup, const std::vector<const store::SessionRecord
   if (!setup.early.empty())
     next.overruled = describe(early);
   else
-    next.problem = describe(early), next.too_early = std::move(early),
-    next.allowed = "come back on that day, or give the reason to begin earlier with --early; it is stored";
+    next.problem = plain(describe(early)), next.too_early = std::move(early),
+    next.allowed =
+        plain("come back on that day, or give the reason to begin earlier with --early; it is stored");
 }
 
 }  // namespace
@@ -103,8 +105,8 @@ NextSession next_session(const Setup& setup, const std::vector<store::SessionRec
   NextSession next;
   if (!setup.protocol.sessions) {
     if (setup.planned_session || !setup.early.empty())
-      next.problem = "the protocol " + setup.protocol.id + " plans no sessions",
-      next.allowed = "leave out --planned-session and --early, or add [sessions] to the protocol";
+      next.problem = phrase("refusal.no_planned", {plain(setup.protocol.id)}),
+      next.allowed = phrase("refusal.add_sessions");
     return next;
   }
   const int count = setup.protocol.sessions->count;
@@ -117,11 +119,11 @@ NextSession next_session(const Setup& setup, const std::vector<store::SessionRec
   while (numbers.count(number) > 0) ++number;
   next.number = setup.planned_session.value_or(number);
   if (*next.number > count) {
-    next.problem = setup.planned_session ? fmt::format("--planned-session {}: the protocol plans {} sessions",
-                                                       *next.number, count)
-                                         : fmt::format("participant {} has completed all {} sessions of {}",
-                                                       setup.participant, count, setup.protocol.id);
-    next.allowed = fmt::format("--planned-session, from 1 to {}, repeats a session", count);
+    next.problem =
+        setup.planned_session
+            ? phrase("refusal.few_sessions", {plain(*next.number), plain(count)})
+            : phrase("refusal.all_done", {plain(setup.participant), plain(count), plain(setup.protocol.id)});
+    next.allowed = phrase("refusal.repeat_session", {plain(count)});
     return next;
   }
   check_days(setup, done, today, next);
@@ -158,10 +160,9 @@ procedure::EarlierTrials earlier_trials(const std::string& database_path, const 
   }
   for (const auto& [number, other] : before) {
     if (other->start.protocol_version != protocol.version)
-      throw terms::UsageError(fmt::format(
-          "participant {} had session {} with version {} of {}, and procedures that continue need the same "
-          "version in all sessions; this file is version {}",
-          start.participant, number, other->start.protocol_version, protocol.id, protocol.version));
+      throw texts::Refusal(phrase("refusal.other_version", {plain(start.participant), plain(number),
+                                                            plain(other->start.protocol_version),
+                                                            plain(protocol.id), plain(protocol.version)}));
     trial::add_earlier_trials(protocol, store::read_session(database, *other).blocks, earlier);
   }
   for (const auto& [name, trials] : earlier) {

@@ -7,6 +7,7 @@
 #include "station/session/early_session.hpp"
 #include "station/session/session.hpp"
 #include "station/store/session_log.hpp"
+#include "station/texts/texts.hpp"
 #include "station/trial/earlier_trials.hpp"
 
 namespace turnpoint::session {
@@ -18,8 +19,8 @@ protocol::Visit visit_of(const store::SessionRecord& session);
 /// The planned session that a participant does next, or the reason why it cannot begin now.
 struct NextSession {
   std::optional<int> number;  ///< empty if the protocol plans no sessions
-  std::string problem;        ///< why the session cannot begin; "" if it can
-  std::string allowed;        ///< what is possible instead
+  texts::Phrase problem;      ///< why the session cannot begin; empty if it can
+  texts::Phrase allowed;      ///< what is possible instead
   /// set if the problem is only that too few days have passed, so that a reason overrules it
   std::optional<EarlySession> too_early;
   /// why it would be refused if the operator had not given a reason

@@ -22,8 +22,8 @@
 #include "station/session/stage.hpp"
 #include "station/system/clocks.hpp"
 #include "station/terms/force_carrier.hpp"
-#include "station/terms/usage_error.hpp"
 #include "station/text/canonical.hpp"
+#include "station/texts/refusal.hpp"
 
 namespace turnpoint::session {
 
@@ -157,8 +157,9 @@ struct Begun {
 
 Begun begin(const Setup& setup, Stage& stage, programs::Programs& programs) {
   const auto next = next_session(setup);
-  if (next.too_early) throw TooEarly(next.problem + "; " + next.allowed, *next.too_early);
-  if (!next.problem.empty()) throw terms::UsageError(next.problem + "; " + next.allowed);
+  const texts::Phrase refused{"", "", {next.problem, texts::plain("; "), next.allowed}};
+  if (next.too_early) throw TooEarly(texts::say(refused, "en"), *next.too_early);
+  if (!next.problem.empty()) throw texts::Refusal(refused);
   auto earlier = earlier_trials(setup, next);
   // With one seed for all participants, the planned sessions still have different orders.
   const auto stated =

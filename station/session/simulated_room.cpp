@@ -19,6 +19,10 @@ constexpr double kFirst_m = 3e-3, kNext_m = 6e-3;
 // with this pause between strokes.
 constexpr double kStrokeFrom = 0.25, kStrokeTo = 0.75, kStroke_m_s = 0.09, kPause_s = 0.05;
 constexpr double kStep_Hz = 20;  // distance between two points of a pick-up's response
+// The buffer turns the station's carrier into this peak voltage on the bridges. The reference input takes
+// more, because the pilot is added to the carrier.
+constexpr double kExcitation_V = 2.5, kReference_V = 4.0;
+constexpr double kHeight_m = 8e-3;  // height of the surface above the pivots of the force cells
 
 /// Returns the ratio of bridge signal to reference signal for a force of 1 N on a cell.
 double ratio_per_N(const plant::Setup& room) {
@@ -74,10 +78,13 @@ plant::Setup laboratory_of(const rig::Rig& rig) {
   room.capture.count = rig.capture->channels;
   room.capture.marker = std::nullopt;
   room.wires.carrier_channel = rig.capture->excitation_channel;
+  room.wires.excitation_V_per_full_scale = kExcitation_V / kCarrier;
+  room.wires.reference_V_at_full_scale = kReference_V;
   if (const auto& bridges = rig.capture->bridges; !bridges.empty()) {
     room.capture.reference = rig.capture->reference;
     room.capture.bridge_a = bridges[0], room.capture.bridge_b = bridges[1], room.capture.lateral = bridges[2];
     room.cells.span_m = rig.surface.length_m;
+    room.cells.height_m = kHeight_m;
     room.finger.from_m = kStrokeFrom * rig.surface.length_m;
     room.finger.to_m = kStrokeTo * rig.surface.length_m;
     room.finger.stroke_s = (room.finger.to_m - room.finger.from_m) / kStroke_m_s;

@@ -50,8 +50,7 @@ std::string rig_or_default(const std::string& named, std::ostream& messages) {
       messages << "rig: " << candidate.string() << " (no --rig was given)\n";
       return candidate.string();
     }
-  throw text::BadInput(
-      {{{}, "there is no rig file: none was named and none is installed", "name one with --rig FILE"}});
+  throw text::BadInput({{{}, texts::phrase("refusal.no_rig"), texts::phrase("refusal.name_rig")}});
 }
 
 std::string screen_card(const std::string& drm) {

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <map>
 #include <ostream>
 #include <regex>
 #include <utility>
@@ -18,6 +17,7 @@
 #include "station/terms/usage_error.hpp"
 #include "station/text/number.hpp"
 #include "station/text/toml.hpp"
+#include "station/texts/refusal.hpp"
 
 namespace turnpoint::setup {
 
@@ -31,10 +31,7 @@ const std::string kLiveOption = "--mode live: ";
 void check_participant(const std::string& code, std::vector<Problem>& problems) {
   static const std::regex allowed("[A-Za-z0-9][A-Za-z0-9_-]{0,31}");
   if (!std::regex_match(code, allowed))
-    problems.push_back({{},
-                        "--participant \"" + code + "\" is not a code",
-                        "a code has 1 to 32 letters, digits, - and _, and begins with a letter or digit; "
-                        "never use a person's name"});
+    problems.push_back({{}, phrase("refusal.not_a_code", {plain(code)}), phrase("refusal.code_rule")});
 }
 
 std::string choose_language(const std::string& wanted, const protocol::Protocol& protocol,
@@ -44,8 +41,9 @@ std::string choose_language(const std::string& wanted, const protocol::Protocol&
   if (std::find(known.begin(), known.end(), wanted) != known.end()) return wanted;
   std::string list;
   for (const auto& language : known) list += (list.empty() ? "" : ", ") + language;
-  problems.push_back(
-      {{}, "--language " + wanted + ": the protocol does not have this language", "it has " + list});
+  problems.push_back({{},
+                      phrase("refusal.other_language", {plain(wanted)}),
+                      phrase("refusal.has_languages", {plain(list)})});
   return wanted;
 }
 
@@ -55,12 +53,6 @@ bool has_response(const session::Setup& setup) {
   return !setup.calibration_text.empty() &&
          !calibration::parse(setup.calibration_text, "calibration").transducers.empty();
 }
-
-/// A problem of a session, and what a page says about it.
-struct Refusal {
-  Problem problem;
-  texts::Phrase reason;
-};
 
 /// Returns a problem if some tones have no measured sound level and their computed bound is unknown or
 /// exceeds the recommended limit.
@@ -81,48 +73,43 @@ std::optional<texts::Phrase> unmeasured_sound(const session::Setup& setup, const
 /// Checks what only a live session requires: a measured friction table, a rig that is not the reproduction of
 /// a historical one, a calibration and, for every scene, airborne sound that was measured or whose
 /// computed bound is within the recommended limit.
-std::vector<Refusal> check_live(const session::Setup& setup, const protocol::Survey& survey) {
+std::vector<Problem> check_live(const session::Setup& setup, const protocol::Survey& survey) {
   const auto& rig = setup.rig;
-  std::vector<Refusal> refusals;
-  const auto add = [&](const texts::Phrase& reason, const std::string& allowed) {
-    refusals.push_back({{{rig.path, 0, 0}, kLiveOption + texts::say(reason, "en"), allowed}, reason});
+  std::vector<Problem> problems;
+  const auto add = [&](const texts::Phrase& reason, const texts::Phrase& allowed) {
+    problems.push_back({{rig.path, 0, 0}, {"", kLiveOption, {reason}}, allowed});
   };
   const auto measures = [](const auto& part) {
     const auto& block = protocol::block_of(part);
     return block.kind == protocol::BlockKind::friction_table && block.strokes.used;
   };
   if (!rig.friction.measured && !std::ranges::any_of(setup.protocol.plan, measures))
-    add(phrase("refusal.friction"),
-        "set table_csv in [friction] to a measured table, or run with --mode pilot");
-  if (rig.reproduction)
-    add(phrase("refusal.reproduction"), "live sessions need a rig with reproduction = false");
+    add(phrase("refusal.friction"), phrase("refusal.measure_friction"));
+  if (rig.reproduction) add(phrase("refusal.reproduction"), phrase("refusal.no_reproduction"));
   if (!has_response(setup) && rig.amplifier_uri != "sim:")
-    add(phrase("refusal.no_calibration"), "turnpoint calibrate --rig " + rig.path + " makes one");
+    add(phrase("refusal.no_calibration"), phrase("refusal.make_calibration", {plain(rig.path)}));
   for (const auto& sight : survey.sights) {
     // Use an amplitude near 0, so that this checks only whether the level was measured. Whether the sound is
     // too loud depends on each tone's amplitude and is checked in the trial.
     auto problem = limits::sound_problem(sight.lowest_Hz, 1e-9, setup.sound);
     if (!problem) problem = unmeasured_sound(setup, sight);
     if (!problem) continue;
-    add(phrase("refusal.scene", {plain(sight.scene), *problem}),
-        "the calibration needs sound levels measured below and above these tones");
+    add(phrase("refusal.scene", {plain(sight.scene), *problem}), phrase("refusal.measure_sound"));
     break;
   }
-  return refusals;
+  return problems;
 }
 
 void check_buttons_only(const session::Setup& setup, std::vector<Problem>& problems) {
   const auto& task = setup.protocol.task;
   if (!setup.rig.buttons_uri)
     problems.push_back(
-        {{setup.rig.path, 0, 0}, "--buttons-only: the rig has no buttons", "use a rig with [buttons]"});
+        {{setup.rig.path, 0, 0}, phrase("refusal.no_buttons"), phrase("refusal.need_buttons")});
   if (task.device == protocol::Device::touch)
-    problems.push_back({task.device_place, "--buttons-only: the task is answered by touch",
-                        "set device to \"buttons\" or \"either\""});
+    problems.push_back({task.device_place, phrase("refusal.by_touch"), phrase("refusal.set_device")});
   if (const auto& signal = setup.protocol.timing.signal; signal && !protocol::in_stimulus(*signal))
-    problems.push_back({signal->by_place,
-                        "--buttons-only: the response signal is on the screen, which shows nothing",
-                        "by = \"tone\" or by = \"buzz\", or a session on the screen of turnpoint-ui"});
+    problems.push_back(
+        {signal->by_place, phrase("refusal.signal_on_screen"), phrase("refusal.signal_elsewhere")});
 }
 
 }  // namespace
@@ -144,7 +131,7 @@ void take_calibration(const std::string& source, const std::string& path, sessio
 namespace {
 
 /// Loads the calibration that was named, or the newest one beside the rig file.
-std::vector<Refusal> find_calibration(const RunRequest& request, session::Setup& setup) {
+std::vector<Problem> find_calibration(const RunRequest& request, session::Setup& setup) {
   const auto path =
       request.calibration.empty() ? calibration::newest_for(setup.rig.path) : request.calibration;
   if (path.empty()) return {};
@@ -154,29 +141,11 @@ std::vector<Refusal> find_calibration(const RunRequest& request, session::Setup&
   const bool live = request.observer.empty() && request.mode == "live";
   if (faults.empty()) take_calibration(source, path, setup);
   if (request.calibration.empty() && !live) return {};
-  std::vector<Refusal> refusals;
+  std::vector<Problem> problems;
   for (const auto& fault : faults)
-    refusals.push_back(
-        {{{path, 0, 0}, texts::say(fault, "en"), "calibrate again, or name another file with --calibration"},
-         fault});
-  return refusals;
+    problems.push_back({{path, 0, 0}, fault, phrase("refusal.calibrate_again")});
+  return problems;
 }
-
-/// The problems of a session, with the reasons of those that a page says in its own words.
-class Refused : public text::BadInput {
- public:
-  using Reasons = std::map<std::string, texts::Phrase>;
-  Refused(std::vector<Problem> problems, Reasons reasons)
-      : BadInput(std::move(problems)), reasons_(std::move(reasons)) {}
-  /// What a page says about a problem.
-  texts::Phrase reason(const Problem& problem) const {
-    const auto known = reasons_.find(problem.what);
-    return known == reasons_.end() ? plain(problem.what) : known->second;
-  }
-
- private:
-  Reasons reasons_;
-};
 
 }  // namespace
 
@@ -196,12 +165,8 @@ rig::Rig calibrated_rig(const std::string& rig_path, const std::string& named, s
 session::Setup prepare(const RunRequest& request, const std::stop_token& stop) {
   session::Setup setup;
   std::vector<Problem> problems;
-  Refused::Reasons reasons;
-  const auto refuse = [&](const std::vector<Refusal>& refusals) {
-    for (const auto& [problem, reason] : refusals) {
-      problems.push_back(problem);
-      reasons[problem.what] = reason;
-    }
+  const auto refuse = [&problems](const std::vector<Problem>& more) {
+    problems.insert(problems.end(), more.begin(), more.end());
   };
   const auto gather = [&problems](auto&& load) {
     try {
@@ -241,13 +206,12 @@ session::Setup prepare(const RunRequest& request, const std::stop_token& stop) {
   try {
     if (problems.empty()) session::earlier_trials(setup, next);
   } catch (const terms::UsageError& refused) {
-    problems.push_back(
-        {{}, refused.what(), "use the file with that version for the participant's other sessions"});
+    problems.push_back({{}, texts::phrase_of(refused), phrase("refusal.same_version")});
   }
   if (problems.empty()) problems = programs::problems_of(setup.protocol);
   if (problems.empty() && next.too_early) throw TooEarly({{}, next.problem, next.allowed}, *next.too_early);
   if (next.too_early) problems.push_back({{}, next.problem, next.allowed});
-  if (!problems.empty()) throw Refused(std::move(problems), std::move(reasons));
+  if (!problems.empty()) throw text::BadInput(std::move(problems));
   return setup;
 }
 
@@ -255,10 +219,9 @@ std::vector<texts::Phrase> live_problems(const RunRequest& request, const std::s
   std::vector<texts::Phrase> reasons;
   try {
     prepare(request, stop);
-  } catch (const Refused& refused) {
-    for (const auto& problem : refused.problems()) reasons.push_back(refused.reason(problem));
   } catch (const text::BadInput& bad) {
-    for (const auto& problem : bad.problems()) reasons.push_back(plain(problem.what));
+    for (const auto& problem : bad.problems())
+      reasons.push_back(problem.what.words == kLiveOption ? problem.what.values.front() : problem.what);
   }
   return reasons;
 }

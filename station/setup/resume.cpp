@@ -46,13 +46,10 @@ std::optional<session::Setup> prepare_resume(const ResumeRequest& request, std::
     messages << "resume: the clock was set back after the session was interrupted, so the age of the session "
                 "is unknown\n";
   if (age_h > allowed_h && !request.any_age)
-    throw text::BadInput(
-        {{{start.protocol_path, 0, 0},
-          fmt::format("session {} was interrupted {} h ago", found->session.session_id,
-                      text::number(age_h, 3)),
-          fmt::format("the protocol allows {} h (resume.max_age_h); begin a new session with "
-                      "turnpoint run, or, if the clock is or was wrong, resume it with --any-age",
-                      text::number(allowed_h))}});
+    throw text::BadInput({{{start.protocol_path, 0, 0},
+                           texts::phrase("refusal.too_old", {texts::plain(found->session.session_id),
+                                                             texts::plain(text::number(age_h, 3))}),
+                           texts::phrase("refusal.resume_rule", {texts::plain(text::number(allowed_h))})}});
   setup.participant = start.participant;
   setup.database = request.database;
   setup.run_mode = start.run_mode;

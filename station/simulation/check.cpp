@@ -17,6 +17,8 @@
 
 namespace turnpoint::simulation {
 
+using texts::phrase, texts::plain;
+
 namespace {
 
 using protocol::Protocol;
@@ -174,14 +176,13 @@ std::vector<text::Problem> language_notes(const Protocol& protocol) {
   for (const auto& language : protocol.languages) {
     const auto translation = texts::translation(language);
     if (translation >= texts::Translation::participant_read) continue;
-    notes.push_back({{protocol.path, 0, 0},
-                     translation == texts::Translation::none
-                         ? "the station does not speak \"" + language +
-                               "\": its own words, such as Continue, are in English"
-                         : "no native speaker has read the station's own words in \"" + language + "\"",
-                     translation == texts::Translation::none
-                         ? "add a catalogue of texts for the language"
-                         : "let somebody read station/texts/" + language.substr(0, 2) + ".toml"});
+    notes.push_back(
+        {{protocol.path, 0, 0},
+         translation == texts::Translation::none ? phrase("problem.not_spoken", {plain(language)})
+                                                 : phrase("problem.unread", {plain(language)}),
+         translation == texts::Translation::none
+             ? phrase("problem.add_catalogue")
+             : phrase("problem.let_read", {plain("station/texts/" + language.substr(0, 2) + ".toml")})});
   }
   return notes;
 }
@@ -264,20 +265,17 @@ Check check(const std::string& protocol_path, const std::string& rig_path, const
     throw;
   } catch (const std::exception& error) {
     // If a procedure cannot work, report that here rather than in the middle of a session.
-    check.problems.push_back({{protocol_path, 0, 0}, error.what(), ""});
+    check.problems.push_back({{protocol_path, 0, 0}, plain(error.what()), {}});
   }
   if (!check.cues.not_compared.empty())
+    check.warnings.push_back({{protocol_path, 0, 0},
+                              phrase("problem.cues_unknown", {plain(check.cues.not_compared)}),
+                              phrase("problem.fewer_combinations")});
+  if (check.duration_s.median > 60 * rig->limits.session_minutes)
     check.warnings.push_back(
         {{protocol_path, 0, 0},
-         "the cues of " + check.cues.not_compared +
-             " cannot be computed: a cue may give the answers away without being noticed here",
-         "use fewer combinations of factors in one scene"});
-  if (check.duration_s.median > 60 * rig->limits.session_minutes)
-    check.warnings.push_back({{protocol_path, 0, 0},
-                              "the session will last about " +
-                                  std::to_string(std::lround(check.duration_s.median / 60)) +
-                                  " minutes, longer than the rig's session_minutes",
-                              "at most " + std::to_string(std::lround(rig->limits.session_minutes))});
+         phrase("problem.session_long", {plain(std::lround(check.duration_s.median / 60))}),
+         phrase("problem.at_most", {plain(std::lround(rig->limits.session_minutes))})});
   return check;
 }
 

@@ -156,9 +156,10 @@ void require_possible(const protocol::Protocol& protocol, const PowerOptions& op
     if (spec.kind == procedure::Kind::program)
       problems.push_back(
           {spec.program.place,
-           "procedure \"" + spec.name + "\" is a separate program, which a power study does not run",
-           "use a procedure of another kind for the study, or simulate sessions with "
-           "`turnpoint run --observer sim` and analyse their export"});
+           texts::plain("procedure \"" + spec.name +
+                        "\" is a separate program, which a power study does not run"),
+           texts::plain("use a procedure of another kind for the study, or simulate sessions with "
+                        "`turnpoint run --observer sim` and analyse their export")});
   if (!problems.empty()) throw text::BadInput(problems);
 }
 

@@ -32,14 +32,18 @@ std::size_t edit_distance(const std::string& a, const std::string& b) {
 
 }  // namespace
 
-std::string format(const Problem& problem) {
-  std::string line = problem.place.file;
-  if (problem.place.line > 0) line += fmt::format(":{}:{}", problem.place.line, problem.place.column);
-  if (!line.empty()) line += ": ";
-  line += problem.what;
-  if (!problem.allowed.empty()) line += "; " + problem.allowed;
-  return line;
+texts::Phrase phrase_of(const Problem& problem) {
+  std::string place = problem.place.file;
+  if (problem.place.line > 0) place += fmt::format(":{}:{}", problem.place.line, problem.place.column);
+  if (!place.empty()) place += ": ";
+  texts::Phrase phrase{"", place, {problem.what}};
+  if (problem.allowed.empty()) return phrase;
+  phrase.values.push_back(texts::plain("; "));
+  phrase.values.push_back(problem.allowed);
+  return phrase;
 }
+
+std::string format(const Problem& problem) { return texts::say(phrase_of(problem), "en"); }
 
 BadInput::BadInput(std::vector<Problem> problems)
     : std::runtime_error(format_all(problems)), problems_(std::move(problems)) {}

@@ -3,6 +3,8 @@
 #include <string>
 #include <vector>
 
+#include "station/texts/texts.hpp"
+
 namespace turnpoint::text {
 
 /// A position in a file. Line and column count from 1; 0 means the file as a whole.
@@ -15,15 +17,17 @@ struct Place {
 /// One problem or warning about a file, and what would be correct.
 struct Problem {
   Place place;
-  std::string what;
-  std::string allowed;  ///< what would be correct; may be empty if `what` says enough
+  texts::Phrase what;
+  texts::Phrase allowed;  ///< what would be correct; may be empty if `what` says enough
 };
 
 /// Returns `file:line:column: what; allowed`. Parts that are not set are left out.
+texts::Phrase phrase_of(const Problem& problem);
+/// Returns the same in English.
 std::string format(const Problem& problem);
 
-/// Reports all problems of a file at once: what() has one formatted problem per line. The programs exit with
-/// status 2.
+/// Reports all problems of a file at once: what() has one formatted problem per line, in English. The
+/// programs exit with status 2.
 class BadInput : public std::runtime_error {
  public:
   explicit BadInput(std::vector<Problem> problems);

@@ -18,7 +18,7 @@ struct Range {
 };
 
 /// Describes a range for people: `from 0 to 1 mm`, `above 0 um`, ...
-std::string describe(const Range& range);
+texts::Phrase describe(const Range& range);
 /// True if the value is finite and within the range.
 bool inside_range(double value, const Range& range);
 
@@ -26,7 +26,7 @@ bool inside_range(double value, const Range& range);
 struct Findings {
   std::vector<Problem> problems;
   std::vector<std::string> defaults_used;  ///< entries such as `timing.anticipation_s = 0`
-  void add(const Place& place, std::string what, std::string allowed = "");
+  void add(const Place& place, texts::Phrase what, texts::Phrase allowed = {});
   /// Throws BadInput with the problems in file order, if there are any.
   void throw_if_any();
 };
@@ -36,7 +36,10 @@ struct Findings {
 std::string titled(const std::string& list, const Value& table);
 
 /// Joins words as `"a", "b" or "c"`.
-std::string quoted_list(const std::vector<std::string>& words);
+texts::Phrase quoted_list(const std::vector<std::string>& words);
+
+/// Says which of the known words `word` was probably meant to be: `did you mean "x"? known: a, b, c`.
+texts::Phrase suggestion(const std::string& word, const std::vector<std::string>& known);
 
 /// Reads one table key by key. Each getter marks its key as known; finish() reports all other keys and
 /// suggests the nearest known key for each. If a value has the wrong type or is out of range, the getter
@@ -51,7 +54,7 @@ class TableReader {
   const Value* take(const std::string& key);
   /// Like take(), but reports a problem if the key is absent. `what` is the part of the message that says
   /// what the key is for.
-  const Value* require(const std::string& key, const std::string& what);
+  const Value* require(const std::string& key, const texts::Phrase& what);
   bool has(const std::string& key) const { return table_->find(key) != nullptr; }
 
   std::optional<double> maybe_number(const std::string& key, const Range& range);
@@ -65,7 +68,7 @@ class TableReader {
   bool boolean(const std::string& key, const char* fallback);  ///< `fallback` is "true" or "false"
 
   std::optional<std::string> maybe_string(const std::string& key);
-  std::string string(const std::string& key, const std::string& what);
+  std::string string(const std::string& key, const texts::Phrase& what);
 
   /// Reads one of the given words. The fallback, if given, must be one of these words too.
   std::optional<std::string> maybe_word(const std::string& key, const std::vector<std::string>& words);
@@ -79,20 +82,20 @@ class TableReader {
   /// Reads a list of two numbers, of which the first must be the smaller.
   std::optional<std::pair<double, double>> maybe_interval(const std::string& key, const Range& range);
   std::vector<std::string> maybe_strings(const std::string& key);
-  std::vector<std::string> strings(const std::string& key, const std::string& what);
+  std::vector<std::string> strings(const std::string& key, const texts::Phrase& what);
 
   /// Returns a sub-table; nullptr if the key is absent or not a table.
   const Value* maybe_table(const std::string& key);
-  const Value* table(const std::string& key, const std::string& what);
+  const Value* table(const std::string& key, const texts::Phrase& what);
   /// Returns the tables of `[[key]]`; empty if the key is absent.
   std::vector<const Value*> tables(const std::string& key);
 
   /// Reports a problem with this key's value (or with the table if the key is absent).
-  void problem(const std::string& key, const std::string& what, const std::string& allowed = "");
+  void problem(const std::string& key, const texts::Phrase& what, const texts::Phrase& allowed = {});
   /// Records that `key` is absent and that its default `value` was used.
   void defaulted(const std::string& key, const std::string& value);
   /// Returns this table's name for messages: `[timing]`, or `the file`.
-  std::string title() const;
+  texts::Phrase title() const;
   std::string path(const std::string& key) const;
   const Place& place() const { return table_->place; }
   /// The place of the key's value, or of the table if the key is absent.

@@ -26,6 +26,8 @@ constexpr void parser_assert(bool holds) {
 
 namespace turnpoint::text {
 
+using texts::phrase, texts::plain;
+
 namespace {
 
 Place place_of(const toml::source_region& region, const std::string& path) {
@@ -56,9 +58,9 @@ Value convert(const toml::node& node, const std::string& path) {
     case toml::node_type::array:
       value.kind = Value::Kind::array;
       if (node.as_array()->size() > most_items)
-        throw BadInput({{place_of(node.source(), path),
-                         "a list of " + std::to_string(node.as_array()->size()) + " items",
-                         "at most " + std::to_string(most_items)}});
+        throw BadInput(
+            {{place_of(node.source(), path), phrase("problem.long_list", {plain(node.as_array()->size())}),
+              phrase("problem.at_most", {plain(most_items)})}});
       for (const auto& item : *node.as_array()) value.items.push_back(convert(item, path));
       break;
     case toml::node_type::boolean:
@@ -100,42 +102,43 @@ Value parse_toml(const std::string& source, const std::string& path) {
     document.place = {path, 0, 0};
     return document;
   } catch (const ParserAssertion&) {
-    throw BadInput(
-        {{{path, 0, 0}, "not valid TOML", "look for a key or a value that begins with an odd character"}});
+    throw BadInput({{{path, 0, 0}, phrase("problem.not_toml"), phrase("problem.odd_character")}});
   } catch (const toml::parse_error& error) {
-    throw BadInput(
-        {{place_of(error.source(), path), "not valid TOML: " + std::string(error.description()), ""}});
+    throw BadInput({{place_of(error.source(), path),
+                     phrase("problem.not_toml_because", {plain(std::string(error.description()))}),
+                     {}}});
   }
 }
 
-std::string describe(const Value& value) {
+texts::Phrase describe(const Value& value) {
   switch (value.kind) {
     case Value::Kind::boolean:
-      return value.boolean ? "true" : "false";
+      return plain(value.boolean ? "true" : "false");
     case Value::Kind::integer:
     case Value::Kind::number:
-      return "a number";
+      return phrase("problem.a_number");
     case Value::Kind::string:
-      return "the text \"" + value.string + "\"";
+      return phrase("problem.the_text", {plain(value.string)});
     case Value::Kind::date:
-      return "a date or time";
+      return phrase("problem.a_date");
     case Value::Kind::array:
-      return "a list";
+      return phrase("problem.a_list");
     case Value::Kind::table:
       break;
   }
-  return "a table";
+  return phrase("problem.a_table");
 }
 
 std::string read_text_file(const std::string& path) try {
   return system::read_file(path, most_text_bytes);
 } catch (const std::system_error& error) {
   if (error.code() == std::errc::no_such_file_or_directory)
-    throw BadInput({{{path, 0, 0}, "there is no such file", "check the path"}});
+    throw BadInput({{{path, 0, 0}, phrase("problem.no_file"), phrase("problem.check_path")}});
   if (error.code() == std::errc::is_a_directory)
-    throw BadInput({{{path, 0, 0}, "this is a folder", "name a file"}});
+    throw BadInput({{{path, 0, 0}, phrase("problem.a_folder"), phrase("problem.name_a_file")}});
   if (error.code() != std::errc::file_too_large) throw;
-  throw BadInput({{{path, 0, 0}, "the file has more than 4 MiB", "at most 4 MiB"}});
+  throw BadInput(
+      {{{path, 0, 0}, phrase("problem.file_too_long"), phrase("problem.at_most", {plain("4 MiB")})}});
 }
 
 std::string_view without_byte_order_mark(std::string_view text) {

@@ -39,7 +39,7 @@ struct Entry {
 Value parse_toml(const std::string& source, const std::string& path);
 
 /// Names the type of a value for messages: `a number`, `text`, `a table`, ...
-std::string describe(const Value& value);
+texts::Phrase describe(const Value& value);
 
 /// Size limit for files that people write (protocols, rigs, calibrations).
 constexpr std::size_t most_text_bytes = 4 << 20;

@@ -8,6 +8,8 @@
 
 namespace turnpoint::text {
 
+using texts::phrase, texts::plain;
+
 namespace {
 
 struct Character {
@@ -69,10 +71,9 @@ class Scanner {
 
   void outside(const Character& character) {
     if (character.code >= 0x80)
-      throw BadInput(
-          {{{path_, line_, column_},
-            "not valid TOML: the character " + printed("U+%04X", character.code) + " outside of quotes",
-            "keys without quotes may contain only A-Z a-z 0-9 _ -"}});
+      throw BadInput({{{path_, line_, column_},
+                       phrase("problem.character_outside", {plain(printed("U+%04X", character.code))}),
+                       phrase("problem.bare_keys")}});
     const char c = source_[at_];
     if (c == '#') comment_ = true;
     count_parts(c);
@@ -92,8 +93,8 @@ class Scanner {
     if (at_ == 0 || std::string_view(" \t\r\n=,.[{").find(source_[at_ - 1]) != std::string_view::npos) return;
     if (at_ == 3 && source_.starts_with("\xEF\xBB\xBF")) return;
     throw BadInput({{{path_, line_, column_},
-                     std::string("not valid TOML: the quote ") + quote + " follows a character directly",
-                     "put a quote at the start of a key or a value"}});
+                     phrase("problem.quote_follows", {plain(std::string(1, quote))}),
+                     phrase("problem.quote_at_start")}});
   }
 
   // Counts the dotted parts of a key. The parser recurses for each part, so a key with very many parts would
@@ -105,8 +106,8 @@ class Scanner {
       parts_ = 1;
     if (parts_ > most_parts)
       throw BadInput({{{path_, line_, column_},
-                       "a key with more than " + std::to_string(most_parts) + " parts",
-                       "fewer dots"}});
+                       phrase("problem.long_key", {plain(most_parts)}),
+                       phrase("problem.fewer_dots")}});
   }
 
   void inside(const Character& character) {
@@ -124,10 +125,9 @@ class Scanner {
     // A backslash that ends a line may be followed by white space on that line, but by nothing else.
     escaped_ = quote_[0] == '"' && ((!was_escaped && character.code == '\\') || (was_escaped && blank));
     if (was_escaped && character.code >= 0x80)
-      throw BadInput(
-          {{{path_, line_, column_},
-            "not valid TOML: a backslash before the character " + printed("U+%04X", character.code),
-            "write \\\\ for a backslash, or end the line directly after it"}});
+      throw BadInput({{{path_, line_, column_},
+                       phrase("problem.backslash", {plain(printed("U+%04X", character.code))}),
+                       phrase("problem.double_backslash")}});
     if (trimming_ && character.code >= 0x80) {
       out_ += printed("\\U%08X", character.code);
       at_ += character.bytes;

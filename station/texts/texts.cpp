@@ -3,10 +3,10 @@
 #include <array>
 #include <iterator>
 #include <mutex>
+#include <span>
 #include <stdexcept>
 
 #include "catalogues.hpp"
-#include "station/text/toml.hpp"
 
 namespace turnpoint::texts {
 
@@ -19,15 +19,44 @@ struct Spoken {
   Translation translation = Translation::unread;
 };
 
-void read(const text::Value& table, const std::string& above, Spoken& spoken) {
-  for (const auto& [key, place, value] : table.entries) {
-    if (value.kind == text::Value::Kind::table)
-      read(value, above + key + ".", spoken);
-    else if (above + key != "read_by_native_speaker")
-      spoken.texts[above + key] = value.string;
-    else if (value.string == "all")
+/// Returns a text without the escapes of TOML that the catalogues use: \n, \", \\ and \uXXXX.
+std::string unescaped(std::string_view text) {
+  std::string result;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    if (text[i] != '\\') {
+      result += text[i];
+    } else if (text[++i] == 'u') {
+      const auto code = std::stoul(std::string(text.substr(i + 1, 4)), nullptr, 16);
+      if (code < 0x800) {
+        result += static_cast<char>(0xC0 | code >> 6);
+      } else {
+        result += static_cast<char>(0xE0 | code >> 12);
+        result += static_cast<char>(0x80 | (code >> 6 & 0x3F));
+      }
+      result += static_cast<char>(0x80 | (code & 0x3F));
+      i += 4;
+    } else {
+      result += text[i] == 'n' ? '\n' : text[i];
+    }
+  }
+  return result;
+}
+
+/// Reads a catalogue, whose lines are comments, `[table]` and `key = "text"`. The reader of TOML files cannot
+/// read it, because that reader says with the catalogue what is wrong in a file.
+void read(std::span<const char* const> lines, Spoken& spoken) {
+  std::string table;
+  for (const std::string_view line : lines) {
+    if (line.starts_with('[')) table = std::string(line.substr(1, line.size() - 2)) + ".";
+    const auto equals = line.find(" = \"");
+    if (line.starts_with('#') || equals == std::string_view::npos) continue;
+    const auto key = table + std::string(line.substr(0, equals));
+    auto said = unescaped(line.substr(equals + 4, line.size() - equals - 5));
+    if (key != "read_by_native_speaker")
+      spoken.texts[key] = std::move(said);
+    else if (said == "all")
       spoken.translation = Translation::read;
-    else if (value.string == "participant")
+    else if (said == "participant")
       spoken.translation = Translation::participant_read;
   }
 }
@@ -39,10 +68,7 @@ const Spoken* find(std::string_view language) {
   static std::array<std::once_flag, std::size(catalogues)> parsed;
   for (std::size_t i = 0; i < spoken.size(); ++i) {
     if (language.substr(0, 2) != catalogues[i].language) continue;
-    std::call_once(parsed[i], [i] {
-      const auto& [code, toml] = catalogues[i];
-      read(text::parse_toml(toml, std::string(code) + ".toml"), "", spoken[i]);
-    });
+    std::call_once(parsed[i], [i] { read(catalogues[i].lines, spoken[i]); });
     return &spoken[i];
   }
   return nullptr;
@@ -86,11 +112,15 @@ std::string say(const Phrase& phrase, std::string_view language) {
     return said;
   }
   const auto& pattern = text(phrase.key, language);
+  // In Arabic, which is written from right to left, invisible characters around a value keep its parts in
+  // their order ("-30" would be drawn as "30-"). Texts.qml does the same.
+  const bool mirrored = language.starts_with("ar");
+  const std::string before = mirrored ? "\u2068" : "", after = mirrored ? "\u2069" : "";
   for (std::size_t i = 0; i < pattern.size(); ++i) {
     const bool place = pattern[i] == '%' && i + 1 < pattern.size() && pattern[i + 1] >= '1' &&
                        pattern[i + 1] < '1' + static_cast<int>(phrase.values.size());
     if (place)
-      said += say(phrase.values[static_cast<std::size_t>(pattern[++i] - '1')], language);
+      said += before + say(phrase.values[static_cast<std::size_t>(pattern[++i] - '1')], language) + after;
     else
       said += pattern[i];
   }

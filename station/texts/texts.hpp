@@ -1,4 +1,5 @@
 #pragma once
+#include <concepts>
 #include <functional>
 #include <map>
 #include <string>
@@ -33,10 +34,13 @@ const std::string& text(std::string_view key, std::string_view language);
 struct Phrase {
   std::string key, words;
   std::vector<Phrase> values;
+  /// True if it says nothing in any language.
+  bool empty() const { return key.empty() && words.empty() && values.empty(); }
   bool operator==(const Phrase&) const = default;
 };
 /// A phrase that is the same in every language.
 inline Phrase plain(std::string words) { return {"", std::move(words), {}}; }
+inline Phrase plain(std::integral auto number) { return plain(std::to_string(number)); }
 /// The text with this key, with `values` in its places.
 inline Phrase phrase(std::string key, std::vector<Phrase> values = {}) {
   return {std::move(key), "", std::move(values)};

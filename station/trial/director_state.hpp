@@ -1,5 +1,6 @@
 // The state of a Director, shared by director.cpp and director_trials.cpp. Other files must not include it.
 #pragma once
+#include <cstdint>
 #include <map>
 #include <memory>
 #include <string>

@@ -33,11 +33,12 @@ struct Options {
   bool json = false, progress = false;
 };
 
-const std::vector<std::string> kAll{"physics",   "planning", "synth", "procedures",
-                                    "intervals", "sensing",  "store"};
+const std::vector<std::string> kAll{"physics",    "planner",   "planning", "synth",
+                                    "procedures", "intervals", "sensing",  "store"};
 
 Report measure(const std::string& what, const Options& options) {
   if (what == "physics") return bench_physics(options.seconds);
+  if (what == "planner") return bench_planner();
   if (what == "planning") return bench_planning();
   if (what == "synth") return bench_synth();
   if (what == "procedures") return bench_procedures();
@@ -117,8 +118,9 @@ int main(int argc, char** argv) {
   using namespace turnpoint::benchmark;
   Options options;
   CLI::App app{"Speed against accuracy on this machine, as tables and plots"};
-  app.add_option("what", options.what,
-                 "physics | planning | synth | procedures | intervals | sensing | store; otherwise all")
+  app.add_option(
+         "what", options.what,
+         "physics | planner | planning | synth | procedures | intervals | sensing | store; otherwise all")
       ->check(CLI::IsMember(kAll));
   app.add_option("--out", options.out, "Folder for CSV tables and SVG plots");
   app.add_option("--seconds", options.seconds, "About how long physics may measure")

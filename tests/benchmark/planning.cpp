@@ -1,10 +1,17 @@
 #include "tests/benchmark/planning.hpp"
 
+#include <algorithm>
 #include <string>
+#include <vector>
 
+#include "physics/centre_line.hpp"
 #include "physics/edge.hpp"
+#include "physics/field.hpp"
+#include "physics/planner.hpp"
 #include "station/scene/planner.hpp"
 #include "tests/benchmark/stopwatch.hpp"
+#include "tests/physics/random_scenes.hpp"
+#include "tests/physics/random_surfaces.hpp"
 
 namespace turnpoint::benchmark {
 
@@ -39,7 +46,59 @@ double planning_s(const rig::Rig& rig, const scene::Scene& scene) {
   });
 }
 
+/// A membrane, what is asked of its field, and the points of the field.
+struct RandomScene {
+  physics::Surface surface;
+  physics::PlanRequest request;
+  std::vector<double> x_m;
+};
+
+std::vector<RandomScene> random_scenes(int count) {
+  using namespace physics_test;
+  constexpr int points = 1000;
+  std::vector<RandomScene> scenes;
+  for (Draw draw(20261127); static_cast<int>(scenes.size()) < count;) {
+    RandomScene scene{random_membrane(draw), {}, {}};
+    const double length_m = scene.surface.length_m;
+    scene.request.tones = {physics::Tone{frequency_Hz, 1, 0}};
+    scene.request.points = points;
+    scene.request.tolerance.amplitude = draw.spread(3e-3, 1);
+    const auto turning = physics::turning_point_m(scene.surface, frequency_Hz);
+    if (!turning || *turning < 0.02 * length_m) continue;
+    for (int i = 0; i < points; ++i) scene.x_m.push_back(std::min(length_m, length_m * i / (points - 1)));
+    scenes.push_back(std::move(scene));
+  }
+  return scenes;
+}
+
 }  // namespace
+
+Report bench_planner() {
+  constexpr int count = 300, repeats = 5;
+  const auto scenes = random_scenes(count);
+  const auto field = [](const RandomScene& scene, physics::Model model) {
+    physics::evaluate(scene.surface, scene.request.tones, scene.x_m, model, scene.request.normalise);
+  };
+  const auto choice = [](const RandomScene& scene) {
+    return physics::choose_model(scene.surface, scene.request).model;
+  };
+  const auto all = [&scenes](auto work) {
+    return [&scenes, work] {
+      for (const auto& scene : scenes) work(scene);
+    };
+  };
+  Report report{"planner",
+                "Choosing a model and computing a field of 1000 points with it, mean of 300 random membranes",
+                {{"what", "time_ms", "ratio"}, {}},
+                {}};
+  for (const auto& found : compare(
+           {{"field by modes", all([&](const RandomScene& scene) { field(scene, physics::Model::modes); })},
+            {"choice", all([&](const RandomScene& scene) { choice(scene); })},
+            {"choice and field", all([&](const RandomScene& scene) { field(scene, choice(scene)); })}},
+           repeats))
+    report.table.rows.push_back({found.name, 1e3 * found.time_s / count, found.ratio});
+  return report;
+}
 
 Report bench_planning() {
   Report report{"planning",

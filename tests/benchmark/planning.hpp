@@ -8,4 +8,8 @@ namespace turnpoint::benchmark {
 /// same run.
 Report bench_planning();
 
+/// Measures how long it takes on average to choose a model and compute the field with it, on random membranes
+/// with random tolerances. The baseline is to use `modes` everywhere.
+Report bench_planner();
+
 }  // namespace turnpoint::benchmark

@@ -176,12 +176,7 @@ class Folder(unittest.TestCase):
         self.assertTrue(said[0].startswith("turnpoint: "), said)
 
 
-class Examples(Folder):
-    def test_the_table_of_this_test_names_every_command(self):
-        self.assertEqual(sorted(self.names), sorted(COMMANDS), "add a new command to COMMANDS and to the other tables")
-        with_json = [name for name in self.names if "--json" in self.helps[name]]
-        self.assertEqual(sorted(with_json), sorted(name for name in SHAPES if " " not in name), "json_shapes.json needs one entry for each command with --json")
-
+class HelpExamples(Folder):
     def example(self, name):
         lines = [line for line in self.helps[name].splitlines() if line.startswith("Example: ")]
         self.assertEqual(len(lines), 1, f"turnpoint {name} --help needs one line that begins with \"Example: \"")
@@ -194,6 +189,13 @@ class Examples(Folder):
         if COMMANDS[name].get("needs") == "session":
             self.add_sessions()
 
+
+class Examples(HelpExamples):
+    def test_the_table_of_this_test_names_every_command(self):
+        self.assertEqual(sorted(self.names), sorted(COMMANDS), "add a new command to COMMANDS and to the other tables")
+        with_json = [name for name in self.names if "--json" in self.helps[name]]
+        self.assertEqual(sorted(with_json), sorted(name for name in SHAPES if " " not in name), "json_shapes.json needs one entry for each command with --json")
+
     def test_the_example_in_each_help_works_as_it_stands(self):
         for name in self.names:
             if COMMANDS.get(name, {}).get("needs") in ("screen", "server"):
@@ -205,18 +207,6 @@ class Examples(Folder):
                 self.assertIn(status, COMMANDS[name].get("status", (0,)), err)
                 self.assertNotRegex(out + err, r"please report|terminate called")
                 self.assertTrue(out, "the example prints nothing")
-
-    def test_json_documents_have_the_recorded_shape(self):
-        for name in COMMANDS.keys() & SHAPES.keys():   # class Sensors has the modes of calibrate
-            if COMMANDS[name].get("needs") == "server":
-                continue
-            with self.subTest(name):
-                self.fresh(name)
-                self.write("edges.csv", b"frequency_Hz,boundary_mm,sd_mm\n26000,124,1\n30000,147,1\n36000,175,1\n")
-                example = JSON_EXAMPLES.get(name) or self.example(name)
-                status, out, err = run(example + " --json", self.folder)
-                self.assertIn(status, COMMANDS[name].get("status", (0,)), err)
-                self.assertEqual(is_like(json.loads(out), SHAPES[name]), "")
 
     def test_help_and_version_work_in_every_spelling(self):
         for words in (["help"], ["-h"], ["--help"]):
@@ -238,6 +228,20 @@ class Examples(Folder):
         # a file of this name is used instead of the shipped protocol of the same name
         self.write("demo", b"")
         self.refused(["check", "demo"], "demo: the file needs the key")
+
+
+class Documents(HelpExamples):
+    def test_json_documents_have_the_recorded_shape(self):
+        for name in COMMANDS.keys() & SHAPES.keys():   # class Sensors has the modes of calibrate
+            if COMMANDS[name].get("needs") == "server":
+                continue
+            with self.subTest(name):
+                self.fresh(name)
+                self.write("edges.csv", b"frequency_Hz,boundary_mm,sd_mm\n26000,124,1\n30000,147,1\n36000,175,1\n")
+                example = JSON_EXAMPLES.get(name) or self.example(name)
+                status, out, err = run(example + " --json", self.folder)
+                self.assertIn(status, COMMANDS[name].get("status", (0,)), err)
+                self.assertEqual(is_like(json.loads(out), SHAPES[name]), "")
 
 
 class Mistakes(Folder):

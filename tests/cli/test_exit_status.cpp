@@ -37,9 +37,10 @@ int status_of(std::vector<std::string> arguments) {
 }  // namespace
 
 TEST_CASE("the exit status says whose mistake it was", "[cli]") {
-  CHECK(ending_with(text::BadInput({{{"a.toml", 3, 1}, "what", "allowed"}})).status == 2);
+  CHECK(ending_with(text::BadInput({{{"a.toml", 3, 1}, texts::plain("what"), texts::plain("allowed")}}))
+            .status == 2);
   CHECK(ending_with(terms::UsageError("--x 3: 1 and 2 are allowed")).status == 2);
-  CHECK(ending_with(scene::Unreachable("no frequency reaches 900 mm")).status == 2);
+  CHECK(ending_with(scene::Unreachable(texts::plain("no frequency reaches 900 mm"))).status == 2);
   CHECK(ending_with(std::system_error(EIO, std::generic_category(), "a.sqlite")).status == 1);
   for (const auto& end :
        {ending_with(std::logic_error("started twice")), ending_with(std::invalid_argument("n is 0")),

@@ -47,7 +47,7 @@ struct Text {
   std::string name, text;
 };
 
-std::vector<Text> texts() {
+std::vector<Text> all_texts() {
   std::vector<Text> all{{"awkward", awkward},
                         {"awkward, CRLF", with_crlf(awkward)},
                         {"awkward, BOM", "\xEF\xBB\xBF" + awkward}};
@@ -114,7 +114,7 @@ std::size_t leaves(const text::Value& value) {
 
 TEST_CASE("every value is found where the parser of TOML finds it, and is itself when it is set to itself",
           "[document]") {
-  const auto all = texts();
+  const auto all = all_texts();
   REQUIRE(all.size() > 50);
   for (const auto& [name, text] : all) {
     INFO(name);
@@ -136,7 +136,7 @@ TEST_CASE("every value is found where the parser of TOML finds it, and is itself
 }
 
 TEST_CASE("a changed value is the only change, and undo gives the bytes from before", "[document]") {
-  for (const auto& [name, text] : texts()) {
+  for (const auto& [name, text] : all_texts()) {
     INFO(name);
     const Document document(text, "f.toml");
     Path path;
@@ -181,7 +181,7 @@ TEST_CASE("a key that is added can be read, and is gone without a trace when it 
   CHECK(document.with({"b", "0", "r", "deep"}, "5").find("h = 3\nr.deep = 5\n\n[s") != std::string::npos);
   line(document.with({"s", "two", "v"}, "5"), text + "\n[s.two]\nv = 5\n");
   line(document.with({"u", "v"}, "5"), text + "\n[u]\nv = 5\n");
-  for (const auto& [name, source] : texts()) {
+  for (const auto& [name, source] : all_texts()) {
     INFO(name);
     const Document all(source, "f.toml");
     Path path;

@@ -261,7 +261,7 @@ TEST_CASE("the list of protocol files in a folder includes those that cannot be 
   CHECK(list[0].id == "demo");
   CHECK(list[0].languages.size() == 3);
   REQUIRE_FALSE(list[1].problems.empty());
-  CHECK(list[1].problems.front().find("b.toml: ") != std::string::npos);
+  CHECK(texts::say(list[1].problems.front(), "en").find("b.toml: ") != std::string::npos);
 }
 
 TEST_CASE("an unusable entry among the protocols has a message and does not hide the others", "[operator]") {
@@ -313,9 +313,9 @@ TEST_CASE("the description of a check begins with the cues that could give answe
   CHECK(texts::say(words.cues[0].says, "de") == "90 % richtig nur mit diesem Hinweisreiz (Zufall 50 %)");
   CHECK(words.cues[0].leaks);
   CHECK_FALSE(words.cues[1].leaks);
-  check.problems.push_back({{"a.toml", 3, 1}, "what", "allowed"});
+  check.problems.push_back({{"a.toml", 3, 1}, texts::plain("what"), texts::plain("allowed")});
   CHECK(desk::words_of(check).facts.empty());
-  CHECK(desk::words_of(check).problems.front() == "a.toml:3:1: what; allowed");
+  CHECK(texts::say(desk::words_of(check).problems.front(), "en") == "a.toml:3:1: what; allowed");
 }
 
 TEST_CASE("the facts of a check are said in each language, with the names from the protocol", "[operator]") {

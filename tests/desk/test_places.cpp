@@ -1,4 +1,5 @@
 // Tests what the operator's pages of studies and sessions show.
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 
@@ -6,7 +7,9 @@
 #include "station/desk/cue_advice.hpp"
 #include "station/desk/session_list.hpp"
 #include "station/setup/prepare.hpp"
+#include "station/simulation/check.hpp"
 #include "station/store/annotate.hpp"
+#include "station/system/read_file.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/temporary_folder.hpp"
 
@@ -62,19 +65,59 @@ TEST_CASE("sessions are listed newest first, and each word of a search must occu
 
 TEST_CASE("a check's remarks have file, line and hint, problems first", "[studies]") {
   simulation::Check check;
-  check.warnings = {{{"/a/study.toml", 9, 1}, "no practice", ""}};
-  check.notes = {{{"/a/study.toml", 4, 1}, "listed twice", ""}};
-  check.problems = {{{"/a/study.toml", 12, 3}, "unknown key \"boundry_mm\"", "did you mean boundary_mm?"}};
+  check.warnings = {{{"/a/study.toml", 9, 1}, texts::plain("no practice"), {}}};
+  check.notes = {{{"/a/study.toml", 4, 1}, texts::plain("listed twice"), {}}};
+  check.problems = {{{"/a/study.toml", 12, 3},
+                     texts::plain("unknown key \"boundry_mm\""),
+                     texts::plain("did you mean boundary_mm?")}};
   const auto words = desk::words_of(check);
   using Kind = desk::CheckWords::Remark::Kind;
   REQUIRE(words.remarks.size() == 3);
   CHECK(words.remarks[0].kind == Kind::problem);
   CHECK(words.remarks[0].file == "study.toml");
   CHECK(words.remarks[0].line == 12);
-  CHECK(words.remarks[0].what == "unknown key \"boundry_mm\"");
-  CHECK(words.remarks[0].hint == "did you mean boundary_mm?");
+  CHECK(texts::say(words.remarks[0].what, "en") == "unknown key \"boundry_mm\"");
+  CHECK(texts::say(words.remarks[0].hint, "en") == "did you mean boundary_mm?");
   CHECK(words.remarks[1].kind == Kind::warning);
   CHECK(words.remarks[2].kind == Kind::note);
+}
+
+TEST_CASE("what is wrong in a study is said in the language of the page", "[studies]") {
+  const TemporaryFolder folder;
+  auto source = system::read_file(kHere + "/protocols/demo.toml");
+  const auto replace = [&source](const std::string& from, const std::string& to) {
+    REQUIRE(source.find(from) != std::string::npos);
+    source.replace(source.find(from), from.size(), to);
+  };
+  replace("title = ", "titel = \"x\"\ntitle = ");
+  replace("deadline_s = ", "deadline_s = -");
+  replace("level = \"offset_mm\"", "level = \"ofset_mm\"");
+  const std::string path = folder / "demo.toml";
+  std::ofstream(path) << source;
+  const auto check = simulation::check(path, kHere + "/tests/support/thin_plate.toml", {5});
+  const auto words = desk::words_of(check);
+  const auto says = [&words](const std::string& what, const std::string& hint, const char* language) {
+    return std::any_of(words.remarks.begin(), words.remarks.end(), [&](const auto& remark) {
+      return texts::say(remark.what, language) == what &&
+             texts::say(remark.hint, language).find(hint) != std::string::npos;
+    });
+  };
+  CHECK(says("unknown key \"titel\" in [protocol]", "did you mean \"title\"? known: ", "en"));
+  CHECK(says("unbekannter Schl\u00fcssel \"titel\" in [protocol]", "ist \"title\" gemeint? bekannt: ", "de"));
+  CHECK(says("[protocol] \u306b\u4e0d\u660e\u306a\u30ad\u30fc \"titel\" \u304c\u3042\u308a\u307e\u3059",
+             "\"title\" \u306e\u3053\u3068\u3067\u3059\u304b? ", "ja"));
+  CHECK(says("unknown factor \"ofset_mm\"", "did you mean \"offset_mm\"?", "en"));
+  CHECK(says("unbekannter Faktor \"ofset_mm\"", "ist \"offset_mm\" gemeint?", "de"));
+  CHECK(says("\u4e0d\u660e\u306a\u8981\u56e0 \"ofset_mm\"",
+             "\"offset_mm\" \u306e\u3053\u3068\u3067\u3059\u304b?", "ja"));
+  REQUIRE(words.remarks.size() >= 3);
+  for (const auto& remark : words.remarks)
+    for (const auto& language : texts::languages())
+      if (language != "en") {
+        INFO(language << ": " << texts::say(remark.what, "en"));
+        CHECK(texts::say(remark.what, language) != texts::say(remark.what, "en"));
+        CHECK(texts::say(remark.hint, language) != texts::say(remark.hint, "en"));
+      }
 }
 
 TEST_CASE("there is advice for every cue that a check reports, and only a cue that helps gets it",

@@ -162,6 +162,23 @@ TEST_CASE("every layer uses only what the table allows, and every entry of the t
   CHECK(used.size() > 20);
 }
 
+// The standard library of Debian 12 includes <cstdint> in many of its headers, that of Debian 13 no longer
+// does.
+TEST_CASE("a header that uses integers of a fixed size includes <cstdint>", "[layering]") {
+  static const std::regex fixed_size("std::u?int(8|16|32|64)_t");
+  std::set<std::string> users, includers;
+  each_line(TURNPOINT_SOURCE_DIR, [&](const std::string& file, const std::string& line) {
+    if (!file.ends_with(".hpp")) return;
+    if (std::regex_search(line, fixed_size)) users.insert(file);
+    if (line == "#include <cstdint>") includers.insert(file);
+  });
+  CHECK(users.size() > 50);
+  for (const auto& file : users) {
+    INFO(file);
+    CHECK(includers.contains(file));
+  }
+}
+
 TEST_CASE("negative control: an include that the table does not allow is found", "[layering]") {
   const auto table = table_of_the_tree();
   const auto breaks = [&](const char* file, const char* line) {

@@ -216,10 +216,13 @@ TEST_CASE("force cells on a converter with its own clock are weighed, and a live
     CHECK(card.details.back().find("iio:cells: ") == 0);
     CHECK(trials.back().finger.sensing == "ok");
     const auto told = notices();
-    REQUIRE(told.size() == 3);
+    // On a slow machine, the station also tries to open the converter while it is gone, and tells this once.
+    REQUIRE((told.size() == 3 || told.size() == 4));
     CHECK(told[0].value.find("iio:cells: reading: No such device") != std::string::npos);
-    CHECK(told[1].value == "the force cells are read again");
-    CHECK(told[2].value.find("samples in 1 gaps") != std::string::npos);
+    if (told.size() == 4)
+      CHECK(told[1].value.find("iio:cells: there is no such device") != std::string::npos);
+    CHECK(told[told.size() - 2].value == "the force cells are read again");
+    CHECK(told.back().value.find("samples in 1 gaps") != std::string::npos);
   }
 }
 

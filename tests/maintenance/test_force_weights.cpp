@@ -20,7 +20,7 @@ using maintenance::WeightStep;
 namespace {
 
 const auto kReady = [](const WeightStep&) { return true; };
-const auto kGiveUp = [](const std::string&) { return false; };
+const auto kGiveUp = [](const texts::Phrase&) { return false; };
 
 /// Returns each cell's ratio of bridge to reference under a load, from the formulas in plant/setup.hpp.
 sensing::Readings readings(const plant::Setup& room, const plant::Load& load) {
@@ -102,7 +102,7 @@ TEST_CASE("taps on the plate show up to which frequency forces are right", "[mai
     const auto laboratory = [&](plant::Setup& room) {
       room.cells.normal_Hz = normal_Hz, room.cells.lateral_Hz = lateral_Hz, room.cells.damping = damping;
     };
-    return weigh(rig, *open_bridges(rig, laboratory), kReady, [](const std::string&) { return true; });
+    return weigh(rig, *open_bridges(rig, laboratory), kReady, [](const texts::Phrase&) { return true; });
   };
   const auto usual = with(56, 180, 0.05);
   CHECK(usual.resonance_Hz.value() == Approx(56).epsilon(0.02));
@@ -143,8 +143,8 @@ TEST_CASE("a failed reading can be repeated, steps can be left out, and a moving
   bridges.room.cells.span_m = rig.surface.length_m;
   bridges.fails_at = 5;
   std::string why;
-  const auto repeated = weigh(rig, bridges, kReady, [&](const std::string& reason) {
-    why = reason;
+  const auto repeated = weigh(rig, bridges, kReady, [&](const texts::Phrase& reason) {
+    why = texts::say(reason, "en");
     return true;
   });
   CHECK(why.find("cell b") != std::string::npos);
@@ -182,7 +182,7 @@ TEST_CASE("a weight that does not agree with the others is named and weighed aga
   };
   std::vector<std::string> remarks;
   const auto asked = [&](const WeightStep& step) {
-    if (!step.remark.empty() && !step.tare) remarks.push_back(step.remark);
+    if (!step.remark.empty() && !step.tare) remarks.push_back(texts::say(step.remark, "en"));
     return true;
   };
   const auto why = "50 g at 90 mm does not agree with the other weights: " + said;
@@ -191,7 +191,7 @@ TEST_CASE("a weight that does not agree with the others is named and weighed aga
   } else {
     const auto made = weigh(rig, bridges, asked, kGiveUp);
     REQUIRE(made.repeated.size() == 1);
-    CHECK(made.repeated[0].name() == "50 g at 90 mm");
+    CHECK(texts::say(made.repeated[0].name(), "en") == "50 g at 90 mm");
     CHECK(made.steps.size() == 32);
     for (const auto& rest : made.residuals) CHECK(std::abs(rest.position_mm) < 1e-6);
   }
@@ -254,11 +254,13 @@ TEST_CASE("a session measures forces with the calibration that dead weights gave
   const auto path = measured::with_capture(folder, measured::kCells);
   const auto rig = rig::load(path);
   ExactBridges bridges;
-  bridges.room.cells.span_m = rig.surface.length_m;
+  bridges.room = session::laboratory_of(rig);
   auto made = maintenance::known_calibration(rig);
   made.forces = weigh(rig, bridges, kReady, kGiveUp).cells;
-  // the amplitude with which the simulated room plays the carrier; ExactBridges uses another one
-  made.forces->reference_amplitude = session::kCarrier * 2.5 / 3;
+  // ExactBridges has another amplitude of the carrier than the simulated room.
+  const auto& wires = bridges.room.wires;
+  made.forces->reference_amplitude =
+      session::kCarrier * wires.excitation_V_per_full_scale / wires.reference_V_at_full_scale;
   const auto mean_force = [&](double factor) {
     auto changed = made;
     for (auto& row : changed.forces->matrix)

@@ -6,6 +6,7 @@
 #include "physics/boundary_map.hpp"
 #include "physics/centre_line.hpp"
 #include "physics/dispersion.hpp"
+#include "physics/higher_modes.hpp"
 #include "tests/physics/random_scenes.hpp"
 #include "tests/support/catch.hpp"
 
@@ -118,6 +119,27 @@ TEST_CASE("the true error of every model lies inside its bound on a thousand ran
     WARN(compared << " comparisons on " << count << " scenes, " << violated << " outside their bound");
   CHECK(compared > 3 * count);
   CHECK(violated <= compared / 1000);
+}
+
+TEST_CASE("on a wedge, the effect of higher modes on the drive edge is computed to a few percent",
+          "[physics]") {
+  for (const double quality_factor : {20.0, 200.0}) {
+    for (const double slope : {0.05, 0.1, 0.2}) {
+      for (const auto shape : {DriveShape::cosine, DriveShape::piston}) {
+        Surface s = seed_brass();
+        s.quality_factor = quality_factor;
+        s.drive = shape;
+        const double w0 = 5.2 * cut_off_half_width_m(s, frequency_Hz);
+        s.taper = LinearTaper{w0, slope};
+        s.length_m = 0.97 * w0 / slope;
+        const auto truth = make_centre_line(s, frequency_Hz, Model::modes);
+        const double gain = true_error(s, Model::mode, *truth, Normalise::peak)->level_dB / 8.686;
+        const HigherModes higher = higher_modes(s, frequency_Hz, 0.7 * s.length_m);
+        CAPTURE(quality_factor, slope, shape == DriveShape::piston, gain);
+        CHECK(higher.gain == Approx(gain).epsilon(0.05).margin(2e-4));
+      }
+    }
+  }
 }
 
 TEST_CASE("the error of the model mode lies inside its bound on random clamped plates", "[physics]") {

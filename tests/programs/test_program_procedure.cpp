@@ -203,12 +203,12 @@ TEST_CASE("the problems of a protocol's programs stand at their places", "[progr
   CHECK(
       problems[0].place.line ==
       1 + std::count(source.begin(), source.begin() + static_cast<long>(source.find("program = \"")), '\n'));
-  CHECK_THAT(problems[0].what,
+  CHECK_THAT(text::format(problems[0]),
              ContainsSubstring("/nowhere/programs/one_up_two_down.py: there is no such file"));
   const auto wrong =
       protocol::parse(replaced(source, "start = -5.0", "begin = -5.0"), kSource + "/protocols/p.toml");
   REQUIRE(programs::problems_of(wrong).size() == 1);
-  CHECK_THAT(programs::problems_of(wrong)[0].what, ContainsSubstring("KeyError: 'start'"));
+  CHECK_THAT(text::format(programs::problems_of(wrong)[0]), ContainsSubstring("KeyError: 'start'"));
 }
 
 TEST_CASE("without somebody who starts programs, a program cannot be a procedure", "[programs]") {

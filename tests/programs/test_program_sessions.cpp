@@ -248,5 +248,6 @@ TEST_CASE("a session with people that stops at the page of a failed program can 
   CHECK(session::run(session.setup, &next, next.inputs, next.devices()).status ==
         records::SessionStatus::completed);
   double level = -5;
-  for (const auto& row : session.stored(broken.session_id).blocks.at(0).trials) CHECK(*row.level == level--);
+  const auto stored = session.stored(broken.session_id);
+  for (const auto& row : stored.blocks.at(0).trials) CHECK(*row.level == level--);
 }

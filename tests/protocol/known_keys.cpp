@@ -45,7 +45,8 @@ std::set<std::string> known_keys() {
       protocol::parse(with_unknown_keys(system::read_file(entry.path().string())), "p.toml");
     } catch (const text::BadInput& error) {
       for (const auto& problem : error.problems())
-        if (problem.what.find("unknown key \"zzzzzz\"") != std::string::npos) collect(problem.allowed, keys);
+        if (texts::say(problem.what, "en").find("unknown key \"zzzzzz\"") != std::string::npos)
+          collect(texts::say(problem.allowed, "en"), keys);
     }
   }
   return keys;

@@ -35,7 +35,7 @@ std::string only_problem(const std::string& source) {
   REQUIRE(problems.size() == 1);
   CHECK(!problems.front().allowed.empty());
   CHECK(problems.front().place.line > 1);
-  return problems.front().what;
+  return texts::say(problems.front().what, "en");
 }
 
 }  // namespace
@@ -49,7 +49,7 @@ TEST_CASE("the key by accepts one factor with levels, or several", "[protocol]")
   CHECK(only_problem(with_analysis("demo", "by = [\"mark_mm\", \"mark_mm\"]")).find("twice") !=
         std::string::npos);
   for (const auto& problem : problems_of(with_analysis("demo", "by = \"offset_mm\"")))
-    CHECK(problem.what.find("offset_mm") != std::string::npos);
+    CHECK(text::format(problem).find("offset_mm") != std::string::npos);
   CHECK(!problems_of(with_analysis("demo", "by = \"offset_mm\"")).empty());
 }
 

@@ -69,7 +69,7 @@ bool lacks_the_rest(const text::Problem& problem) {
        {"the file needs", "the file has no", "unknown factor", "unknown scene", "unknown procedure",
         "not a declared language", "has no value", "there is no [instructions", "has no deadline",
         "second scene", "nothing ends the interval", "unknown key \"offset_mm\"", "nothing above is called"})
-    if (problem.what.find(part) != std::string::npos) return true;
+    if (texts::say(problem.what, "en").find(part) != std::string::npos) return true;
   return false;
 }
 

@@ -1,5 +1,7 @@
-"""test_read.py MAKE_SAMPLE TURNPOINT README: the readers against exports, the database itself, and the examples."""
+"""test_read.py MAKE_SAMPLE TURNPOINT README RIG: the readers against exports, the database itself, and the examples."""
+import json
 import re
+import shutil
 import sqlite3
 import subprocess
 import sys
@@ -11,7 +13,7 @@ import numpy as np
 import pandas as pd
 import turnpoint
 
-MAKE_SAMPLE, TURNPOINT, README = (sys.argv.pop(1) for _ in range(3))
+MAKE_SAMPLE, TURNPOINT, README, RIG = (sys.argv.pop(1) for _ in range(4))
 TABLES = ("trials", "intervals", "events", "sessions", "self_tests", "answers", "friction_tables",
           "programs", "estimates")
 
@@ -82,6 +84,23 @@ class Reading(unittest.TestCase):
         self.assertEqual(len(stored), points)
         with self.assertRaisesRegex(LookupError, "thumb"):
             turnpoint.read_signals(self.database, stream="thumb")
+
+    def test_what_was_captured_during_void_trials(self):
+        rig, made, wrong, database = (self.folder / name for name in ("rig.toml", "made.toml", "wrong.toml", "void.sqlite"))
+        shutil.copy(RIG, rig)
+        subprocess.run([TURNPOINT, "calibrate", "--rig", rig, "--pickup", "--out", made], check=True, stdout=subprocess.DEVNULL)
+        # Pick-ups that are thought to give twice as much as they do: the stimuli are refused.
+        wrong.write_text(re.sub(r"^amplitude = (\[.*\])", lambda found: f"amplitude = {[2 * x for x in json.loads(found[1])]}",
+                                made.read_text(), flags=re.MULTILINE))
+        subprocess.run([TURNPOINT, "run", "demo", "--rig", rig, "--calibration", wrong, "--participant", "P1", "--db", database,
+                        "--headless", "--observer", "sim"], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        subprocess.run([TURNPOINT, "export", "--db", database, "--out", self.folder / "void", "--format", "signals"], check=True,
+                       stdout=subprocess.DEVNULL)
+        stored = turnpoint.read_signals(database, stream="raw")
+        pd.testing.assert_frame_equal(stored, turnpoint.read_signals(self.folder / "void", stream="raw"), check_dtype=False)
+        self.assertGreater(len(stored), 192000)
+        void = turnpoint.read(database).trials.query("outcome == 'fault'")
+        self.assertEqual(set(stored.trial_index), set(void.trial_index))
 
     def test_what_cannot_be_read(self):
         with self.assertRaises(FileNotFoundError):

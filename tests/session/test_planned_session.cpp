@@ -89,7 +89,8 @@ TEST_CASE("the next session is the first one that was not completed", "[session]
   CHECK(next({on_day("2026-11-01", 1, SessionStatus::completed, terms::RunMode::simulated)}) == 1);
   const auto over = next_session(
       setup, {on_day("2026-11-01", 1), on_day("2026-11-02", 2), on_day("2026-11-03", 3)}, "2026-11-24");
-  CHECK(over.problem == "participant P01 has completed all 3 sessions of friction-training");
+  CHECK(texts::say(over.problem, "en") ==
+        "participant P01 has completed all 3 sessions of friction-training");
 
   const auto counted = training(0, protocol::Unfinished::count);
   CHECK(next_session(counted, {on_day("2026-11-01", 1, SessionStatus::interrupted)}, "2026-11-24").number ==
@@ -105,11 +106,11 @@ TEST_CASE("a session that comes too early is refused with the date from which it
   for (const auto* day : {"2024-02-27", "2024-02-28"}) {
     const auto refused = next_session(setup, earlier, day);
     CHECK(refused.number == 2);
-    CHECK(refused.problem ==
+    CHECK(texts::say(refused.problem, "en") ==
           "participant P01 had session 1 on 2024-02-27, and the protocol asks for at least 2 days between "
           "sessions: "
           "session 2 is allowed from 2024-02-29");
-    CHECK(refused.allowed.find("--early") != std::string::npos);
+    CHECK(texts::say(refused.allowed, "en").find("--early") != std::string::npos);
     REQUIRE(refused.too_early);
     CHECK(refused.too_early->participant == setup.participant);
     CHECK(refused.too_early->number == 2);
@@ -119,8 +120,8 @@ TEST_CASE("a session that comes too early is refused with the date from which it
     CHECK(refused.too_early->min_days == 2);
   }
   CHECK(next_session(setup, earlier, "2024-02-29").problem.empty());
-  CHECK(next_session(setup, {on_day("2023-12-31", 1)}, "2024-01-01").problem.find("2024-01-02") !=
-        std::string::npos);
+  CHECK(texts::say(next_session(setup, {on_day("2023-12-31", 1)}, "2024-01-01").problem, "en")
+            .find("2024-01-02") != std::string::npos);
   CHECK(next_session(setup, {on_day("2024-02-20", 1), on_day("2024-02-27", 2)}, "2024-02-28").number == 3);
   CHECK_FALSE(
       next_session(setup, {on_day("2024-02-27", 2), on_day("2024-02-20", 1)}, "2024-02-28").problem.empty());
@@ -144,12 +145,13 @@ TEST_CASE("the operator can choose another session", "[session]") {
   setup.planned_session = 3;
   CHECK(next_session(setup, {}, "2026-11-24").number == 3);
   setup.planned_session = 4;
-  CHECK(next_session(setup, {}, "2026-11-24").problem ==
+  CHECK(texts::say(next_session(setup, {}, "2026-11-24").problem, "en") ==
         "--planned-session 4: the protocol plans 3 sessions");
   CHECK_FALSE(next_session(setup, {}, "2026-11-24").too_early);
   setup.planned_session = 1;
   setup.protocol.sessions.reset();
-  CHECK(next_session(setup, {}, "2026-11-24").problem == "the protocol friction-training plans no sessions");
+  CHECK(texts::say(next_session(setup, {}, "2026-11-24").problem, "en") ==
+        "the protocol friction-training plans no sessions");
 }
 
 TEST_CASE("two participants of two groups go through their sessions, and group and number are stored",

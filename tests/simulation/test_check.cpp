@@ -95,7 +95,7 @@ TEST_CASE("check says in which languages the station's own words are, and refuse
   const auto check = simulation::check(path, rig, options);
   REQUIRE(check.problems.empty());
   REQUIRE(check.notes.size() == 1);
-  CHECK(check.notes[0].what.find(note) == 0);
+  CHECK(texts::say(check.notes[0].what, "en").find(note) == 0);
 
   options.drawable = [](char32_t c) { return c < 0x3000; };
   const auto refused = simulation::check(path, rig, options);
@@ -103,7 +103,7 @@ TEST_CASE("check says in which languages the station's own words are, and refuse
   for (const auto& problem : refused.problems) {
     CHECK(problem.place.file == path);
     CHECK(problem.place.line > 0);
-    CHECK(problem.what.find("U+6211") != std::string::npos);
+    CHECK(text::format(problem).find("U+6211") != std::string::npos);
   }
 }
 

@@ -44,9 +44,10 @@ TEST_CASE("a number written for a file reads back as the same double", "[text]")
 }
 
 TEST_CASE("a problem names file, line, column, what is wrong and what is allowed", "[text]") {
-  CHECK(format({{"a.toml", 3, 7}, "unknown key \"x\"", "nearest: \"y\""}) ==
+  using turnpoint::texts::plain;
+  CHECK(format({{"a.toml", 3, 7}, plain("unknown key \"x\""), plain("nearest: \"y\"")}) ==
         "a.toml:3:7: unknown key \"x\"; nearest: \"y\"");
-  CHECK(format({{"a.toml", 0, 0}, "no such file", ""}) == "a.toml: no such file");
+  CHECK(format({{"a.toml", 0, 0}, plain("no such file"), {}}) == "a.toml: no such file");
 }
 
 TEST_CASE("the nearest word is suggested only if the word may be a typing error", "[text]") {

@@ -10,6 +10,7 @@
 #include "physics/warning.hpp"
 #include "station/system/read_file.hpp"
 #include "station/terms/fault.hpp"
+#include "station/text/toml.hpp"
 #include "station/texts/texts.hpp"
 #include "tests/support/catch.hpp"
 
@@ -41,6 +42,16 @@ std::string english_word(const std::string& said) {
 std::string code_of(const std::string& file) {
   static const std::regex comment("//[^\n]*|#include[^\n]*|throw [^;]*;");
   return std::regex_replace(system::read_file(std::string(TURNPOINT_SOURCE_DIR) + "/" + file), comment, "");
+}
+
+/// All texts of a table of a catalogue, and of the tables in it, as the reader of TOML files finds them.
+void collect(const text::Value& table, const std::string& above,
+             std::map<std::string, std::string, std::less<>>& found) {
+  for (const auto& [key, place, value] : table.entries)
+    if (value.kind == text::Value::Kind::table)
+      collect(value, above + key + ".", found);
+    else if (key != "read_by_native_speaker")
+      found[above + key] = value.string;
 }
 
 /// All quoted words in the station's sources, and the words among them that are given to text().
@@ -79,6 +90,16 @@ TEST_CASE("every language has every text, with the same places for numbers and n
   }
 }
 
+TEST_CASE("a catalogue is a TOML file, and says what such a file says", "[texts]") {
+  for (const auto& language : texts::languages()) {
+    const auto file = std::string(TURNPOINT_SOURCE_DIR) + "/station/texts/" + language + ".toml";
+    std::map<std::string, std::string, std::less<>> found;
+    collect(text::parse_toml(system::read_file(file), file), "", found);
+    CHECK(found.size() > 1000);
+    CHECK(found == texts::catalogue(language));
+  }
+}
+
 TEST_CASE("no text in another language has kept an English sentence", "[texts]") {
   CHECK(english_word("the amplifier cannot be armed") == "the");
   CHECK(english_word("sudo swapoff -a").empty());
@@ -111,6 +132,54 @@ TEST_CASE("what the screen and the command line both say is never a sentence in 
       CHECK(english_word((*found)[1]).empty());
     }
   }
+}
+
+// The test does not look at messages of the system, at errors of the program itself, or at what only goes to
+// a log.
+TEST_CASE("what the operator's pages show is never a sentence in their sources, nor where it is thrown",
+          "[texts]") {
+  static const std::regex quoted("\"([^\"\n]*)\""),
+      left_out("//[^\n]*|#include[^\n]*|(logic_error|system_error|qWarning)[^;]*;");
+  const std::string root = std::string(TURNPOINT_SOURCE_DIR) + "/";
+  std::vector<std::string> files;
+  for (const char* file : {"station/maintenance/force_weights.cpp", "station/maintenance/bridge_reader.cpp",
+                           "station/maintenance/disks.cpp", "station/maintenance/panel_latency.cpp",
+                           "station/setup/prepare.cpp", "station/calibration/response_fit.cpp"})
+    files.push_back(root + file);
+  for (const auto& entry : std::filesystem::directory_iterator(root + "station/ui/operator"))
+    if (entry.path().extension() == ".cpp") files.push_back(entry.path().string());
+  CHECK(files.size() > 20);
+  for (const auto& file : files) {
+    const auto code = std::regex_replace(system::read_file(file), left_out, "");
+    for (std::sregex_iterator found(code.begin(), code.end(), quoted), end; found != end; ++found) {
+      INFO(file << ": " << (*found)[1]);
+      const auto words = (*found)[1].str();
+      CHECK((words.find(' ') == std::string::npos || english_word(words).empty()));
+    }
+  }
+}
+
+TEST_CASE("what is wrong in a file is never a sentence in the sources of its readers", "[texts]") {
+  static const std::regex quoted(R"re("((?:[^"\\\n]|\\.)*)")re"), sentence("[a-z]{2,} [a-z]{2,}");
+  const std::set<std::string> known{"`turnpoint calibrate --forces`", "median absolute deviations",
+                                    "silicone rubber", "(or inf: lossless)",
+                                    R"([ { at = 1, text = { en = \"not at all\" } }, ... ])"};
+  int files = 0;
+  for (const std::string folder : {"station/text", "station/protocol", "station/rig"})
+    for (const auto& entry :
+         std::filesystem::directory_iterator(std::string(TURNPOINT_SOURCE_DIR) + "/" + folder)) {
+      const auto name = entry.path().filename().string();
+      // its names of personal data, in several languages, are looked for in questions
+      if (!name.ends_with(".cpp") || name == "interlude_advice.cpp") continue;
+      ++files;
+      const auto code = code_of(folder + "/" + name);
+      for (std::sregex_iterator found(code.begin(), code.end(), quoted), end; found != end; ++found) {
+        const auto words = (*found)[1].str();
+        INFO(name << ": " << words);
+        CHECK((known.contains(words) || !std::regex_search(words, sentence)));
+      }
+    }
+  CHECK(files > 50);
 }
 
 TEST_CASE("every text is used, and every text that the program requests exists", "[texts]") {
@@ -167,6 +236,9 @@ TEST_CASE("a phrase is said in a language that is chosen later", "[texts]") {
   CHECK(texts::say(phrase, "en") == "5 %1 (4 to 6) min");
   CHECK(texts::say(phrase, "de") == "5 %1 (4 bis 6) min");
   CHECK(texts::say(texts::plain("50 %"), "ja") == "50 %");
+  // in Arabic, which runs from right to left, a value is kept apart from the sentence around it
+  CHECK(texts::say({"problem.below", "", {texts::plain("-30")}}, "ar") ==
+        "\u0623\u0642\u0644 \u0645\u0646 \u2068-30\u2069");
   CHECK(texts::say({"", "", {texts::plain("main: "), {"practice", "", {}}}}, "de") == "main: \u00dcbung");
   CHECK(texts::say({"check.range", "", {texts::plain("1")}}, "en") == "1 (%2 to %3)");
   CHECK_THROWS_AS(texts::say({"no_such_key", "", {}}, "en"), std::logic_error);

@@ -1,4 +1,5 @@
 #pragma once
+#include <cstdint>
 // Trial timings, and trial machines that were run up to a certain phase. The tests of the trial machine share
 // them.
 #include "station/trial/machine.hpp"

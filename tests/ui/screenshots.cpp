@@ -239,7 +239,7 @@ int shoot_places(const QString& out, const QStringList& sizes, const QStringList
                     {"shown", place}},
                    [&] { return !studies.checking() && !operating.checking(); });
     camera.shoot("RigPage.qml", "weights", {{"rig", QVariant::fromValue(&weighing)}, {"tab", "weights"}});
-    for (const char* series : {"", "boundaries", "response", "friction", "sound"}) {
+    for (const char* series : {"", "boundaries", "response", "friction", "sound", "panel_button"}) {
       weighed.guide()->begin(series);
       if (series == std::string("response")) {
         weighed.guide()->play();

@@ -1,6 +1,7 @@
 #pragma once
 #include <QObject>
 #include <QStringList>
+#include <cstdint>
 
 #include "station/ui/participant/session_bridge.hpp"
 

@@ -135,10 +135,11 @@ Item {
             operating.select(indexOf("mistaken.toml"))
             tryVerify(() => operating.problems.length > 0)
             // All problems are listed, because the first one may only follow from another one.
-            verify(operating.problems.length > 3, operating.problems)
-            verify(operating.problems.every(problem => problem.includes("mistaken.toml:")))
-            verify(operating.problems.some(problem => problem.includes("protocl")))
-            for (const problem of operating.problems) verify(says(page.item, problem))
+            const problems = operating.problems.map(problem => words.say(problem))
+            verify(problems.length > 3, problems)
+            verify(problems.every(problem => problem.includes("mistaken.toml:")))
+            verify(problems.some(problem => problem.includes("protocl")))
+            for (const problem of problems) verify(says(page.item, problem))
             compare(operating.mayBegin, false)
             page.active = false
         }

@@ -145,13 +145,13 @@ Item {
             wait(400)
             for (let i = 0; i < 4; ++i) mouseClick(room.screen, place.x, place.y)
             verify(shown("withdrawing"))
-            compare(find(room.screen, "withdrawing").text.split(",")[0], "T1 would be deleted: 1 sessions")
+            verify(/^T1: 1 sessions, 2 trials, .* would be deleted\./.test(find(room.screen, "withdrawing").text))
             verify(says(room.screen, "This cannot be undone."))
             tap("keep")
             verify(!shown("withdrawing") && shown("session0"))
             tap("withdraw")
             tap("confirm")
-            tryVerify(() => says(room.screen, "T1 deleted: 1 sessions, 2 trials"), 20000)
+            tryVerify(() => says(room.screen, "were deleted."), 20000)
             verify(!shown("session0"))
             verify(says(room.screen, "No session has been recorded yet"))
         }
@@ -189,10 +189,15 @@ Item {
                 tryVerify(() => find(room.screen, "weightsRead").enabled, 20000)
                 tap("weightsRead")
             }
+            tryVerify(() => says(room.screen, "tap the middle of the plate once from above"), 20000)
+            tap("weightsRead")
+            tryVerify(() => says(room.screen, "tap the narrow end of the plate once along the plate"), 20000)
+            tap("weightsRead")
             tryVerify(() => shown("finding0") && find(room.screen, "bar-run").enabled, 20000)
-            verify(says(room.screen, "Uncertainty"))
-            verify(says(room.screen, "200 g at 210 mm with a pull of 100 g towards the wide edge"))
-            verify(says(room.screen, "force cells"))
+            verify(says(room.screen, "60 Hz; changes of force above 20 Hz are not measured correctly") && says(room.screen, "Uncertainty"))
+            verify(says(room.screen, "200 g at 210 mm with a pull of 100 g towards the wide edge") && says(room.screen, "force cells"))
+            tap("screen-de")
+            verify(says(room.screen, "200 g bei 210 mm mit einem Zug von 100 g zum breiten Rand"))
         }
 
         function test_the_steps_of_the_weights_and_the_calibration_are_in_the_operators_language() {

@@ -2,8 +2,8 @@ import QtQuick
 import QtTest
 import Turnpoint
 
-// Tests that the operator's pages say everything in the operator's language. Only messages about a file or a device
-// are in English, and names from a protocol stay as they are.
+// Tests that the operator's pages say everything in the operator's language. Only messages of the system and of
+// devices are in English, and names from a protocol stay as they are.
 Item {
     id: stage
     width: 1280
@@ -59,16 +59,14 @@ Item {
         }
 
         function test_a_check_is_described_in_the_language_of_the_operator_on_the_start_page() {
-            const problems = () => room.operating.warnings.concat(room.operating.problems)
-            compare(englishOn("run", () => !room.operating.checking && room.operating.facts.length > 0, problems), "")
+            compare(englishOn("run", () => !room.operating.checking && room.operating.facts.length > 0, () => []), "")
             room.look.language = "de"
             verify(texts(room.screen).includes("Dauer"), texts(room.screen).join("\n"))
             verify(texts(room.screen).some(text => text.includes("richtig nur mit diesem Hinweisreiz")))
         }
         function test_a_check_is_described_in_the_language_of_the_operator_on_the_page_of_studies() {
             const studies = () => find(room.screen, "studiesPage").studies
-            const remarks = () => studies().remarks.map(remark => remark.what).concat(studies().remarks.map(remark => remark.hint))
-            compare(englishOn("studies", () => studies().facts.length > 0, remarks), "")
+            compare(englishOn("studies", () => studies().facts.length > 0, () => []), "")
         }
         function test_doctor_and_self_test_speak_the_language_of_the_operator() {
             // What the system reports, such as why a file cannot be opened, stays as it is.
@@ -102,7 +100,7 @@ Item {
             room.look.language = "de"
             tryVerify(() => texts(room.screen).includes("Echte Sitzung nicht möglich: der Aufbau verwendet die Beispielkurve der Reibung, die nicht gemessen wurde"),
                       2000, texts(room.screen).join("\n"))
-            compare(englishOn("run", () => !room.operating.checking, () => room.operating.warnings), "")
+            compare(englishOn("run", () => !room.operating.checking, () => []), "")
         }
 
         function test_sessions_and_reports_are_in_the_language_of_the_operator() {
@@ -120,6 +118,18 @@ Item {
             for (const word of ["Presented", "Levels", "Speed and accuracy", "Fit"]) verify(!report.includes(word), word)
             verify(report.some(text => text.startsWith("• ")), report.join("\n"))
             for (const text of report) verify(!/^• .*\b(the|is|are|of)\b/.test(text), text)
+        }
+        function test_what_became_of_backups_and_data_is_said_in_the_language_of_the_operator() {
+            compare(room.cutOffSession("pilot"), -9)
+            room.look.language = "de"
+            tap("bar-sessions")
+            tryVerify(() => find(room.screen, "session0") !== null, 5000)
+            tap("backUp")
+            tap("place0")
+            tryVerify(() => texts(room.screen).some(text => text.includes("zurückgelesen und geprüft")), 20000)
+            tap("withdraw")
+            tryVerify(() => find(room.screen, "withdrawing") !== null, 20000)
+            tryVerify(() => find(room.screen, "withdrawing").text.includes("Notizen würden gelöscht."), 5000)
         }
         function test_the_end_of_a_session_in_numbers_is_in_the_language_of_the_operator() {
             const words = ["Durchgänge", "Zu spät", "Richtig", "main, Schwelle", "Die Sitzung in Zahlen", "Schließen"]

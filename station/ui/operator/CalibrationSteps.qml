@@ -41,7 +41,7 @@ Item {
             objectName: "guideProblem"
             visible: text !== ""
             width: card.inner
-            text: root.guide.problem
+            text: root.texts.say(root.guide.problem)
             color: root.theme.wrong
             font { pixelSize: root.theme.textBody; weight: Font.DemiBold }
             wrapMode: Text.Wrap
@@ -267,7 +267,7 @@ Item {
         }
         onAccepted: text => {
             if (phase ? root.guide.enterPhase(text) : root.guide.enter(text)) return
-            refused = root.guide.problem
+            refused = root.texts.say(root.guide.problem)
             open(text)
         }
     }

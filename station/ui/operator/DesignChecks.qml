@@ -34,7 +34,7 @@ OperatorCard {
             activeFocusOnTab: true
             Accessible.role: Accessible.Button
             Accessible.name: (problem ? root.texts.text("operator.problem") : modelData.kind === "warning" ? root.texts.text("operator.warning") : root.texts.text("operator.remark"))
-                + ": " + modelData.what + (modelData.hint === "" ? "" : ". " + modelData.hint)
+                + ": " + root.texts.say(modelData.what) + (modelData.hint === "" ? "" : ". " + root.texts.say(modelData.hint))
             Accessible.onPressAction: root.remarkChosen(index)
             Keys.onReturnPressed: root.remarkChosen(index)
             Keys.onSpacePressed: root.remarkChosen(index)
@@ -52,7 +52,7 @@ OperatorCard {
                 PlainText {
                     readAloud: false
                     width: parent.width
-                    text: remark.modelData.what + (remark.modelData.hint === "" ? "" : "\n→ " + remark.modelData.hint)
+                    text: root.texts.say(remark.modelData.what) + (remark.modelData.hint === "" ? "" : "\n" + root.texts.arrow + root.texts.say(remark.modelData.hint))
                     color: root.theme.ink
                     font.pixelSize: root.theme.textSmall
                     wrapMode: Text.Wrap

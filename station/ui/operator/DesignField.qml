@@ -98,7 +98,7 @@ Item {
             PlainText {
                 required property var modelData
                 width: notes.width
-                text: (modelData.kind === "problem" ? "✗ " : modelData.kind === "warning" ? "! " : "") + modelData.what + (modelData.hint === "" ? "" : " → " + modelData.hint)
+                text: (modelData.kind === "problem" ? "✗ " : modelData.kind === "warning" ? "! " : "") + root.texts.say(modelData.what) + (modelData.hint === "" ? "" : " " + root.texts.arrow + root.texts.say(modelData.hint))
                 color: modelData.kind === "problem" ? root.theme.wrong : root.theme.quiet
                 font.pixelSize: root.theme.textSmall
                 wrapMode: Text.Wrap

@@ -146,7 +146,7 @@ Rectangle {
                         PlainText {
                             required property var modelData
                             width: table.width
-                            text: (modelData.kind === "problem" ? "✗ " : "! ") + modelData.what + (modelData.hint === "" ? "" : " → " + modelData.hint)
+                            text: (modelData.kind === "problem" ? "✗ " : "! ") + root.texts.say(modelData.what) + (modelData.hint === "" ? "" : " " + root.texts.arrow + root.texts.say(modelData.hint))
                             color: modelData.kind === "problem" ? root.theme.wrong : root.theme.quiet
                             font.pixelSize: root.theme.textSmall
                             wrapMode: Text.Wrap

@@ -39,7 +39,7 @@ Rectangle {
 
     function trouble() : string {
         return design.trouble === "taken" ? texts.text("design.taken").arg(naming.typed) : design.trouble === "name" ? texts.text("design.name_of_study")
-            : design.trouble === "on_disk" ? texts.text("design.on_disk_title") : design.trouble
+            : design.trouble === "on_disk" ? texts.text("design.on_disk_title") : texts.say(design.trouble)
     }
     function nameIt(wish: string, title: string, text: string) {
         naming.wish = wish

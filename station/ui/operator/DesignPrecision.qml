@@ -11,7 +11,7 @@ OperatorCard {
     PlainText {
         objectName: "precisionSays"
         width: root.inner
-        text: root.precision.problem !== "" ? root.precision.problem : root.texts.text("design.precision_text")
+        text: root.precision.problem !== "" ? root.texts.say(root.precision.problem) : root.texts.text("design.precision_text")
         color: root.precision.problem !== "" ? root.theme.wrong : root.theme.ink
         font.pixelSize: root.theme.textBody
         wrapMode: Text.Wrap

@@ -110,7 +110,7 @@ Rectangle {
             objectName: "pagesProblem"
             visible: text !== ""
             width: parent.width
-            text: root.pages.problem !== "" ? root.pages.problem : root.stale ? root.texts.text("design.pages_stale") : ""
+            text: root.pages.problem !== "" ? root.texts.say(root.pages.problem) : root.stale ? root.texts.text("design.pages_stale") : ""
             color: root.theme.quiet
             font.pixelSize: root.theme.textSmall
             wrapMode: Text.Wrap

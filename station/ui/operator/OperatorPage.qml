@@ -2,8 +2,7 @@ import QtQuick
 import Turnpoint
 
 // The operator's start page: choose a protocol (which is checked on this rig), participant, language, live or
-// pilot mode and arming, or continue an interrupted session. Problems and warnings about a file are in English, like
-// those of the command line.
+// pilot mode and arming, or continue an interrupted session.
 Rectangle {
     id: root
     required property OperatorController operating

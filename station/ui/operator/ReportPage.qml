@@ -38,7 +38,7 @@ Rectangle {
         height: look.controlHeight
         PlainText {
             anchors { left: parent.left; right: save.visible ? save.left : close.left; verticalCenter: parent.verticalCenter; rightMargin: look.unit }
-            text: root.report.saved !== "" ? root.report.saved : root.report.ready ? root.title : texts.text("report.making")
+            text: root.report.saved !== "" ? texts.say(root.report.saved) : root.report.ready ? root.title : texts.text("report.making")
             color: look.ink
             font { pixelSize: 1.15 * look.textBody; weight: Font.Bold }
             elide: Text.ElideRight

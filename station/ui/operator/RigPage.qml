@@ -25,11 +25,8 @@ Rectangle {
     readonly property var weightStep: rig.step
     readonly property var calibrationFacts: rig.calibration
     function step() : string {
-        const step = weightStep
-        const asked = step.tare ? texts.text("operator.weights_clear")
-            : step.pull === 0 ? texts.text("operator.weights_put").arg(step.grams).arg(step.mm)
-            : texts.text(step.pull > 0 ? "operator.weights_pull_narrow" : "operator.weights_pull_wide").arg(step.grams).arg(step.mm).arg(Math.abs(step.pull))
-        return (step.trouble !== "" ? texts.text("operator.weights_repair").arg(step.trouble) + "\n" : step.remark !== "" ? step.remark + "\n" : "") + asked
+        const remark = texts.say(weightStep.remark)
+        return (weightStep.trouble !== "" ? texts.text("operator.weights_repair").arg(texts.say(weightStep.trouble)) + "\n" : remark !== "" ? remark + "\n" : "") + texts.say(weightStep.asked)
     }
 
     Theme {
@@ -172,9 +169,9 @@ Rectangle {
         }
         PlainText {
             objectName: "weightsReading"
-            visible: root.rig.busy === "weights" && root.rig.reading.length > 0
+            visible: root.rig.busy === "weights" && text !== ""
             width: results.inner
-            text: root.rig.reading.length === 3 ? texts.text(root.weightStep.converter ? "operator.weights_converter" : "operator.weights_cells").arg(root.rig.reading[0]).arg(root.rig.reading[1]).arg(root.rig.reading[2]) : root.rig.reading.join("")
+            text: root.rig.reading.length === 3 ? texts.text(root.weightStep.converter ? "operator.weights_converter" : "operator.weights_cells").arg(root.rig.reading[0]).arg(root.rig.reading[1]).arg(root.rig.reading[2]) : root.weightStep.unread ? texts.say(root.weightStep.unread) : ""
             color: look.ink
             font.pixelSize: look.textBody
             wrapMode: Text.Wrap
@@ -182,9 +179,9 @@ Rectangle {
         Repeater {
             model: root.rig.errors
             PlainText {
-                required property string modelData
+                required property var modelData
                 width: results.inner
-                text: modelData
+                text: texts.say(modelData)
                 color: look.wrong
                 font { pixelSize: look.textBody; weight: Font.DemiBold }
                 wrapMode: Text.Wrap

@@ -15,7 +15,7 @@ Rectangle {
     /// Why no session can begin.
     function reasons() {
         const all = []
-        for (const problem of operating.problems) all.push(problem)
+        for (const problem of operating.problems) all.push(texts.say(problem))
         for (const reason of operating.notLive) all.push(texts.text("operator.not_live").arg(texts.say(reason)))
         return all
     }
@@ -144,9 +144,9 @@ Rectangle {
             Repeater {
                 model: root.operating.warnings
                 PlainText {
-                    required property string modelData
+                    required property var modelData
                     width: sheet.width
-                    text: modelData
+                    text: root.texts.say(modelData)
                     color: root.theme.ink
                     font.pixelSize: root.theme.textSmall
                     wrapMode: Text.Wrap

@@ -128,7 +128,7 @@ Rectangle {
             objectName: "said"
             visible: text !== ""
             width: card.inner
-            text: root.sessions.busy ? texts.text("operator.working") : root.sessions.said
+            text: root.sessions.busy ? texts.text("operator.working") : texts.say(root.sessions.said)
             color: root.sessions.failed ? look.wrong : look.ink
             font { pixelSize: look.textBody; weight: Font.DemiBold }
             wrapMode: Text.Wrap
@@ -287,7 +287,7 @@ Rectangle {
         anchors.fill: parent
         theme: look
         title: texts.text("operator.withdraw_title").arg(root.sessions.chosen.person ?? "")
-        text: root.sessions.consequence + "\n" + texts.text("operator.withdraw_text")
+        text: texts.say(root.sessions.consequence) + "\n" + texts.text("operator.withdraw_text")
         keepText: texts.text("operator.withdraw_keep")
         confirmText: texts.text("operator.withdraw_do")
         onConfirmed: root.sessions.withdraw()

@@ -71,7 +71,7 @@ Rectangle {
                 }
                 PlainText {
                     width: parent.width
-                    text: remark.modelData.what
+                    text: texts.say(remark.modelData.what)
                     color: look.ink
                     font { pixelSize: look.textBody; weight: remark.problem ? Font.DemiBold : Font.Normal }
                     wrapMode: Text.Wrap
@@ -79,7 +79,7 @@ Rectangle {
                 PlainText {
                     visible: remark.modelData.hint !== ""
                     width: parent.width
-                    text: "→ " + remark.modelData.hint
+                    text: texts.arrow + texts.say(remark.modelData.hint)
                     color: look.quiet
                     font.pixelSize: look.textBody
                     wrapMode: Text.Wrap

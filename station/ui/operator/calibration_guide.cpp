@@ -14,6 +14,7 @@
 #include "station/maintenance/play_armed.hpp"
 #include "station/setup/prepare.hpp"
 #include "station/text/number.hpp"
+#include "station/ui/operator/facts.hpp"
 #include "station/ui/operator/figure_view.hpp"
 
 namespace turnpoint::ui {
@@ -95,7 +96,7 @@ QString CalibrationGuide::chosen() const {
   return found == std::end(kSeries) ? QString() : found->second;
 }
 
-bool CalibrationGuide::refuse(const QString& problem) {
+bool CalibrationGuide::refuse(const texts::Phrase& problem) {
   problem_ = problem;
   Q_EMIT changed();
   return false;
@@ -109,7 +110,7 @@ void CalibrationGuide::begin_latency(calibration::LatencyReference reference) {
     connect(latency_.get(), &LatencyController::finished, this, &CalibrationGuide::keep_latency);
   } catch (const std::exception& error) {
     latency_.reset();
-    problem_ = error.what();
+    problem_ = explanation_of(error);
   }
   Q_EMIT changed();
 }
@@ -118,7 +119,7 @@ void CalibrationGuide::keep_latency() {
   try {
     file_ = QString::fromStdString(maintenance::keep_panel(rig::load(path_), latency_->kept().value()));
   } catch (const std::exception& error) {
-    problem_ = error.what();
+    problem_ = explanation_of(error);
   }
   latency_.reset();
   Q_EMIT changed();
@@ -144,7 +145,7 @@ void CalibrationGuide::begin(const QString& series) {
                 {"narrowHalfWidthMm", outline.narrow_half_width_mm},
                 {"wideEndLeft", outline.wide_end_left}};
   } catch (const std::exception& error) {
-    problem_ = error.what();
+    problem_ = explanation_of(error);
   }
   Q_EMIT changed();
 }
@@ -152,14 +153,14 @@ void CalibrationGuide::begin(const QString& series) {
 void CalibrationGuide::play() {
   if (!may_play()) return;
   playing_ = true;
-  problem_.clear();
+  problem_ = {};
   take({});
   begun_.start();
   tick_.start();
   Q_EMIT changed();
   job_.start([this, rig = *rig_, point = points_[static_cast<std::size_t>(at_)]](
                  const std::stop_token& stop) -> std::function<void()> {
-    QString problem;
+    texts::Phrase problem;
     try {
       maintenance::play_point(rig, point, stop,
                               [this](const std::vector<maintenance::ToneReading>& readings) {
@@ -167,7 +168,7 @@ void CalibrationGuide::play() {
                                     this, [this, readings] { take(readings); }, Qt::QueuedConnection);
                               });
     } catch (const std::exception& error) {
-      problem = error.what();
+      problem = explanation_of(error);
     }
     return [this, problem, rest_s = maintenance::rest_after_tone_s(rig)] {
       playing_ = false;
@@ -205,9 +206,9 @@ bool CalibrationGuide::enter(const QString& typed) {
   const auto value = number_in(typed);
   const auto [low, high] = maintenance::possible_values(*rig_, *chosen_);
   if (!typed.trimmed().isEmpty() && (!value || *value < low || *value > high))
-    return refuse(QString("%1 … %2").arg(low).arg(high));
+    return refuse(texts::plain(QString("%1 … %2").arg(low).arg(high).toStdString()));
   point.value = value;
-  problem_.clear();
+  problem_ = {};
   Q_EMIT changed();
   return true;
 }
@@ -215,9 +216,9 @@ bool CalibrationGuide::enter(const QString& typed) {
 bool CalibrationGuide::enterPhase(const QString& typed) {
   if (points_.empty()) return false;
   const auto value = number_in(typed);
-  if (!value || std::abs(*value) > 360) return refuse("-360 … 360");
+  if (!value || std::abs(*value) > 360) return refuse(texts::plain("-360 … 360"));
   points_[static_cast<std::size_t>(at_)].phase_deg = value;
-  problem_.clear();
+  problem_ = {};
   Q_EMIT changed();
   return true;
 }
@@ -225,7 +226,7 @@ bool CalibrationGuide::enterPhase(const QString& typed) {
 void CalibrationGuide::show(int point) {
   if (playing_ || point < 0 || point >= count()) return;
   at_ = point;
-  problem_.clear();
+  problem_ = {};
   take({});
   Q_EMIT changed();
 }
@@ -260,9 +261,9 @@ void CalibrationGuide::finish() {
     chosen_.reset();
     points_.clear();
     at_ = 0;
-    problem_.clear();
+    problem_ = {};
   } catch (const std::exception& error) {
-    refuse(error.what());
+    refuse(explanation_of(error));
     return;
   }
   Q_EMIT changed();
@@ -276,7 +277,7 @@ void CalibrationGuide::leave() {
   points_.clear();
   at_ = 0;
   take({});
-  problem_.clear(), file_.clear();
+  problem_ = {}, file_.clear();
   figure_ = {};
   Q_EMIT changed();
 }

@@ -16,6 +16,7 @@
 #include "station/maintenance/guided_series.hpp"
 #include "station/ui/operator/latency_controller.hpp"
 #include "station/ui/platform/newest_job.hpp"
+#include "station/ui/shared/phrases.hpp"
 
 namespace turnpoint::ui {
 
@@ -49,7 +50,7 @@ class CalibrationGuide : public QObject {
   Q_PROPERTY(QVariantMap surface READ surface NOTIFY changed)
   /// the measurement of the touch panel's latency; null unless one is going on
   Q_PROPERTY(turnpoint::ui::LatencyController* latency READ latency NOTIFY changed)
-  Q_PROPERTY(QString problem READ problem NOTIFY changed)
+  Q_PROPERTY(QVariant problem READ problem NOTIFY changed)
   /// after a series: the name of the calibration file, and the figure with readings, fit and residuals
   Q_PROPERTY(QString file READ file NOTIFY changed)
   Q_PROPERTY(QVariant figure READ figure NOTIFY changed)
@@ -77,7 +78,7 @@ class CalibrationGuide : public QObject {
   bool may_finish() const;
   QVariantMap surface() const { return surface_; }
   LatencyController* latency() const { return latency_.get(); }
-  QString problem() const { return problem_; }
+  QVariant problem() const { return to_variant(problem_); }
   QString file() const { return file_; }
   QVariant figure() const { return figure_; }
 
@@ -102,7 +103,7 @@ class CalibrationGuide : public QObject {
 
  private:
   void take(const std::vector<maintenance::ToneReading>& readings);
-  bool refuse(const QString& problem);
+  bool refuse(const texts::Phrase& problem);
   void begin_latency(calibration::LatencyReference reference);
   void keep_latency();
 
@@ -119,7 +120,8 @@ class CalibrationGuide : public QObject {
   QVariantList readings_;
   /// Deleted by the event loop, because it ends its own measurement by a signal.
   std::unique_ptr<LatencyController, QScopedPointerDeleteLater> latency_;
-  QString problem_, file_;
+  texts::Phrase problem_;
+  QString file_;
   QVariant figure_;
   // The last member, so that its thread ends before the objects that it uses are destroyed.
   NewestJob job_;

@@ -13,7 +13,9 @@
 #include "station/setup/prepare.hpp"
 #include "station/system/read_file.hpp"
 #include "station/text/toml.hpp"
+#include "station/texts/refusal.hpp"
 #include "station/ui/operator/design_lists.hpp"
+#include "station/ui/operator/facts.hpp"
 #include "station/ui/operator/figure_view.hpp"
 
 namespace turnpoint::ui {
@@ -26,9 +28,10 @@ rig::Rig rig_without_messages(const std::string& path) {
 }
 
 /// The first problem of a value that was refused, without the name of a file.
-QString reason(const text::BadInput& bad) {
-  const auto& problem = bad.problems().front();
-  return QString::fromStdString(problem.what + (problem.allowed.empty() ? "" : "; " + problem.allowed));
+texts::Phrase reason(const text::BadInput& bad) {
+  auto problem = bad.problems().front();
+  problem.place = {};
+  return phrase_of(problem);
 }
 
 }  // namespace
@@ -44,8 +47,8 @@ std::string DesignController::path_for(const std::string& name) const {
   return place_.folder + (place_.folder.empty() ? "" : "/") + name + ".toml";
 }
 
-bool DesignController::refuse(const QString& trouble) {
-  trouble_ = trouble;
+bool DesignController::refuse(texts::Phrase trouble) {
+  trouble_ = std::move(trouble);
   Q_EMIT changed();
   return false;
 }
@@ -53,7 +56,7 @@ bool DesignController::refuse(const QString& trouble) {
 void DesignController::startNew() {
   draft_.reset();
   stage_ = "goals";
-  trouble_.clear();
+  trouble_ = {};
   Q_EMIT changed();
 }
 
@@ -65,22 +68,22 @@ void DesignController::close() {
   precision_.forget();
   feeling_.forget();
   stage_.clear();
-  trouble_.clear();
+  trouble_ = {};
   Q_EMIT changed();
 }
 
 bool DesignController::make(const QString& goal, const QString& name) try {
   const auto* chosen = design::find_goal(goal.toStdString());
   if (chosen == nullptr) return false;
-  if (!is_name(name)) return refuse("name");
+  if (!is_name(name)) return refuse(texts::plain("name"));
   const auto path = path_for(name.toStdString());
-  if (QFileInfo::exists(QString::fromStdString(path))) return refuse("taken");
+  if (QFileInfo::exists(QString::fromStdString(path))) return refuse(texts::plain("taken"));
   const auto source = system::read_file(place_.templates + "/" + chosen->file + ".toml");
   saved_.clear(), old_version_.clear();
   begin(design::study_from(*chosen, source, name.toStdString()), path);
   return true;
 } catch (const std::exception& error) {
-  return refuse(error.what());
+  return refuse(phrases_of(error).front());
 }
 
 bool DesignController::open(const QString& path) try {
@@ -93,7 +96,7 @@ bool DesignController::open(const QString& path) try {
       old_version_ = draft_->document()->value(*version).string;
   return true;
 } catch (const std::exception& error) {
-  return refuse(error.what());
+  return refuse(phrases_of(error).front());
 }
 
 void DesignController::begin(std::string text, const std::string& path) {
@@ -111,14 +114,14 @@ void DesignController::begin(std::string text, const std::string& path) {
   draft_.emplace(std::move(text), path);
   stage_ = "form";
   section_ = 0;
-  trouble_.clear(), saved_as_.clear(), profiles_.clear();
+  trouble_ = {}, saved_as_.clear(), profiles_.clear();
   form_.clear();
   read_again();
 }
 
 void DesignController::take_change(std::string text) {
   draft_->change(std::move(text));
-  trouble_.clear(), saved_as_.clear();
+  trouble_ = {}, saved_as_.clear();
   read_again();
 }
 
@@ -169,7 +172,7 @@ void DesignController::start_check() {
       return {};
     } catch (const std::exception& error) {
       simulation::Check failed;
-      failed.problems.push_back({{path, 0, 0}, error.what(), ""});
+      failed.problems.push_back({{path, 0, 0}, texts::phrase_of(error), {}});
       return [this, failed] { take(failed); };
     }
   });
@@ -262,7 +265,7 @@ bool DesignController::change(int index, int field, const QString& typed) try {
 bool DesignController::copy(int index, const QString& name) try {
   const auto* from = group(index);
   if (from == nullptr) return false;
-  if (!is_name(name)) return refuse("name");
+  if (!is_name(name)) return refuse(texts::plain("name"));
   take_change(draft_->document()->with_copy(from->path, name.toStdString()));
   return true;
 } catch (const text::BadInput& bad) {

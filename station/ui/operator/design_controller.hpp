@@ -18,6 +18,7 @@
 #include "station/ui/operator/pages_preview.hpp"
 #include "station/ui/operator/precision.hpp"
 #include "station/ui/platform/newest_job.hpp"
+#include "station/ui/shared/phrases.hpp"
 
 namespace turnpoint::ui {
 
@@ -59,7 +60,7 @@ class DesignController : public QObject {
   Q_PROPERTY(bool unsaved READ unsaved NOTIFY changed)
   /// why the last request was not carried out: taken, name, on_disk (the file was changed by somebody else
   /// meanwhile), or what a file or a value did not allow; "" if it was
-  Q_PROPERTY(QString trouble READ trouble NOTIFY changed)
+  Q_PROPERTY(QVariant trouble READ trouble NOTIFY changed)
   Q_PROPERTY(QString savedAs READ saved_as NOTIFY changed)
   /// outline of the rig's surface: {lengthMm, wideHalfWidthMm, narrowHalfWidthMm, wideEndLeft}
   Q_PROPERTY(QVariantMap surface READ surface NOTIFY changed)
@@ -97,7 +98,8 @@ class DesignController : public QObject {
   bool can_undo() const { return draft_ && draft_->can_undo(); }
   bool can_redo() const { return draft_ && draft_->can_redo(); }
   bool unsaved() const { return draft_ && draft_->text() != saved_; }
-  QString trouble() const { return trouble_; }
+  QVariant trouble() const { return to_variant(trouble_); }
+  const texts::Phrase& trouble_phrase() const { return trouble_; }
   QString saved_as() const { return saved_as_; }
   QVariantMap surface() const { return surface_; }
   QVariantList timeline() const { return timeline_; }
@@ -162,7 +164,7 @@ class DesignController : public QObject {
   void start_profiles();
   void take(const simulation::Check& check);
   void make_form();
-  bool refuse(const QString& trouble);
+  bool refuse(texts::Phrase trouble);
   bool write_to(const std::string& path);
   bool changed_on_disk() const;
   void raise_version();
@@ -179,7 +181,8 @@ class DesignController : public QObject {
   std::vector<design::Section> form_;
   std::vector<Remark> remarks_;
   desk::CheckWords words_;
-  QString stage_, trouble_, saved_as_, suggested_;
+  QString stage_, saved_as_, suggested_;
+  texts::Phrase trouble_;
   QVariantMap surface_, profiles_;
   QVariantList timeline_;
   int section_ = 0;

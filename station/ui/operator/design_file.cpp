@@ -10,6 +10,7 @@
 #include "station/text/toml.hpp"
 #include "station/ui/operator/design_controller.hpp"
 #include "station/ui/operator/design_lists.hpp"
+#include "station/ui/operator/facts.hpp"
 
 namespace turnpoint::ui {
 
@@ -35,7 +36,7 @@ bool DesignController::write_to(const std::string& path) {
   name_ = QFileInfo(QString::fromStdString(path)).completeBaseName().toStdString();
   saved_ = draft_->text();
   saved_as_ = QString::fromStdString(path);
-  trouble_.clear();
+  trouble_ = {};
   Q_EMIT changed();
   Q_EMIT saved();
   return true;
@@ -44,19 +45,19 @@ bool DesignController::write_to(const std::string& path) {
 bool DesignController::save(const QString& name) try {
   if (!draft_) return false;
   if (name.isEmpty() || name.toStdString() == name_) {
-    if (changed_on_disk()) return refuse("on_disk");
+    if (changed_on_disk()) return refuse(texts::plain("on_disk"));
     raise_version();
     return write_to(path_);
   }
-  if (!is_name(name)) return refuse("name");
+  if (!is_name(name)) return refuse(texts::plain("name"));
   const auto path = path_for(name.toStdString());
-  if (QFileInfo::exists(QString::fromStdString(path))) return refuse("taken");
-  if (draft_->document() == nullptr) return refuse(QString::fromStdString(draft_->problems().front().what));
+  if (QFileInfo::exists(QString::fromStdString(path))) return refuse(texts::plain("taken"));
+  if (draft_->document() == nullptr) return refuse(draft_->problems().front().what);
   take_change(draft_->document()->with({"protocol", "id"}, design::toml_string(name.toStdString())));
   old_version_.clear();
   return write_to(path);
 } catch (const std::exception& error) {
-  return refuse(error.what());
+  return refuse(phrases_of(error).front());
 }
 
 bool DesignController::overwrite() try {
@@ -64,7 +65,7 @@ bool DesignController::overwrite() try {
   raise_version();
   return write_to(path_);
 } catch (const std::exception& error) {
-  return refuse(error.what());
+  return refuse(phrases_of(error).front());
 }
 
 /// The reloaded text is one more change, so undo() returns to the text that was edited.
@@ -75,7 +76,7 @@ bool DesignController::reload() try {
   take_change(text);
   return true;
 } catch (const std::exception& error) {
-  return refuse(error.what());
+  return refuse(phrases_of(error).front());
 }
 
 QVariantMap DesignController::complete(const QString& text, int at) const {

@@ -80,8 +80,8 @@ QVariantMap to_map(desk::CheckWords::Remark::Kind kind, const text::Problem& pro
                    : kind == Kind::warning ? "warning"
                                            : "note"},
           {"line", problem.place.line},
-          {"what", QString::fromStdString(problem.what)},
-          {"hint", QString::fromStdString(problem.allowed)}};
+          {"what", to_variant(problem.what)},
+          {"hint", to_variant(problem.allowed)}};
 }
 
 QVariantList to_list(const std::vector<desk::TrialPart>& parts) {

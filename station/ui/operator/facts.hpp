@@ -3,11 +3,12 @@
 #include <QVariantList>
 #include <QVariantMap>
 #include <exception>
-#include <sstream>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "station/text/problem.hpp"
+#include "station/texts/refusal.hpp"
 #include "station/ui/shared/phrases.hpp"
 
 namespace turnpoint::ui {
@@ -39,12 +40,27 @@ inline QStringList to_list(const std::vector<std::string>& texts) {
   return list;
 }
 
-/// Splits an error's message into lines. An error about files has one line for each problem.
-inline std::vector<std::string> lines_of(const std::exception& error) {
-  std::vector<std::string> lines;
-  std::istringstream text(error.what());
-  for (std::string line; std::getline(text, line);) lines.push_back(line);
+/// Returns what an error says: each problem of a file, or the error's message.
+inline std::vector<texts::Phrase> phrases_of(const std::exception& error) {
+  const auto* bad = dynamic_cast<const text::BadInput*>(&error);
+  if (bad == nullptr) return {texts::phrase_of(error)};
+  std::vector<texts::Phrase> phrases;
+  for (const auto& problem : bad->problems()) phrases.push_back(phrase_of(problem));
+  return phrases;
+}
+
+/// Joins phrases, each on a line of its own.
+inline texts::Phrase in_lines(const std::vector<texts::Phrase>& phrases) {
+  if (phrases.size() == 1) return phrases.front();
+  texts::Phrase lines;
+  for (const auto& one : phrases) {
+    if (!lines.values.empty()) lines.values.push_back(texts::plain("\n"));
+    lines.values.push_back(one);
+  }
   return lines;
 }
+
+/// Returns everything that an error says as one phrase, each problem of a file on a line of its own.
+inline texts::Phrase explanation_of(const std::exception& error) { return in_lines(phrases_of(error)); }
 
 }  // namespace turnpoint::ui

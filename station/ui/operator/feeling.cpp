@@ -8,6 +8,7 @@
 #include "station/desk/preview.hpp"
 #include "station/maintenance/feel_scene.hpp"
 #include "station/setup/prepare.hpp"
+#include "station/ui/operator/facts.hpp"
 
 namespace turnpoint::ui {
 
@@ -27,27 +28,27 @@ void Feeling::forget() {
   stop();
   protocol_.reset();
   last_.clear();
-  problem_.clear();
+  problem_ = {};
   Q_EMIT changed();
 }
 
 void Feeling::play(const QString& scene) {
   if (!possible()) return;
   playing_ = last_ = scene;
-  problem_.clear();
+  problem_ = {};
   tones_ = 0;
   Q_EMIT changed();
   job_.start([this, protocol = *protocol_, path = rig_,
               scene = scene.toStdString()](const std::stop_token& stop) -> std::function<void()> {
     maintenance::FeltScene felt;
-    QString problem;
+    texts::Phrase problem;
     try {
       std::ostringstream messages;  // the rig's page says which calibration is used
       const auto rig = setup::calibrated_rig(path, "", messages);
       std::vector<std::string> assumed;
       felt = maintenance::feel_scene(rig, protocol, scene, desk::factors_for(protocol, {}, assumed), stop);
     } catch (const std::exception& error) {
-      problem = error.what();
+      problem = explanation_of(error);
     }
     return [this, felt, problem] {
       playing_.clear();

@@ -7,6 +7,7 @@
 
 #include "station/protocol/protocol.hpp"
 #include "station/ui/platform/newest_job.hpp"
+#include "station/ui/shared/phrases.hpp"
 
 namespace turnpoint::ui {
 
@@ -26,7 +27,7 @@ class Feeling : public QObject {
   Q_PROPERTY(double seconds READ seconds NOTIFY changed)
   Q_PROPERTY(int tones READ tones NOTIFY changed)
   Q_PROPERTY(int peakPercent READ peak_percent NOTIFY changed)
-  Q_PROPERTY(QString problem READ problem NOTIFY changed)  ///< why the last scene was not played; may be ""
+  Q_PROPERTY(QVariant problem READ problem NOTIFY changed)  ///< why the last scene was not played; may be ""
 
  public:
   explicit Feeling(QObject* parent = nullptr);
@@ -41,7 +42,7 @@ class Feeling : public QObject {
   double seconds() const { return seconds_; }
   int tones() const { return tones_; }
   int peak_percent() const { return peak_percent_; }
-  QString problem() const { return problem_; }
+  QVariant problem() const { return to_variant(problem_); }
 
   /// Plays a scene with the first levels of its factors, or the middle of their ranges.
   Q_INVOKABLE void play(const QString& scene);
@@ -55,7 +56,8 @@ class Feeling : public QObject {
   std::optional<protocol::Protocol> protocol_;
   std::string rig_;
   bool real_ = false;
-  QString playing_, last_, problem_;
+  QString playing_, last_;
+  texts::Phrase problem_;
   double seconds_ = 0;
   int tones_ = 0, peak_percent_ = 0;
   QTimer rest_;

@@ -7,6 +7,7 @@
 
 #include "station/plot/svg.hpp"
 #include "station/system/write_file.hpp"
+#include "station/texts/refusal.hpp"
 #include "station/ui/operator/painter_canvas.hpp"
 
 namespace turnpoint::ui {
@@ -27,7 +28,8 @@ void save_pdf(const desk::Drawing& drawing, const QString& path) {
   writer.setPageSize(QPageSize(QSizeF(kSavedWidth_px, kSavedHeight_px) * kFigureInch_mm / kPixelsPerInch,
                                QPageSize::Millimeter, {}, QPageSize::ExactMatch));
   QPainter painter;
-  if (!painter.begin(&writer)) throw std::runtime_error(path.toStdString() + " cannot be written");
+  if (!painter.begin(&writer))
+    throw texts::Failure(texts::phrase("operator.not_written", {texts::plain(path.toStdString())}));
   PainterCanvas canvas(painter, QRectF(0, 0, writer.width(), writer.height()));
   drawing(canvas, kSavedWidth_px, kSavedHeight_px);
 }
@@ -35,7 +37,8 @@ void save_pdf(const desk::Drawing& drawing, const QString& path) {
 }  // namespace
 
 void save_drawing(const desk::Drawing& drawing, const QString& folder, const QString& name) {
-  if (!QDir().mkpath(folder)) throw std::runtime_error(folder.toStdString() + " cannot be made");
+  if (!QDir().mkpath(folder))
+    throw texts::Failure(texts::phrase("operator.not_made", {texts::plain(folder.toStdString())}));
   const QString path = folder + "/" + name;
   plot::Svg svg;
   drawing(svg, kSavedWidth_px, kSavedHeight_px);

@@ -38,7 +38,7 @@ void OperatorController::refresh() {
     interrupted_ = desk::interrupted_note(request_.database);
     backup_ = desk::backup_note(request_.database);
   } catch (const std::exception& error) {
-    words_.problems = lines_of(error);
+    words_.problems = phrases_of(error);
   }
   Q_EMIT changed();
   if (selected_ < 0 && !protocols_.empty()) return select(0);
@@ -54,19 +54,19 @@ void OperatorController::look_at_backup() {
 /// Starts a job on the worker thread. The job returns a function, which then runs on the GUI thread unless a
 /// newer job was started meanwhile. If the job throws, `failed` is called with the messages.
 void OperatorController::work(std::function<Then(const std::stop_token&)> job,
-                              void (OperatorController::*failed)(std::vector<std::string>)) {
+                              void (OperatorController::*failed)(std::vector<texts::Phrase>)) {
   worker_.start([this, failed, job = std::move(job)](const std::stop_token& stop) -> Then {
     try {
       return job(stop);
     } catch (const protocol::Abandoned&) {
       return {};
     } catch (const std::exception& error) {
-      return [this, failed, lines = lines_of(error)] { (this->*failed)(lines); };
+      return [this, failed, reasons = phrases_of(error)] { (this->*failed)(reasons); };
     }
   });
 }
 
-void OperatorController::fail(std::vector<std::string> problems) {
+void OperatorController::fail(std::vector<texts::Phrase> problems) {
   words_.problems = std::move(problems);
   checking_ = preparing_ = false;
   Q_EMIT changed();
@@ -74,7 +74,7 @@ void OperatorController::fail(std::vector<std::string> problems) {
 
 /// Shows why no session can begin with the current settings. With other settings, the protocol may still be
 /// usable.
-void OperatorController::refuse(std::vector<std::string> reasons) {
+void OperatorController::refuse(std::vector<texts::Phrase> reasons) {
   refused_ = std::move(reasons);
   stay();
 }
@@ -152,13 +152,6 @@ void OperatorController::check_live() {
 void OperatorController::refuse_live(std::vector<texts::Phrase> reasons) {
   not_live_ = std::move(reasons);
   stay();
-}
-
-/// The check itself has failed.
-void OperatorController::refuse_live(std::vector<std::string> messages) {
-  std::vector<texts::Phrase> reasons;
-  for (auto& message : messages) reasons.push_back(texts::plain(std::move(message)));
-  refuse_live(std::move(reasons));
 }
 
 void OperatorController::chooseLanguage(int index) {
@@ -273,9 +266,9 @@ QVariantList OperatorController::protocols() const {
 }
 
 QVariantList OperatorController::facts() const { return to_list(words_.facts); }
-QStringList OperatorController::problems() const { return to_list(words_.problems) + to_list(refused_); }
+QVariantList OperatorController::problems() const { return to_list(words_.problems) + to_list(refused_); }
 QVariantList OperatorController::not_live() const { return to_list(not_live_); }
-QStringList OperatorController::warnings() const { return to_list(words_.warnings); }
+QVariantList OperatorController::warnings() const { return to_list(words_.warnings); }
 
 QVariantMap OperatorController::too_early() const { return too_early_ ? to_map(*too_early_) : QVariantMap(); }
 

@@ -40,13 +40,13 @@ class OperatorController : public QObject {
   /// cues that could give the right answer away, as {name, says (the finding in words), leaks (whether it
   /// does)}
   Q_PROPERTY(QVariantList cues READ cues NOTIFY changed)
-  Q_PROPERTY(QStringList problems READ problems NOTIFY changed)
+  Q_PROPERTY(QVariantList problems READ problems NOTIFY changed)
   /// why the chosen protocol cannot run live
   Q_PROPERTY(QVariantList notLive READ not_live NOTIFY changed)
   /// set if the chosen session would begin too early, which a reason of the operator can overrule (see
   /// to_map() in early_session.hpp)
   Q_PROPERTY(QVariantMap tooEarly READ too_early NOTIFY changed)
-  Q_PROPERTY(QStringList warnings READ warnings NOTIFY changed)
+  Q_PROPERTY(QVariantList warnings READ warnings NOTIFY changed)
   Q_PROPERTY(QStringList languages READ languages NOTIFY changed)
   /// index of the chosen language; -1 if the participant chooses it on the screen
   Q_PROPERTY(int language READ language NOTIFY changed)
@@ -83,10 +83,10 @@ class OperatorController : public QObject {
   bool checking() const { return checking_; }
   QVariantList facts() const;
   QVariantList cues() const;
-  QStringList problems() const;
+  QVariantList problems() const;
   QVariantList not_live() const;
   QVariantMap too_early() const;
-  QStringList warnings() const;
+  QVariantList warnings() const;
   QStringList languages() const;
   int language() const { return language_; }
   QString participant() const { return participant_; }
@@ -128,15 +128,14 @@ class OperatorController : public QObject {
   void prepare(const std::string& early);
   void forget_refusal();
   void work(std::function<Then(const std::stop_token&)> job,
-            void (OperatorController::*failed)(std::vector<std::string>));
+            void (OperatorController::*failed)(std::vector<texts::Phrase>));
   void check_selected();
   void check_live();
-  void refuse_live(std::vector<std::string> reasons);
   void refuse_live(std::vector<texts::Phrase> reasons);
   void look_at_backup();
   void stay();
-  void fail(std::vector<std::string> problems);
-  void refuse(std::vector<std::string> reasons);
+  void fail(std::vector<texts::Phrase> problems);
+  void refuse(std::vector<texts::Phrase> reasons);
   const desk::ProtocolEntry* entry() const;
 
   setup::StationRequest request_;
@@ -147,7 +146,7 @@ class OperatorController : public QObject {
   desk::BackupNote backup_;
   QTimer minutes_;  ///< updates the ages shown on the page, which may be open for days
   desk::CheckWords words_;
-  std::vector<std::string> refused_;  ///< why the last chosen session did not begin
+  std::vector<texts::Phrase> refused_;  ///< why the last chosen session did not begin
   std::optional<session::EarlySession> too_early_;
   std::vector<texts::Phrase> not_live_;  ///< why the chosen protocol cannot run live
   int selected_ = -1, language_ = -1;

@@ -26,11 +26,11 @@ void PagesPreview::forget() {
 }
 
 void PagesPreview::make() {
-  problem_.clear();
+  problem_ = {};
   try {
     pages_ = desk::sample_pages(protocol_, rig_, language_.toStdString());
   } catch (const std::exception& error) {
-    problem_ = error.what();
+    problem_ = explanation_of(error);
   }
   show(shown_);
 }

@@ -6,6 +6,7 @@
 
 #include "station/desk/sample_pages.hpp"
 #include "station/ui/participant/session_bridge.hpp"
+#include "station/ui/shared/phrases.hpp"
 
 namespace turnpoint::ui {
 
@@ -23,7 +24,7 @@ class PagesPreview : public QObject {
   Q_PROPERTY(QStringList languages READ languages NOTIFY changed)
   Q_PROPERTY(QString language READ language NOTIFY changed)
   /// why there are no pages of the present text; "" if there are
-  Q_PROPERTY(QString problem READ problem NOTIFY changed)
+  Q_PROPERTY(QVariant problem READ problem NOTIFY changed)
 
  public:
   explicit PagesPreview(QObject* parent = nullptr);
@@ -38,7 +39,7 @@ class PagesPreview : public QObject {
   int shown() const { return shown_; }
   QStringList languages() const { return languages_; }
   QString language() const { return language_; }
-  QString problem() const { return problem_; }
+  QVariant problem() const { return to_variant(problem_); }
 
   Q_INVOKABLE void show(int page);
   Q_INVOKABLE void choose(const QString& language);
@@ -54,7 +55,8 @@ class PagesPreview : public QObject {
   rig::Rig rig_;
   std::vector<desk::SamplePage> pages_;
   QStringList languages_;
-  QString language_, problem_;
+  QString language_;
+  texts::Phrase problem_;
   int shown_ = 0;
 };
 

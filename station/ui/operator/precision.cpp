@@ -9,6 +9,7 @@
 #include "station/simulation/parallel.hpp"
 #include "station/simulation/power_figure.hpp"
 #include "station/text/number.hpp"
+#include "station/ui/operator/facts.hpp"
 #include "station/ui/operator/figure_view.hpp"
 
 namespace turnpoint::ui {
@@ -57,7 +58,7 @@ void Precision::forget() {
   protocol_.reset();
   power_.reset();
   figure_ = {};
-  problem_.clear();
+  problem_ = {};
   busy_ = false;
   ++draft_;
   job_.abandon();
@@ -80,7 +81,7 @@ void Precision::start() {
   busy_ = true;
   stale_ = false;
   progress_ = 0;
-  problem_.clear();
+  problem_ = {};
   job_.start(
       [this, protocol = *protocol_, draft = draft_](const std::stop_token& stop) -> std::function<void()> {
         simulation::PowerOptions options;
@@ -109,7 +110,7 @@ void Precision::start() {
                 this, [this, found, draft] { take(found, draft); }, Qt::QueuedConnection);
           }
         } catch (const std::exception& error) {
-          return [this, problem = QString(error.what())] {
+          return [this, problem = explanation_of(error)] {
             power_.reset();
             figure_ = {};
             problem_ = problem;

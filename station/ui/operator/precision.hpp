@@ -7,6 +7,7 @@
 #include "station/protocol/protocol.hpp"
 #include "station/simulation/power.hpp"
 #include "station/ui/platform/newest_job.hpp"
+#include "station/ui/shared/phrases.hpp"
 
 namespace turnpoint::ui {
 
@@ -25,7 +26,7 @@ class Precision : public QObject {
   /// {name, truth, estimate, spread, width, coverage, tailed}, as texts; "" for what a number does not have
   Q_PROPERTY(QVariantList numbers READ numbers NOTIFY changed)
   Q_PROPERTY(QVariant figure READ figure NOTIFY changed)
-  Q_PROPERTY(QString problem READ problem NOTIFY changed)  ///< why nothing can be expected; may be ""
+  Q_PROPERTY(QVariant problem READ problem NOTIFY changed)  ///< why nothing can be expected; may be ""
 
  public:
   explicit Precision(QObject* parent = nullptr);
@@ -40,7 +41,7 @@ class Precision : public QObject {
   int sessions() const { return power_ ? power_->observers : 0; }
   QVariantList numbers() const;
   QVariant figure() const { return figure_; }
-  QString problem() const { return problem_; }
+  QVariant problem() const { return to_variant(problem_); }
 
  Q_SIGNALS:
   void changed();
@@ -55,7 +56,7 @@ class Precision : public QObject {
   double progress_ = 0;
   std::optional<simulation::Power> power_;
   QVariant figure_;
-  QString problem_;
+  texts::Phrase problem_;
   int draft_ = 0;  ///< number of the draft, so that numbers of an earlier one are not shown
   // The last member, so that its thread ends before the objects that it uses are destroyed.
   NewestJob job_;

@@ -6,7 +6,7 @@
 
 #include "station/desk/scene_figures.hpp"
 #include "station/setup/prepare.hpp"
-#include "station/terms/usage_error.hpp"
+#include "station/texts/refusal.hpp"
 #include "station/ui/operator/facts.hpp"
 
 namespace turnpoint::ui {
@@ -28,7 +28,7 @@ PreviewController::PreviewController(const desk::PreviewRequest& request, QObjec
   if (!request.scene.empty()) {
     const auto found = std::find(scenes_.begin(), scenes_.end(), request.scene);
     if (found == scenes_.end())
-      throw terms::UsageError("--scene " + request.scene + ": the protocol has no scene with this name");
+      throw texts::Refusal(texts::phrase("refusal.no_scene", {texts::plain(request.scene)}));
     scene_ = static_cast<int>(found - scenes_.begin());
   }
   worker_ = std::jthread([this](const std::stop_token& stop) { work(stop); });

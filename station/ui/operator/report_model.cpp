@@ -4,6 +4,7 @@
 #include <exception>
 #include <utility>
 
+#include "station/texts/refusal.hpp"
 #include "station/texts/texts.hpp"
 #include "station/ui/operator/facts.hpp"
 #include "station/ui/operator/figure_view.hpp"
@@ -23,7 +24,7 @@ void ReportModel::take(desk::ReportPages pages) {
 
 void ReportModel::clear() {
   pages_ = {};
-  saved_.clear();
+  saved_ = {};
   ready_ = false;
   Q_EMIT changed();
 }
@@ -41,9 +42,9 @@ void ReportModel::save(int picture) {
   const QString file = file_name(QString::fromStdString(texts::text(name.toStdString(), "en")));
   try {
     save_drawing(drawing, folder, file);
-    saved_ = folder + "/" + file + ".svg, .pdf";
+    saved_ = texts::plain((folder + "/" + file + ".svg, .pdf").toStdString());
   } catch (const std::exception& error) {
-    saved_ = QString::fromUtf8(error.what());
+    saved_ = texts::phrase_of(error);
   }
   Q_EMIT changed();
 }

@@ -3,6 +3,7 @@
 #include <QQmlEngine>
 
 #include "station/desk/report_pages.hpp"
+#include "station/ui/shared/phrases.hpp"
 
 namespace turnpoint::ui {
 
@@ -26,7 +27,7 @@ class ReportModel : public QObject {
   Q_PROPERTY(QStringList pictureNames READ picture_names NOTIFY changed)
   Q_PROPERTY(QVariantList pictures READ pictures NOTIFY changed)
   /// where the last figure was saved, or why that failed; "" if no figure was saved yet
-  Q_PROPERTY(QString saved READ saved NOTIFY changed)
+  Q_PROPERTY(QVariant saved READ saved NOTIFY changed)
   Q_PROPERTY(bool maySave READ may_save NOTIFY changed)
 
  public:
@@ -40,7 +41,7 @@ class ReportModel : public QObject {
 
   /// Saves a figure as SVG and as PDF.
   Q_INVOKABLE void save(int picture);
-  QString saved() const { return saved_; }
+  QVariant saved() const { return to_variant(saved_); }
   bool may_save() const { return !folder_.isEmpty(); }
 
   bool ready() const { return ready_; }
@@ -63,7 +64,8 @@ class ReportModel : public QObject {
   std::vector<std::pair<QString, desk::Drawing>> all_pictures() const;
   desk::ReportPages pages_;
   bool ready_ = false;
-  QString folder_, saved_;
+  QString folder_;
+  texts::Phrase saved_;
 };
 
 }  // namespace turnpoint::ui

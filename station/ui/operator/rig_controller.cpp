@@ -13,6 +13,7 @@
 #include "station/rig/rig.hpp"
 #include "station/session/self_test_rig.hpp"
 #include "station/setup/prepare.hpp"
+#include "station/text/number.hpp"
 #include "station/ui/operator/facts.hpp"
 
 namespace turnpoint::ui {
@@ -67,26 +68,41 @@ const char* word(session::Request::Kind kind) {
                                       : "press_button";
 }
 
-/// Returns rows for the page: the uncertainty of the force calibration, and each weight with its residual.
+/// Rounds to this number of decimals. What rounds to zero has no sign.
+texts::Phrase fixed(double value, int decimals) {
+  const double unit = std::pow(10.0, -decimals);
+  return texts::plain(fmt::format("{:.{}f}", std::abs(value) < unit / 2 ? 0.0 : value, decimals));
+}
+
+/// Returns rows for the page: uncertainty and resonance of the force calibration, and each weight with its
+/// residual.
 QVariantList weights_of(const maintenance::ForceResult& result, const std::string& file) {
+  using texts::phrase;
   QVariantList list;
-  const auto add = [&list](const std::string& name, const char* verdict, const std::string& what) {
-    list += QVariantMap{{"name", QString::fromStdString(name)},
-                        {"verdict", verdict},
-                        {"what", QString::fromStdString(what)},
+  const auto add = [&list](const texts::Phrase& name, bool good, const texts::Phrase& what) {
+    list += QVariantMap{{"name", to_variant(name)},
+                        {"verdict", good ? "ok" : "warning"},
+                        {"what", to_variant(what)},
                         {"share", -1.0}};
   };
-  add("Uncertainty (one standard deviation)", "ok",
-      fmt::format("position {:.2f} mm, friction {:.4f}, lateral force {:.1f} mN; largest change of the zero "
-                  "{:.2f} mN; written to {}",
-                  result.sd.position_mm, result.sd.friction, 1e3 * result.sd.lateral_N, result.zero_moved_mN,
-                  std::filesystem::path(file).filename().string()));
+  add(phrase("operator.weights_uncertainty"), true,
+      phrase(
+          "operator.weights_uncertainty_text",
+          {fixed(result.sd.position_mm, 2), fixed(result.sd.friction, 4), fixed(1e3 * result.sd.lateral_N, 1),
+           fixed(result.zero_moved_mN, 2), texts::plain(std::filesystem::path(file).filename().string())}));
+  add(phrase("operator.weights_resonance"), result.resonance_Hz.has_value(),
+      result.resonance_Hz ? phrase("operator.weights_resonance_text",
+                                   {texts::plain(text::number(*result.resonance_Hz, 3)),
+                                    texts::plain(text::number(result.cells.usable_Hz.value(), 3))})
+                          : phrase("operator.weights_resonance_unknown"));
   for (std::size_t k = 0; k < result.steps.size(); ++k) {
     const auto& rest = result.residuals[k];
-    add(result.steps[k].name(), result.steps[k].remark.empty() ? "ok" : "warning",
-        fmt::format("{}residual: normal {:.2f} mN, lateral {:.2f} mN, position {:.2f} mm",
-                    result.steps[k].remark.empty() ? "" : "weighed again; ", 1e3 * rest.normal_N,
-                    1e3 * rest.lateral_N, rest.position_mm));
+    const std::vector<texts::Phrase> values{fixed(1e3 * rest.normal_N, 2), fixed(1e3 * rest.lateral_N, 2),
+                                            fixed(rest.position_mm, 2)};
+    const bool once = result.steps[k].remark.empty();
+    add(result.steps[k].name(), once,
+        once ? phrase("operator.weights_residual", values)
+             : phrase("operator.weights_residual_again", values));
   }
   return list;
 }
@@ -128,7 +144,7 @@ void RigController::open() {
     }
   } catch (const std::exception& error) {
     calibration_state_ = "bad";
-    errors_ = to_list(lines_of(error));
+    errors_ = to_list(phrases_of(error));
   }
   Q_EMIT changed();
 }
@@ -142,11 +158,11 @@ void RigController::run(const QString& what, NewestJob::Job job) {
   Q_EMIT changed();
   worker_.start([this, job = std::move(job)](const std::stop_token& stop) -> std::function<void()> {
     std::function<void()> result;
-    std::vector<std::string> errors;
+    std::vector<texts::Phrase> errors;
     try {
       result = job(stop);
     } catch (const std::exception& error) {
-      errors = lines_of(error);
+      errors = phrases_of(error);
     }
     return [this, result, errors] {
       busy_.clear();
@@ -221,16 +237,12 @@ void RigController::show(const Weighing::Shown& shown) {
   step_.clear();
   if (shown.step) {
     const auto& step = *shown.step;
-    step_ = {{"tare", step.tare},
+    step_ = {{"asked", to_variant(step.text())},
+             {"remark", to_variant(step.remark)},
              {"converter", shown.converter},
-             {"grams", step.mass_g},
-             {"mm", step.position_mm},
-             {"pull", step.pull_g},
-             {"remark", QString::fromStdString(step.remark)},
-             {"trouble", QString::fromStdString(shown.trouble)}};
-    if (!shown.unread.empty())
-      reading_ = QStringList(QString::fromStdString(shown.unread));
-    else
+             {"trouble", to_variant(shown.trouble)},
+             {"unread", to_variant(shown.unread)}};
+    if (shown.unread.empty())
       for (const double cell : shown.cells)
         reading_ += shown.converter ? QString::number(cell, 'g', 5) : QString::number(cell, 'f', 2);
   }

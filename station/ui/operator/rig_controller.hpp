@@ -34,9 +34,9 @@ class RigController : public QObject {
   Q_PROPERTY(bool hasCells READ has_cells NOTIFY changed)
   /// results of a calibration of the force cells, one row for each weight; the fields are those of `checks`
   Q_PROPERTY(QVariantList weights READ weights NOTIFY changed)
-  /// what the operator is asked to do with the weights, as {tare, grams, mm, pull, remark, trouble,
-  /// converter}. A pull is in grams, and negative towards the wide edge. `remark` says why a step is
-  /// repeated, and `trouble` why a reading failed; both are in English.
+  /// what the operator is asked to do with the weights, as {asked, remark, trouble, unread, converter}.
+  /// `remark` says why a step is repeated, `trouble` why a reading failed, and `unread` why there is no live
+  /// reading.
   Q_PROPERTY(QVariantMap step READ step NOTIFY changed)
   /// what the three cells read meanwhile, as texts; one text if they cannot be read
   Q_PROPERTY(QStringList reading READ reading NOTIFY changed)
@@ -49,7 +49,7 @@ class RigController : public QObject {
   /// release_stop, press_button, weight, repair or ""
   Q_PROPERTY(QString asked READ asked NOTIFY changed)
   Q_PROPERTY(QString askedButton READ asked_button NOTIFY changed)
-  Q_PROPERTY(QStringList errors READ errors NOTIFY changed)
+  Q_PROPERTY(QVariantList errors READ errors NOTIFY changed)
   /// the guided calibration
   Q_PROPERTY(turnpoint::ui::CalibrationGuide* guide READ guide CONSTANT)
 
@@ -68,7 +68,7 @@ class RigController : public QObject {
   QStringList reading() const { return reading_; }
   QString asked() const { return asked_; }
   QString asked_button() const { return asked_button_; }
-  QStringList errors() const { return errors_; }
+  QVariantList errors() const { return errors_; }
   CalibrationGuide* guide() { return &guide_; }
 
   /// Reads the calibration again.
@@ -95,7 +95,7 @@ class RigController : public QObject {
   QString busy_, asked_, asked_button_;
   std::vector<lines::Finding> findings_;
   std::vector<session::Check> checks_;
-  QStringList errors_;
+  QVariantList errors_;
   bool has_cells_ = false;
   QVariantList weights_;
   QVariantMap step_;

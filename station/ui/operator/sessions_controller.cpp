@@ -1,7 +1,5 @@
 #include "station/ui/operator/sessions_controller.hpp"
 
-#include <fmt/format.h>
-
 #include <QDateTime>
 #include <algorithm>
 #include <filesystem>
@@ -19,6 +17,8 @@ namespace fs = std::filesystem;
 
 namespace {
 
+using texts::phrase, texts::plain;
+
 QVariantMap to_map(const desk::SessionLine& session) {
   return {{"id", QString::fromStdString(session.session_id)},
           {"person", QString::fromStdString(session.person)},
@@ -31,21 +31,16 @@ QVariantMap to_map(const desk::SessionLine& session) {
           {"resumable", session.resumable}};
 }
 
-std::string joined_lines(const std::vector<std::string>& lines) {
-  std::string text;
-  for (const auto& line : lines) text += (text.empty() ? "" : "\n") + line;
-  return text;
-}
-
-/// Describes in words what a withdrawal deletes.
-std::vector<std::string> words_of(const store::Withdrawal& gone, const char* verb) {
-  std::vector<std::string> words{fmt::format("{} {}: {} sessions, {} trials, {} events and {} notes.",
-                                             gone.participant, verb, gone.sessions.size(), gone.trials,
-                                             gone.events, gone.annotations)};
+/// Describes in words what a withdrawal deletes, or would delete.
+std::vector<texts::Phrase> words_of(const store::Withdrawal& gone, bool done) {
+  std::vector<texts::Phrase> words{phrase(done ? "operator.deleted" : "operator.would_delete",
+                                          {plain(gone.participant), plain(gone.sessions.size()),
+                                           plain(gone.trials), plain(gone.events), plain(gone.annotations)})};
   if (!gone.removed_copies.empty())
-    words.push_back(fmt::format("{1} copies beside the database {0}.", verb, gone.removed_copies.size()));
+    words.push_back(phrase(done ? "operator.copies_deleted" : "operator.copies_would",
+                           {plain(gone.removed_copies.size())}));
   for (const auto& path : gone.remaining_copies)
-    words.push_back(path + " still contains these data or cannot be read. Remove it by hand.");
+    words.push_back(phrase("operator.copy_remains", {plain(path)}));
   return words;
 }
 
@@ -62,13 +57,10 @@ store::WithdrawOptions withdrawal_of(const std::string& person, const std::strin
   return options;
 }
 
-std::string what_is_not_searched(const store::WithdrawOptions& options) {
+texts::Phrase what_is_not_searched(const store::WithdrawOptions& options) {
   return options.backup_directory.empty()
-             ? "No folder of backups can be reached, so backups were not searched. Remove them, and exported "
-               "files, "
-               "by hand."
-             : "Backups in " + options.backup_directory +
-                   " are included. Remove exported files, and backups in other places, by hand.";
+             ? phrase("operator.backups_unsearched")
+             : phrase("operator.backups_included", {plain(options.backup_directory)});
 }
 
 }  // namespace
@@ -83,13 +75,13 @@ SessionsController::SessionsController(const setup::StationRequest& request, mai
 }
 
 void SessionsController::open() {
-  said_.clear();
+  said_ = {};
   failed_ = false;
   try {
     read_list();
   } catch (const std::exception& error) {
     failed_ = true;
-    said_ = to_list(lines_of(error));
+    said_ = explanation_of(error);
   }
   lookForDisks();
 }
@@ -109,7 +101,7 @@ void SessionsController::lookForDisks() {
     disks_ = maintenance::removable_disks(sources_);
   } catch (const std::exception& error) {  // ignore this: a disk was unplugged while the list was made
     disks_.clear();
-    said_ = to_list(lines_of(error));
+    said_ = explanation_of(error);
     failed_ = true;
   }
   Q_EMIT changed();
@@ -125,7 +117,7 @@ void SessionsController::select(int index) {
   const auto shown = sessions();
   if (busy_ || index < 0 || index >= shown.size()) return;
   chosen_ = shown[index].toMap()["id"].toString().toStdString();
-  said_.clear();
+  said_ = {};
   failed_ = false;
   Q_EMIT changed();
 }
@@ -135,7 +127,7 @@ void SessionsController::act(std::function<Done()> action) {
   if (busy_) return;
   busy_ = true;
   failed_ = false;
-  said_.clear();
+  said_ = {};
   Q_EMIT changed();
   worker_.start([this, action = std::move(action)](const std::stop_token&) -> std::function<void()> {
     Done done;
@@ -143,13 +135,13 @@ void SessionsController::act(std::function<Done()> action) {
     try {
       done = action();
     } catch (const std::exception& error) {
-      done.said = lines_of(error);
+      done.said = phrases_of(error);
       failed = true;
     }
     return [this, done = std::move(done), failed] {
       busy_ = false;
       failed_ = failed;
-      said_ = to_list(done.said);
+      said_ = in_lines(done.said);
       if (done.then) done.then();
       Q_EMIT changed();
     };
@@ -169,7 +161,7 @@ void SessionsController::annotate(const QString& note) {
   if (line() == nullptr || note.trimmed().isEmpty()) return;
   act([this, id = chosen_, text = note.trimmed().toStdString()] {
     store::annotate(database_, id, text);
-    return Done{{"The note was added."}, [this] { read_list(); }};
+    return Done{{phrase("operator.note_added")}, [this] { read_list(); }};
   });
 }
 
@@ -196,7 +188,7 @@ void SessionsController::exportTo(int place, bool all, const QString& format) {
   act([this, options, name, place, disks = disks_, folder = folder_of(place)] {
     const auto to = (fs::path(mounted(folder, disks, place, sources_)) / name).string();
     const auto files = store::export_data(database_, to, options);
-    return Done{{fmt::format("{} files were written to {}.", files.size(), to)}, [this] { lookForDisks(); }};
+    return Done{{phrase("operator.exported", {plain(files.size()), plain(to)})}, [this] { lookForDisks(); }};
   });
 }
 
@@ -211,13 +203,10 @@ void SessionsController::backUpTo(int place) {
     // setting the backup refuses that.
     if (place > 0) options.destination = store::Destination::disk;
     const auto report = store::backup(database_, options);
-    std::vector<std::string> said{
-        fmt::format("{}: {} sessions and {} trials. The backup was read back and checked.", report.path,
-                    report.sessions, report.trials)};
-    if (place == 0)
-      said.push_back(
-          "This backup is on the same machine as the database. Make another one on a separate disk.");
-    if (!report.unrecorded.empty()) said.push_back(report.unrecorded);
+    std::vector<texts::Phrase> said{
+        phrase("operator.backed_up", {plain(report.path), plain(report.sessions), plain(report.trials)})};
+    if (place == 0) said.push_back(phrase("operator.backup_here"));
+    if (!report.unrecorded.empty()) said.push_back(plain(report.unrecorded));
     return Done{said, [this] { lookForDisks(); }};
   });
 }
@@ -226,7 +215,7 @@ void SessionsController::eject(int place) {
   if (!is_place(place) || place == 0) return;
   act([this, disk = disks_[static_cast<std::size_t>(place) - 1]] {
     maintenance::eject(disk, sources_);
-    return Done{{disk.name + " can be unplugged now."}, [this] { lookForDisks(); }};
+    return Done{{phrase("operator.can_unplug", {plain(disk.name)})}, [this] { lookForDisks(); }};
   });
 }
 
@@ -234,10 +223,10 @@ void SessionsController::planWithdrawal() {
   if (line() == nullptr) return;
   act([this, person = line()->person] {
     const auto options = withdrawal_of(person, database_);
-    auto plan = words_of(store::plan_withdrawal(database_, options), "would be deleted");
+    auto plan = words_of(store::plan_withdrawal(database_, options), false);
     plan.push_back(what_is_not_searched(options));
-    return Done{{}, [this, words = joined_lines(plan), person] {
-                  consequence_ = QString::fromStdString(words);
+    return Done{{}, [this, plan, person] {
+                  consequence_ = in_lines(plan);
                   withdrawing_ = person;
                   Q_EMIT planned();
                 }};
@@ -248,10 +237,10 @@ void SessionsController::withdraw() {
   if (withdrawing_.empty() || busy_) return;
   act([this, person = std::exchange(withdrawing_, {})] {
     const auto options = withdrawal_of(person, database_);
-    auto words = words_of(store::withdraw(database_, options), "deleted");
+    auto words = words_of(store::withdraw(database_, options), true);
     words.push_back(what_is_not_searched(options));
     return Done{words, [this] {
-                  consequence_.clear();
+                  consequence_ = {};
                   read_list();
                 }};
   });

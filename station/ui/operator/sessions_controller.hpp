@@ -13,6 +13,7 @@
 #include "station/store/withdraw.hpp"
 #include "station/ui/operator/report_model.hpp"
 #include "station/ui/platform/newest_job.hpp"
+#include "station/ui/shared/phrases.hpp"
 
 namespace turnpoint::ui {
 
@@ -32,12 +33,12 @@ class SessionsController : public QObject {
   Q_PROPERTY(QStringList notes READ notes NOTIFY changed)
   Q_PROPERTY(bool busy READ busy NOTIFY changed)
   /// what the last action did, or why it failed
-  Q_PROPERTY(QString said READ said NOTIFY changed)
+  Q_PROPERTY(QVariant said READ said NOTIFY changed)
   Q_PROPERTY(bool failed READ failed NOTIFY changed)
   /// places for exports and backups as {name, folder, disk, mounted}; the first is a folder of this machine
   Q_PROPERTY(QVariantList places READ places NOTIFY changed)
   /// what a withdrawal of the chosen participant would delete; "" before planWithdrawal()
-  Q_PROPERTY(QString consequence READ consequence NOTIFY changed)
+  Q_PROPERTY(QVariant consequence READ consequence NOTIFY changed)
   Q_PROPERTY(turnpoint::ui::ReportModel* report READ report CONSTANT)
 
  public:
@@ -53,10 +54,10 @@ class SessionsController : public QObject {
   QVariant chosen() const;
   QStringList notes() const;
   bool busy() const { return busy_; }
-  QString said() const { return said_.join('\n'); }
+  QVariant said() const { return to_variant(said_); }
   bool failed() const { return failed_; }
   QVariantList places() const;
-  QString consequence() const { return consequence_; }
+  QVariant consequence() const { return to_variant(consequence_); }
   ReportModel* report() { return &report_; }
 
   /// Reads the list of sessions and the disks again.
@@ -80,7 +81,7 @@ class SessionsController : public QObject {
 
  private:
   struct Done {
-    std::vector<std::string> said;
+    std::vector<texts::Phrase> said;
     std::function<void()> then = {};  ///< what else to do on the GUI thread; may be empty
   };
   void act(std::function<Done()> action);
@@ -95,9 +96,9 @@ class SessionsController : public QObject {
   std::vector<maintenance::Disk> disks_;
   QString search_;
   std::string chosen_;  ///< id of the chosen session
-  QStringList said_;
+  texts::Phrase said_;
   bool busy_ = false, failed_ = false;
-  QString consequence_;
+  texts::Phrase consequence_;
   std::string withdrawing_;  ///< participant whose withdrawal `consequence_` describes
   ReportModel report_;
   NewestJob

@@ -39,7 +39,8 @@ void StudiesController::select(int index) {
       return {};
     } catch (const std::exception& error) {
       desk::CheckWords words;
-      for (const auto& line : lines_of(error)) words.remarks.push_back({Kind::problem, "", 0, line, ""});
+      for (auto& problem : phrases_of(error))
+        words.remarks.push_back({Kind::problem, "", 0, std::move(problem), {}});
       return [this, words] { take(words); };
     }
   });
@@ -93,8 +94,8 @@ QVariantList StudiesController::remarks() const {
     list += QVariantMap{{"kind", kind},
                         {"file", QString::fromStdString(remark.file)},
                         {"line", remark.line},
-                        {"what", QString::fromStdString(remark.what)},
-                        {"hint", QString::fromStdString(remark.hint)}};
+                        {"what", to_variant(remark.what)},
+                        {"hint", to_variant(remark.hint)}};
   }
   return list;
 }

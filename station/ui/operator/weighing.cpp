@@ -6,6 +6,8 @@
 #include <exception>
 #include <utility>
 
+#include "station/texts/refusal.hpp"
+
 namespace turnpoint::ui {
 
 namespace {
@@ -16,14 +18,14 @@ constexpr std::chrono::milliseconds kGlance{250};  // time between two live read
 struct Stopped {};
 
 void read(maintenance::BridgeReader& bridges, Weighing::Shown& shown) {
-  shown.unread.clear();
+  shown.unread = {};
   try {
     const auto now = bridges.glance();
     shown.converter = now.reference == 0;
     for (std::size_t cell = 0; cell < 3; ++cell)
       shown.cells[cell] = shown.converter ? now.ratio[cell] : std::round(1e5 * now.ratio[cell]) / 100 + 0.0;
   } catch (const std::exception& error) {
-    shown.unread = error.what();
+    shown.unread = texts::phrase_of(error);
   }
 }
 
@@ -59,13 +61,18 @@ std::optional<maintenance::ForceResult> Weighing::run(const rig::Rig& rig, const
                                                       const std::stop_token& stop) {
   const auto bridges = maintenance::open_bridges(rig);
   maintenance::WeightStep now;
+  texts::Phrase silent;  // why a tap was not noticed
   const auto ready = [&](const maintenance::WeightStep& step) {
     now = step;
-    if (step.tap != maintenance::Tap::none) return false;  // only the command line asks for taps
-    return await(*bridges, {step, "", {}, false, ""}, show, stop) == Answer::read;
+    if (!silent.empty()) now.remark = std::exchange(silent, {});
+    return await(*bridges, {now, {}, {}, false, {}}, show, stop) == Answer::read;
   };
-  const auto failed = [&](const std::string& why) {
-    await(*bridges, {now, why, {}, false, ""}, show, stop);
+  const auto failed = [&](const texts::Phrase& why) {
+    // A tap is asked for again, and may be left out.
+    if (now.tap != maintenance::Tap::none)
+      silent = why;
+    else
+      await(*bridges, {now, why, {}, false, {}}, show, stop);
     return true;
   };
   try {

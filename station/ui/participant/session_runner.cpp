@@ -7,6 +7,7 @@
 #include "station/desk/report_pages.hpp"
 #include "station/setup/open_touch.hpp"
 #include "station/system/clocks.hpp"
+#include "station/texts/refusal.hpp"
 #include "station/texts/texts.hpp"
 
 namespace turnpoint::ui {
@@ -101,7 +102,7 @@ void SessionRunner::run() {
     // The session is complete and stored, even if its report cannot be made.
     desk::ReportPages pages;
     pages.title = texts::text("report.none", language_);
-    pages.statements = {texts::plain(error.what())};
+    pages.statements = {texts::phrase_of(error)};
     report_.take(pages);
   }
   Q_EMIT over();
@@ -135,7 +136,7 @@ void SessionRunner::show_failure() {
   } catch (const session::TooEarly& refused) {
     page.early = refused.early();
   } catch (const std::exception& error) {
-    page.text = error.what();
+    page.text = texts::say(texts::phrase_of(error), setup_.language);
   }
   bridge_.show(page);
 }

@@ -111,7 +111,7 @@ void show_design(const cli::DesignRequest& request) {
   DesignController controller({file.parent_path().string(), request.rig, setup::shipped("protocols")});
   if (exists) {
     if (!controller.open(QString::fromStdString(request.file)))
-      throw std::runtime_error(controller.trouble().toStdString());
+      throw std::runtime_error(texts::say(controller.trouble_phrase(), "en"));
   } else {
     controller.startNew();
     controller.suggest(QString::fromStdString(file.stem().string()));

@@ -11,8 +11,7 @@ class OperatorScreen : public QObject {
   Q_OBJECT
   QML_ELEMENT
   QML_SINGLETON
-  /// language of everything except messages about a file or a device, which are in English, like those of the
-  /// command line
+  /// language of everything except what the system and devices report
   Q_PROPERTY(QString language READ language WRITE set_language NOTIFY changed)
   Q_PROPERTY(bool dark READ dark WRITE set_dark NOTIFY changed)
   Q_PROPERTY(int textPercent READ text_percent WRITE set_text_percent NOTIFY changed)  ///< 100 to 200

@@ -144,3 +144,69 @@ english() { shows 200 150; }
 # has a dark button at the same place.
 went_on() { ! start_page && continues || return 1; sleep 0.7; tap 400 390; sleep 0.5; ! continues; }
 goes_on() { eventually 30 went_on; }
+
+# session_begins PROTOCOL ARGUMENTS...: begins a session without a screen on rig.toml, in the background: $session is its
+# process. It reads from the FIFO `operator` (descriptor 8) and writes console.txt, summary.json and lab.sqlite.
+# session_ends: waits for its end, copies what it wrote to $OUT, and fails unless it was completed without a gap in the
+# playback.
+session_begins() {
+  mkfifo operator
+  turnpoint run "$1" --rig rig.toml --participant P1 --db lab.sqlite --buttons-only --json "${@:2}" \
+    <operator >summary.json 2>console.txt & session=$!
+  exec 8>operator
+}
+session_ends() {
+  local status=0; wait $session || status=$?
+  tail -30 console.txt
+  cat summary.json
+  cp console.txt summary.json "$OUT"
+  [ ! -e lab.sqlite ] || cp lab.sqlite* "$OUT"
+  [ $status = 0 ] && has summary.json '"completed"' || fail "the session was not completed (exit status $status)"
+  has summary.json '"xruns": 0' || fail "frames of the playback were lost"
+}
+
+# conduct: answers that session until it ends; the console's lines are taken in turn. Goes on at instructions, rests and
+# faults; the self-test must find no fault. The scenario defines what else happens: `stimulus_begins` is called when a
+# stimulus begins, $stimuli is its number; `answer_is_open` when an answer can be given. It may define `cue_begins`, for
+# the moment when the participant is told to get ready, and `fault_page LINE`.
+cue_begins() { :; }
+fault_page() {
+  case $1 in
+    *"note REASON"*) tail console.txt; fail "the self-test found a fault" ;;
+    *"arm or stop"*) sleep 0.5; echo arm >&8 ;;
+    *) sleep 0.5; echo next >&8 ;;
+  esac
+}
+conduct() {
+  local line begun=
+  stimuli=0
+  : >>console.txt   # the session may not have opened it yet
+  exec 6<console.txt
+  while kill -0 $session 2>/dev/null; do
+    # At the end of the file, `read` fails, and has read the beginning of the next line if that is there already.
+    read -r line <&6 || { begun+=$line; sleep 0.1; continue; }
+    line=$begun$line begun=
+    case $line in
+      fault*) fault_page "$line" ;;
+      instructions* | rest* | paused*) echo next >&8 ;;
+      "get ready"*) cue_begins ;;
+      stimulus*) stimuli=$((stimuli + 1)); stimulus_begins ;;
+      response*) answer_is_open ;;
+    esac
+  done
+}
+
+# laboratory_begins ARGUMENTS...: starts `plant` with these arguments, between the sides of `loopback 2`. $laboratory is
+# its process. `laboratory LINE` has it do something, and waits until it is done (plant.cpp lists the commands).
+laboratory_begins() {
+  mkfifo laboratory
+  exec 7<>laboratory
+  chrt -f 60 plant commands=laboratory "$@" >truth.txt & laboratory=$!
+  eventually 60 test -s truth.txt
+}
+laboratory_lasts() { kill -0 $laboratory 2>/dev/null || fail "the laboratory was too slow for the card"; }
+laboratory() {
+  local before; before=$(grep -c ^done: truth.txt || true)
+  echo "$*" >&7
+  eventually 30 sh -c "[ \$(grep -c ^done: truth.txt) -gt $before ]"
+}

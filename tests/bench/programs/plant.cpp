@@ -10,8 +10,11 @@
 //   fault=NAME@S       a fault and its beginning (s), e.g. "fault=transducer dead@5"; may be repeated
 //   noise=off          a finger whose force and friction do not vary
 //   commands=FIFO      obeys the lines that are written there: "fault NAME [AMOUNT]", "repair",
-//                      "touch SECONDS", "lift"; each takes effect with the next captured period, and is then
-//                      printed as "done: LINE"
+//                      "touch SECONDS", "lift", "steady" (as noise=off), "load NORMAL_N LATERAL_N MM" (a
+//                      weight on the surface, and a lateral force, at this place; put down within 0.1 s);
+//                      each takes effect with the next captured period, and is then printed as "done: LINE"
+//   truth=FILE         writes the true state there at each millisecond: "FRAME NORMAL_N LATERAL_N CONTACT_MM"
+//   crosstalk_mV=MV    what a tone at full scale adds to each bridge (default 4)
 //   from=PCM, to=PCM   the card's sides (default hw:Loopback,1,0 and hw:Loopback,0,1)
 #include <alsa/asoundlib.h>
 #include <fcntl.h>
@@ -25,8 +28,10 @@
 #include <cstdlib>
 #include <cstring>
 #include <exception>
+#include <fstream>
 #include <map>
 #include <optional>
+#include <span>
 #include <sstream>
 #include <stdexcept>
 #include <string>
@@ -41,7 +46,7 @@ using namespace turnpoint;
 
 namespace {
 
-constexpr snd_pcm_uframes_t kPeriod = 1920;
+constexpr snd_pcm_uframes_t kPeriod = 1920;  // 10 or 20 ms
 
 struct Arguments {
   std::map<std::string, std::string> values{{"rig", ""},
@@ -51,6 +56,8 @@ struct Arguments {
                                             {"touch", ""},
                                             {"noise", "on"},
                                             {"commands", ""},
+                                            {"truth", ""},
+                                            {"crosstalk_mV", "4"},
                                             {"from", "hw:Loopback,1,0"},
                                             {"to", "hw:Loopback,0,1"}};
   std::vector<std::string> faults;
@@ -85,6 +92,7 @@ plant::Setup setup_from(const Arguments& arguments) {
   auto setup = session::laboratory_of(rig);
   setup.playback_channels = std::max(setup.playback_channels, rig.output.device_channels);
   setup.loop_delay_frames = 0;
+  setup.wires.crosstalk_V_per_full_scale = 1e-3 * arguments.number("crosstalk_mV");
   if (arguments.text("noise") == "off") setup.finger.normal_noise = setup.finger.friction_noise = 0;
   if (!arguments.text("touch").empty())
     setup.finger.touches = {{frame_at(setup, arguments.text("touch")), plant::kNever}};
@@ -111,7 +119,39 @@ std::vector<double> tones_from(const Arguments& arguments) {
   return tones;
 }
 
-void obey(plant::Plant& plant, const std::string& line) {
+/// A weight that is put down or taken away within 0.1 s, without a jerk that would make the cells ring.
+class Weight {
+ public:
+  void put(const plant::Load& load) {
+    before_ = now();
+    after_ = load;
+    step_ = 0;
+  }
+  bool moves() const { return step_ < kSteps; }
+  /// Moves the weight on by a millisecond.
+  plant::Load next() {
+    ++step_;
+    return now();
+  }
+
+ private:
+  static constexpr int kSteps = 100;
+
+  plant::Load now() const {
+    const double share = plant::minimum_jerk(static_cast<double>(step_) / kSteps);
+    const auto between = [&](double from, double to) { return from + share * (to - from); };
+    // What is not there has no place: a weight that comes or goes stays where it is.
+    const double from_m = before_.normal_N > 0 ? before_.x_m : after_.x_m;
+    const double to_m = after_.normal_N > 0 ? after_.x_m : before_.x_m;
+    return {between(before_.normal_N, after_.normal_N), between(before_.lateral_N, after_.lateral_N),
+            between(from_m, to_m)};
+  }
+
+  plant::Load before_, after_;
+  int step_ = kSteps;
+};
+
+void obey(plant::Plant& plant, Weight& weight, const std::string& line) {
   const auto space = line.find(' ');
   const std::string word = line.substr(0, space),
                     rest = space == std::string::npos ? "" : line.substr(space + 1);
@@ -127,7 +167,14 @@ void obey(plant::Plant& plant, const std::string& line) {
     plant.touch(frame_at(plant.setup(), rest));
   else if (word == "lift")
     plant.lift(0);
-  else
+  else if (word == "steady")
+    plant.steady_finger();
+  else if (word == "load") {
+    plant::Load load;
+    std::istringstream(rest) >> load.normal_N >> load.lateral_N >> load.x_m;
+    load.x_m *= 1e-3;
+    weight.put(load);
+  } else
     throw std::invalid_argument("not a command: " + line);
   std::printf("done: %s\n", line.c_str());
   std::fflush(stdout);
@@ -193,11 +240,44 @@ void print(const plant::Truth& truth) {
   std::fflush(stdout);
 }
 
+/// Writes the true state to a file, if there is a path.
+class TruthFile {
+ public:
+  explicit TruthFile(const std::string& path) {
+    if (!path.empty()) file_.open(path);
+    if (!path.empty() && !file_) throw std::runtime_error(path + ": " + std::strerror(errno));
+  }
+  void write(const plant::Truth& truth) {
+    if (file_.is_open())
+      file_ << truth.frame << ' ' << truth.normal_N << ' ' << truth.lateral_N << ' '
+            << 1e3 * truth.finger.contact_m << '\n';
+  }
+
+ private:
+  std::ofstream file_;
+};
+
+/// Advances the plant, a millisecond at a time.
+void advance(plant::Plant& plant, Weight& weight, TruthFile& truth, std::span<const double> played,
+             std::span<double> captured) {
+  const auto inputs = static_cast<std::size_t>(plant.setup().playback_channels);
+  const auto outputs = static_cast<std::size_t>(plant.setup().capture.count);
+  const auto piece = static_cast<std::size_t>(plant.setup().rate_Hz / 1000);
+  for (std::size_t at = 0; at < kPeriod; at += piece) {
+    if (weight.moves()) plant.set_load(weight.next());
+    plant.advance(played.subspan(at * inputs, piece * inputs),
+                  captured.subspan(at * outputs, piece * outputs));
+    truth.write(plant.truth());
+  }
+}
+
 void run(const Arguments& arguments) {
   plant::Plant plant(setup_from(arguments));
   plant.set_tones(tones_from(arguments));
   add_faults(plant, arguments);
   Commands commands(arguments.text("commands"));
+  TruthFile truth(arguments.text("truth"));
+  Weight weight;
   const auto inputs = static_cast<std::size_t>(plant.setup().playback_channels);
   const auto outputs = static_cast<std::size_t>(plant.setup().capture.count);
   const auto rate_Hz = static_cast<unsigned>(plant.setup().rate_Hz);
@@ -213,10 +293,10 @@ void run(const Arguments& arguments) {
   if (snd_pcm_state(to.pcm) != SND_PCM_STATE_RUNNING) check(snd_pcm_start(to.pcm), to.what);
   std::int64_t next = 0;
   while (plant.frames() < frame_at(plant.setup(), arguments.text("seconds"))) {
-    while (const auto line = commands.next()) obey(plant, *line);
+    while (const auto line = commands.next()) obey(plant, weight, *line);
     check(snd_pcm_readi(from.pcm, in.data(), kPeriod), from.what);
     for (std::size_t k = 0; k < in.size(); ++k) played[k] = in[k] * 0x1p-31;
-    plant.advance(played, captured);
+    advance(plant, weight, truth, played, captured);
     std::transform(captured.begin(), captured.end(), out.begin(), sample_of);
     check(snd_pcm_writei(to.pcm, out.data(), kPeriod), to.what);
     if (plant.frames() < next) continue;

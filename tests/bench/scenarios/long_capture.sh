@@ -25,23 +25,13 @@ trials=$((minutes * 60 / 5))
   for k in 0 1 2 3 4 5 6 7; do printf '  { frequency_Hz = %d, displacement_um = 0.3 },\n' $((23137 + 2713 * k)); done
   printf ']\n'
 } >long.toml
-mkfifo operator
-turnpoint run long.toml --rig rig.toml --participant P1 --db lab.sqlite --buttons-only --json \
-  <operator >summary.json 2>console.txt & session=$!
-exec 8>operator
-said() { grep -cE "$1" console.txt || true; }
-went_on=0 answered=0 began=$SECONDS
-while kill -0 $session 2>/dev/null; do
-  [ "$(said ^fault)" = 0 ] || { tail -20 console.txt; fail "the session stopped at a fault"; }
-  [ "$(said "^(instructions|rest|paused)")" -le $went_on ] || { went_on=$((went_on + 1)); echo next >&8; }
-  [ "$(said ^response)" -le $answered ] || { answered=$((answered + 1)); echo left >&8; }
-  sleep 0.3
-done
-status=0; wait $session || status=$?
-tail -5 console.txt; cat summary.json
-cp console.txt summary.json lab.sqlite* "$OUT"
-[ $status = 0 ] && has summary.json '"completed"' || fail "the session was not completed (exit status $status)"
-has summary.json '"xruns": 0' || fail "frames of the playback were lost"
+session_begins long.toml
+began=$SECONDS
+fault_page() { tail -20 console.txt; fail "the session stopped at a fault"; }
+stimulus_begins() { :; }
+answer_is_open() { echo left >&8; }
+conduct
+session_ends
 rows() { sqlite3 lab.sqlite "$1"; }
 [ "$(rows "SELECT count(*) FROM event WHERE kind IN ('xrun', 'fault', 'frames_lost')")" = 0 ] || fail "$(rows "SELECT * FROM event")"
 [ "$(rows "SELECT count(*) FROM event WHERE kind = 'notice' AND value LIKE 'the capture has lost%'")" = 0 ] ||
