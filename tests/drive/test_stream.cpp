@@ -5,6 +5,7 @@
 #include <string>
 
 #include "station/drive/engine.hpp"
+#include "station/drive/synth.hpp"
 #include "station/terms/usage_error.hpp"
 #include "tests/drive/bursts.hpp"
 #include "tests/support/catch.hpp"
@@ -135,8 +136,7 @@ TEST_CASE(
   stream->schedule(burst);
   CHECK_THROWS_AS(stream->schedule(burst), BurstRefused);  // refused because 3 * 0.4 > 1
   burst.tones.tones[0].amplitude = 0.01;
-  stream->schedule(burst);
-  stream->schedule(burst);
+  for (int more = 2; more < Synth::max_voices; ++more) stream->schedule(burst);
   // refused because all voices are in use (a voice plays one burst)
   CHECK_THROWS_AS(stream->schedule(burst), BurstRefused);
   stream->advance(200000);
