@@ -172,7 +172,7 @@ TEST_CASE("a backup that requires a separate disk is refused if none is mounted"
   const auto [fault, message] = sample::failure([&] {
     backup(dir + "/b.sqlite", {dir, 9, Destination::disk});
   });
-  CHECK(fault == ErrorKind::missing);
+  CHECK(fault == ErrorKind::no_disk);
   CHECK(sample::contains(message, "the same disk as the database"));
   fs::remove_all(dir);
 }
