@@ -24,7 +24,7 @@ texts::Phrase reason_of_end(const std::string& stored) {
   if (stored == records::kLostReason) return phrase("operator.ended_lost");
   if (stored == records::kAbandonedReason) return phrase("operator.ended_empty");
   if (stored == records::kStoppedReason) return phrase("operator.ended_asked");
-  if (const std::string last = "; the last: "; stored.starts_with(records::kVoidsReason)) {
+  if (const std::string last = records::kVoidsLast; stored.starts_with(records::kVoidsReason)) {
     const auto at = stored.find(last);
     if (at == std::string::npos) return phrase("operator.ended_voids");
     return phrase("operator.ended_voids_last", {reason_of_end(stored.substr(at + last.size()))});

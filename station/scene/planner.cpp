@@ -118,8 +118,8 @@ physics::PlanChoice Planner::State::choose(const Scene& scene, const std::vector
   request.tolerance = tolerance_of(scene);
   if (scene.zone || scene.tones.size() > 1) {
     request.points = 301;
-    request.coarsest =
-        Model::mode;  // the field is computed with this model or a better one, see at_least_mode()
+    // The field is computed with this model or a better one, see at_least_mode().
+    request.coarsest = Model::mode;
   }
   return physics::choose_model(surface, request);
 }

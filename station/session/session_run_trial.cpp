@@ -142,7 +142,7 @@ Flow SessionRun::after_trial(const Running& trial) {
   voids_in_a_row_ = trial.is_void() ? voids_in_a_row_ + 1 : 0;
   if (voids_in_a_row_ >= kVoidsBeforeStop) {
     gate_.stop(records::kVoidsReason +
-               (gate_.fault() ? "; the last: " + terms::describe(*gate_.fault()) : std::string()));
+               (gate_.fault() ? records::kVoidsLast + terms::describe(*gate_.fault()) : std::string()));
     return Flow::stop;
   }
   if (gate_.fault() && gate_.recover() == Flow::stop) return Flow::stop;

@@ -142,6 +142,17 @@ TEST_CASE(
   stream->advance(200000);
   burst.start_frame = stream->earliest_frame();
   CHECK_NOTHROW(stream->schedule(burst));
+  // Two bursts of 0.49998 fit into 32 bits, but at 16 bits they leave no room for the dither.
+  for (const int bits : {16, 32}) {
+    StreamConfig config;
+    config.output.bits = bits;
+    const auto other = open_synchronous(config);
+    Burst half = one_tone(20000, 0.49998);
+    half.start_frame = 1000;
+    other->schedule(half);
+    if (bits == 16) CHECK_THROWS_AS(other->schedule(half), BurstRefused);
+    if (bits == 32) CHECK_NOTHROW(other->schedule(half));
+  }
 }
 
 TEST_CASE("a live change alters the tone of a playing burst, and a stop ends the burst", "[drive][stream]") {
