@@ -8,6 +8,7 @@
 
 #include "physics/boundary_budget.hpp"
 #include "physics/edge_feature.hpp"
+#include "physics/statement.hpp"
 
 namespace turnpoint::physics {
 namespace {
@@ -32,9 +33,8 @@ struct Problem {
   double boundary_m(const Surface& s, double f) const {
     const auto x = solve_edge_m(s, options, f, Model::edge, Wave::exact);
     if (x) return *x;
-    std::ostringstream text;
-    text << "a boundary was measured at " << f << " Hz, but the surface has none there";
-    throw std::domain_error(text.str());
+    throw Refused(make_statement("boundary-nowhere",
+                                 "a boundary was measured at %1 Hz, but the surface has none there", {f}));
   }
 
   Eigen::VectorXd misses(const Eigen::VectorXd& u) const {
@@ -68,14 +68,15 @@ void check(const MapOptions& options, std::span<const MeasuredBoundary> measured
   if (measured.empty()) throw std::invalid_argument("there are no measured boundaries");
   for (const MeasuredBoundary& m : measured) {
     if (m.frequency_Hz > 0 && std::isfinite(m.boundary_m) && m.sd_m > 0 && std::isfinite(m.sd_m)) continue;
-    std::ostringstream text;
-    text << "boundary at " << m.boundary_m << " m for " << m.frequency_Hz << " Hz, precise to " << m.sd_m
-         << " m; the position must be finite, the frequency and the precision above 0";
-    throw std::invalid_argument(text.str());
+    throw Refused(make_statement("measured-boundary",
+                                 "boundary at %1 m for %2 Hz, precise to %3 m; the position must be finite, "
+                                 "the frequency and the precision above 0",
+                                 {m.boundary_m, m.frequency_Hz, m.sd_m}));
   }
   if (problem.unknown.empty())
-    throw std::invalid_argument(
-        "no parameter of the surface has a standard deviation, so nothing can be fitted");
+    throw Refused(
+        make_statement("nothing-uncertain",
+                       "no parameter of the surface has a standard deviation, so nothing can be fitted"));
 }
 
 struct Solution {

@@ -41,8 +41,8 @@ struct BoundaryFit {
 // standard deviation keeps its value. The temperature of the measurement is fitted too, but is not part of
 // the result. A boundary is an outlier if it lies more than 3 standard deviations from where the others
 // predict it. With few boundaries, two or three that contradict each other may all be marked. options.edge
-// says which edge was measured. Throws std::domain_error if the surface has no such edge at a measured
-// frequency, and std::invalid_argument if a value is out of range or no parameter has a standard deviation.
+// says which edge was measured. Throws Refused if the surface has no such edge at a measured
+// frequency, if a value is out of range, or if no parameter has a standard deviation.
 BoundaryFit fit_boundaries(const Surface& surface, const MapOptions& options,
                            std::span<const MeasuredBoundary> measured);
 

@@ -13,6 +13,7 @@
 #include "physics/field.hpp"
 #include "physics/map_bounds.hpp"
 #include "physics/plate_theory.hpp"
+#include "physics/statement.hpp"
 
 namespace turnpoint::physics {
 
@@ -96,7 +97,8 @@ void check(const Surface& surface, const MapOptions& options) {
         "model uniform is not available for clamped plates; allowed: edge, airy, seed, mode, modes");
   }
   if (const auto* taper = std::get_if<LinearTaper>(&surface.taper); taper != nullptr && taper->slope == 0) {
-    throw std::domain_error("a strip of constant width has no boundary that follows the frequency");
+    throw Refused(make_statement("constant-width",
+                                 "a strip of constant width has no boundary that follows the frequency"));
   }
 }
 
@@ -185,6 +187,13 @@ std::optional<double> BoundaryMap::boundary_m(double f) const noexcept { return 
 std::optional<double> BoundaryMap::frequency_Hz(double x) const noexcept { return state_->frequency(x); }
 Model BoundaryMap::model() const noexcept { return state_->model; }
 
+BoundaryMap::Reach BoundaryMap::reach_m() const noexcept {
+  const auto first = state_->position(state_->table.low_Hz);
+  const auto last =
+      std::isfinite(state_->table.high_Hz) ? state_->position(state_->table.high_Hz) : std::nullopt;
+  return {first.value_or(0), last.value_or(state_->surface.length_m)};
+}
+
 MapAnswer BoundaryMap::at_frequency(double f) const {
   const State& s = *state_;
   MapAnswer answer;
@@ -228,13 +237,10 @@ MapAnswer BoundaryMap::at_boundary(double x) const {
   MapAnswer answer;
   answer.edge = state_->options.edge;
   answer.model = state_->model;
+  const auto [first, last] = reach_m();
   std::ostringstream text;
-  const double length = state_->surface.length_m;
-  const auto first = state_->position(state_->table.low_Hz);
-  const auto last =
-      std::isfinite(state_->table.high_Hz) ? state_->position(state_->table.high_Hz) : std::nullopt;
-  text << "no frequency puts this edge at " << x * 1e3 << " mm; it can lie from " << first.value_or(0) * 1e3
-       << " to " << last.value_or(length) * 1e3 << " mm";
+  text << "no frequency puts this edge at " << x * 1e3 << " mm; it can lie from " << first * 1e3 << " to "
+       << last * 1e3 << " mm";
   answer.reason = text.str();
   return answer;
 }

@@ -74,6 +74,12 @@ class BoundaryMap {
 
   Model model() const noexcept;
 
+  // The positions between which the edge can lie.
+  struct Reach {
+    double first_m, last_m;
+  };
+  Reach reach_m() const noexcept;
+
  private:
   struct State;
   std::unique_ptr<const State> state_;

@@ -9,12 +9,18 @@
 #include "physics/dispersion.hpp"
 #include "physics/edge_feature.hpp"
 #include "physics/root.hpp"
+#include "physics/statement.hpp"
 
 namespace turnpoint::physics {
 namespace {
 
 using Piece = EdgeTable::Piece;
 constexpr std::size_t most_terms = EdgeTable::degree + 1;
+
+Refused no_such_edge(const Edge& edge) {
+  return Refused(make_statement("no-such-edge", "edge %1 does not exist on this surface", {format(edge)}));
+}
+
 // Returns how often a range of frequencies may be halved. The number is lower where one position takes long
 // to compute: for friction edges, and on a taper with many points, where the solution needs a step for every
 // point.
@@ -205,8 +211,7 @@ EdgeTable make_edge_table(const Surface& surface, const MapOptions& options, Mod
     const auto constant = options.edge.kind == Edge::Kind::turning
                               ? std::optional(1.0)
                               : builder.ratio(dispersion.cut_off_frequency_Hz(taper.half_width_m(0) * 0.02));
-    if (!constant)
-      throw std::domain_error("edge " + format(options.edge) + " does not exist on this surface");
+    if (!constant) throw no_such_edge(options.edge);
     table.constant = *constant;
     table.low_Hz = dispersion.cut_off_frequency_Hz(taper.half_width_m(0) / *constant);
     table.high_Hz = apex ? std::numeric_limits<double>::infinity() : dispersion.cut_off_frequency_Hz(end);
@@ -217,13 +222,13 @@ EdgeTable make_edge_table(const Surface& surface, const MapOptions& options, Mod
   const auto exists = [&](double f) { return builder.ratio(f).has_value(); };
   const auto lowest = std::find_if(survey.begin(), survey.end(), exists);
   const auto highest = std::find_if(survey.rbegin(), survey.rend(), exists);
-  if (lowest == survey.end())
-    throw std::domain_error("edge " + format(options.edge) + " does not exist on this surface");
+  if (lowest == survey.end()) throw no_such_edge(options.edge);
   table.low_Hz = lowest == survey.begin() ? *lowest : builder.limit(*lowest, *(lowest - 1));
   table.high_Hz = highest == survey.rbegin() ? *highest : builder.limit(*highest, *(highest - 1));
   builder.fill(table, std::log(table.low_Hz), std::log(table.high_Hz), 0);
   if (table.pieces.empty()) {
-    throw std::domain_error("edge " + format(options.edge) + " could not be tabulated on this surface");
+    throw Refused(make_statement("edge-not-tabulated", "edge %1 could not be tabulated on this surface",
+                                 {format(options.edge)}));
   }
   return table;
 }

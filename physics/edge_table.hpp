@@ -28,7 +28,7 @@ struct EdgeTable {
   std::optional<double> ratio(double frequency_Hz) const noexcept;
 };
 
-// Builds and validates the table. Throws std::domain_error if the edge exists at no frequency.
+// Builds and validates the table. Throws Refused if the edge exists at no frequency.
 EdgeTable make_edge_table(const Surface& surface, const MapOptions& options, Model model);
 
 }  // namespace turnpoint::physics

@@ -9,6 +9,7 @@
 #include "physics/dispersion.hpp"
 #include "physics/modes_bound.hpp"
 #include "physics/planner.hpp"
+#include "physics/statement.hpp"
 #include "physics/taylor_kernel.hpp"
 
 namespace turnpoint::physics {
@@ -21,21 +22,19 @@ struct Solved {
   Scaled at_peak;  // v at the last maximum, or at the drive edge if there is no maximum
 };
 
-std::string why_no_peak(const Surface& surface, double frequency_Hz) {
-  std::ostringstream text;
+Statement why_no_peak(const Surface& surface, double frequency_Hz) {
   const double cut_off = cut_off_frequency_Hz(surface, half_width_m(surface, 0));
-  if (frequency_Hz <= cut_off) {
-    text << "no smooth zone: " << frequency_Hz << " Hz is below the drive edge's cut-off of " << cut_off
-         << " Hz";
-  } else if (const auto x0 = turning_point_m(surface, frequency_Hz); !x0) {
-    text << "no last maximum: the turning point lies beyond the surface";
-  } else if (std::isfinite(surface.quality_factor)) {
-    text << "no last maximum on the surface: it would lie before the drive edge, or loss (Q = "
-         << surface.quality_factor << ") hides it";
-  } else {
-    text << "no last maximum on the surface: it would lie before the drive edge";
-  }
-  return text.str();
+  if (frequency_Hz <= cut_off)
+    return make_statement("below-cut-off", "no smooth zone: %1 Hz is below the drive edge's cut-off of %2 Hz",
+                          {frequency_Hz, cut_off});
+  if (!turning_point_m(surface, frequency_Hz))
+    return make_statement("turning-beyond", "no last maximum: the turning point lies beyond the surface");
+  if (std::isfinite(surface.quality_factor))
+    return make_statement("peak-hidden",
+                          "no last maximum on the surface: it would lie before the drive edge, or loss "
+                          "(Q = %1) hides it",
+                          {surface.quality_factor});
+  return make_statement("no-peak", "no last maximum on the surface: it would lie before the drive edge");
 }
 
 Solved solve(const Surface& surface, double frequency_Hz, Model model) {
@@ -44,7 +43,7 @@ Solved solve(const Surface& surface, double frequency_Hz, Model model) {
   s.info.frequency_Hz = frequency_Hz;
   s.info.turning_point_m = turning_point_m(surface, frequency_Hz);
   s.info.last_peak_m = s.line->last_peak_m();
-  if (!s.info.last_peak_m) s.info.no_peak_reason = why_no_peak(surface, frequency_Hz);
+  if (!s.info.last_peak_m) s.info.no_peak_reason = why_no_peak(surface, frequency_Hz).text;
   // The solution of `modes` is scaled to a drive edge whose centre moves by exactly 1, so use 1. The series
   // itself is not 1 there for a piston, because the transverse functions cannot follow the jump to the held
   // sides.
@@ -86,8 +85,9 @@ struct Reference {
 Reference reference(const Solved& s, const Tone& tone, Normalise normalise, double most) {
   const Scaled& unit = normalise == Normalise::peak ? s.at_peak : s.at_drive;
   if (unit.mantissa == 0.0) {
-    throw std::domain_error(
-        "the tone is exactly at a resonance, where v(0) = 0: normalise by peak, or give a finite Q");
+    throw Refused(make_statement(
+        "at-resonance",
+        "the tone is exactly at a resonance, where v(0) = 0: normalise by peak, or give a finite Q"));
   }
   const double weight = normalise == Normalise::none ? tone.amplitude_m : tone.amplitude_m / most;
   const auto phase = unit.mantissa / std::abs(unit.mantissa) * std::polar(1.0, -tone.phase_rad);
@@ -227,7 +227,7 @@ FieldNotes describe(const Surface& surface, std::span<const Tone> tones, const F
   double conditioning = 1;
   for (const ToneField& one : field.tones) conditioning = std::max(conditioning, one.info.conditioning);
   if (conditioning > 100) {
-    notes.warnings.push_back(make_warning(
+    notes.warnings.push_back(make_statement(
         "ill-conditioned",
         "a tone is close to a resonance, where v(0) = 0: dividing by v(0) amplifies errors %1 times",
         {conditioning}));
@@ -245,7 +245,7 @@ ToneInfo tone_info(const Surface& surface, double frequency_Hz, Model model) {
 double drive_amplitude_m(const Surface& surface, double frequency_Hz, double displacement_m, Model model) {
   validate(surface);
   const ToneInfo info = solve(surface, frequency_Hz, model).info;
-  if (!info.last_peak_m) throw std::domain_error(info.no_peak_reason);
+  if (!info.last_peak_m) throw Refused(why_no_peak(surface, frequency_Hz));
   return displacement_m / info.gain;
 }
 

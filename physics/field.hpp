@@ -88,7 +88,7 @@ ToneInfo tone_info(const Surface& surface, double frequency_Hz, Model model = Mo
 
 // Returns the amplitude at the drive edge that gives the peak displacement `displacement_m` at the last
 // maximum. If all tones are driven in this way, the last maxima of all of them are equally high, wherever
-// their boundaries are. Throws std::domain_error if there is no last maximum.
+// their boundaries are. Throws Refused if there is no last maximum.
 double drive_amplitude_m(const Surface& surface, double frequency_Hz, double displacement_m,
                          Model model = Model::mode);
 

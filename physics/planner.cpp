@@ -46,7 +46,7 @@ std::vector<double> probe_points(const Surface& surface) {
   return x;
 }
 
-Probe probe(const Surface& surface, const PlanRequest& request, double f, Model model) {
+Probe probe(const Surface& surface, const Edge& edge, double f, Model model) {
   Probe p;
   p.line = make_centre_line(surface, f, model);
   std::vector<std::complex<double>> v(probes + 1);
@@ -56,8 +56,8 @@ Probe probe(const Surface& surface, const PlanRequest& request, double f, Model 
   p.ln_peak = p.peak ? p.line->value(*p.peak).ln_magnitude() : p.ln_drive;
   p.line->evaluate(probe_points(surface), 1.0, p.ln_peak, v, p.ln);
   for (double& one : p.ln) one = std::max(one, -700.0);
-  if (request.edge.kind == Edge::Kind::percent) p.edge = p.line->level_m(request.edge.level);
-  if (request.edge.kind == Edge::Kind::peak || request.edge.kind == Edge::Kind::friction) p.edge = p.peak;
+  if (edge.kind == Edge::Kind::percent) p.edge = p.line->level_m(edge.level);
+  if (edge.kind == Edge::Kind::peak || edge.kind == Edge::Kind::friction) p.edge = p.peak;
   return p;
 }
 
@@ -67,7 +67,8 @@ struct Difference {
   double amplitude = 0, level_dB = 0, position_m = 0;
 };
 
-Difference compare(const Surface& surface, const PlanRequest& request, const Probe& a, const Probe& b) {
+Difference compare(const Surface& surface, const PlanRequest& request, const Edge& edge, const Probe& a,
+                   const Probe& b) {
   Difference d;
   double worst = 0, most = 0;
   const bool drive = request.normalise != Normalise::peak;
@@ -86,7 +87,7 @@ Difference compare(const Surface& surface, const PlanRequest& request, const Pro
     d.amplitude += unknown;
     d.level_dB += unknown_dB;
   }
-  if (request.edge.kind == Edge::Kind::turning) return d;
+  if (edge.kind == Edge::Kind::turning) return d;
   if (a.edge.has_value() != b.edge.has_value()) d.position_m = surface.length_m;
   if (a.edge && b.edge) d.position_m = 1.05 * std::abs(*a.edge - *b.edge);
   return d;
@@ -135,18 +136,19 @@ void merge(RungEstimate& all, const RungEstimate& one) {
 // The solution with which all models are compared. It is computed once for each tone.
 struct Reference {
   double f;
+  Edge edge;
   Probe mode;
   double conditioning;
   ModeBound bound;
   bool shallow_peak;  // true if slightly more loss would remove the last maximum
 };
 
-Reference reference(const Surface& surface, const PlanRequest& request, double f) {
-  Probe mode = probe(surface, request, f, Model::mode);
+Reference reference(const Surface& surface, const Edge& edge, double f) {
+  Probe mode = probe(surface, edge, f, Model::mode);
   const double conditioning = mode.line->drive_conditioning(wavenumber_per_m(surface, f));
   const auto bound = mode_bound(surface, f, conditioning, mode.peak);
   const bool uncertain_peak = mode.peak && peak_is_shallow(surface, f, *mode.peak);
-  return {f, std::move(mode), conditioning, bound, uncertain_peak};
+  return {f, edge, std::move(mode), conditioning, bound, uncertain_peak};
 }
 
 RungEstimate edge_estimate(const Surface& surface, const PlanRequest& request, const Reference& reference) {
@@ -154,9 +156,9 @@ RungEstimate edge_estimate(const Surface& surface, const PlanRequest& request, c
   e.cost_s = cost_s(surface, reference.f, Model::edge, 0);
   e.usable = request.points == 0 && !request.tolerance.level_dB && !request.tolerance.amplitude;
   e.reason = e.usable ? "positions only, from the first mode, with loss included" : "has no profile";
-  if (request.edge.kind == Edge::Kind::turning || !e.usable) return e;
+  if (reference.edge.kind == Edge::Kind::turning || !e.usable) return e;
   const MapOptions options{
-      request.edge.kind == Edge::Kind::friction ? Edge::peak() : request.edge, {}, {}, {}};
+      reference.edge.kind == Edge::Kind::friction ? Edge::peak() : reference.edge, {}, {}, {}};
   const auto x = solve_edge_m(surface, options, reference.f, Model::edge, Wave::exact);
   e.boundary_bound_m = reference.bound.position_m() + (reference.shallow_peak ? surface.length_m : 0);
   if (x.has_value() != reference.mode.edge.has_value()) e.boundary_bound_m += surface.length_m;
@@ -166,7 +168,7 @@ RungEstimate edge_estimate(const Surface& surface, const PlanRequest& request, c
 // Returns the error of the boundaries that arises because another model has computed the frequencies of the
 // tones; 0 if no other model has.
 double placed_elsewhere_m(const PlanRequest& request, const Reference& reference) {
-  const bool graded = request.edge.kind != Edge::Kind::turning;
+  const bool graded = reference.edge.kind != Edge::Kind::turning;
   return graded && request.placed_by.value_or(Model::modes) != Model::modes ? reference.bound.position_m()
                                                                             : 0;
 }
@@ -204,7 +206,7 @@ RungEstimate modes_estimate(const Surface& surface, const PlanRequest& request, 
 RungEstimate compared_modes_estimate(const Surface& surface, const PlanRequest& request,
                                      const Reference& reference, Comparison comparison) {
   RungEstimate e = modes_estimate(surface, request, reference);
-  const auto bound = modes_bound(surface, reference.f, request.edge, comparison);
+  const auto bound = modes_bound(surface, reference.f, reference.edge, comparison);
   e.reason = std::string("two-dimensional field, compared with a ") +
              (comparison == Comparison::finer ? "finer" : "coarser") + " solution";
   e.amplitude_bound = !bound ? unknown : request.normalise == Normalise::peak ? bound->shape : bound->drive;
@@ -230,7 +232,7 @@ RungEstimate profile_estimate(const Surface& surface, const PlanRequest& request
   e.amplitude_bound = (drive ? bound.drive : bound.shape) +
                       rounding_error(surface, reference.f) * (drive ? reference.conditioning : 1);
   e.level_bound_dB = bound.level_dB;
-  e.boundary_bound_m = request.edge.kind == Edge::Kind::turning ? 0 : bound.position_m();
+  e.boundary_bound_m = reference.edge.kind == Edge::Kind::turning ? 0 : bound.position_m();
   // The two-dimensional field may have a last maximum although the model `mode` has none, or have it at
   // another place.
   if (reference.shallow_peak) e.boundary_bound_m += surface.length_m;
@@ -242,7 +244,8 @@ RungEstimate profile_estimate(const Surface& surface, const PlanRequest& request
     e.reason = "first transverse mode with loss";
     return e;
   }
-  const Difference d = compare(surface, request, probe(surface, request, reference.f, model), reference.mode);
+  const Difference d = compare(surface, request, reference.edge,
+                               probe(surface, reference.edge, reference.f, model), reference.mode);
   e.amplitude_bound += d.amplitude;
   e.level_bound_dB += d.level_dB;
   e.boundary_bound_m += d.position_m;
@@ -255,8 +258,8 @@ RungEstimate compared_mode_estimate(const Surface& surface, const PlanRequest& r
                                     const Reference& reference) {
   RungEstimate e = profile_estimate(surface, request, reference, Model::mode);
   const RungEstimate modes = modes_estimate(surface, request, reference);
-  const Difference d =
-      compare(surface, request, reference.mode, probe(surface, request, reference.f, Model::modes));
+  const Difference d = compare(surface, request, reference.edge, reference.mode,
+                               probe(surface, reference.edge, reference.f, Model::modes));
   e.amplitude_bound = std::min(e.amplitude_bound, modes.amplitude_bound + d.amplitude);
   e.level_bound_dB = std::min(e.level_bound_dB, modes.level_bound_dB + probe_margin * d.level_dB);
   return e;
@@ -289,7 +292,9 @@ RungEstimate compared_modes(const Surface& surface, const PlanRequest& request,
 
 std::vector<Reference> references_for(const Surface& surface, const PlanRequest& request) {
   std::vector<Reference> list;
-  for (const Tone& tone : request.tones) list.push_back(reference(surface, request, tone.frequency_Hz));
+  for (std::size_t i = 0; i < request.tones.size(); ++i)
+    list.push_back(reference(surface, request.edges.empty() ? request.edge : request.edges.at(i),
+                             request.tones[i].frequency_Hz));
   return list;
 }
 
@@ -333,7 +338,8 @@ PlanChoice choose_model(const Surface& surface, const PlanRequest& request) {
   PlanChoice choice;
   const auto references = references_for(surface, request);
   for (const Model model : all_models)
-    choice.considered.push_back(estimate_with(surface, request, references, model));
+    if (model >= request.coarsest)
+      choice.considered.push_back(estimate_with(surface, request, references, model));
   std::stable_sort(choice.considered.begin(), choice.considered.end(),
                    [](const RungEstimate& a, const RungEstimate& b) { return a.cost_s < b.cost_s; });
   auto& rungs = choice.considered;
@@ -356,12 +362,13 @@ PlanChoice choose_model(const Surface& surface, const PlanRequest& request) {
   choice.model = chosen->model;
   choice.bound = *chosen;
   std::ostringstream text;
-  text << name(choice.model) << ": " << numbers(*chosen, request.tolerance);
+  const auto bounds = numbers(*chosen, request.tolerance);
+  text << name(choice.model) << ": " << (bounds.empty() ? "the scene has no tolerance" : bounds);
   for (auto below = chosen; below != rungs.begin();) {
     --below;
     if (!below->usable) continue;
     choice.cheaper = *below;
-    text << "; " << name(below->model) << ": " << numbers(*below, request.tolerance);
+    if (!bounds.empty()) text << "; " << name(below->model) << ": " << numbers(*below, request.tolerance);
     break;
   }
   if (!choice.inside) text << "; no model meets the tolerance";

@@ -43,6 +43,8 @@ struct PlanRequest {
   // Set this if another model has already computed the tones' frequencies. The boundary then has the error of
   // that other model, whichever model the planner chooses for the field.
   std::optional<Model> placed_by = {};
+  std::vector<Edge> edges = {};  // the edge of each tone; if empty, `edge` is that of all
+  Model coarsest = Model::edge;  // coarser models are not considered
 };
 
 RungEstimate estimate(const Surface& surface, const PlanRequest& request, Model model);

@@ -7,6 +7,7 @@
 #include "physics/centre_line.hpp"
 #include "physics/crest.hpp"
 #include "physics/nnls.hpp"
+#include "physics/statement.hpp"
 #include "physics/zone.hpp"
 
 namespace turnpoint::physics {
@@ -69,7 +70,8 @@ ProfileDesign design_profile(const Surface& surface, std::span<const ProfilePoin
     gains.push_back(gain);
   }
   if (frequencies.empty())
-    throw std::domain_error("no frequency of the band has a smooth zone on this surface");
+    throw Refused(
+        make_statement("no-smooth-zone", "no frequency of the band has a smooth zone on this surface"));
   const NnlsResult fit = nnls(columns, x.size(), wanted, fit_tolerance);
   ProfileDesign design;
   for (std::size_t i = frequencies.size(); i-- > 0;) {

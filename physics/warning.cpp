@@ -1,13 +1,13 @@
 #include "physics/warning.hpp"
 
 #include <cmath>
-#include <sstream>
 #include <utility>
 
 #include "physics/centre_line.hpp"
 #include "physics/dispersion.hpp"
 #include "physics/field.hpp"
 #include "physics/plate_theory.hpp"
+#include "physics/statement.hpp"
 
 namespace turnpoint::physics {
 namespace {
@@ -26,32 +26,20 @@ void add(std::vector<Warning>& list, Warning&& warning) {
 
 }  // namespace
 
-Warning make_warning(std::string code, const std::string& sentence, std::initializer_list<double> values,
-                     int digits) {
-  Warning made{std::move(code), sentence, {}};
-  for (const double value : values) {
-    std::ostringstream text;
-    text.precision(digits);
-    text << value;
-    made.values.push_back(text.str());
-    const std::string place = "%" + std::to_string(made.values.size());
-    made.text.replace(made.text.find(place), place.size(), made.values.back());
-  }
-  return made;
-}
-
 std::vector<Warning> surface_warnings(const Surface& s) {
   std::vector<Warning> list;
   if (s.yield_strength_Pa && s.tension_Pa > *s.yield_strength_Pa)
-    add(list, make_warning("yield", "tension %1 MPa exceeds the material's yield strength, %2 MPa",
-                           {s.tension_Pa / 1e6, *s.yield_strength_Pa / 1e6}));
+    add(list, make_statement("yield", "tension %1 MPa exceeds the material's yield strength, %2 MPa",
+                             {s.tension_Pa / 1e6, *s.yield_strength_Pa / 1e6}));
   return list;
 }
 
 std::vector<Warning> tone_warnings(const Surface& s, std::span<const Tone> tones) {
   std::vector<Warning> list;
-  const auto warn = [&list](const char* code, const char* sentence, std::initializer_list<double> values,
-                            int digits = 6) { add(list, make_warning(code, sentence, values, digits)); };
+  const auto warn = [&list](const char* code, const char* sentence,
+                            std::initializer_list<StatementValue> values) {
+    add(list, make_statement(code, sentence, values));
+  };
   for (const Tone& tone : tones) {
     const double f = tone.frequency_Hz, kHz = f / 1e3;
     if (f < audible_limit_Hz)
@@ -72,7 +60,7 @@ std::vector<Warning> tone_warnings(const Surface& s, std::span<const Tone> tones
            "%1 kHz: the plate is thick: shear, which plate theory kirchhoff leaves out, would move the "
            "boundary "
            "by %2 mm",
-           {kHz, shift * 1e3}, 3);
+           {{kHz, 3}, {shift * 1e3, 3}});
     if (f <= cut_off_frequency_Hz(s, half_width_m(s, 0))) {
       warn("no-smooth-zone", "%1 kHz: no smooth zone, below the drive edge's cut-off", {kHz});
     } else if (!turning_point_m(s, f)) {

@@ -1,11 +1,10 @@
 #pragma once
 // Warnings to show with a plan, a map or a field. Each kind is shown only once.
 #include <array>
-#include <initializer_list>
 #include <span>
-#include <string>
 #include <vector>
 
+#include "physics/statement.hpp"
 #include "physics/surface.hpp"
 #include "physics/tone.hpp"
 
@@ -17,17 +16,7 @@ inline constexpr std::array warning_codes{"yield",        "audible",        "ben
                                           "narrow-strip", "resonance-gain", "ill-conditioned"};
 
 // A warning: one of these codes, and a sentence for people.
-struct Warning {
-  std::string code;
-  std::string text;
-  std::vector<std::string>
-      values;  // the numbers of the sentence, for a program that says it in another language
-};
-
-// Makes a warning with this sentence, in which %1, %2 and so on stand for the values. `digits` is the number
-// of significant digits of each value.
-Warning make_warning(std::string code, const std::string& sentence, std::initializer_list<double> values,
-                     int digits = 6);
+using Warning = Statement;
 
 // Warns if the tension is above the material's yield strength, or if bending is switched off although it
 // matters.

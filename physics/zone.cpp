@@ -9,12 +9,16 @@
 #include "physics/crest.hpp"
 #include "physics/dispersion.hpp"
 #include "physics/field.hpp"
+#include "physics/statement.hpp"
 #include "physics/zone_profile.hpp"
 
 namespace turnpoint::physics {
 namespace {
 
-[[noreturn]] void unreachable(const std::ostringstream& text) { throw std::domain_error(text.str()); }
+[[noreturn]] void refuse(const char* code, const char* sentence,
+                         std::initializer_list<StatementValue> values) {
+  throw Refused(make_statement(code, sentence, values));
+}
 
 // Returns a first guess of the highest tone's frequency: the one whose turning point is where the zone must
 // end.
@@ -24,27 +28,20 @@ double first_guess(const Surface& surface, const ZoneRequest& request) {
 
 void check(const Surface& surface, const FrictionMap& friction, const ZoneRequest& r) {
   validate(surface);
-  std::ostringstream text;
-  if (!(r.from_m >= 0 && r.from_m < r.boundary_m && r.boundary_m <= surface.length_m)) {
-    text << "zone from " << r.from_m * 1e3 << " to " << r.boundary_m * 1e3 << " mm; allowed: inside 0 to "
-         << surface.length_m * 1e3 << " mm, ascending";
-    throw std::invalid_argument(text.str());
-  }
-  if (!(r.friction < 1) || r.friction <= friction.lowest_friction()) {
-    text << "zone friction " << r.friction << " is not reachable; allowed: above "
-         << friction.lowest_friction() << ", below 1";
-    unreachable(text);
-  }
+  if (!(r.from_m >= 0 && r.from_m < r.boundary_m && r.boundary_m <= surface.length_m))
+    refuse("zone-place", "zone from %1 to %2 mm; allowed: inside 0 to %3 mm, ascending",
+           {r.from_m * 1e3, r.boundary_m * 1e3, surface.length_m * 1e3});
+  if (!(r.friction < 1) || r.friction <= friction.lowest_friction())
+    refuse("zone-friction", "zone friction %1 is not reachable; allowed: above %2, below 1",
+           {r.friction, friction.lowest_friction()});
   if (r.tones < 1)
     throw std::invalid_argument("zone tones is " + std::to_string(r.tones) + "; allowed: 1 or more");
   if (!(r.band.low_Hz > 0 && r.band.low_Hz < r.band.high_Hz && r.band.spacing_Hz > 0)) {
     throw std::invalid_argument("zone band: low_Hz below high_Hz and spacing_Hz above 0 are needed");
   }
-  if (r.edge.kind == Edge::Kind::friction && !(r.edge.level > r.friction && r.edge.level < 1)) {
-    text << "zone edge at friction " << r.edge.level << "; allowed: above the friction in the zone, "
-         << r.friction << ", and below 1";
-    unreachable(text);
-  }
+  if (r.edge.kind == Edge::Kind::friction && !(r.edge.level > r.friction && r.edge.level < 1))
+    refuse("zone-edge", "zone edge at friction %1; allowed: above the friction in the zone, %2, and below 1",
+           {r.edge.level, r.friction});
 }
 
 // Shifts the frequencies of all tones together, by the secant method, until the zone's edge is at the wanted
@@ -56,11 +53,9 @@ void place(ZoneProfile& profile, const ZoneRequest& r, double tolerance_m) {
   for (int i = 0; i < 25; ++i) {
     profile.scale_to_friction();
     const auto x = profile.edge_m();
-    if (!x) {
-      std::ostringstream text;
-      text << "the zone's profile has no edge " << format(r.edge) << " near " << r.boundary_m * 1e3 << " mm";
-      unreachable(text);
-    }
+    if (!x)
+      refuse("zone-without-edge", "the zone's profile has no edge %1 near %2 mm",
+             {format(r.edge), r.boundary_m * 1e3});
     if (std::abs(*x - r.boundary_m) < tolerance_m) return;
     slope = i == 0 || f == previous_f || *x == previous_x ? profile.edge_slope_m_per_Hz()
                                                           : (*x - previous_x) / (f - previous_f);
@@ -76,10 +71,8 @@ void place(ZoneProfile& profile, const ZoneRequest& r, double tolerance_m) {
 void require_band(const ZoneProfile& profile, const ZoneRequest& r) {
   const double f = profile.highest_Hz();
   if (f <= r.band.high_Hz && f >= r.band.low_Hz) return;
-  std::ostringstream text;
-  text << "zone boundary " << r.boundary_m * 1e3 << " mm needs " << f << " Hz; allowed: " << r.band.low_Hz
-       << " to " << r.band.high_Hz << " Hz";
-  unreachable(text);
+  refuse("zone-band", "zone boundary %1 mm needs %2 Hz; allowed: %3 to %4 Hz",
+         {r.boundary_m * 1e3, f, r.band.low_Hz, r.band.high_Hz});
 }
 
 }  // namespace

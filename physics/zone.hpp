@@ -48,7 +48,7 @@ struct ZoneDesign {
   std::vector<Warning> warnings;
 };
 
-// Designs a zone. Throws std::domain_error with the reason if no tones can produce it: friction below the
+// Designs a zone. Throws Refused if no tones can produce it: a zone beyond the surface, friction below the
 // lowest of the map, a boundary whose tone lies outside the band, or a friction edge whose level is outside
 // (friction, 1).
 ZoneDesign design_zone(const Surface& surface, const FrictionMap& friction, const ZoneRequest& request);

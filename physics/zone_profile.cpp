@@ -10,6 +10,7 @@
 #include "physics/dispersion.hpp"
 #include "physics/nnls.hpp"
 #include "physics/root.hpp"
+#include "physics/statement.hpp"
 #include "physics/taper.hpp"
 
 namespace turnpoint::physics {
@@ -39,11 +40,8 @@ ZoneProfile::ZoneProfile(const Surface& surface, const FrictionMap& friction, co
 ToneShape ZoneProfile::shape(double f) const {
   const auto line = make_centre_line(surface_, f, Model::mode);
   const auto peak = line->last_peak_m();
-  if (!peak) {
-    std::ostringstream text;
-    text << "a tone of " << f << " Hz has no last maximum on this surface";
-    throw std::domain_error(text.str());
-  }
+  if (!peak)
+    throw Refused(make_statement("no-peak-at", "a tone of %1 Hz has no last maximum on this surface", {f}));
   const double ln_peak = line->value(*peak).ln_magnitude();
   std::vector<std::complex<double>> v(x_.size());
   std::vector<double> ln(x_.size());
@@ -215,11 +213,9 @@ void ZoneProfile::scale_to_friction() {
   double step = scaled_before_ ? 0.01 : 0.3;
   for (; f_low < 0 && low > -120; step *= 2) f_low = miss(low -= step);
   for (; f_high > 0 && high < 10; step *= 2) f_high = miss(high += step);
-  if (f_low < 0 || f_high > 0) {
-    std::ostringstream text;
-    text << "mean friction " << request_.friction << " is not reachable in the zone";
-    throw std::domain_error(text.str());
-  }
+  if (f_low < 0 || f_high > 0)
+    throw Refused(make_statement("zone-mean-friction", "mean friction %1 is not reachable in the zone",
+                                 {request_.friction}));
   // If the lower end already is the solution, no search is needed.
   const double x = std::abs(f_low) < 1e-9 ? low
                                           : false_position({low, f_low, high, f_high}, miss, {8, true}, 1e-9,

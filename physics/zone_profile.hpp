@@ -28,7 +28,7 @@ class ZoneProfile {
   // be too close to the next tone there.
   void shift_to(double highest_Hz);
   // Scales the amplitudes of all tones together so that the mean friction in the zone has the desired value.
-  // Throws std::domain_error if no level does.
+  // Throws Refused if no level does.
   void scale_to_friction();
   // Position of the edge in the amplitude profile that all tones of the zone produce together; empty if there
   // is none.

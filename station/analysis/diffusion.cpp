@@ -18,7 +18,7 @@ constexpr double kNearChance = 1e-3;
 double h(double L) {
   L = std::abs(L);
   // near L = 0 the closed form subtracts almost equal terms, so use the Taylor series
-  if (L < 0.02) return (1 - L * L / 10) / 24;
+  if (L < 0.02) return (1 - L * L / 5) / 24;
   const double e = std::exp(-L);
   return (1 - 2 * L * e - e * e) / (2 * L * L * L * (1 + e) * (1 + e));
 }
@@ -79,7 +79,7 @@ SharedEzResult shared_ez_diffusion(const std::vector<EzMoments>& conditions) {
   for (const auto& moments : conditions) {
     const double p = corrected(moments), correct = moments.proportion_correct * moments.trials;
     const bool usable = !refusal(moments) && correct >= 10;
-    L.push_back(!refusal(moments) ? logit(p) : 0);
+    L.push_back(p > 0 && p < 1 ? logit(p) : 0);
     weight.push_back(0);
     if (!usable) continue;
     // Relative variance of this condition's estimate of (a / s)^4. The first term is the sampling error of

@@ -3,7 +3,7 @@
 #include <Eigen/QR>
 #include <cmath>
 
-#include "station/terms/usage_error.hpp"
+#include "station/texts/refusal.hpp"
 
 namespace turnpoint::analysis {
 
@@ -25,7 +25,7 @@ LeastSquares least_squares(const std::vector<std::vector<double>>& rows, const s
   // A column counts as linearly dependent if the part of it that is orthogonal to the other columns is below
   // this fraction of its length.
   qr.setThreshold(3e-7);
-  if (qr.rank() < n) throw terms::UsageError("the measured points are not enough to determine the fit");
+  if (qr.rank() < n) throw texts::Refusal(texts::phrase("fitted.too_few"));
   const Eigen::VectorXd solution = qr.solve(right);
   // The covariance is (R'R)^-1, with R of the QR decomposition; its rows are in the order of the pivots.
   const Eigen::MatrixXd inverse =

@@ -7,7 +7,7 @@
 #include <limits>
 #include <utility>
 
-#include "station/terms/usage_error.hpp"
+#include "station/texts/refusal.hpp"
 
 namespace turnpoint::analysis {
 
@@ -197,7 +197,7 @@ PoleFit fit_poles(std::span<const double> frequency_Hz, std::span<const std::com
                   double noise, int most_poles) {
   constexpr std::size_t least = 20;
   if (frequency_Hz.size() < least || frequency_Hz.size() != response.size())
-    throw terms::UsageError("a fit of resonances needs at least 20 frequencies");
+    throw texts::Refusal(texts::phrase("fitted.few_frequencies", {texts::plain(least)}));
   const PoleScale scale{0.5 * (frequency_Hz.front() + frequency_Hz.back()),
                         0.5 * (frequency_Hz.back() - frequency_Hz.front())};
   Eigen::VectorXd x(static_cast<Eigen::Index>(frequency_Hz.size()));

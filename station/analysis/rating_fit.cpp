@@ -120,7 +120,8 @@ Vector first_guess(const Table& table) {
   return at;
 }
 
-/// Fisher's scoring, with shorter steps where a whole one would not increase the likelihood.
+/// Fisher's scoring, with shorter steps where a whole one would not increase the likelihood. Empty if the
+/// search does not come to rest.
 std::optional<Vector> most_likely(const Table& table, Variances variances) {
   auto at = first_guess(table);
   auto here = slope_at(table, at, variances);
@@ -128,17 +129,26 @@ std::optional<Vector> most_likely(const Table& table, Variances variances) {
     const Eigen::LLT<Eigen::MatrixXd> solver(here.information);
     if (solver.info() != Eigen::Success) return std::nullopt;
     Vector step = solver.solve(here.gradient);
-    if (here.gradient.dot(step) < 1e-12) return at;
+    const double gain = here.gradient.dot(step) / 2;  // what a whole step would add to the log likelihood
+    if (gain < 1e-12) return at;
     auto there = slope_at(table, at + step, variances);
     for (int halved = 0; halved < 40 && !(there.log_likelihood >= here.log_likelihood); ++halved) {
       step /= 2;
       there = slope_at(table, at + step, variances);
     }
-    if (!(there.log_likelihood >= here.log_likelihood)) return at;  // only rounding errors are left
+    if (!(there.log_likelihood >= here.log_likelihood))  // if the gain is tiny, only rounding errors are left
+      return gain < 1e-6 ? std::optional(at) : std::nullopt;
     at += step, here = std::move(there);
     if (std::fabs(at[0]) > kLargestMean * std::max(1.0, at[1])) return std::nullopt;
   }
   return std::nullopt;
+}
+
+/// False for an estimate at the edge of what is possible: the likelihood rises up to there, and beyond.
+bool is_determined(const Vector& at) {
+  constexpr double near_edge = 0.99;
+  return at[1] > 1 / (near_edge * kLargestRatio) && at[1] < near_edge * kLargestRatio &&
+         at.tail(at.size() - 2).cwiseAbs().maxCoeff() < kLargestMean;
 }
 
 Estimate around(double value, double sd) { return {value, {value - kZ95 * sd, value + kZ95 * sd, 0.95}}; }
@@ -153,7 +163,7 @@ std::optional<RatingFit> fit_ratings(const std::vector<int>& noise, const std::v
   if (sum_of(table.noise) == 0 || sum_of(table.signal) == 0) return std::nullopt;
   if (table.noise.size() < (variances == Variances::equal ? 2u : 3u)) return std::nullopt;
   const auto at = most_likely(table, variances);
-  if (!at) return std::nullopt;
+  if (!at || !is_determined(*at)) return std::nullopt;
   const auto slope = slope_at(table, *at, variances);
   const Eigen::MatrixXd covariance =
       slope.information.llt().solve(Eigen::MatrixXd::Identity(at->size(), at->size()));

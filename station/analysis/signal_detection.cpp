@@ -8,6 +8,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "physics/root.hpp"
 #include "station/analysis/proportion.hpp"
 
 namespace turnpoint::analysis {
@@ -110,6 +111,24 @@ std::vector<Detection> detect(const std::vector<TrialRecord>& trials, const std:
   return result;
 }
 
+namespace {
+
+/// Method 5 of Newcombe (2006): the areas from which the observed one differs by at most 1.96 standard
+/// deviations, with the variance of Hanley & McNeil (1982) at each of these areas, for the mean of both
+/// numbers of trials.
+Interval area_interval(double area, double noise, double signal) {
+  const double each = (noise + signal) / 2;
+  const auto contains = [&](double at) {
+    const double variance = at * (1 - at) *
+                            (1 + (each - 1) * (1 - at) / (2 - at) + (each - 1) * at / (1 + at)) /
+                            (noise * signal);
+    return (at - area) * (at - area) <= kZ95 * kZ95 * variance;
+  };
+  return {physics::bisect({area, 0}, contains).middle(), physics::bisect({area, 1}, contains).middle(), 0.95};
+}
+
+}  // namespace
+
 std::optional<Roc> roc(const std::vector<int>& noise, const std::vector<int>& signal) {
   const auto negative = [](int count) { return count < 0; };
   if (noise.size() < 2 || noise.size() != signal.size() ||
@@ -130,11 +149,7 @@ std::optional<Roc> roc(const std::vector<int>& noise, const std::vector<int>& si
     area +=
         (result.points.back().false_alarms - last.false_alarms) * (result.points.back().hits + last.hits) / 2;
   }
-  const double q1 = area / (2 - area), q2 = 2 * area * area / (1 + area);
-  const double variance =
-      (area * (1 - area) + (s - 1) * (q1 - area * area) + (n - 1) * (q2 - area * area)) / (n * s);
-  const double half = kZ95 * std::sqrt(std::max(0.0, variance));
-  result.area = {area, {std::max(0.0, area - half), std::min(1.0, area + half), 0.95}};
+  result.area = {area, area_interval(area, n, s)};
   return result;
 }
 

@@ -66,7 +66,7 @@ struct RocPoint {
 struct Roc {
   /// points of the curve from (0, 0) to (1, 1), beginning with the strictest criterion
   std::vector<RocPoint> points;
-  /// area under straight lines between the points; 95 % interval by Hanley & McNeil (1982)
+  /// area under straight lines between the points; 95 % interval by method 5 of Newcombe (2006)
   Estimate area;
 };
 

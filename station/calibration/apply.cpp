@@ -1,24 +1,24 @@
 #include "station/calibration/apply.hpp"
 
-#include <fmt/format.h>
 #include <time.h>
 
 #include <algorithm>
 #include <filesystem>
 
-#include "station/terms/usage_error.hpp"
 #include "station/text/number.hpp"
+#include "station/texts/refusal.hpp"
 
 namespace turnpoint::calibration {
+
+using text::number;
+using texts::phrase, texts::plain, texts::Refusal;
 
 namespace {
 
 void apply(const Calibration::Transducer& measured, rig::Rig& rig) {
   const auto found = std::find_if(rig.transducers.begin(), rig.transducers.end(),
                                   [&](const auto& t) { return t.name == measured.name; });
-  if (found == rig.transducers.end())
-    throw terms::UsageError(
-        fmt::format("the calibration has a transducer \"{}\", but the rig does not", measured.name));
+  if (found == rig.transducers.end()) throw Refusal(phrase("applied.no_transducer", {plain(measured.name)}));
   found->m_per_full_scale.reset();
   found->response.clear();
   for (const auto& point : measured.response.points)
@@ -26,37 +26,28 @@ void apply(const Calibration::Transducer& measured, rig::Rig& rig) {
   found->low_Hz = std::max(found->low_Hz, measured.response.low_Hz);
   found->high_Hz = std::min(found->high_Hz, measured.response.high_Hz);
   if (!(found->low_Hz < found->high_Hz))
-    throw terms::UsageError(fmt::format(
-        "transducer \"{}\": the calibrated band, {} to {} kHz, is outside the band in the rig file",
-        measured.name, text::number(measured.response.low_Hz * 1e-3),
-        text::number(measured.response.high_Hz * 1e-3)));
+    throw Refusal(
+        phrase("applied.outside_band", {plain(measured.name), plain(number(measured.response.low_Hz * 1e-3)),
+                                        plain(number(measured.response.high_Hz * 1e-3))}));
 }
 
 void apply(const rig::PickUpResponse& measured, rig::Rig& rig) {
   auto& capture = rig.capture;
   if (!capture || std::find(capture->pick_ups.begin(), capture->pick_ups.end(), measured.channel) ==
                       capture->pick_ups.end())
-    throw terms::UsageError(fmt::format(
-        "the calibration has a pick-up on captured channel {}, but the rig does not", measured.channel));
+    throw Refusal(phrase("applied.no_pick_up", {plain(measured.channel)}));
   if (std::any_of(capture->responses.begin(), capture->responses.end(), [&](const auto& other) {
         return other.channel == measured.channel && other.drive_channel == measured.drive_channel;
       }))
-    throw terms::UsageError(
-        fmt::format("the calibration has two responses of the pick-up on channel {} to "
-                    "output channel {}",
-                    measured.channel, measured.drive_channel));
+    throw Refusal(phrase("applied.two_responses", {plain(measured.channel), plain(measured.drive_channel)}));
   capture->responses.push_back(measured);
 }
 
 void apply(const rig::ForceCells& measured, rig::Rig& rig) {
-  if (!rig::has_force_cells(rig))
-    throw terms::UsageError("the calibration has force cells, but the rig does not");
+  if (!rig::has_force_cells(rig)) throw Refusal(phrase("applied.no_force_cells"));
   const bool own_clock = measured.carrier_Hz == 0;
   if (own_clock != rig.capture->converter.has_value())
-    throw terms::UsageError(fmt::format(
-        "the force cells of the calibration were {}, those of the rig are {}; calibrate them again",
-        own_clock ? "on a converter with a clock of its own" : "captured by the card",
-        own_clock ? "captured by the card" : "on a converter with a clock of its own"));
+    throw Refusal(phrase(own_clock ? "applied.forces_by_card" : "applied.forces_by_converter"));
   rig.capture->forces = measured;
 }
 

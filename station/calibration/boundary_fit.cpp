@@ -5,6 +5,7 @@
 #include "station/calibration/fits.hpp"
 #include "station/scene/planner.hpp"
 #include "station/terms/usage_error.hpp"
+#include "station/texts/refusal.hpp"
 
 namespace turnpoint::calibration {
 namespace {
@@ -28,8 +29,7 @@ BoundaryFit fit_boundaries(const rig::Rig& rig, const std::string& edge, std::ve
     physics::MapOptions options;
     options.edge = physics::parse_edge(edge);
     if (options.edge.kind == physics::Edge::Kind::friction)
-      throw terms::UsageError("edge " + edge +
-                              " cannot be measured for a calibration; use turning, peak or p50");
+      throw texts::Refusal(texts::phrase("fitted.edge", {texts::plain(edge)}));
     std::vector<physics::MeasuredBoundary> measured;
     for (const auto& point : points) measured.push_back({point.frequency_Hz, point.boundary_m, point.sd_m});
     const auto fit = physics::fit_boundaries(scene::surface_of(rig), options, measured);
@@ -40,8 +40,8 @@ BoundaryFit fit_boundaries(const rig::Rig& rig, const std::string& edge, std::ve
       points[i].left_out = fit.left_out && fit.outliers[i];
     }
     return {physics::format(options.edge), std::move(points), surface_fit(fit)};
-  } catch (const std::domain_error& error) {
-    throw terms::UsageError(error.what());
+  } catch (const physics::Refused& refused) {
+    throw texts::Refusal(scene::phrase_of(refused));
   } catch (const std::invalid_argument& error) {
     throw terms::UsageError(error.what());
   }

@@ -1,20 +1,19 @@
 #include "station/calibration/pick_up_fit.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 
 #include "station/analysis/least_squares.hpp"
 #include "station/analysis/pole_fit.hpp"
-#include "station/terms/usage_error.hpp"
 #include "station/text/number.hpp"
+#include "station/texts/refusal.hpp"
 
 namespace turnpoint::calibration {
 
 namespace {
 
 using text::number;
+using texts::phrase, texts::plain, texts::Refusal;
 
 // A scatter of more than 15 % cannot be noise of the instrument. It means a wrong unit, place or sensor.
 constexpr double kMostScatter = 0.15;
@@ -29,10 +28,10 @@ double amplitude_at(const rig::PickUpResponse& response, double frequency_Hz) {
   const auto above = std::find_if(points.begin(), points.end(),
                                   [=](const auto& p) { return p.frequency_Hz >= frequency_Hz; });
   if (points.empty() || above == points.end() || frequency_Hz < points.front().frequency_Hz)
-    throw terms::UsageError(
-        fmt::format("a displacement was measured at {} Hz, outside of the sweep ({} to {} Hz)",
-                    number(frequency_Hz), number(points.empty() ? 0 : points.front().frequency_Hz),
-                    number(points.empty() ? 0 : points.back().frequency_Hz)));
+    throw Refusal(
+        phrase("fitted.outside_sweep",
+               {plain(number(frequency_Hz)), plain(number(points.empty() ? 0 : points.front().frequency_Hz)),
+                plain(number(points.empty() ? 0 : points.back().frequency_Hz))}));
   if (above == points.begin()) return above->amplitude;
   const auto below = above - 1;
   const double u = (frequency_Hz - below->frequency_Hz) / (above->frequency_Hz - below->frequency_Hz);
@@ -51,8 +50,7 @@ ScaleRows scale_rows(const PickUp& pick_up, const std::vector<DisplacementPoint>
   for (const auto& point : table) {
     const double captured = amplitude_at(pick_up.response, point.frequency_Hz);
     if (!(point.um_per_full_scale > 0))
-      throw terms::UsageError(
-          fmt::format("the displacement at {} Hz is not above 0", number(point.frequency_Hz)));
+      throw Refusal(phrase("fitted.not_positive", {plain(number(point.frequency_Hz))}));
     made.rows.push_back({1, -std::log(point.frequency_Hz / at_Hz)});
     made.logs.push_back(std::log(point.um_per_full_scale / captured));
     made.weights.push_back(1);
@@ -65,11 +63,7 @@ void check_scatter(const std::vector<double>& residuals, std::size_t parameters)
   for (const double r : residuals) sum += r * r;
   const auto free = static_cast<double>(residuals.size() - parameters);
   const double scatter = free > 0 ? std::sqrt(sum / free) : 0;
-  if (scatter > kMostScatter)
-    throw terms::UsageError(
-        fmt::format("the measured displacements differ by {} % (rms) from what the pick-up captured; check "
-                    "that they were measured at its place, with this rig, and in the right unit",
-                    number(100 * scatter, 2)));
+  if (scatter > kMostScatter) throw Refusal(phrase("fitted.scatter", {plain(number(100 * scatter, 2))}));
 }
 
 }  // namespace
@@ -106,8 +100,7 @@ PickUp fit_pick_up(int channel, int drive_channel, const std::vector<SweptPoint>
     made.response.points.push_back({frequencies[k], std::abs(value), std::arg(value)});
     largest = std::max(largest, std::abs(value));
   }
-  if (!(largest > 0))
-    throw terms::UsageError(fmt::format("the pick-up on channel {} captured nothing", channel));
+  if (!(largest > 0)) throw Refusal(phrase("fitted.nothing", {plain(channel)}));
   made.response_sd = sd / largest;
   for (const auto& pole : fit.resonances())
     made.resonances.push_back(
@@ -119,9 +112,9 @@ PickUpScale fit_scale(const PickUp& pick_up, PickUpSensor sensor, const std::vec
                       double instrument_sd) {
   const auto least = sensor == PickUpSensor::patch ? kLeastForPatch : 1;
   if (table.size() < least)
-    throw terms::UsageError(
-        fmt::format("{} displacements were measured; a pick-up that is {} needs {} or more", table.size(),
-                    sensor == PickUpSensor::patch ? "a piezo patch" : "an accelerometer", least));
+    throw Refusal(
+        phrase(sensor == PickUpSensor::patch ? "fitted.few_for_patch" : "fitted.few_for_accelerometer",
+               {plain(table.size()), plain(least)}));
   double sum = 0;
   for (const auto& point : table) sum += std::log(point.frequency_Hz);
   PickUpScale scale;
@@ -139,11 +132,7 @@ PickUpScale fit_scale(const PickUp& pick_up, PickUpSensor sensor, const std::vec
     }
     check_scatter(residuals, 2);
     if (scale.exponent < kLeastExponent || scale.exponent > kMostExponent)
-      throw terms::UsageError(fmt::format(
-          "with the measured displacements, the pick-up's sensitivity would be proportional to the power {} "
-          "of frequency; for a piezo patch, the power is 0 to 2. Check the unit and the place of the "
-          "measurement",
-          number(scale.exponent, 2)));
+      throw Refusal(phrase("fitted.exponent", {plain(number(scale.exponent, 2))}));
   } else {
     scale.exponent = 2;
     double mean = 0;

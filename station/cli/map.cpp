@@ -174,6 +174,8 @@ void map(const Options& options, Context& context) {
   if (options.boundaries_mm.empty() == options.frequencies_Hz.empty())
     throw UsageError("map: give either --boundary or --frequency");
   if (!options.plot.empty() && !options.budget) throw UsageError("map: --plot needs --budget");
+  for (const double at : options.boundaries_mm)
+    if (!std::isfinite(at)) throw UsageError(fmt::format("map: --boundary {}; a number of mm is needed", at));
   const auto rig = setup::calibrated_rig(setup::rig_or_default(options.rig, context.err), options.calibration,
                                          context.err);
   physics::MapOptions wanted;

@@ -151,8 +151,12 @@ void print(std::ostream& out, const Touched& touched) {
 void print(std::ostream& out, const scene::DrivePlan& plan, const std::optional<scene::SoundBound>& sound,
            const Touched& touched) {
   using text::number;
-  fmt::print(out, "Scene {}: boundary at {} mm ({} edge)\n", plan.scene.name,
-             plan.boundary_m ? number(*plan.boundary_m * 1e3) : "none", physics::format(plan.scene.edge));
+  if (plan.scene.tones.empty())
+    fmt::print(out, "Scene {}: boundary at {} mm ({} edge)\n", plan.scene.name,
+               plan.boundary_m ? number(*plan.boundary_m * 1e3) : "none", physics::format(plan.scene.edge));
+  else
+    fmt::print(out, "Scene {}: {} tone{}\n", plan.scene.name, plan.scene.tones.size(),
+               plan.scene.tones.size() == 1 ? "" : "s");
   fmt::print(out, "  model {}: {}\n", physics::name(plan.model), plan.reason);
   fmt::print(out, "  model error at most {} mm{}\n", number(plan.error_bound_m * 1e3, 3),
              plan.inside_tolerance ? "" : "; EXCEEDS the scene's tolerance");

@@ -97,7 +97,8 @@ void add_trace(CommandLine& app, Context& context) {
                    "Answers as a row of 1 (correct, or the tracked answer) and 0, as in 1011")
       ->required();
   command->add_option("--seed", options->seed,
-                      "Seed for shuffling levels; by default the seed in the protocol file, or 0");
+                      "Seed for shuffling levels, 0 to 2^53; by default the seed in the protocol file, or 0")
+      ->check(range(0, 9007199254740992));
   add_json(*command, context);
   command->footer("Example: turnpoint trace friction-2ifc --procedure threshold --answers 11101");
   command->callback([options, &context] { trace(*options, context); });

@@ -26,7 +26,7 @@ std::string in_words(const trial::TrialSpec& spec) {
   std::string order;
   for (const auto& interval : spec.intervals) {
     std::string scenes;
-    for (const auto& scene : interval) scenes += (scenes.empty() ? "" : " then ") + scene;
+    for (const auto& scene : interval) scenes += (scenes.empty() ? "" : " \u2192 ") + scene;
     order += (order.empty() ? "" : " | ") + scenes;
   }
   return order;

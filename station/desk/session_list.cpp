@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "station/store/read.hpp"
+#include "station/terms/fault.hpp"
 
 namespace turnpoint::desk {
 
@@ -17,6 +18,24 @@ std::string lower(std::string text) {
 }
 
 }  // namespace
+
+texts::Phrase reason_of_end(const std::string& stored) {
+  using texts::phrase, texts::plain;
+  if (stored == records::kLostReason) return phrase("operator.ended_lost");
+  if (stored == records::kAbandonedReason) return phrase("operator.ended_empty");
+  if (stored == records::kStoppedReason) return phrase("operator.ended_asked");
+  if (const std::string last = records::kVoidsLast; stored.starts_with(records::kVoidsReason)) {
+    const auto at = stored.find(last);
+    if (at == std::string::npos) return phrase("operator.ended_voids");
+    return phrase("operator.ended_voids_last", {reason_of_end(stored.substr(at + last.size()))});
+  }
+  for (const auto kind : terms::fault_kinds) {
+    const std::string fault = terms::describe(kind);
+    if (stored == fault) return texts::phrase_of({kind, ""});
+    if (stored.starts_with(fault + ": ")) return texts::phrase_of({kind, stored.substr(fault.size() + 2)});
+  }
+  return plain(stored);
+}
 
 std::vector<SessionLine> session_lines(const std::string& database) {
   if (!std::filesystem::exists(database)) return {};
@@ -34,7 +53,8 @@ std::vector<SessionLine> session_lines(const std::string& database) {
         {session.session_id, session.person, start.participant,
          start.protocol_id + " " + start.protocol_version, start.started_local, store::name(start.run_mode),
          session.status == store::SessionStatus::running ? "not ended" : store::name(session.status),
-         session.status_reason, session.trials, session.annotations, !ended && session.trials > 0});
+         reason_of_end(session.status_reason), session.trials, session.annotations,
+         !ended && session.trials > 0});
   }
   return lines;
 }

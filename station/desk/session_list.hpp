@@ -2,16 +2,23 @@
 #include <string>
 #include <vector>
 
+#include "station/texts/texts.hpp"
+
 namespace turnpoint::desk {
 
 /// A stored session, as a line of a list.
 struct SessionLine {
-  std::string session_id, person, participant, protocol, started, run_mode, status, reason;
+  std::string session_id, person, participant, protocol, started, run_mode, status;
+  texts::Phrase reason;  ///< why it ended, by reason_of_end()
   int trials = 0;
   std::vector<std::string> notes;
   /// true if the session was interrupted and has trials, so that it can be continued
   bool resumable = false;
 };
+
+/// Says why a session ended. The database stores the reason in English; one that the station does not know,
+/// such as the words of an operator, is the same in every language.
+texts::Phrase reason_of_end(const std::string& stored);
 
 /// Returns the sessions of a database, the newest first; empty if there is no database yet. Throws
 /// StoreError.

@@ -50,12 +50,13 @@ void EngineCore::check_room(const PreparedBurst& burst) const {
   }
   if (voices >= Synth::max_voices)
     throw BurstRefused(fmt::format("burst refused: {} bursts are already waiting or playing", voices));
+  const double limit = largest_peak(format_of(config_.output), config_.limits);
   for (std::size_t c = 0; c < max_channels; ++c)
-    if (sum[c] > config_.limits.peak)
+    if (sum[c] > limit)
       throw BurstRefused(
           fmt::format("burst refused: together with the bursts already playing, channel {} could reach "
                       "{:.6f} of full scale; the limit is {:.6f}",
-                      c, sum[c], config_.limits.peak));
+                      c, sum[c], limit));
 }
 
 std::uint32_t EngineCore::schedule(const Burst& burst, const Earliest& earliest_frame) {

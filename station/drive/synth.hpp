@@ -28,7 +28,8 @@ struct SynthEvent {
 class Synth {
  public:
   static constexpr int max_block = 512;
-  static constexpr int max_voices = 4;  ///< bursts that can wait or sound at the same time
+  /// Bursts that can wait or sound at the same time: the four intervals of a trial, and codes of its events.
+  static constexpr int max_voices = 8;
 
   /// Throws terms::UsageError for a format outside 8-768 kHz, 1-8 channels or 8-32 bits.
   explicit Synth(const Format& format, const Kernels& kernels = best_kernels());

@@ -95,9 +95,10 @@ class GuardThread {
     publish();
   }
 
-  /// Stops using lines that were lost. The heartbeat ends, so the external monitor switches the amplifier
-  /// off.
+  /// Stops using lines of which one was lost. The heartbeat ends, so the external monitor switches the
+  /// amplifier off. The enable line is set low first: it may be on another chip than the line that was lost.
   void let_go(const char* why) noexcept {
+    set_low();
     guard_.trip(system::monotonic_ns(), FaultKind::lines_gone);
     lines_.reset();
     next_open_ns_ = system::monotonic_ns() + open_again_ns;
@@ -212,6 +213,10 @@ class GuardThread {
       }
       look_at_orders();
     }
+    set_low();
+  }
+
+  void set_low() noexcept {
     try {
       if (lines_) lines_->drive(roles_.enable, 0);
     } catch (const std::exception&) {  // the chip has been removed, and the line with it

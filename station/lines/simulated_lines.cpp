@@ -8,8 +8,9 @@
 
 namespace turnpoint::lines {
 
-void SimulatedLines::check() const {
-  if (gone_) throw std::system_error(ENODEV, std::generic_category(), "simulated gpio chip");
+void SimulatedLines::check(int index) const {
+  if (gone_ || (index >= 0 && index == broken_))
+    throw std::system_error(ENODEV, std::generic_category(), "simulated gpio chip");
 }
 
 std::optional<Edge> SimulatedLines::next_edge() {
@@ -35,7 +36,7 @@ std::optional<Edge> SimulatedLines::wait(std::int64_t timeout_ns, int wake) {
 
 bool SimulatedLines::level(int index) {
   const std::lock_guard lock(mutex_);
-  check();
+  check(index);
   return levels_.at(static_cast<std::size_t>(index)) != 0;
 }
 
@@ -80,6 +81,11 @@ void SimulatedLines::remove() {
   const std::lock_guard lock(mutex_);
   gone_ = true;
   changed_.ring();
+}
+
+void SimulatedLines::break_line(int index) {
+  const std::lock_guard lock(mutex_);
+  broken_ = index;
 }
 
 void SimulatedLines::put_back() {

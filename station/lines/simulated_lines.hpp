@@ -38,9 +38,12 @@ class SimulatedLines : public Lines {
   /// low.
   void remove();
   void put_back();
+  /// Breaks one line, as if its chip were unplugged while that of the other lines stays: reading it throws
+  /// ENODEV.
+  void break_line(int index);
 
  private:
-  void check() const;
+  void check(int index = -1) const;
   std::optional<Edge> next_edge();
   void change(int index, bool level, std::int64_t time_ns);
 
@@ -51,6 +54,7 @@ class SimulatedLines : public Lines {
   std::vector<std::uint32_t> sequences_;
   std::vector<Driven> driven_;
   bool gone_ = false;
+  int broken_ = -1;  ///< the line of break_line()
 };
 
 }  // namespace turnpoint::lines

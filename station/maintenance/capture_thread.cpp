@@ -1,8 +1,9 @@
 #include "station/maintenance/capture_thread.hpp"
 
 #include <chrono>
-#include <stdexcept>
 #include <utility>
+
+#include "station/texts/refusal.hpp"
 
 namespace turnpoint::maintenance {
 
@@ -22,7 +23,8 @@ drive::CaptureCounters CaptureThread::end() {
   thread_.join();
   take();
   const auto counters = capture_->counters();
-  if (!counters.present) throw std::runtime_error(device_.uri + ": the sound device was disconnected");
+  if (!counters.present)
+    throw texts::Failure(texts::phrase("played.disconnected", {texts::plain(device_.uri)}));
   return counters;
 }
 

@@ -1,20 +1,21 @@
 #include "station/maintenance/play_armed.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <functional>
-#include <stdexcept>
 
 #include "station/drive/prepared_burst.hpp"
 #include "station/lines/amplifier.hpp"
 #include "station/session/stage.hpp"
 #include "station/system/clocks.hpp"
 #include "station/system/stop_signals.hpp"
+#include "station/text/number.hpp"
+#include "station/texts/refusal.hpp"
 
 namespace turnpoint::maintenance {
+
+using texts::Failure, texts::phrase, texts::plain;
 
 namespace {
 
@@ -25,26 +26,26 @@ constexpr std::int64_t kPoll_ns = 5'000'000;
 // time to wait until the audio thread has sent its first report
 constexpr std::int64_t kFirstBlocks_ns = 200'000'000;
 
-/// Returns the reason why the tones were not played correctly; "" for normal events.
-std::string trouble_of(const drive::Event& event, const drive::OutputConfig& output) {
+/// Returns the reason why the tones were not played correctly; nothing for normal events.
+texts::Phrase trouble_of(const drive::Event& event, const drive::OutputConfig& output) {
   switch (event.kind) {
     case drive::EventKind::underrun:
-      return fmt::format("{}: {} frames were lost; start the command again", output.uri, event.frames);
+      return phrase("played.lost", {plain(output.uri), plain(event.frames)});
     case drive::EventKind::device_lost:
-      return output.uri + ": the sound device was disconnected";
+      return phrase("played.disconnected", {plain(output.uri)});
     case drive::EventKind::burst_missed:
-      return output.uri + ": a tone came too late to be played; start the command again";
+      return phrase("played.too_late", {plain(output.uri)});
     case drive::EventKind::rate_wrong:
-      return fmt::format(
-          "{}: the device runs at {:.1f} Hz instead of {} Hz, so all tones were played at wrong frequencies",
-          output.uri, 1e-3 * static_cast<double>(event.frames), output.rate_Hz);
+      return phrase("played.rate",
+                    {plain(output.uri), plain(text::number(1e-3 * static_cast<double>(event.frames), 7)),
+                     plain(output.rate_Hz)});
     case drive::EventKind::burst_started:
     case drive::EventKind::burst_ended:
     case drive::EventKind::burst_heard:
     case drive::EventKind::device_back:
-      return "";
+      return {};
   }
-  return "";
+  return {};
 }
 
 /// Until `done` returns true, reads the stream's events and keeps reporting to the amplifier that this
@@ -57,15 +58,13 @@ void attend(drive::Stream& stream, drive::Amplifier& amplifier, const std::stop_
     amplifier.session_alive();
     while (const auto event = stream.poll())
       if (const auto trouble = trouble_of(*event, stream.config().output); !trouble.empty())
-        throw std::runtime_error(trouble);
+        throw Failure(trouble);
     if (const auto clipped = stream.counters().saturated; clipped > 0)
-      throw std::runtime_error(
-          fmt::format("{}: {} samples were clipped", stream.config().output.uri, clipped));
+      throw Failure(phrase("played.clipped", {plain(stream.config().output.uri), plain(clipped)}));
     if (amplifier.state() == drive::AmplifierState::faulted)
-      throw std::runtime_error("amplifier: " + terms::describe(amplifier.fault()));
+      throw Failure(phrase("played.amplifier", {texts::phrase_of(amplifier.fault())}));
     if (const auto signal = system::StopSignals::told(); !signal.empty())
-      throw std::runtime_error("the program was stopped by a signal (" + signal +
-                               ") before everything was played");
+      throw Failure(phrase("played.signal", {plain(signal)}));
     if (last || stop.stop_requested()) return;
     system::sleep_until_ns(system::monotonic_ns() + kPoll_ns);
   }
@@ -96,8 +95,7 @@ std::int64_t play(drive::Stream& stream, drive::Amplifier& amplifier, const std:
   const auto due_ns = system::monotonic_ns() + left * 1'000'000'000 / rate_Hz + kHeard_ns;
   attend(stream, amplifier, stop, [&] {
     if (system::monotonic_ns() > due_ns)
-      throw std::runtime_error(stream.config().output.uri +
-                               ": the device does not report which frame it has played");
+      throw Failure(phrase("played.no_report", {plain(stream.config().output.uri)}));
     return stream.counters().heard >= end;
   });
   return onset;
@@ -135,7 +133,7 @@ drive::PlayReport play_armed(const rig::Rig& rig, const std::string& uri,
   });
   if (stop.stop_requested()) return drive::report_of(*stream);
   for (const auto& refusal : {amplifier->arm(), amplifier->enable()})
-    if (refusal) throw std::runtime_error("amplifier: " + terms::describe(*refusal));
+    if (refusal) throw Failure(phrase("played.amplifier", {texts::phrase_of(*refusal)}));
   const auto onset_frame = play(*stream, *amplifier, bursts, stop);
   // after a request to stop, tones may still be playing: the stream ramps them down before the amplifier goes
   // off

@@ -14,7 +14,7 @@ namespace turnpoint::maintenance {
 /// until after the last. A stop signal (see StopSignals) ramps down the tones that are playing and then
 /// switches the amplifier off.
 ///
-/// Throws the errors of drive::open_realtime and lines::open_amplifier. Throws std::runtime_error if the
+/// Throws the errors of drive::open_realtime and lines::open_amplifier. Throws texts::Failure if the
 /// amplifier cannot be armed, after a fault, for lost frames, or after a stop signal.
 drive::PlayReport play_armed(const rig::Rig& rig, const std::string& uri,
                              const std::vector<drive::Burst>& bursts);

@@ -1,23 +1,21 @@
 #include "station/procedure/continuation.hpp"
 
-#include <stdexcept>
-
 #include "station/text/number.hpp"
+#include "station/texts/refusal.hpp"
 
 namespace turnpoint::procedure {
+
+using texts::phrase, texts::plain;
 
 void continue_from(const std::vector<EarlierTrial>& trials, const Spec& spec, Procedure& procedure) {
   for (std::size_t i = 0; i < trials.size(); ++i) {
     const auto proposal = procedure.next();
     if (!proposal || proposal->level != trials[i].level || proposal->second != trials[i].second)
-      throw std::runtime_error(
-          "procedure \"" + spec.name + "\" cannot continue: in trial " + std::to_string(i + 1) +
-          " of the earlier sessions it " +
-          (proposal ? "would present level " + text::exact(proposal->level) : std::string("would be done")) +
-          ", but level " + text::exact(trials[i].level) +
-          " is stored; the procedure was changed without raising the version of the protocol, or this "
-          "program "
-          "has changed");
+      throw texts::Failure(proposal ? phrase("resume.continue_level", {plain(spec.name), plain(i + 1),
+                                                                       plain(text::exact(proposal->level)),
+                                                                       plain(text::exact(trials[i].level))})
+                                    : phrase("resume.continue_done", {plain(spec.name), plain(i + 1),
+                                                                      plain(text::exact(trials[i].level))}));
     procedure.record(trials[i].answer);
   }
 }

@@ -29,6 +29,11 @@ enum class Answer {
   none   ///< no valid answer (timeout, anticipation), from which the procedure learns nothing
 };
 
+/// An unanswered trial is repeated at the same level, up to kRepeatsInARow times. If the last repeat is
+/// unanswered as well, one trial counts as spent. A procedure that a number of trials does not end is over
+/// after kSpentAtMost spent trials, so that it ends even if nobody answers.
+inline constexpr int kRepeatsInARow = 3, kSpentAtMost = 20;
+
 struct Estimate {
   double mode = 0, mean = 0;
   /// standard deviation of the estimate; empty if the estimate is a single number

@@ -7,12 +7,6 @@
 
 namespace turnpoint::procedure {
 
-namespace {
-
-constexpr int kUnansweredInARow = 3;
-
-}  // namespace
-
 QuestPlus::QuestPlus(const Spec& spec) : spec_(spec), posterior_(spec), stimulus_(chosen()) {}
 
 std::size_t QuestPlus::chosen() const {
@@ -26,7 +20,7 @@ std::size_t QuestPlus::chosen() const {
 bool QuestPlus::done() const {
   const auto& stop = spec_.stop;
   const int trials = recorded_ + spent_;
-  const bool by_trials = stop.trials && trials >= *stop.trials;
+  const bool by_trials = stop.trials ? trials >= *stop.trials : spent_ >= kSpentAtMost;
   if (by_trials && stop.rule == StopRule::any) return true;
   if (stop.min_trials && trials < *stop.min_trials) return false;
   const bool by_sd = stop.threshold_sd && *posterior_.estimate(Posterior::threshold).sd <= *stop.threshold_sd;
@@ -34,8 +28,8 @@ bool QuestPlus::done() const {
   const bool by_right =
       enough_right(stop, history_.size(), [this](std::size_t i) { return history_[i] % 2 == 1; });
   if (stop.rule == StopRule::any) return by_trials || by_sd || by_entropy || by_right;
-  return (!stop.right || by_right) && (!stop.trials || by_trials) && (!stop.threshold_sd || by_sd) &&
-         (!stop.entropy_nats || by_entropy);
+  return spent_ >= kSpentAtMost || ((!stop.right || by_right) && (!stop.trials || by_trials) &&
+                                    (!stop.threshold_sd || by_sd) && (!stop.entropy_nats || by_entropy));
 }
 
 std::optional<Proposal> QuestPlus::next() const {
@@ -46,7 +40,7 @@ std::optional<Proposal> QuestPlus::next() const {
 
 void QuestPlus::record(Answer answer) {
   if (answer == Answer::none) {
-    if (++unanswered_ > kUnansweredInARow) unanswered_ = 0, ++spent_;
+    if (++unanswered_ > kRepeatsInARow) unanswered_ = 0, ++spent_;
     return;
   }
   unanswered_ = 0;

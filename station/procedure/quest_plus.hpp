@@ -10,9 +10,7 @@ namespace turnpoint::procedure {
 /// QUEST+ (Watson 2017) over one or two dimensions, psi (Kontsevich & Tyler 1999; QUEST+ on threshold and
 /// slope) and psi-marginal (Prins 2013; uses the entropy of the kept parameters). ZEST (King-Smith et al.
 /// 1994) and best PEST (Lieberman & Pentland 1982) use the same posterior of the threshold, and place the
-/// next trial at its mean and at the most likely threshold. An unanswered trial is repeated at the same
-/// level, up to three times in a row. If the last repeat is unanswered as well, one trial of the budget
-/// counts as used, so that the procedure always ends.
+/// next trial at its mean and at the most likely threshold. Unanswered trials: see kRepeatsInARow.
 class QuestPlus : public Procedure {
  public:
   explicit QuestPlus(const Spec& spec);

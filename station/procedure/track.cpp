@@ -9,7 +9,6 @@ namespace turnpoint::procedure {
 
 namespace {
 
-constexpr int kRepeats = 3, kSpentAtMost = 20;
 constexpr double kLargest = 1e300, kSmallest = 1e-300;
 /// A step multiplies the level by exp(exponent). This limit of the exponent keeps the factor finite.
 constexpr double kLargestExponent = 690;
@@ -41,9 +40,7 @@ std::optional<Proposal> Track::next() const {
 
 void Track::record(Answer answer) {
   if (answer == Answer::none) {
-    // Repeat the same level. If three repeats in a row are unanswered as well, one trial counts as used, so
-    // that the procedure ends even if nobody answers.
-    if (++unanswered_ > kRepeats) unanswered_ = 0, ++spent_;
+    if (++unanswered_ > kRepeatsInARow) unanswered_ = 0, ++spent_;
     return;
   }
   unanswered_ = 0;

@@ -28,21 +28,42 @@ std::string trimmed(const std::string& text) {
   return from == std::string::npos ? "" : text.substr(from, text.find_last_not_of(" \t\n\r") - from + 1);
 }
 
+/// A label that a participant reads: its key without the language, what it stands for, and the label.
+struct Label {
+  std::string key, name;
+  const Localised* text;
+};
+
+/// The labels of a set, of which no two may be alike.
+void check_labels(AdviceList& advice, const std::string& language, const std::vector<Label>& labels) {
+  std::set<std::string> seen;
+  for (const auto& [key, name, text] : labels) {
+    const auto found = text->find(language);
+    const auto label = found == text->end() ? "" : trimmed(found->second);
+    const auto whole = key + "." + language;
+    if (label.empty())
+      advice.add(whole, phrase("problem.label_blank", {plain(name)}), phrase("problem.write_label"));
+    else if (!seen.insert(label).second)
+      advice.add(whole, phrase("problem.label_twice", {plain(label)}), phrase("problem.labels_differ"));
+  }
+}
+
 void check_words(AdviceList& advice) {
   const auto& task = advice.protocol.task;
-  const auto labelled = judges(task) ? 0 : task.choices.size();
+  const auto number_of = [](std::size_t i) { return std::to_string(i); };
+  std::vector<Label> choices, degrees, points;
+  for (std::size_t i = 0; !judges(task) && i < task.choices.size(); ++i)
+    choices.push_back(
+        {"task.choices." + number_of(i) + ".label", task.choices[i].id, &task.choices[i].label});
+  for (std::size_t i = 0; task.confidence && i < task.confidence->labels.size(); ++i)
+    degrees.push_back(
+        {"task.confidence.labels." + number_of(i), number_of(i + 1), &task.confidence->labels[i]});
+  const auto& anchors = task.value ? task.value->anchors : task.anchors;
+  for (std::size_t i = 0; i < anchors.size(); ++i)
+    points.push_back(
+        {"task.rating.labels." + number_of(i) + ".text", text::number(anchors[i].at), &anchors[i].text});
   for (const auto& language : advice.protocol.languages) {
-    std::set<std::string> seen;
-    for (std::size_t i = 0; i < labelled; ++i) {
-      const auto& choice = task.choices[i];
-      const auto found = choice.label.find(language);
-      const auto label = found == choice.label.end() ? "" : trimmed(found->second);
-      const auto key = "task.choices." + std::to_string(i) + ".label." + language;
-      if (label.empty())
-        advice.add(key, phrase("problem.label_blank", {plain(choice.id)}), phrase("problem.write_label"));
-      else if (!seen.insert(label).second)
-        advice.add(key, phrase("problem.label_twice", {plain(label)}), phrase("problem.labels_differ"));
-    }
+    for (const auto* labels : {&choices, &degrees, &points}) check_labels(advice, language, *labels);
     const auto question = task.question.find(language);
     if (question != task.question.end() && trimmed(question->second).empty())
       advice.add("task.question." + language, phrase("problem.question_blank"),

@@ -132,7 +132,10 @@ void read_header(TableReader& file, Reading& reading) {
         reader.strings("languages", phrase("problem.write_languages", {plain("[\"en\", \"ja\"]")}));
     std::set<std::string> seen;
     for (const auto& code : protocol.languages)
-      if (!is_language(code) || !seen.insert(code).second)
+      if (!is_language(code))
+        reader.problem("languages", phrase("problem.in_languages", {plain(code)}),
+                       phrase("problem.language_code"));
+      else if (!seen.insert(code).second)
         reader.problem("languages", phrase("problem.in_languages", {plain(code)}),
                        phrase("problem.languages_once"));
     reader.finish();

@@ -249,7 +249,7 @@ void plan_scenes(const Protocol& protocol, const rig::Rig& rig, const std::stop_
     survey.sights.back().cues_roved_down = answers[i].cues_roved_down;
     survey.models.emplace(physics::name(plan.model));
     if (!plan.inside_tolerance && inexact[combination.scene].cases++ == 0)
-      inexact[combination.scene].first = in_case(combination, plain(plan.reason));
+      inexact[combination.scene].first = in_case(combination, plan.beyond_tolerance);
     for (const auto& warning : plan.warnings)
       told.emplace(warning.code, in_case(combination, scene::phrase_of(warning)));
   }

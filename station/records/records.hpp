@@ -25,6 +25,11 @@ enum class SessionStatus { running, completed, interrupted, stopped, abandoned }
 /// change the text: old databases contain it, and the checksums compare with it.
 inline constexpr const char* kLostReason = "the process ended without a word";
 inline constexpr const char* kAbandonedReason = "no trial was made";
+/// The reasons stored for a session that somebody stopped, and for one that stopped itself. After the latter,
+/// kVoidsLast and a fault may follow.
+inline constexpr const char* kStoppedReason = "stopped by the participant or the operator";
+inline constexpr const char* kVoidsReason = "three trials in a row were void";
+inline constexpr const char* kVoidsLast = "; the last: ";
 
 const char* name(SessionStatus status);
 

@@ -78,7 +78,8 @@ std::string roc_section(const Summary& summary) {
                 : "Answer and confidence together are a rating, from the surest no to the surest yes.") +
          " Each point counts the trials that are rated at least so high: hits with a signal, false alarms "
          "without one. An area of 0.5 is chance. The area is that under straight lines, which is a little "
-         "smaller than under a smooth curve; its 95 % interval is that of Hanley and McNeil. d\u2032 and "
+         "smaller than under a smooth curve; its 95 % interval is that of Newcombe (2006, method 5). d\u2032 "
+         "and "
          "d<sub>a</sub> are maximum likelihood fits of normal distributions, without and with a standard "
          "deviation of its own for trials with a signal (1 is that of trials without); their intervals "
          "follow "

@@ -83,6 +83,7 @@ struct Planner::State : ToneDesigner {
 
   using ToneDesigner::ToneDesigner;
 
+  physics::Tolerance tolerance_of(const Scene& scene) const;
   physics::PlanChoice choose(const Scene& scene, const std::vector<Tone>& tones,
                              std::optional<Model> placed_by) const;
   bool place_by_field(const std::vector<WantedTone>& wanted, std::vector<double>& frequencies_Hz) const;
@@ -97,18 +98,29 @@ struct Planner::State : ToneDesigner {
   std::map<std::pair<double, double>, double> moved_under_finger_;
 };
 
+physics::Tolerance Planner::State::tolerance_of(const Scene& scene) const {
+  physics::Tolerance tolerance;
+  tolerance.boundary_m = scene.tolerance.boundary_m;
+  tolerance.level_dB = scene.tolerance.level_dB;
+  if (scene.tolerance.friction)
+    tolerance.amplitude = amplitude_tolerance(friction, *scene.tolerance.friction);
+  return tolerance;
+}
+
 physics::PlanChoice Planner::State::choose(const Scene& scene, const std::vector<Tone>& tones,
                                            std::optional<Model> placed_by) const {
   physics::PlanRequest request;
   request.tones = tones;
   request.placed_by = placed_by;
   request.edge = scene.edge;
+  for (const auto& tone : scene.tones) request.edges.push_back(tone.edge);
   request.normalise = physics::Normalise::none;
-  request.tolerance.boundary_m = scene.tolerance.boundary_m;
-  request.tolerance.level_dB = scene.tolerance.level_dB;
-  if (scene.tolerance.friction)
-    request.tolerance.amplitude = amplitude_tolerance(friction, *scene.tolerance.friction);
-  if (scene.zone || scene.tones.size() > 1) request.points = 301;
+  request.tolerance = tolerance_of(scene);
+  if (scene.zone || scene.tones.size() > 1) {
+    request.points = 301;
+    // The field is computed with this model or a better one, see at_least_mode().
+    request.coarsest = Model::mode;
+  }
   return physics::choose_model(surface, request);
 }
 
@@ -224,10 +236,29 @@ double Planner::State::drive_under_finger_m(const Scene& scene, double frequency
   return wanted_m / found->second;
 }
 
-texts::Phrase phrase_of(const physics::Warning& warning) {
+texts::Phrase phrase_of(const physics::Statement& statement, const std::string& table) {
   std::vector<texts::Phrase> values;
-  for (const auto& value : warning.values) values.push_back(plain(value));
-  return phrase("physics_warning." + warning.code, std::move(values));
+  for (const auto& value : statement.values) values.push_back(plain(value));
+  return phrase(table + "." + statement.code, std::move(values));
+}
+
+texts::Phrase phrase_of(const physics::Warning& warning) { return phrase_of(warning, "physics_warning"); }
+texts::Phrase phrase_of(const physics::Refused& refused) {
+  return phrase_of(refused.why(), "physics_refusal");
+}
+
+/// Says which error bounds of the chosen model are beyond the tolerance.
+texts::Phrase beyond_tolerance(const physics::PlanChoice& choice, const physics::Tolerance& tolerance) {
+  texts::Phrase all = plain("");
+  const auto add = [&all](const char* key, double bound, std::optional<double> limit, double unit) {
+    if (!limit || bound <= *limit) return;
+    if (!all.values.empty()) all.values.push_back(plain("; "));
+    all.values.push_back(phrase(key, {plain(number(bound / unit, 3)), plain(number(*limit / unit, 3))}));
+  };
+  add("problem.bound_boundary", choice.bound.boundary_bound_m, tolerance.boundary_m, 1e-3);
+  add("problem.bound_amplitude", choice.bound.amplitude_bound, tolerance.amplitude, 1e-2);
+  add("problem.bound_level", choice.bound.level_bound_dB, tolerance.level_dB, 1);
+  return phrase("problem.bound_beyond", {plain(std::string(physics::name(choice.model))), std::move(all)});
 }
 
 Planner::Planner(const rig::Rig& rig) : state_(std::make_unique<State>(rig)) {}
@@ -271,9 +302,11 @@ DrivePlan Planner::plan(const Scene& scene) {
   // this edge, or the zone lies beyond the strip.
   try {
     return plans.emplace(key, make(scene)).first->second;
-  } catch (const std::domain_error& error) {
+  } catch (const physics::Refused& refused) {
+    throw Unreachable(phrase_of(refused));
+  } catch (const std::domain_error& error) {  // a model does not apply
     throw Unreachable(plain(error.what()));
-  } catch (const std::invalid_argument& error) {
+  } catch (const std::invalid_argument& error) {  // a number of the scene has no meaning on this surface
     throw Unreachable(plain(error.what()));
   }
 }
@@ -286,6 +319,7 @@ DrivePlan Planner::make(const Scene& scene) {
   const auto& choice = solution.choice;
   plan.model = choice.model;
   plan.inside_tolerance = choice.inside;
+  if (!choice.inside) plan.beyond_tolerance = beyond_tolerance(choice, state_->tolerance_of(scene));
   plan.error_bound_m = choice.bound.boundary_bound_m;
   plan.level_bound_dB = choice.bound.level_bound_dB;
   plan.amplitude_bound = choice.bound.amplitude_bound;

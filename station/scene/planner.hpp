@@ -15,22 +15,19 @@
 #include "station/rig/rig.hpp"
 #include "station/scene/cues.hpp"
 #include "station/scene/scene.hpp"
-#include "station/terms/usage_error.hpp"
+#include "station/texts/refusal.hpp"
 
 namespace turnpoint::scene {
 
 /// Thrown for a scene that this rig cannot present. The message says why, and what would be possible.
-class Unreachable : public terms::UsageError {
+class Unreachable : public texts::Refusal {
  public:
-  explicit Unreachable(texts::Phrase why) : UsageError(texts::say(why, "en")), why_(std::move(why)) {}
-  const texts::Phrase& why() const { return why_; }
-
- private:
-  texts::Phrase why_;
+  using Refusal::Refusal;
 };
 
-/// Says a warning of the physics library in a language that is chosen later.
+/// Says a warning or a refusal of the physics library in a language that is chosen later.
 texts::Phrase phrase_of(const physics::Warning& warning);
+texts::Phrase phrase_of(const physics::Refused& refused);
 
 /// One tone as the drive will play it.
 struct DrivenTone {
@@ -57,9 +54,10 @@ struct DrivePlan {
   std::vector<DrivenTone> tones;  ///< all tones, in order of falling frequency
   physics::Model model = physics::Model::mode;
   bool inside_tolerance = true;
-  double error_bound_m = 0;    ///< upper limit of the model's error in the boundary's position
-  double level_bound_dB = 0;   ///< upper limit of the model's error in the level at the last maximum
-  double amplitude_bound = 0;  ///< upper limit of the model's relative error in the amplitude
+  texts::Phrase beyond_tolerance;  ///< says which error bounds are too large; empty if inside_tolerance
+  double error_bound_m = 0;        ///< upper limit of the model's error in the boundary's position
+  double level_bound_dB = 0;       ///< upper limit of the model's error in the level at the last maximum
+  double amplitude_bound = 0;      ///< upper limit of the model's relative error in the amplitude
   /// standard deviation of the boundary's position, from the standard deviations in the rig file
   double uncertainty_m = 0;
   std::string reason;                            ///< why the planner chose this model

@@ -17,8 +17,8 @@ std::optional<SoundBound> sound_bound(const rig::Rig& rig, std::span<const physi
   };
   std::map<long, Band> bands;
   const auto surface = surface_of(rig);
-  // The model `edge` does not compute a displacement field, so use the model `mode` instead.
-  const auto with_field = model == physics::Model::edge ? physics::Model::mode : model;
+  // As for the rig's limits, a model coarser than `mode` is not good enough for the field.
+  const auto with_field = model == physics::Model::modes ? model : physics::Model::mode;
   for (const auto& tone : tones) {
     if (!(tone.amplitude_m > 0)) continue;
     double level_dB = 0;

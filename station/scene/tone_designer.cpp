@@ -53,9 +53,10 @@ double ToneDesigner::frequency_for(double boundary_m, const physics::Edge& edge,
   // the message can say whether any other frequency does.
   const physics::BoundaryMap whole(surface, options);
   if (const auto frequency = whole.frequency_Hz(boundary_m)) return *frequency;
-  throw Unreachable(
-      phrase("problem.no_frequency", {plain(physics::format(edge)), plain(number(1e3 * boundary_m)),
-                                      plain(whole.at_boundary(boundary_m).reason)}));
+  const auto reach = whole.reach_m();
+  throw Unreachable(phrase("problem.no_frequency",
+                           {plain(physics::format(edge)), plain(number(1e3 * boundary_m)),
+                            plain(number(1e3 * reach.first_m)), plain(number(1e3 * reach.last_m))}));
 }
 
 double ToneDesigner::target_displacement(const Scene& scene) const {

@@ -59,7 +59,7 @@ void OperatorGate::note(const Input& input) {
   switch (input.kind) {
     case InputKind::stop:
       stop_asked_ = true;
-      stop_reason_ = input.text.empty() ? "stopped by the participant or the operator" : input.text;
+      stop_reason_ = input.text.empty() ? records::kStoppedReason : input.text;
       break;
     case InputKind::failure:
       stop_asked_ = true;

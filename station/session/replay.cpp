@@ -1,21 +1,25 @@
 #include "station/session/replay.hpp"
 
-#include <fmt/format.h>
-
 #include <cmath>
 #include <optional>
-#include <stdexcept>
 #include <string>
 
 #include "station/protocol/sources.hpp"
 #include "station/session/planned_session.hpp"
 #include "station/text/number.hpp"
+#include "station/texts/refusal.hpp"
 #include "station/trial/question.hpp"
 #include "station/trial/rows.hpp"
 
 namespace turnpoint::session {
 
+using texts::Failure, texts::phrase, texts::plain;
+
 namespace {
+
+texts::Phrase stored_level(const std::optional<double>& level) {
+  return plain(text::exact(level.value_or(0)));
+}
 
 /// Advances the director to a block that the log contains. For this, finishes the director's current block,
 /// or repeats a restart of the block or session that is in the log.
@@ -27,58 +31,48 @@ void enter_stored(trial::Director& director, const records::BlockStart& block) {
   if (!here() && block.block_index == 0 && block.attempt > director.attempt()) director.restart_session();
   while (!here() && director.block_index() == block.block_index && director.attempt() < block.attempt)
     director.restart_block();
-  if (!here())
-    throw std::runtime_error(
-        "resume: the stored block " + std::to_string(block.block_index) +
-        " is not the block that the protocol runs next; the session and the protocol do not belong together");
+  if (!here()) throw Failure(phrase("resume.other_block", {plain(block.block_index)}));
 }
 
 /// Refuses a session because the separate program of a procedure would not present the stored level.
 [[noreturn]] void refuse_program(const std::string& procedure, const records::TrialRow& trial,
-                                 const std::string& now, const store::StoredSession& stored,
+                                 texts::Phrase now, const store::StoredSession& stored,
                                  const programs::Programs& programs) {
-  std::string path = procedure, change = "does not give the same levels for the same seed and answers";
+  std::string path = procedure;
+  auto change = phrase("resume.program_differs");
   for (const auto& program : programs.started()) {
     if (program.procedure != procedure) continue;
     path = program.path;
     const auto* before = as_recorded(program, stored.events);
     if (before != nullptr && before->sha256 != program.sha256)
-      change = fmt::format(
-          "has changed since it was stored: its version was {} (SHA-256 {}) and is {} (SHA-256 {})",
-          before->version, before->sha256, program.version, program.sha256);
+      change = phrase("resume.program_changed", {plain(before->version), plain(before->sha256),
+                                                 plain(program.version), plain(program.sha256)});
   }
-  throw std::runtime_error(
-      fmt::format("resume: stored trial {} cannot be replayed: program {} {}, but level {} is stored. The "
-                  "program {}. The "
-                  "session was left as it is; put the program back that gave these levels",
-                  trial.trial_index, path, now, trial.level.value_or(0), change));
+  throw Failure(phrase("resume.program", {plain(trial.trial_index), plain(path), std::move(now),
+                                          stored_level(trial.level), std::move(change)}));
 }
 
-/// Lets the director process a stored trial again. Throws std::runtime_error if the director would have
+/// Lets the director process a stored trial again. Throws texts::Failure if the director would have
 /// presented another level or has another state afterwards. In that case the log comes from a different
 /// program or protocol.
 void replay(trial::Director& director, const records::TrialRow& trial, const protocol::Protocol& protocol,
             const store::StoredSession& stored, const programs::Programs& programs) {
-  const auto mismatch = [&trial](const std::string& what) {
-    throw std::runtime_error(
-        fmt::format("resume: stored trial {} cannot be replayed: {}; the database, the protocol or this "
-                    "program has changed",
-                    trial.trial_index, what));
+  const auto mismatch = [&trial](const char* what, std::vector<texts::Phrase> values = {}) {
+    throw Failure(phrase("resume.mismatch", {plain(trial.trial_index), phrase(what, std::move(values))}));
   };
   const auto spec = director.next();
   const bool by_program = protocol::is_program(protocol, trial.procedure);
   if (!spec && by_program)
-    refuse_program(trial.procedure, trial, "is done before this trial", stored, programs);
-  if (!spec) mismatch("the session would already have ended");
+    refuse_program(trial.procedure, trial, phrase("resume.program_done"), stored, programs);
+  if (!spec) mismatch("resume.ended");
   if (spec->level != trial.level && by_program && spec->procedure == trial.procedure)
-    refuse_program(trial.procedure, trial, fmt::format("now gives level {}", spec->level.value_or(0)), stored,
-                   programs);
+    refuse_program(trial.procedure, trial, phrase("resume.program_gives", {stored_level(spec->level)}),
+                   stored, programs);
   if (spec->level != trial.level)
-    mismatch(fmt::format("this program would present level {}, but level {} is stored",
-                         spec->level.value_or(0), trial.level.value_or(0)));
+    mismatch("resume.level", {stored_level(spec->level), stored_level(trial.level)});
   const auto again = trial::row_of(*spec, protocol, trial.trial_index);
   if (again.factors != trial.factors || again.correct_response != trial.correct_response)
-    mismatch("this program would present other values of the factors, or another answer would be right");
+    mismatch("resume.factors");
   trial::TrialEnd end;
   end.outcome = trial.outcome;
   end.correct = trial.correct;
@@ -88,12 +82,12 @@ void replay(trial::Director& director, const records::TrialRow& trial, const pro
       if (protocol.task.choices[i].id == *trial.response) end.response = static_cast<int>(i);
   if ((spec->slider || protocol.task.value) && trial.response) {
     const auto value = text::read_number(*trial.response);
-    if (!value) mismatch("\"" + *trial.response + "\" is not a number");
+    if (!value) mismatch("resume.no_number", {plain(*trial.response)});
     end.response = 0;
     if (spec->slider) end.setting = value;
   }
   director.record(end);
-  if (director.state_hash() != trial.state_hash) mismatch("the state of the procedures differs afterwards");
+  if (director.state_hash() != trial.state_hash) mismatch("resume.state");
 }
 
 /// Checks that the simulated observer gives the stored answer, because a session must not mix
@@ -113,9 +107,7 @@ void check_observer(const Setup& setup, const observer::Respondent& observer,
   if (answer == trial.response && reply.confidence == trial.confidence &&
       std::fabs(reply.response_time_s - *trial.response_time_s) < tolerance_s)
     return;
-  throw std::runtime_error("resume: trial " + std::to_string(trial.trial_index) +
-                           " was not answered as the simulated observer \"" + setup.observer +
-                           "\" would answer now; only the version that recorded the session can continue it");
+  throw Failure(phrase("resume.observer", {plain(trial.trial_index), plain(setup.observer)}));
 }
 
 }  // namespace

@@ -9,7 +9,7 @@
 namespace turnpoint::session {
 
 /// Makes the director of a session that is to be resumed. It replays the stored trials and then restarts the
-/// block or session if `resume_at` says so. Writes nothing to the database. Throws std::runtime_error if this
+/// block or session if `resume_at` says so. Writes nothing to the database. Throws texts::Failure if this
 /// program would not have presented the stored trials, or if its simulated observer would not have given the
 /// stored answers. Such a session cannot be resumed. Throws terms::ProgramFailed if a separate program fails;
 /// `programs` starts them and must outlive the director.

@@ -191,8 +191,7 @@ Begun resume(const Setup& setup, Stage& stage, programs::Programs& programs) {
                       program.path, before->version, before->sha256, program.version, program.sha256));
   }
   if (log.session().trials != stored.session.trials)
-    throw std::runtime_error("resume: another process has added trials to session " + setup.resume_session +
-                             " meanwhile; resume the session again");
+    throw texts::Failure(texts::phrase("resume.grown", {texts::plain(setup.resume_session)}));
   return {std::move(log), std::move(director), {std::move(stored.events), std::move(stored.blocks)}};
 }
 

@@ -143,7 +143,7 @@ class SessionRun {
   Summary summary_;
   int examples_ = 0;  ///< examples presented so far
   int scored_ = 0, right_ = 0;
-  int voids_in_a_row_ = 0, refused_in_a_row_ = 0, repeats_in_a_row_ = 0;
+  int voids_in_a_row_ = 0, refused_in_a_row_ = 0, repeats_in_a_row_ = 0, unanswered_in_a_row_ = 0;
   std::int64_t started_ns_ = 0;
   std::vector<OnSurface> surface_;
   /// files of the two thermometers, on plate and frame; empty if the rig has none

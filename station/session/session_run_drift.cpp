@@ -71,7 +71,7 @@ void SessionRun::follow_drift(const sensing::IntervalResult& measured) {
 }
 
 /// If the boundaries have moved by 0.2 mm or more since the last correction, the frequencies of the following
-/// trials are corrected. The trial that is already planned keeps its frequencies.
+/// trials are corrected. A trial that is already planned is planned again.
 void SessionRun::correct_drift() {
   if (!newest_drift_) return;
   const auto drift = *std::exchange(newest_drift_, std::nullopt);

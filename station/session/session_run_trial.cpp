@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <stdexcept>
 #include <utility>
@@ -15,6 +17,8 @@ namespace turnpoint::session {
 namespace {
 
 constexpr int kVoidsBeforeStop = 3;
+/// A simulated observer that can never answer in time would otherwise go on for ever.
+constexpr int kUnansweredBeforeStop = 1000;
 constexpr int kRefusedBeforePage = 2;
 
 bool is_over(trial::Phase phase) {
@@ -129,10 +133,16 @@ Flow SessionRun::after_trial(const Running& trial) {
   refused_in_a_row_ = refused ? refused_in_a_row_ + 1 : 0;
   if ((row.proof == terms::Proof::stopped || refused_in_a_row_ >= kRefusedBeforePage) && !gate_.fault())
     gate_.set_fault(Fault{FaultKind::vibration, describe_proof(row)});
+  unanswered_in_a_row_ = row.outcome == terms::Outcome::answered ? 0 : unanswered_in_a_row_ + 1;
+  if (!setup_.observer.empty() && unanswered_in_a_row_ >= kUnansweredBeforeStop) {
+    gate_.stop(
+        fmt::format("the simulated observer left {} trials in a row unanswered", kUnansweredBeforeStop));
+    return Flow::stop;
+  }
   voids_in_a_row_ = trial.is_void() ? voids_in_a_row_ + 1 : 0;
   if (voids_in_a_row_ >= kVoidsBeforeStop) {
-    gate_.stop("three trials in a row were void" +
-               (gate_.fault() ? "; the last: " + terms::describe(*gate_.fault()) : ""));
+    gate_.stop(records::kVoidsReason +
+               (gate_.fault() ? records::kVoidsLast + terms::describe(*gate_.fault()) : std::string()));
     return Flow::stop;
   }
   if (gate_.fault() && gate_.recover() == Flow::stop) return Flow::stop;
@@ -173,7 +183,10 @@ void SessionRun::handle_in_trial(Input raw, Running& trial) {
                setup_.rig.output.rate_Hz,
                {onset.frame, 1e-9 * static_cast<double>(onset.time_ns - started_ns_)});
     const bool asked = setup_.protocol.sensing && input.forces->state == sensing::ForcesState::ok;
-    trial.outside = asked && !is_training() && input.forces->movement != sensing::Movement::ok;
+    // A stimulus that was not the planned one makes the trial void, however the finger moved.
+    const bool refuted = trial.row.proof == terms::Proof::refused ||
+                         trial.row.proof == terms::Proof::stopped || trial.row.proof == terms::Proof::lost;
+    trial.outside = asked && !refuted && !is_training() && input.forces->movement != sensing::Movement::ok;
     if (trial.outside && repeats_in_a_row_ < setup_.protocol.sensing->repeats)
       perform(trial.machine.handle({input.time_ns, trial::EventKind::outside, 0}), trial);
     else if (trial.spec.strokes)
@@ -223,7 +236,12 @@ void SessionRun::perform(const std::vector<trial::Action>& actions, Running& tri
 /// Presents all intervals with one call, so that the distances between them are exact numbers of frames.
 void SessionRun::present(std::int64_t earliest_ns, Running& trial) {
   const auto& bursts = plans_.take(trial.spec).bursts;
-  trial.onsets = stage_->present(bursts, earliest_ns);
+  try {
+    trial.onsets = stage_->present(bursts, earliest_ns);
+  } catch (const drive::BurstRefused& refused) {
+    gate_.stop(refused.what());
+    return perform(trial.machine.handle({stage_->now_ns(), trial::EventKind::abort, 0}), trial);
+  }
   if (trial.onsets.empty()) return;  // the stage has added a fault with the reason to the inputs
   const auto times = trial::interval_times(setup_.protocol, trial.spec);
   for (std::size_t i = 0; i < bursts.size(); ++i) {

@@ -13,7 +13,8 @@
 #include "station/protocol/visits.hpp"
 #include "station/simulation/parallel.hpp"
 #include "station/simulation/rehearsal.hpp"
-#include "station/texts/texts.hpp"
+#include "station/texts/refusal.hpp"
+#include "station/trial/earlier_trials.hpp"
 
 namespace turnpoint::simulation {
 
@@ -74,7 +75,15 @@ double breaks_s(const protocol::Block& block, std::size_t trials) {
 
 Estimate simulate(const Protocol& protocol, const protocol::Visit& visit, std::uint64_t seed) {
   const auto order = protocol::block_order(protocol, visit);
-  const auto rehearsal = rehearse(protocol, visit, seed, person(protocol));
+  // Procedures that continue have fewer trials left after earlier sessions.
+  procedure::EarlierTrials earlier;
+  const auto& all = protocol.procedures;
+  if (std::any_of(all.begin(), all.end(), [](const auto& procedure) { return procedure.continues; }))
+    for (int session = 1; session < visit.session; ++session)
+      trial::add_earlier_trials(
+          protocol, rehearse(protocol, {visit.place, session}, seed, person(protocol), earlier).blocks,
+          earlier);
+  const auto rehearsal = rehearse(protocol, visit, seed, person(protocol), earlier);
   Estimate estimate;
   estimate.duration_s = rehearsal.duration_s + rehearsal.trials * exploring_s(protocol);
   for (const auto& [start, trials] : rehearsal.blocks) {
@@ -265,7 +274,7 @@ Check check(const std::string& protocol_path, const std::string& rig_path, const
     throw;
   } catch (const std::exception& error) {
     // If a procedure cannot work, report that here rather than in the middle of a session.
-    check.problems.push_back({{protocol_path, 0, 0}, plain(error.what()), {}});
+    check.problems.push_back({{protocol_path, 0, 0}, texts::phrase_of(error), {}});
   }
   if (!check.cues.not_compared.empty())
     check.warnings.push_back({{protocol_path, 0, 0},

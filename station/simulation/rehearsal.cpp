@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <deque>
 #include <optional>
-#include <stdexcept>
 
 #include "station/procedure/program.hpp"
+#include "station/texts/refusal.hpp"
 #include "station/trial/machine.hpp"
 #include "station/trial/question.hpp"
 #include "station/trial/rows.hpp"
@@ -156,7 +156,7 @@ Rehearsal rehearse(const protocol::Protocol& protocol, const protocol::Visit& vi
       now_ns = bench.now_ns();
       record.trials.push_back(std::move(row));
       if (++rehearsal.trials > most_trials)
-        throw std::runtime_error(protocol.path + ": block \"" + block->name + "\" does not end");
+        throw texts::Failure(texts::phrase("problem.block_endless", {texts::plain(block->name)}));
     }
     for (auto& estimate : director.estimates()) rehearsal.estimates.push_back(std::move(estimate));
     director.finish_block();

@@ -115,7 +115,7 @@ bool is_mount_point(const std::string& folder) {
 void require_disk(const std::string& folder, const std::string& database) {
   const auto above = folder_of(folder);
   const auto refuse = [&](const std::string& why) {
-    throw StoreError(ErrorKind::missing,
+    throw StoreError(ErrorKind::no_disk,
                      fmt::format("backup to {}: {}; nothing was written; mount the backup disk, or write "
                                  "--to FOLDER if the backups belong in an ordinary folder",
                                  folder, why));

@@ -1,4 +1,6 @@
 #pragma once
+#include <array>
+#include <cstddef>
 #include <stdexcept>
 #include <string>
 
@@ -16,8 +18,15 @@ enum class ErrorKind {
   missing,         ///< there is no such file, session or participant
   conflict,        ///< rows to be added contradict existing rows
   refused,         ///< the rules of the store forbid the operation
+  no_disk,         ///< the place of a backup is not on a disk of its own
   io,              ///< any other error of the disk
 };
+
+constexpr std::array store_error_names{"disk_full",    "read_only",   "corrupt", "not_a_database",
+                                       "newer_schema", "cannot_open", "busy",    "missing",
+                                       "conflict",     "refused",     "no_disk", "io"};
+/// Returns the name of a kind of error, as in the text catalogue.
+constexpr const char* error_name(ErrorKind kind) { return store_error_names.at(static_cast<std::size_t>(kind)); }
 
 /// Thrown for every failure of the store. The message says what was tried, on which file, what SQLite or the
 /// system reported, and what to do.

@@ -90,6 +90,8 @@ TEST_CASE("answers that do not determine the distributions have no fit", "[analy
     CHECK_FALSE(fit_ratings({10, 0, 0}, {10, 0, 0}, variances));
     CHECK_FALSE(fit_ratings({20, 10, 0, 0}, {0, 0, 10, 20}, variances));  // complete separation
   }
+  // With these, the likelihood rises with the standard deviation and with the criteria, without an end.
+  CHECK_FALSE(fit_ratings({47, 13, 0, 0, 0, 0}, {4, 5, 2, 0, 0, 9}, Variances::unequal));
   CHECK_THROWS_AS(fit_ratings({1, 2}, {1, 2, 3}, Variances::equal), std::invalid_argument);
   CHECK_THROWS_AS(fit_ratings({1, -2}, {1, 2}, Variances::equal), std::invalid_argument);
 }

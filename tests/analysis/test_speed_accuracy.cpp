@@ -97,6 +97,15 @@ TEST_CASE(
   CHECK(shared->boundary == Approx(0.12).epsilon(1e-9));
   CHECK(shared->nondecision_s == Approx(0.3).epsilon(1e-9));
   CHECK(shared->drift[2] == Approx(0.25).epsilon(1e-9));
+  // A single right answer has no variance of its times, but below chance the drift is below 0.
+  exact.push_back({0.25, 0, 0.7, 4});
+  const double below = shared_ez_diffusion(exact).parameters->drift[3];
+  CHECK(below == Approx(0.01 * std::log(0.25 / 0.75) / 0.12).epsilon(1e-9));
+  // at a logit of 0.02, the Taylor series and the closed form give the same boundary
+  const auto near_chance = [](double p) {
+    return shared_ez_diffusion({{p, 0.05, 0.7, 200}}).parameters->boundary;
+  };
+  CHECK(near_chance(0.504999) == Approx(near_chance(0.505001)).epsilon(1e-6));
 }
 
 TEST_CASE("The intervals of the boundary and of the non-decision time contain the true values",

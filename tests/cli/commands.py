@@ -63,6 +63,7 @@ OUT_OF_RANGE = [
     (["field", "--tone", "30000", "--points", "1"], "2 to 10000000"),
     (["field", "--tone", "30000", "--points", "3", "--tolerance", "0"], "above 0"),
     (["map", "--boundary", "150", "--tolerance-mm", "nan"], "above 0"),
+    (["map", "--boundary", "nan"], "a number of mm is needed"),
     (["new", "x.toml", "--measure", "contrst"], "contrast"),
     (["power", "demo", "--observers", "1.5"], "1 to 1000000"),
     (["power", "demo", "--intervals", "-1"], "0 to 1000000"),
@@ -81,6 +82,7 @@ OUT_OF_RANGE = [
     (["run", "demo", "--db", "good.sqlite", "--participant", "Anna Miller", "--observer", "sim"], "is not a code"),
     (["synth", "--tone", "30000", "--seconds", "0", "--out", "null:"], "0.001 to 3600"),
     (["synth", "--tone", "30000", "--seconds", "1", "--ramp-ms", "-1", "--out", "null:"], "0 or more"),
+    (["trace", "friction-2ifc", "--procedure", "threshold", "--answers", "1", "--seed", "-1"], "0 to 9007199254740992"),
 ]
 # Parts of internal error messages, which must not appear in any message to a user.
 NOT_FOR_PEOPLE = re.compile(r"terminate called|std::|what\(\)|filesystem error|please report|SELECT|PRAGMA|TEXT|"

@@ -63,6 +63,28 @@ TEST_CASE("sessions are listed newest first, and each word of a search must occu
   CHECK(found(lines, "fire P02").empty());
 }
 
+TEST_CASE("why a session ended is said in each language, in English as it is stored", "[sessions]") {
+  std::vector<std::string> stored{records::kLostReason, records::kAbandonedReason, records::kStoppedReason,
+                                  records::kVoidsReason};
+  for (const auto kind : terms::fault_kinds) {
+    stored.push_back(terms::describe({kind, ""}));
+    stored.push_back(terms::describe({kind, "No such device"}));
+    stored.push_back(records::kVoidsReason + ("; the last: " + terms::describe({kind, "No such device"})));
+  }
+  for (const auto& reason : stored) {
+    INFO(reason);
+    CHECK(texts::say(desk::reason_of_end(reason), "en") == reason);
+    for (const auto& language : texts::languages())
+      if (language != "en")
+        CHECK(texts::say(desk::reason_of_end(reason), language).find(reason) == std::string::npos);
+  }
+  CHECK(texts::say(desk::reason_of_end("three trials in a row were void; the last: emergency stop pressed"),
+                   "de") == "drei Durchg\u00e4nge hintereinander waren ung\u00fcltig; der letzte: " +
+                                texts::say(texts::phrase_of({terms::FaultKind::stop_pressed, ""}), "de"));
+  CHECK(texts::say(desk::reason_of_end("fire alarm"), "de") == "fire alarm");
+  CHECK(desk::reason_of_end("").empty());
+}
+
 TEST_CASE("a check's remarks have file, line and hint, problems first", "[studies]") {
   simulation::Check check;
   check.warnings = {{{"/a/study.toml", 9, 1}, texts::plain("no practice"), {}}};

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "station/drive/engine.hpp"
+#include "station/drive/synth.hpp"
 #include "station/terms/usage_error.hpp"
 #include "tests/drive/bursts.hpp"
 #include "tests/support/catch.hpp"
@@ -135,13 +136,23 @@ TEST_CASE(
   stream->schedule(burst);
   CHECK_THROWS_AS(stream->schedule(burst), BurstRefused);  // refused because 3 * 0.4 > 1
   burst.tones.tones[0].amplitude = 0.01;
-  stream->schedule(burst);
-  stream->schedule(burst);
+  for (int more = 2; more < Synth::max_voices; ++more) stream->schedule(burst);
   // refused because all voices are in use (a voice plays one burst)
   CHECK_THROWS_AS(stream->schedule(burst), BurstRefused);
   stream->advance(200000);
   burst.start_frame = stream->earliest_frame();
   CHECK_NOTHROW(stream->schedule(burst));
+  // Two bursts of 0.49998 fit into 32 bits, but at 16 bits they leave no room for the dither.
+  for (const int bits : {16, 32}) {
+    StreamConfig config;
+    config.output.bits = bits;
+    const auto other = open_synchronous(config);
+    Burst half = one_tone(20000, 0.49998);
+    half.start_frame = 1000;
+    other->schedule(half);
+    if (bits == 16) CHECK_THROWS_AS(other->schedule(half), BurstRefused);
+    if (bits == 32) CHECK_NOTHROW(other->schedule(half));
+  }
 }
 
 TEST_CASE("a live change alters the tone of a playing burst, and a stop ends the burst", "[drive][stream]") {

@@ -105,6 +105,22 @@ TEST_CASE(
   CHECK(bench.lines->level(SharedLines::enable));
 }
 
+TEST_CASE("if the chip of one line vanishes, the enable line on another chip goes low",
+          "[lines][amplifier][threads]") {
+  const int line = GENERATE(int{SharedLines::stop}, int{SharedLines::fault});
+  Bench bench;
+  bench.enable();
+  REQUIRE(bench.lines->level(SharedLines::enable));
+  bench.lines->break_line(line);
+  CHECK(eventually([&] { return bench.amplifier->state() == AmplifierState::faulted; }));
+  CHECK(bench.amplifier->fault().kind == FaultKind::lines_gone);
+  const auto driven = bench.lines->driven();
+  const auto last = std::find_if(driven.rbegin(), driven.rend(),
+                                 [](const auto& one) { return one.line == SharedLines::enable; });
+  REQUIRE(last != driven.rend());
+  CHECK(last->level == 0);
+}
+
 TEST_CASE("an amplifier is opened from the text in the rig file, and every mistake in the text is named",
           "[lines][amplifier]") {
   CHECK(open_amplifier("sim:")->state() == AmplifierState::disarmed);

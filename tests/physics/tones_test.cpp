@@ -116,7 +116,7 @@ TEST_CASE("impossible zones are refused, and the message says what is allowed", 
   CHECK_THROWS_AS(design_zone(s, FrictionMap(), request), std::domain_error);
   request.edge = Edge::turning();
   request.from_m = 0.2;
-  CHECK_THROWS_AS(design_zone(s, FrictionMap(), request), std::invalid_argument);
+  CHECK_THROWS_AS(design_zone(s, FrictionMap(), request), Refused);
 }
 
 TEST_CASE("Schroeder's phases lower the crest factor of a comb of tones, which is highest with equal phases",

@@ -92,6 +92,24 @@ TEST_CASE(
   }
 }
 
+TEST_CASE("a procedure ends if nobody answers, whatever its rule for stopping is", "[procedure]") {
+  const auto kind = GENERATE(Kind::quest_plus, Kind::psi, Kind::psi_marginal, Kind::zest, Kind::best_pest);
+  auto spec = posterior_spec(kind == Kind::zest || kind == Kind::best_pest ? Kind::quest_plus : kind,
+                             Function::weibull, 3.5);
+  spec.kind = kind;
+  spec.stop = {};
+  spec.stop.threshold_sd = 1e-6;
+  SECTION("any of its conditions") { spec.stop.rule = StopRule::any; }
+  SECTION("all of its conditions") {
+    spec.stop.rule = StopRule::all;
+    spec.stop.trials = 30;
+  }
+  const auto procedure = make_procedure(spec, {}, {});
+  int presented = 0;
+  for (; procedure->next() && presented < 1000; ++presented) procedure->record(Answer::none);
+  CHECK(presented == kSpentAtMost * (kRepeatsInARow + 1));
+}
+
 TEST_CASE("a track with limits stays inside them for ten thousand answers of any kind", "[procedure]") {
   for (const auto pattern : {Pattern::all_right, Pattern::all_wrong, Pattern::alternating}) {
     auto spec = staircase(Scale::linear);

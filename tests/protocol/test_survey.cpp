@@ -186,6 +186,13 @@ TEST_CASE("a probable mistake gives a warning at its place", "[protocol]") {
     return all_of(protocol::advice(protocol::parse(text, "p.toml")));
   };
   const auto constant = source("boundary-constant.toml");
+  SECTION("labels of a rating and of confidence that nobody can tell apart") {
+    const auto rating = source("friction-rating.toml");
+    CHECK(contains(advice(replaced(rating, "en = \"surely not\"", "en = \"  \"")),
+                   "the label of \"1\" is blank"));
+    CHECK(contains(advice(replaced(rating, "en = \"surely not\"", "en = \"surely\"")),
+                   "two answers have the label \"surely\""));
+  }
   SECTION("levels finer than four times the tolerance") {
     CHECK(contains(advice(replaced(constant, "boundary_mm = 0.5,", "boundary_mm = 1.0,")),
                    "the scene's tolerance is 1 mm"));

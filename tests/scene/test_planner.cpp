@@ -4,7 +4,9 @@
 
 #include "physics/centre_line.hpp"
 #include "physics/edge_feature.hpp"
+#include "station/scene/sound.hpp"
 #include "station/scene/under_finger.hpp"
+#include "station/texts/texts.hpp"
 #include "tests/support/catch.hpp"
 
 using namespace turnpoint;
@@ -183,6 +185,58 @@ TEST_CASE("roving changes the displacement of a planned tone by exactly the rove
   scene.rove_dB = -2;
   const auto plan = planner.plan(scene);
   CHECK(plan.tones.at(0).displacement_m == Approx(1e-6 * std::pow(10, -0.1)).epsilon(1e-6));
+}
+
+TEST_CASE(
+    "a scene of tones is described by the model that computes its field, with the error of its tones' edges",
+    "[scene]") {
+  const auto rig = simulated();
+  Scene scene;
+  scene.name = "two";
+  for (const double boundary_m : {0.090, 0.150})
+    scene.tones.push_back({boundary_m, {}, physics::Edge::peak(), 0.7e-6, 0});
+  Planner planner(rig);
+  const auto plan = planner.plan(scene);
+  CHECK(plan.model == physics::Model::mode);
+  CHECK(plan.reason.find("the scene has no tolerance") != std::string::npos);
+  CHECK(plan.error_bound_m > 1e-6);
+  // Each tone is placed as it would be alone, so the error is at least that of the scene with this boundary
+  // alone.
+  auto one = edge_at(0.150, "peak");
+  one.tolerance = {};
+  CHECK(plan.error_bound_m >= 0.999 * Planner(rig).plan(one).error_bound_m);
+  std::vector<physics::Tone> tones;
+  for (const auto& tone : plan.tones) tones.push_back({tone.frequency_Hz, tone.amplitude_m, tone.phase_rad});
+  const auto airy = sound_bound(rig, tones, physics::Model::airy),
+             mode = sound_bound(rig, tones, physics::Model::mode);
+  REQUIRE((airy && mode));
+  CHECK(airy->level_dB == mode->level_dB);
+}
+
+TEST_CASE("what prevents a plan, and what a tolerance lacks, is said in the language of the screen",
+          "[scene]") {
+  const auto refused_in = [](Scene scene, const char* language) {
+    try {
+      Planner(simulated()).plan(scene);
+    } catch (const Unreachable& refused) {
+      return texts::say(refused.why(), language);
+    }
+    return std::string();
+  };
+  CHECK(refused_in(edge_at(0.5, "peak"), "de").find("keine Frequenz legt den Rand") == 0);
+  auto zone = edge_at(0.150, "turning");
+  zone.displacement_m.reset();
+  zone.zone = ZoneTarget{};
+  zone.zone->from_m = 0.2;
+  zone.zone->friction = 0.7;
+  CHECK(refused_in(zone, "de").find("Bereich von 200 bis 150 mm; erlaubt: innerhalb von 0 bis 300 mm") == 0);
+  auto strict = edge_at(0.150, "p50");
+  strict.tolerance = {1e-9, {}, {}};
+  const auto plan = Planner(simulated()).plan(strict);
+  REQUIRE_FALSE(plan.inside_tolerance);
+  CHECK(texts::say(plan.beyond_tolerance, "de")
+            .find("der Fehler des Modells \u201emodes\u201c kann gr\u00f6\u00dfer sein") == 0);
+  CHECK(texts::say(plan.beyond_tolerance, "en").find("tolerance 1e-06 mm") != std::string::npos);
 }
 
 TEST_CASE(

@@ -125,6 +125,22 @@ TEST_CASE("the shipped speed and accuracy protocol runs to its end", "[session]"
 }
 TEST_CASE("the shipped oddity protocol runs to its end", "[session]") { runs_to_its_end("two-spots-oddity"); }
 
+TEST_CASE("a simulated observer that can never answer in time does not go on for ever", "[session]") {
+  Folder folder;
+  auto request = request_for("friction-rating", folder / "a.sqlite");
+  std::ifstream shipped(request.protocol);
+  std::string text{std::istreambuf_iterator<char>(shipped), {}};
+  const auto deadline = text.find("deadline_s = 4.0");
+  REQUIRE(deadline != std::string::npos);
+  text.replace(deadline, 16, "deadline_s = 0.05");
+  request.protocol = folder / "hasty.toml";
+  std::ofstream(request.protocol) << text;
+  const auto summary = run(request);
+  CHECK(summary.status == records::SessionStatus::interrupted);
+  CHECK(summary.reason == "the simulated observer left 1000 trials in a row unanswered");
+  CHECK(summary.trials == 1000);
+}
+
 TEST_CASE("the same seed gives the same trials and answers", "[session]") {
   const Folder folder;
   const auto first = run(request_for("demo", folder / "a.sqlite")),

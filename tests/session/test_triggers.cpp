@@ -103,6 +103,14 @@ TEST_CASE("every event of a session has a row with its code, its frame and its t
   }
 }
 
+TEST_CASE("trials of four intervals have room for the codes of their events", "[session][trigger]") {
+  auto ran = run("friction-4ifc", kCodes);
+  CHECK(ran.summary.status == records::SessionStatus::completed);
+  const auto& rows = ran.events["trigger"];
+  CHECK(count(rows, "trial frame") == static_cast<int>(ran.trials.size()));
+  CHECK(count(rows, "onset frame") == 4 * static_cast<int>(ran.trials.size()));
+}
+
 TEST_CASE("a rig without outputs for codes gives out none", "[session][trigger]") {
   auto ran = run("demo", "");
   CHECK(ran.events["trigger"].empty());

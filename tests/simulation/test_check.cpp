@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <string>
 
 #include "station/simulation/parallel.hpp"
@@ -72,6 +73,43 @@ TEST_CASE("the duration estimated by check is that of a rehearsed session plus t
           rest->min_s * static_cast<double>((trials.size() - 1) / static_cast<std::size_t>(rest->trials));
   }
   CHECK(check.duration_s.median == Approx(rehearsal.duration_s + beside_s));
+}
+
+TEST_CASE("a procedure that continues has fewer trials on the second day, and check says how many",
+          "[check]") {
+  const std::string root = TURNPOINT_SOURCE_DIR;
+  TemporaryFolder folder;
+  auto text = system::read_file(root + "/protocols/friction-time-limit.toml");
+  const auto training = text.find("name = \"training\"");
+  REQUIRE(training != std::string::npos);
+  const auto stop = text.find("stop = ", training), end = text.find('\n', stop);
+  text.replace(stop, end - stop, "stop = { trials = 40 }");
+  const std::string path = folder / "a.toml";
+  std::ofstream(path) << text;
+  const auto check = simulation::check(path, root + "/tests/support/thin_plate.toml", {2});
+  REQUIRE(check.problems.empty());
+  std::map<int, double> trained;
+  for (const auto& block : check.blocks)
+    if (block.name == "training") trained[block.session] = block.trials.median;
+  CHECK(trained.at(1) == 30);
+  CHECK(trained.at(2) == 10);
+}
+
+TEST_CASE("a protocol that nobody can answer in time does not end, and check says so in each language",
+          "[check]") {
+  const std::string root = TURNPOINT_SOURCE_DIR;
+  TemporaryFolder folder;
+  auto text = system::read_file(root + "/protocols/friction-rating.toml");
+  const auto deadline = text.find("deadline_s"), end = text.find('\n', deadline);
+  REQUIRE(deadline != std::string::npos);
+  text.replace(deadline, end - deadline, "deadline_s = 0.05");
+  const std::string path = folder / "a.toml";
+  std::ofstream(path) << text;
+  const auto check = simulation::check(path, root + "/tests/support/thin_plate.toml", {1});
+  REQUIRE(check.problems.size() == 1);
+  CHECK(texts::say(check.problems[0].what, "en").find("does not end") != std::string::npos);
+  CHECK(texts::say(check.problems[0].what, "en").find("a.toml") == std::string::npos);
+  CHECK(texts::say(check.problems[0].what, "de").find("endet nicht") != std::string::npos);
 }
 
 TEST_CASE("check says in which languages the station's own words are, and refuses what cannot be drawn",

@@ -150,7 +150,7 @@ TEST_CASE("a backup that requires a separate disk is refused if none is mounted"
   fs::create_directory(folder / "mnt");
   for (const auto& dir : {folder / "mnt", folder / "mnt/backups"}) {
     const auto [fault, message] = sample::failure([&] { backup(db, {dir, 9, Destination::disk}); });
-    CHECK(fault == ErrorKind::missing);
+    CHECK(fault == ErrorKind::no_disk);
     CHECK(sample::contains(message, "no disk is mounted"));
     CHECK(fs::is_empty(folder / "mnt"));
   }
@@ -172,7 +172,7 @@ TEST_CASE("a backup that requires a separate disk is refused if none is mounted"
   const auto [fault, message] = sample::failure([&] {
     backup(dir + "/b.sqlite", {dir, 9, Destination::disk});
   });
-  CHECK(fault == ErrorKind::missing);
+  CHECK(fault == ErrorKind::no_disk);
   CHECK(sample::contains(message, "the same disk as the database"));
   fs::remove_all(dir);
 }

@@ -1,13 +1,19 @@
 // Tests the catalogues of the station's texts, which have one file per language.
+#include <algorithm>
 #include <filesystem>
+#include <limits>
 #include <map>
 #include <regex>
 #include <set>
 #include <stdexcept>
 
+#include "physics/boundary_fit.hpp"
+#include "physics/boundary_map.hpp"
 #include "physics/centre_line.hpp"
 #include "physics/field.hpp"
 #include "physics/warning.hpp"
+#include "physics/zone.hpp"
+#include "station/store/error.hpp"
 #include "station/system/read_file.hpp"
 #include "station/terms/fault.hpp"
 #include "station/text/toml.hpp"
@@ -197,6 +203,8 @@ TEST_CASE("every text is used, and every text that the program requests exists",
   for (const auto cause : terms::proof_causes)
     of_faults.insert(std::string("proof_cause.") + terms::name(cause));
   for (const char* code : physics::warning_codes) of_faults.insert(std::string("physics_warning.") + code);
+  for (const char* code : physics::refusal_codes) of_faults.insert(std::string("physics_refusal.") + code);
+  for (const char* name : store::store_error_names) of_faults.insert(std::string("store_error.") + name);
   const auto schema =
       system::read_file(std::string(TURNPOINT_SOURCE_DIR) + "/protocols/protocol.schema.json");
   const auto goals = system::read_file(std::string(TURNPOINT_SOURCE_DIR) + "/station/design/goals.cpp");
@@ -297,6 +305,61 @@ TEST_CASE("the physics library's warnings are said in each language, in English 
     CHECK(texts::say(phrase, "en") == warnings[code].text);
     for (const auto& language : texts::languages())
       for (const auto& value : warnings[code].values)
+        CHECK(texts::say(phrase, language).find(value) != std::string::npos);
+  }
+}
+
+TEST_CASE("what the physics library refuses is said in each language, in English as the library says it",
+          "[texts]") {
+  using namespace physics;
+  std::map<std::string, Statement> refusals;
+  const auto gather = [&](const auto& attempt) {
+    try {
+      attempt();
+    } catch (const Refused& refused) {
+      refusals[refused.why().code] = refused.why();
+    }
+  };
+  const auto brass = seed_brass();
+  auto strip = brass;
+  std::get<LinearTaper>(strip.taper).slope = 0;
+  gather([&] { BoundaryMap(strip, {}); });
+  auto lossy = brass;
+  lossy.quality_factor = 2;
+  auto cut = brass;
+  cut.length_m /= 4;
+  auto lossless = cut;
+  lossless.quality_factor = std::numeric_limits<double>::infinity();
+  for (const auto& surface : {brass, lossy, cut, lossless})
+    for (double frequency_Hz = 1e3; frequency_Hz < 60e3; frequency_Hz *= 1.1)
+      gather([&] { drive_amplitude_m(surface, frequency_Hz, 1e-6); });
+  const MeasuredBoundary low{5e3, 0.15, 1e-3}, vague{30e3, 0.15, 0};
+  auto plate = aluminium_plate();
+  for (const auto* one : {&low, &vague}) gather([&] { fit_boundaries(plate, {}, {one, 1}); });
+  plate.sd.thickness_m = 0.02 * plate.thickness_m;
+  gather([&] { fit_boundaries(plate, {}, {&low, 1}); });
+  const auto zone = [&](const auto& change) {
+    gather([&] {
+      ZoneRequest request;
+      request.from_m = 0.02, request.boundary_m = 0.06, request.friction = 0.7, request.tones = 1;
+      request.band = {20e3, 60e3, 500};
+      change(request);
+      design_zone(brass, FrictionMap(), request);
+    });
+  };
+  zone([](ZoneRequest& r) { r.boundary_m = 1; });
+  zone([](ZoneRequest& r) { r.friction = 0.01; });
+  zone([](ZoneRequest& r) { r.edge = Edge::friction(0.5); });
+  zone([](ZoneRequest& r) { r.band = {59e3, 60e3, 500}; });
+  CHECK(refusals.size() >= 8);
+  for (const auto& [code, refusal] : refusals) {
+    INFO(code);
+    CHECK(std::count(refusal_codes.begin(), refusal_codes.end(), code) == 1);
+    texts::Phrase phrase{"physics_refusal." + code, "", {}};
+    for (const auto& value : refusal.values) phrase.values.push_back(texts::plain(value));
+    CHECK(texts::say(phrase, "en") == refusal.text);
+    for (const auto& language : texts::languages())
+      for (const auto& value : refusal.values)
         CHECK(texts::say(phrase, language).find(value) != std::string::npos);
   }
 }

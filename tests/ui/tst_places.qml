@@ -128,7 +128,7 @@ Item {
             tap("place1")
             // In this test the stick is a folder on the database's own disk, as if somebody had pulled it
             // out. So the backup must be refused.
-            tryVerify(() => says(room.screen, "no disk is mounted"), 20000)
+            tryVerify(() => says(room.screen, "There is no backup disk at this place.") && says(room.screen, "no disk is mounted"), 20000)
             compare(room.filesIn("stick"), [])
             tap("backUp")
             tap("place0")

@@ -106,7 +106,7 @@ Item {
         function test_sessions_and_reports_are_in_the_language_of_the_operator() {
             compare(room.cutOffSession("pilot"), -9)
             const sessions = () => find(room.screen, "sessionsPage").sessions
-            const said = () => [sessions().chosen.protocol ?? "", sessions().chosen.reason ?? "", sessions().chosen.started ?? ""]
+            const said = () => [sessions().chosen.protocol ?? "", sessions().chosen.started ?? ""]
             compare(englishOn("sessions", () => find(room.screen, "session0") !== null, said), "")
             room.look.language = "de"
             verify(texts(room.screen).some(text => text.includes("Probelauf") && text.includes("nicht beendet")), texts(room.screen).join("\n"))

@@ -160,7 +160,7 @@ Rectangle {
             facts: root.some ? [{ label: texts.text("operator.protocol"), value: root.sessions.chosen.protocol },
                                 { label: texts.text("operator.started"), value: root.sessions.chosen.started },
                                 { label: texts.text("operator.mode"), value: texts.named(root.sessions.chosen.mode) },
-                                { label: texts.text("operator.status"), value: texts.named(root.sessions.chosen.status) + (root.sessions.chosen.reason === "" ? "" : ": " + root.sessions.chosen.reason) },
+                                { label: texts.text("operator.status"), value: texts.named(root.sessions.chosen.status) + (texts.say(root.sessions.chosen.reason) === "" ? "" : ": " + texts.say(root.sessions.chosen.reason)) },
                                 { label: texts.text("operator.trials"), value: String(root.sessions.chosen.trials) },
                                 { label: "ID", value: root.sessions.chosen.id }] : []
         }

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "station/store/error.hpp"
 #include "station/text/problem.hpp"
 #include "station/texts/refusal.hpp"
 #include "station/ui/shared/phrases.hpp"
@@ -40,8 +41,12 @@ inline QStringList to_list(const std::vector<std::string>& texts) {
   return list;
 }
 
-/// Returns what an error says: each problem of a file, or the error's message.
+/// Returns what an error says: each problem of a file, or the error's message. The message of a database is
+/// English, so before it stands what kind of error it is, in the language of the screen.
 inline std::vector<texts::Phrase> phrases_of(const std::exception& error) {
+  if (const auto* store = dynamic_cast<const store::StoreError*>(&error))
+    return {texts::phrase(std::string("store_error.") + store::error_name(store->kind())),
+            texts::plain(store->what())};
   const auto* bad = dynamic_cast<const text::BadInput*>(&error);
   if (bad == nullptr) return {texts::phrase_of(error)};
   std::vector<texts::Phrase> phrases;

@@ -26,7 +26,7 @@ QVariantMap to_map(const desk::SessionLine& session) {
           {"started", QString::fromStdString(session.started.substr(0, 16)).replace('T', ' ')},
           {"mode", QString::fromStdString(session.run_mode)},
           {"status", QString::fromStdString(session.status)},
-          {"reason", QString::fromStdString(session.reason)},
+          {"reason", to_variant(session.reason)},
           {"trials", session.trials},
           {"resumable", session.resumable}};
 }
