@@ -809,7 +809,7 @@ class Screen(Folder):
                 self.refused_in_one_sentence(words, "no screen: nothing answers at ", *displays.values(), QT_QPA_PLATFORM=None,
                                              **displays)
 
-    @unittest.skipIf(os.path.exists("/dev/dri") or os.path.exists("/dev/fb0"), "this machine has a screen; run the tests on one without"
+    @unittest.skipIf(os.path.exists("/dev/dri") or os.path.exists("/dev/fb0"), "this machine has a screen; run the tests on one without")
     def test_without_a_screen_each_command_advises_what_it_accepts(self):
         for words, advice in ((["station", "--db", "lab.sqlite"], "turnpoint run"), (["design", "x.toml"], "turnpoint new"), (["preview", "demo"], "--out"),
                               (["run", "demo", "--db", "lab.sqlite", "--participant", "P03"], "--buttons-only"),
