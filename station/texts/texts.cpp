@@ -115,9 +115,9 @@ std::string say(const Phrase& phrase, std::string_view language) {
     for (const auto& value : phrase.values) said += say(value, language);
     return said;
   }
-  // A sentence is not a key: keys have no spaces, no capitals and no places.
+  // A sentence is not a key: keys have no spaces and no places.
   const bool is_key =
-      phrase.key.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789_.") == std::string::npos;
+      phrase.key.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789_.-") == std::string::npos;
   const auto& pattern = is_key ? text(phrase.key, language) : phrase.key;
   // In Arabic, which is written from right to left, invisible characters around a value keep its parts in
   // their order ("-30" would be drawn as "30-"). Texts.qml does the same.
