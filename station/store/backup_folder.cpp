@@ -16,8 +16,8 @@ namespace turnpoint::store {
 
 namespace {
 
-/// Backups are named STEM-NUMBER-TIME.sqlite. Older releases wrote STEM-TIME.sqlite.
-const std::regex kName(R"((.*?)(?:-(\d{6,12}))?-(\d{8}T\d{6})\.\d{3}Z\.sqlite)");
+/// Backups are named STEM-NUMBER-TIME.sqlite.
+const std::regex kName(R"((.*?)-(\d{6,12})-(\d{8}T\d{6})\.\d{3}Z\.sqlite)");
 
 /// Converts a UTC time such as "20240229T120000" to ns since 1970.
 std::int64_t nanoseconds_of(const std::string& stamp) {
@@ -37,7 +37,7 @@ StoredBackup read_backup(const std::string& path, const std::smatch& name) {
   StoredBackup backup;
   backup.path = path;
   backup.stem = name[1];
-  if (name[2].matched) backup.number = std::stoll(name[2]);
+  backup.number = std::stoll(name[2]);
   backup.made_realtime_ns = nanoseconds_of(name[3]);
   try {
     Database database(path, Database::Access::immutable);

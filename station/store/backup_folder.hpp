@@ -16,8 +16,7 @@ struct StoredBackup {
   std::string station;      ///< station of one of the sessions in the backup; "" if there are no sessions
   /// file name of the database at the time of the backup, without folder and ending
   std::string stem;
-  /// increases with each backup in the folder; 0 for backups of older releases
-  std::int64_t number = 0;
+  std::int64_t number = 0;            ///< increases with each backup in the folder
   std::int64_t made_realtime_ns = 0;  ///< time of the backup, read from its file name
   /// error that prevented reading the backup; "" if it could be read or is known to be damaged
   std::string trouble;

@@ -3,12 +3,12 @@
 #include <fmt/format.h>
 
 #include <bit>
-#include <map>
 #include <optional>
 #include <set>
 #include <utility>
 
 #include "station/store/fields.hpp"
+#include "station/store/schema.hpp"
 #include "station/text/sha256.hpp"
 
 namespace turnpoint::store {
@@ -34,12 +34,12 @@ void add_row(text::Sha256& hash, const Statement& row) {
 
 }  // namespace
 
-/// Turns the rows of one session into the bytes that are hashed, in a given encoding. The statements are
-/// prepared only once, because each trial of a session adds two links.
+/// Turns the rows of one session into the bytes that are hashed. The statements are prepared only once,
+/// because each trial of a session adds two links.
 class Encoder {
  public:
-  Encoder(Database& database, std::string schema, std::string session_id, std::int64_t encoding = kEncoding)
-      : database_(database), schema_(std::move(schema)), id_(std::move(session_id)), encoding_(encoding) {}
+  Encoder(Database& database, std::string schema, std::string session_id)
+      : database_(database), schema_(std::move(schema)), id_(std::move(session_id)) {}
 
   /// Hashes the data with which the session started. The session's status is left out: it changes later, and
   /// each link contains it anyway.
@@ -50,10 +50,8 @@ class Encoder {
                   fmt::format("SELECT {1}, {2}, {3}, {4} FROM {0}.session s LEFT JOIN {0}.protocol p"
                               " USING (protocol_key) LEFT JOIN {0}.rig r USING (rig_key)"
                               " LEFT JOIN {0}.calibration c USING (calibration_id) WHERE s.session_id = ?",
-                              schema_, column_list(covered(session, encoding_), "s."),
-                              column_list(covered(protocol_table(), encoding_), "p."),
-                              column_list(covered(rig_table(), encoding_), "r."),
-                              column_list(covered(calibration_table(), encoding_), "c.")));
+                              schema_, column_list(session, "s."), column_list(protocol_table(), "p."),
+                              column_list(rig_table(), "r."), column_list(calibration_table(), "c.")));
     row.bind(id_);
     while (row.step()) add_row(hash, row);
   }
@@ -65,21 +63,15 @@ class Encoder {
     add(hash, trial_, trial_table(), "trial_index", "trial_index", from.trial, to.trial);
     add(hash, tone_, tone_table(), "trial_index", "trial_index, interval_index, scene_index, tone_index",
         from.trial, to.trial);
-    if (encoding_ >= 3)
-      add(hash, signal_, signal_table(), "trial_index", "trial_index, stream", from.trial, to.trial);
+    add(hash, signal_, signal_table(), "trial_index", "trial_index, stream", from.trial, to.trial);
     add(hash, event_, event_table(), "event_index", "event_index", from.event, to.event);
-    if (encoding_ >= 4)
-      add(hash, check_, check_table(), "event_index", "event_index, check_index", from.event, to.event);
-    if (encoding_ >= 5)
-      add(hash, answer_, answer_table(), "event_index", "event_index, answer_index", from.event, to.event);
-    if (encoding_ >= 5)
-      add(hash, friction_, friction_level_table(), "event_index", "event_index, level_index", from.event,
-          to.event);
-    if (encoding_ >= 5)
-      add(hash, program_, program_table(), "event_index", "event_index, program_index", from.event, to.event);
-    if (encoding_ >= 5)
-      add(hash, estimate_, estimate_table(), "event_index", "event_index, estimate_index", from.event,
-          to.event);
+    add(hash, check_, check_table(), "event_index", "event_index, check_index", from.event, to.event);
+    add(hash, answer_, answer_table(), "event_index", "event_index, answer_index", from.event, to.event);
+    add(hash, friction_, friction_level_table(), "event_index", "event_index, level_index", from.event,
+        to.event);
+    add(hash, program_, program_table(), "event_index", "event_index, program_index", from.event, to.event);
+    add(hash, estimate_, estimate_table(), "event_index", "event_index, estimate_index", from.event,
+        to.event);
   }
 
   Extent extent() {
@@ -118,10 +110,9 @@ class Encoder {
            const std::string& key, const std::string& order, std::int64_t from, std::int64_t to) {
     if (from == to) return;
     if (!rows)
-      rows.emplace(database_,
-                   fmt::format("SELECT {} FROM {}.{} WHERE session_id = ? AND {} > ? AND {} <= ?"
-                               " ORDER BY {}",
-                               column_list(covered(table, encoding_)), schema_, table.name, key, key, order));
+      rows.emplace(database_, fmt::format("SELECT {} FROM {}.{} WHERE session_id = ? AND {} > ? AND {} <= ?"
+                                          " ORDER BY {}",
+                                          column_list(table), schema_, table.name, key, key, order));
     hash.add(std::string(table.name) + '\n');
     rows->bind(id_, from, to);
     while (rows->step()) add_row(hash, *rows);
@@ -130,7 +121,6 @@ class Encoder {
 
   Database& database_;
   std::string schema_, id_;
-  std::int64_t encoding_;
   std::optional<Statement> segment_, block_, trial_, tone_, signal_, event_, check_, answer_, friction_,
       program_, estimate_, extent_;
 };
@@ -139,24 +129,23 @@ namespace {
 
 std::string checksum_of(Encoder& encoder, const Link& previous, const Link& link) {
   text::Sha256 hash;
-  hash.add(fmt::format("turnpoint/{} {} {}\n{}\n{}:{}\n", link.encoding, link.index, previous.sha256,
-                       link.status, link.status_reason.size(), link.status_reason));
+  hash.add(fmt::format("turnpoint/{} {} {}\n{}\n{}:{}\n", kSchema, link.index, previous.sha256, link.status,
+                       link.status_reason.size(), link.status_reason));
   if (link.index == 0) encoder.add_provenance(hash);
   encoder.add_rows(hash, previous.last, link.last);
   return hash.hex();
 }
 
 constexpr const char* kLinkColumns =
-    "link_index, encoding, last_segment, last_block, last_trial, last_event, status, status_reason, sha256";
+    "link_index, last_segment, last_block, last_trial, last_event, status, status_reason, sha256";
 
 Link link_from(const Statement& row) {
   Link link;
   link.index = row.integer(0);
-  link.encoding = row.integer(1);
-  link.last = {row.integer(2), row.integer(3), row.integer(4), row.integer(5)};
-  link.status = row.text(6);
-  link.status_reason = row.text(7);
-  link.sha256 = row.text(8);
+  link.last = {row.integer(1), row.integer(2), row.integer(3), row.integer(4)};
+  link.status = row.text(5);
+  link.status_reason = row.text(6);
+  link.sha256 = row.text(7);
   return link;
 }
 
@@ -188,23 +177,16 @@ std::string place(const Link& previous, const Link& link) {
 
 /// Checks each link against the rows that it covers, and counts the links. Returns the last link.
 Link check_links(Database& database, const std::string& schema, VerifiedSession& verified) {
-  std::map<std::int64_t, Encoder> encoders;
+  Encoder encoder(database, schema, verified.session_id);
   Statement rows(database, fmt::format("SELECT {} FROM {}.link WHERE session_id = ? ORDER BY link_index",
                                        kLinkColumns, schema));
   rows.bind(verified.session_id);
   Link previous;
   for (; rows.step(); ++verified.links) {
     auto link = link_from(rows);
-    const auto encoder = [&]() -> Encoder& {
-      return encoders.try_emplace(link.encoding, database, schema, verified.session_id, link.encoding)
-          .first->second;
-    };
-    if (link.encoding < 1 || link.encoding > kEncoding)
-      verified.problems.push_back(fmt::format("checksum {} has encoding {}, which this release does not know",
-                                              link.index, link.encoding));
-    else if (link.index != previous.index + 1)
+    if (link.index != previous.index + 1)
       verified.problems.push_back(fmt::format("checksum {} is missing", previous.index + 1));
-    else if (checksum_of(encoder(), previous, link) != link.sha256)
+    else if (checksum_of(encoder, previous, link) != link.sha256)
       verified.problems.push_back(
           fmt::format("{} differs from what was recorded (checksum {})", place(previous, link), link.index));
     previous = std::move(link);
@@ -258,9 +240,9 @@ Link Chain::add() {
   link.status_reason = status.text(1);
   link.sha256 = checksum_of(*encoder_, last_, link);
   Statement(*database_,
-            fmt::format("INSERT INTO link (session_id, {}) VALUES (?,?,?,?,?,?,?,?,?,?)", kLinkColumns))
-      .bind(session_id_, link.index, link.encoding, link.last.segment, link.last.block, link.last.trial,
-            link.last.event, link.status, link.status_reason, link.sha256)
+            fmt::format("INSERT INTO link (session_id, {}) VALUES (?,?,?,?,?,?,?,?,?)", kLinkColumns))
+      .bind(session_id_, link.index, link.last.segment, link.last.block, link.last.trial, link.last.event,
+            link.status, link.status_reason, link.sha256)
       .run();
   return link;
 }
@@ -290,9 +272,7 @@ VerifiedSession verify_one(Database& database, const std::string& session_id, co
         "the participant is enrolled with another place in the counterbalancing than this session used");
   const auto last = check_links(database, schema, verified);
   if (verified.links == 0) {
-    Statement earlier(database, "SELECT 1 FROM " + schema + ".unsealed WHERE session_id = ?");
-    earlier.bind(session_id);
-    if (!earlier.step()) verified.problems.push_back("the checksums of this session are missing");
+    verified.problems.push_back("the checksums of this session are missing");
     return verified;
   }
   verified.last_sha256 = last.sha256;

@@ -11,11 +11,6 @@
 
 namespace turnpoint::store {
 
-/// Version of the rule that turns rows into the bytes to be hashed. The bytes of a version never change. A
-/// later release that adds columns or tables adds a version; older links are still checked with the version
-/// with which they were made.
-constexpr int kEncoding = 6;
-
 /// The keys of a session's last row in each table. If a table has no rows, its value is below the first key.
 struct Extent {
   std::int64_t segment = 0;  ///< segment_index of the last segment; the first has index 1
@@ -26,12 +21,11 @@ struct Extent {
 };
 
 /// One link of a session's checksum chain. Its checksum covers the previous link, the session's status, and
-/// all rows committed together with the link: SHA-256 of "turnpoint/ENCODING INDEX PREVIOUS", status, reason
+/// all rows committed together with the link: SHA-256 of "turnpoint/SCHEMA INDEX PREVIOUS", status, reason
 /// and the rows, in this order. The first link also covers the session's participant, protocol, rig and
 /// calibration. Annotations are not covered, because they may be added afterwards.
 struct Link {
   std::int64_t index = -1;  ///< position in the chain, from 0; -1 if the chain is empty
-  std::int64_t encoding = kEncoding;
   Extent last;
   std::string status, status_reason;  ///< status of the session when this link was made
   std::string sha256;                 ///< checksum in hexadecimal; "" if the chain is empty
@@ -63,8 +57,7 @@ class Chain {
 struct VerifiedSession {
   std::string session_id, participant, protocol_id;
   std::int64_t trials = 0, links = 0;
-  /// checksum of the last link; "" if an earlier release recorded the session without a chain
-  std::string last_sha256;
+  std::string last_sha256;            ///< checksum of the last link; "" if the links are missing
   std::vector<std::string> problems;  ///< differences from what was recorded; empty if there are none
 };
 
@@ -82,7 +75,7 @@ std::vector<VerifiedSession> verify_database(Database& database, const std::stri
 /// True if one link of the session's chain has this checksum.
 bool holds_link(Database& database, const std::string& session_id, const std::string& sha256);
 
-/// Returns the checksum of a session's last link; "" if the session has no chain.
+/// Returns the checksum of a session's last link; "" if there is no such session.
 std::string last_checksum(Database& database, const std::string& session_id);
 
 /// Returns the SHA-256 over the annotations of a session, which its chain does not cover.

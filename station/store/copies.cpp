@@ -41,13 +41,9 @@ Copies copies_of(const std::string& path, Database& database, const std::string&
   Copies copies;
   const auto stem = std::filesystem::path(path).filename().string();
   for (const auto& name : list_folder(folder_of(path))) {
-    const bool before = name.rfind(stem + ".before-v", 0) == 0,
-               damaged = name.rfind(stem + ".damaged-", 0) == 0;
-    if ((!before && !damaged) || is_log(name)) continue;
+    if (!name.starts_with(stem + ".damaged-") || is_log(name)) continue;
     const auto file = folder_of(path) + "/" + name;
-    const auto found = holds(file, session_ids);
-    if (found == Holds::yes && before) copies.own.push_back(file);
-    if (found == Holds::unreadable || (found == Holds::yes && damaged)) copies.foreign.push_back(file);
+    if (holds(file, session_ids) != Holds::no) copies.foreign.push_back(file);
   }
   if (backup_folder.empty()) return copies;
   const auto id = database.text("SELECT value FROM meta WHERE key = 'database_id'");

@@ -50,7 +50,6 @@ const std::vector<Part>& parts() {
       {"program", "session_id,event_index,program_index", "", kBySession},
       {"estimate", "session_id,event_index,estimate_index", "", kBySession},
       {"link", "session_id,link_index", "", kBySession},
-      {"unsealed", "session_id", "", kBySession},
       {"annotation", "annotation_id", "", kBySession},
   };
   return all;
@@ -235,8 +234,8 @@ MergeReport merge_attached(Database& database, const std::string& source) {
   return report;
 }
 
-/// A private, migrated and checked copy of the source. Because of the copy, neither the source's schema nor a
-/// session that is writing to the source affects the merge.
+/// A private, checked copy of the source, so that a session that is writing to the source does not affect the
+/// merge.
 class SourceCopy {
  public:
   SourceCopy(const std::string& source, const std::string& beside) : path_(beside + ".merging") {

@@ -132,18 +132,6 @@ std::string remembered_database_id(const std::string& database) {
   return lock.is_open() ? note_in(lock.get()).database_id : "";
 }
 
-namespace {
-
-/// Returns a name for the copy of a database before its migration. No file with that name exists: an existing
-/// one could be a copy of another database.
-std::string copy_before_migration(const std::string& path) {
-  const auto name = fmt::format("{}.before-v{}", path, schema_version());
-  if (!file_exists(name)) return name;
-  return name + "-" + time_stamp();
-}
-
-}  // namespace
-
 Writer open_writer(const std::string& name, IfMissing if_missing) {
   const auto path = canonical(name);
   if (if_missing == IfMissing::fail && state_of(path) == FileState::absent) refuse_absent(path);
@@ -153,13 +141,11 @@ Writer open_writer(const std::string& name, IfMissing if_missing) {
   if (state == FileState::absent) create_file(path);
   Database database(path, Database::Access::read_write);
   database.execute("PRAGMA busy_timeout = 2000");
-  const int version = checked_version(database);
+  require_schema(database);
   require_writable(database);
   check_ends(database);
   remove_leftovers(path);
-  if (version < schema_version()) copy_to_file(database, copy_before_migration(path), path);
   database.execute("PRAGMA journal_mode = WAL; PRAGMA synchronous = FULL; PRAGMA foreign_keys = ON");
-  migrate(database);
   recover_sessions(database);
   lock.remember(database.text("SELECT value FROM meta WHERE key = 'database_id'"));
   return {std::move(lock), std::move(database)};
@@ -171,13 +157,9 @@ Database open_reader(const std::string& name) {
   if (state == FileState::absent) refuse_absent(path);
   if (state == FileState::empty) refuse_empty(path);
   auto database = open_plain_reader(path);
-  const int version = checked_version(database);
+  require_schema(database);
   check_ends(database);
-  if (version == schema_version()) return database;
-  Database migrated("", Database::Access::create);
-  copy_database(database, migrated);
-  migrate(migrated);
-  return migrated;
+  return database;
 }
 
 }  // namespace turnpoint::store

@@ -26,9 +26,8 @@ std::string digest(const std::string& salt, const std::string& code) {
 /// True if this code has a tombstone (the mark of a withdrawal): of this station, or of any station if
 /// `station` is "".
 bool has_tombstone(Database& database, const std::string& station, const std::string& code) {
-  Statement rows(
-      database,
-      "SELECT DISTINCT salt, participant_sha256 FROM tombstone WHERE ?1 = '' OR station_id IN ('', ?1)");
+  Statement rows(database,
+                 "SELECT DISTINCT salt, participant_sha256 FROM tombstone WHERE ?1 IN ('', station_id)");
   rows.bind(station);
   while (rows.step())
     if (rows.text(1) == digest(rows.text(0), code)) return true;
@@ -144,8 +143,8 @@ void remove_sessions(Database& database, const std::vector<Tombstone>& tombstone
               stone.station_id)
         .run();
     for (const auto* table :
-         {"annotation", "merged", "link", "unsealed", "self_test", "answer", "friction_level", "program",
-          "estimate", "event", "signal", "tone", "trial", "block", "segment", "session"})
+         {"annotation", "merged", "link", "self_test", "answer", "friction_level", "program", "estimate",
+          "event", "signal", "tone", "trial", "block", "segment", "session"})
       remove(database, table, stone.session_id);
   }
   for (const auto& bearer : bearers) remove_bearer(database, bearer);
@@ -226,7 +225,7 @@ std::vector<Bearer> bearers_of(Database& database, const std::vector<Tombstone>&
   while (rows.step()) {
     const Bearer bearer{rows.text(0), rows.text(1)};
     if (std::any_of(tombstones.begin(), tombstones.end(), [&](const auto& stone) {
-          return (stone.station_id.empty() || stone.station_id == bearer.station_id) &&
+          return stone.station_id == bearer.station_id &&
                  stone.participant_sha256 == digest(stone.salt, bearer.code);
         }))
       bearers.push_back(bearer);

@@ -6,7 +6,9 @@
 
 #include "station/store/backup.hpp"
 #include "station/store/export.hpp"
+#include "station/store/merge.hpp"
 #include "station/store/read.hpp"
+#include "station/store/schema.hpp"
 #include "tests/store/failing_disk.hpp"
 #include "tests/store/sample.hpp"
 #include "tests/support/catch.hpp"
@@ -186,4 +188,25 @@ TEST_CASE("the error for a missing folder names the folder", "[store]") {
       [] { SessionLog::begin("/nonexistent/folder/a.sqlite", sample::start(), sample::segment()); });
   CHECK(fault == ErrorKind::missing);
   CHECK(sample::contains(message, "/nonexistent/folder"));
+}
+
+TEST_CASE("a database of another schema is not changed, and the message says which program reads it",
+          "[store]") {
+  TemporaryFolder folder;
+  const auto db = folder / "a.sqlite";
+  sample::session(db, 1);
+  const int schema = GENERATE(1, kSchema - 1, kSchema + 1);
+  sample::raw(db).execute("PRAGMA user_version = " + std::to_string(schema));
+  const auto before = sample::bytes_of(db);
+  const auto check = [&](auto&& action) {
+    const auto [kind, message] = sample::failure(action);
+    CHECK(kind == ErrorKind::other_schema);
+    CHECK(sample::contains(message, "has schema " + std::to_string(schema)));
+    CHECK(sample::contains(message, schema < kSchema ? "`turnpoint export` of commit 7a2fd061" : "update"));
+  };
+  check([&] { sample::session(db, 1); });
+  check([&] { list_sessions(db); });
+  check([&] { export_data(db, folder / "out", {}); });
+  check([&] { merge(folder / "b.sqlite", db); });
+  CHECK(sample::bytes_of(db) == before);
 }
