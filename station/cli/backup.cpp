@@ -73,7 +73,7 @@ void drill(const Options& options, Context& context) {
 void restore(const Options& options, Context& context) {
   const auto restored =
       store::restore_backup(options.database, {options.backup.directory, options.database_id});
-  if (!restored.changed.empty()) context.exit_code = 1;
+  if (!restored.changed.empty() || !restored.problems.empty()) context.exit_code = 1;
   if (context.json) {
     context.out << Json{{"from", restored.from},
                         {"database_id", restored.database_id},
@@ -81,7 +81,8 @@ void restore(const Options& options, Context& context) {
                         {"sessions", restored.sessions},
                         {"trials", restored.trials},
                         {"rejected", restored.rejected},
-                        {"changed", restored.changed}}
+                        {"changed", restored.changed},
+                        {"problems", restored.problems}}
                        .dump(2)
                 << "\n";
     return;
@@ -95,6 +96,8 @@ void restore(const Options& options, Context& context) {
                "session {} differs from what was recorded, and already did when the backup was made; "
                "`turnpoint verify` lists the differences\n",
                id);
+  for (const auto& problem : restored.problems)
+    fmt::print(context.out, "already in the backup: {}\n", problem);
   if (!restored.quarantined.empty())
     fmt::print(context.out, "the previous file was kept as {}, together with its log if it had one\n",
                restored.quarantined);

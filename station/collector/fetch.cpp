@@ -33,12 +33,11 @@ void require_version(Connection& server) {
   const auto rows = server.query("SELECT schema FROM turnpoint.version");
   const auto schema = rows.count() > 0 ? rows.integer(0, 0) : 0;
   if (schema == store::kSchema) return;
-  throw ServerError(fmt::format("collector: the server has schema {}, but this program reads schema {}; {}",
-                                schema, store::kSchema,
-                                schema < store::kSchema
-                                    ? "the server needs a new collector of this version: deploy/collector"
-                                    : "update Turnpoint here"),
-                    "");
+  throw ServerError(
+      fmt::format(
+          "collector: the server has schema {}, but this program reads schema {}; {}", schema, store::kSchema,
+          schema < store::kSchema ? "update the server: deploy/collector upgrade" : "update Turnpoint here"),
+      "");
 }
 
 /// True for tables whose rows belong to one session.

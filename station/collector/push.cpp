@@ -50,9 +50,8 @@ std::set<std::string> greet(Connection& server) {
     throw ServerError(
         fmt::format("collector: the server has schema {}, this station {}; nothing was sent; {}", schema,
                     store::kSchema,
-                    schema < store::kSchema
-                        ? "the server needs a new collector of this version: deploy/collector"
-                        : "update Turnpoint on this station"),
+                    schema < store::kSchema ? "update the server first: deploy/collector upgrade"
+                                            : "update Turnpoint on this station"),
         "");
   std::set<std::string> stations;
   for (int i = 0; i < rows->count(); ++i)

@@ -65,6 +65,7 @@ struct Restoration {
   /// Sessions whose rows do not match their recorded checksums (see checksum.hpp). The backup already
   /// contained these changes.
   std::vector<std::string> changed;
+  std::vector<std::string> problems;  ///< of the file as a whole (file_problems in verify.hpp), likewise
 };
 
 /// Replaces a missing, empty or damaged database by its newest good backup. The old file and its log are

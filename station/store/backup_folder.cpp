@@ -11,6 +11,8 @@
 #include <regex>
 
 #include "station/store/files.hpp"
+#include "station/store/schema.hpp"
+#include "station/store/seal.hpp"
 
 namespace turnpoint::store {
 
@@ -41,13 +43,16 @@ StoredBackup read_backup(const std::string& path, const std::smatch& name) {
   backup.made_realtime_ns = nanoseconds_of(name[3]);
   try {
     Database database(path, Database::Access::immutable);
+    require_schema(database);
     if (const auto noted = meta(database, "backup_of"); !noted.empty()) backup.stem = noted;
     if (const auto noted = meta(database, "backup_number"); !noted.empty()) backup.number = std::stoll(noted);
     backup.station = database.text("SELECT station_id FROM session LIMIT 1");
     backup.database_id = meta(database, "database_id");
   } catch (const StoreError& error) {
-    const bool damaged = error.kind() == ErrorKind::corrupt || error.kind() == ErrorKind::not_a_database;
-    if (!damaged) backup.trouble = error.what();
+    if (error.kind() == ErrorKind::other_schema)
+      backup.stem.clear();  // nobody can restore it with this program
+    else if (error.kind() != ErrorKind::corrupt && error.kind() != ErrorKind::not_a_database)
+      backup.trouble = error.what();
     backup.database_id.clear();
   }
   return backup;
@@ -72,7 +77,7 @@ std::int64_t next_backup_number(const std::string& folder) {
 }
 
 void write_backup_note(Database& copy, const std::string& stem, std::int64_t number) {
-  Transaction transaction(copy);
+  SealedTransaction transaction(copy);
   Statement note(copy, "INSERT OR REPLACE INTO meta VALUES (?, ?)");
   note.bind("backup_of", stem).run();
   note.bind("backup_number", std::to_string(number)).run();
@@ -80,7 +85,9 @@ void write_backup_note(Database& copy, const std::string& stem, std::int64_t num
 }
 
 void clear_backup_note(Database& copy) {
+  SealedTransaction transaction(copy);
   copy.execute("DELETE FROM meta WHERE key IN ('backup_of', 'backup_number')");
+  transaction.commit();
 }
 
 void remove_backup(const std::string& path) {

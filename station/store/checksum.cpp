@@ -13,10 +13,7 @@
 
 namespace turnpoint::store {
 
-namespace {
-
-/// Hashes each value together with its type and length, so that different rows never give the same bytes.
-void add_row(text::Sha256& hash, const Statement& row) {
+std::string row_bytes(const Statement& row) {
   std::string bytes;
   for (int i = 0; i < row.columns(); ++i) {
     const auto text = row.is_null(i)   ? std::string()
@@ -28,11 +25,8 @@ void add_row(text::Sha256& hash, const Statement& row) {
     bytes += ':';
     bytes += text;
   }
-  bytes += '\n';
-  hash.add(bytes);
+  return bytes + '\n';
 }
-
-}  // namespace
 
 /// Turns the rows of one session into the bytes that are hashed. The statements are prepared only once,
 /// because each trial of a session adds two links.
@@ -53,7 +47,7 @@ class Encoder {
                               schema_, column_list(session, "s."), column_list(protocol_table(), "p."),
                               column_list(rig_table(), "r."), column_list(calibration_table(), "c.")));
     row.bind(id_);
-    while (row.step()) add_row(hash, row);
+    while (row.step()) hash.add(row_bytes(row));
   }
 
   /// Hashes the session's rows after `from`, up to and including `to`, table by table.
@@ -115,7 +109,7 @@ class Encoder {
                                           column_list(table), schema_, table.name, key, key, order));
     hash.add(std::string(table.name) + '\n');
     rows->bind(id_, from, to);
-    while (rows->step()) add_row(hash, *rows);
+    while (rows->step()) hash.add(row_bytes(*rows));
     rows->reset();
   }
 
@@ -318,7 +312,7 @@ std::string annotations_checksum(Database& database, const std::string& session_
                   "SELECT annotation_id, realtime_ns, text FROM annotation WHERE session_id = ?"
                   " ORDER BY annotation_id");
   notes.bind(session_id);
-  while (notes.step()) add_row(hash, notes);
+  while (notes.step()) hash.add(row_bytes(notes));
   return hash.hex();
 }
 
@@ -337,7 +331,7 @@ std::string session_checksum(Database& database, const std::string& schema, cons
   Statement notes(database,
                   "SELECT * FROM " + schema + ".annotation WHERE session_id = ? ORDER BY annotation_id");
   notes.bind(session_id);
-  while (notes.step()) add_row(hash, notes);
+  while (notes.step()) hash.add(row_bytes(notes));
   return hash.hex();
 }
 

@@ -23,7 +23,8 @@ struct Extent {
 /// One link of a session's checksum chain. Its checksum covers the previous link, the session's status, and
 /// all rows committed together with the link: SHA-256 of "turnpoint/SCHEMA INDEX PREVIOUS", status, reason
 /// and the rows, in this order. The first link also covers the session's participant, protocol, rig and
-/// calibration. Annotations are not covered, because they may be added afterwards.
+/// calibration. Annotations are not covered, because they may be added afterwards; the seal covers them
+/// (seal.hpp).
 struct Link {
   std::int64_t index = -1;  ///< position in the chain, from 0; -1 if the chain is empty
   Extent last;
@@ -53,6 +54,10 @@ class Chain {
   Link last_;
 };
 
+/// Returns the bytes that are hashed for a row: each value with its type and length, so that different rows
+/// never give the same bytes.
+std::string row_bytes(const Statement& row);
+
 /// The result of checking one session.
 struct VerifiedSession {
   std::string session_id, participant, protocol_id;
@@ -68,8 +73,7 @@ struct VerifiedSession {
 VerifiedSession verify_session(Database& database, const std::string& session_id,
                                const std::string& schema = "main");
 
-/// Checks every session with verify_session(). Rows that belong to no session are found by check_pages()
-/// (whole_file.hpp).
+/// Checks every session with verify_session().
 std::vector<VerifiedSession> verify_database(Database& database, const std::string& schema = "main");
 
 /// True if one link of the session's chain has this checksum.

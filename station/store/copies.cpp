@@ -5,6 +5,7 @@
 
 #include "station/store/backup_folder.hpp"
 #include "station/store/files.hpp"
+#include "station/store/schema.hpp"
 
 namespace turnpoint::store {
 
@@ -19,6 +20,7 @@ Holds holds(const std::string& path, const std::vector<std::string>& session_ids
       // session.
       if (file_size(path + suffix) > 0) return Holds::unreadable;
     Database copy(path, Database::Access::immutable);
+    require_schema(copy);
     Statement rows(copy, "SELECT 1 FROM session WHERE session_id = ?");
     return std::any_of(session_ids.begin(), session_ids.end(),
                        [&](const auto& id) { return rows.bind(id).step(); })

@@ -8,6 +8,7 @@
 #include "station/store/checksum.hpp"
 #include "station/store/files.hpp"
 #include "station/store/open.hpp"
+#include "station/store/verify.hpp"
 #include "station/store/whole_file.hpp"
 #include "station/system/clocks.hpp"
 
@@ -96,6 +97,7 @@ Drill drill_restore(const std::string& name, const std::string& folder) {
     auto database = open_reader(restored.path());
     drill.sessions = sessions_in(database);
     drill.trials = trials_in(database);
+    drill.problems = file_problems(database);
     for (auto& session : verify_database(database)) {
       if (const auto differs = difference(live, session); !differs.empty())
         session.problems.push_back(differs);

@@ -12,6 +12,7 @@
 #include "station/store/files.hpp"
 #include "station/store/names.hpp"
 #include "station/store/schema.hpp"
+#include "station/store/seal.hpp"
 #include "station/store/whole_file.hpp"
 
 namespace turnpoint::store {
@@ -35,15 +36,19 @@ void refuse_empty(const std::string& path) {
 }
 
 void recover_sessions(Database& database) {
-  Transaction transaction(database);
+  constexpr const char* kEmpty =
+      "status = 'interrupted' AND NOT EXISTS (SELECT 1 FROM trial WHERE trial.session_id = "
+      "session.session_id)"
+      " AND NOT EXISTS (SELECT 1 FROM answer WHERE answer.session_id = session.session_id)";
+  if (database.integer(
+          fmt::format("SELECT count(*) FROM session WHERE status = 'running' OR ({})", kEmpty)) == 0)
+    return;
+  SealedTransaction transaction(database);
   Statement(database, "UPDATE session SET status = 'interrupted', status_reason = ? WHERE status = 'running'")
       .bind(kLostReason)
       .run();
-  Statement(
-      database,
-      "UPDATE session SET status = 'abandoned', status_reason = ? WHERE status = 'interrupted' AND NOT EXISTS"
-      " (SELECT 1 FROM trial WHERE trial.session_id = session.session_id) AND NOT EXISTS"
-      " (SELECT 1 FROM answer WHERE answer.session_id = session.session_id)")
+  Statement(database,
+            fmt::format("UPDATE session SET status = 'abandoned', status_reason = ? WHERE {}", kEmpty))
       .bind(kAbandonedReason)
       .run();
   transaction.commit();
@@ -142,6 +147,7 @@ Writer open_writer(const std::string& name, IfMissing if_missing) {
   Database database(path, Database::Access::read_write);
   database.execute("PRAGMA busy_timeout = 2000");
   require_schema(database);
+  require_no_trigger(database);
   require_writable(database);
   check_ends(database);
   remove_leftovers(path);

@@ -36,6 +36,7 @@ enum class IfMissing { create, fail };
 
 /// Opens a database for writing (WAL, synchronous FULL, foreign keys).
 /// - It checks the file with check_ends(), which takes no longer for a large file than for a small one.
+/// - It refuses a database with triggers that the program has not made.
 /// - It creates a missing file under another name and renames it when it is complete.
 /// - It removes what interrupted operations have left beside the database.
 /// - If root creates files in another user's folder, including the lock, it gives them to that user.

@@ -10,6 +10,8 @@
 #include "station/store/checksum.hpp"
 #include "station/store/files.hpp"
 #include "station/store/open.hpp"
+#include "station/store/schema.hpp"
+#include "station/store/verify.hpp"
 #include "station/store/whole_file.hpp"
 
 namespace turnpoint::store {
@@ -38,6 +40,7 @@ void require_lost(const std::string& path) {
 std::string id_of_lost(const std::string& path) {
   try {
     Database damaged(path, Database::Access::immutable);
+    require_schema(damaged);
     const auto id = damaged.text("SELECT value FROM meta WHERE key = 'database_id'");
     if (id.size() == 36) return id;
   } catch (const StoreError&) {
@@ -134,6 +137,7 @@ void count(Restoration& restoration, const std::string& path) {
   restoration.sessions = restored.integer("SELECT count(*) FROM session");
   restoration.trials = restored.integer("SELECT count(*) FROM trial");
   restoration.database_id = restored.text("SELECT value FROM meta WHERE key = 'database_id'");
+  restoration.problems = file_problems(restored);
   for (const auto& session : verify_database(restored))
     if (!session.problems.empty()) restoration.changed.push_back(session.session_id);
 }

@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <map>
+#include <utility>
+
 namespace turnpoint::store {
 
 namespace {
@@ -356,6 +359,13 @@ CREATE TABLE merged (
   PRIMARY KEY (session_id, sha256)
 ) STRICT, WITHOUT ROWID;
 
+-- How many rows the tables without a chain of checksums have, and the sum of their hashes (seal.hpp).
+CREATE TABLE seal (
+  table_name TEXT PRIMARY KEY,
+  row_count INTEGER NOT NULL,
+  row_sum TEXT NOT NULL
+) STRICT, WITHOUT ROWID;
+
 CREATE TRIGGER session_stays_gone BEFORE INSERT ON session
   WHEN EXISTS (SELECT 1 FROM tombstone WHERE session_id = NEW.session_id)
   BEGIN SELECT RAISE(ABORT, 'the session was withdrawn'); END;
@@ -384,6 +394,26 @@ CREATE TRIGGER {0}_is_never_deleted BEFORE DELETE ON {0}
   throw StoreError(kind, fmt::format("database {}: {}", database.path(), what));
 }
 
+/// An entry of sqlite_schema, by its kind ("table", "index", "trigger" or "view") and name.
+using Entry = std::pair<std::string, std::string>;
+
+/// Returns the SQL of each entry; that of an index that belongs to a key is empty.
+std::map<Entry, std::string> entries_of(Database& database) {
+  std::map<Entry, std::string> entries;
+  Statement rows(database, "SELECT type, name, sql FROM sqlite_schema");
+  while (rows.step()) entries[{rows.text(0), rows.text(1)}] = rows.text(2);
+  return entries;
+}
+
+const std::map<Entry, std::string>& expected_entries() {
+  static const auto expected = [] {
+    Database database(":memory:", Database::Access::create);
+    create_schema(database);
+    return entries_of(database);
+  }();
+  return expected;
+}
+
 }  // namespace
 
 void create_schema(Database& database) {
@@ -410,6 +440,43 @@ void require_schema(Database& database) {
                        schema, kSchema,
                        schema < kSchema ? fmt::format("`turnpoint export` of commit {} reads it", kLastReader)
                                         : "update Turnpoint here"));
+  const auto found = entries_of(database);
+  for (const auto& [entry, sql] : expected_entries()) {
+    if (entry.first != "table") continue;
+    const auto at = found.find(entry);
+    if (at == found.end() || at->second != sql)
+      refuse(ErrorKind::corrupt, database,
+             fmt::format(
+                 "table {} is not as this program makes it; nothing was changed; restore the newest good "
+                 "backup (turnpoint backup --db FILE --dir FOLDER --restore)",
+                 entry.second));
+  }
+}
+
+void require_no_trigger(Database& database) {
+  for (const auto& [entry, sql] : entries_of(database))
+    if (entry.first == "trigger" && expected_entries().count(entry) == 0)
+      refuse(
+          ErrorKind::refused, database,
+          fmt::format("has a trigger that this program has not made, and that could change what is recorded; "
+                      "nothing was changed; if you have made it, remove it: DROP TRIGGER \"{}\"",
+                      entry.second));
+}
+
+std::vector<std::string> schema_problems(Database& database) {
+  std::vector<std::string> problems;
+  const auto found = entries_of(database);
+  for (const auto& [entry, sql] : expected_entries()) {
+    const auto at = found.find(entry);
+    if (at == found.end())
+      problems.push_back(fmt::format("{} {} is missing", entry.first, entry.second));
+    else if (at->second != sql)
+      problems.push_back(fmt::format("{} {} was changed", entry.first, entry.second));
+  }
+  for (const auto& [entry, sql] : found)
+    if (expected_entries().count(entry) == 0)
+      problems.push_back(fmt::format("{} {} was added", entry.first, entry.second));
+  return problems;
 }
 
 }  // namespace turnpoint::store

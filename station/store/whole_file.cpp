@@ -10,6 +10,7 @@
 
 #include "station/store/files.hpp"
 #include "station/store/schema.hpp"
+#include "station/store/seal.hpp"
 #include "station/system/clocks.hpp"
 #include "station/system/uuid.hpp"
 
@@ -124,6 +125,7 @@ void create_file(const std::string& path) {
     database.execute("PRAGMA journal_mode = DELETE; PRAGMA synchronous = EXTRA");
     create_schema(database);
     Statement(database, "INSERT INTO meta VALUES ('database_id', ?)").bind(system::new_uuid()).run();
+    create_seal(database);
   });
 }
 

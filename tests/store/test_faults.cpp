@@ -9,6 +9,8 @@
 #include "station/store/merge.hpp"
 #include "station/store/read.hpp"
 #include "station/store/schema.hpp"
+#include "station/store/verify.hpp"
+#include "station/store/withdraw.hpp"
 #include "tests/store/failing_disk.hpp"
 #include "tests/store/sample.hpp"
 #include "tests/support/catch.hpp"
@@ -209,4 +211,45 @@ TEST_CASE("a database of another schema is not changed, and the message says whi
   check([&] { export_data(db, folder / "out", {}); });
   check([&] { merge(folder / "b.sqlite", db); });
   CHECK(sample::bytes_of(db) == before);
+}
+
+TEST_CASE("a view in place of a table is refused by every function, even one that never ends", "[store]") {
+  TemporaryFolder folder;
+  const auto db = folder / "a.sqlite", dir = folder / "backups", other = folder / "b.sqlite";
+  sample::session(db, 1);
+  sample::session(other, 1, sample::start("P02"));
+  const auto stored = backup(db, {dir, 9});
+  const std::string endless =
+      "WITH RECURSIVE n(i) AS (VALUES (1) UNION ALL SELECT i + 1 FROM n) SELECT i AS annotation_id, i AS "
+      "session_id, i AS realtime_ns, i AS text, i AS key, i AS value FROM n";
+  const std::string table = GENERATE("annotation", "meta");
+  for (const auto& path : {db, stored.path})
+    sample::raw(path).execute("DROP TABLE " + table + "; CREATE VIEW " + table + " AS " + endless);
+  std::filesystem::remove(stored.path + ".sha256");
+  const auto refused = [&](auto&& action) {
+    const auto [kind, message] = sample::failure(action);
+    CHECK(kind == ErrorKind::corrupt);
+    CHECK(sample::contains(message, "table " + table + " is not as this program makes it"));
+  };
+  refused([&] { list_sessions(db); });
+  refused([&] { export_data(db, folder / "out", {}); });
+  refused([&] { sample::session(db, 1); });
+  refused([&] { merge(other, db); });
+  refused([&] { backup(db, {dir, 9}); });
+  refused([&] { verify(db); });
+  refused([&] { withdraw(db, {"P01", "", "", dir}); });
+  CHECK(withdraw(other, {"P02", "", "", dir}).remaining_copies == std::vector{stored.path});
+  CHECK(sample::failure([&] { restore_backup(db, {dir, ""}); }).first == ErrorKind::missing);
+}
+
+TEST_CASE("nothing is recorded in a database with somebody else's trigger, and it can be read", "[store]") {
+  TemporaryFolder folder;
+  const auto db = folder / "a.sqlite";
+  sample::session(db, 1);
+  sample::raw(db).execute("CREATE TRIGGER better AFTER INSERT ON session BEGIN DELETE FROM annotation; END");
+  const auto [kind, message] = sample::failure([&] { sample::session(db, 1); });
+  CHECK(kind == ErrorKind::refused);
+  CHECK(sample::contains(message, "DROP TRIGGER \"better\""));
+  CHECK(list_sessions(db).size() == 1);
+  CHECK(verify(db).problems == std::vector<std::string>{"trigger better was added"});
 }

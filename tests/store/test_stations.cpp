@@ -10,8 +10,11 @@
 #include "station/store/export.hpp"
 #include "station/store/merge.hpp"
 #include "station/store/read.hpp"
+#include "station/store/seal.hpp"
+#include "station/store/verify.hpp"
 #include "station/store/withdraw.hpp"
 #include "station/terms/usage_error.hpp"
+#include "station/text/number.hpp"
 #include "tests/store/sample.hpp"
 #include "tests/support/catch.hpp"
 
@@ -93,7 +96,10 @@ TEST_CASE("merging refuses contradictory rows, says which they are, and changes 
   std::string expected;
   SECTION("a session that was continued on both stations") {
     for (const auto& db : {a, b}) {
-      sample::raw(db).execute("UPDATE session SET status = 'interrupted' WHERE participant = 'P01'");
+      auto raw = sample::raw(db);
+      SealedTransaction change(raw);
+      raw.execute("UPDATE session SET status = 'interrupted' WHERE participant = 'P01'");
+      change.commit();
       auto log = SessionLog::resume(db, id, sample::segment("resume"));
       log.begin_block(sample::block());
       auto trial = sample::answered(4);
@@ -362,4 +368,58 @@ TEST_CASE("an interrupted session can be closed for good, but a completed one ca
   CHECK(read_session(db, open).session.status_reason == "too old");
   CHECK(sample::failure([&] { abandon(db, done, ""); }).first == ErrorKind::refused);
   CHECK_THROWS_AS(annotate(db, done, ""), turnpoint::terms::UsageError);
+}
+
+TEST_CASE("a withdrawal that arrives from elsewhere takes all sessions of the person, sent or not",
+          "[store]") {
+  TemporaryFolder folder;
+  const auto a = folder / "a.sqlite", server = folder / "server.sqlite", dir = folder / "backups";
+  sample::session(a, 3, at_station("P01", "a"));
+  sample::session(a, 2, at_station("P02", "a"));
+  merge(server, a);  // the server has the first sessions only
+  sample::session(a, 1, at_station("P01", "a"),
+                  GENERATE(SessionStatus::completed, SessionStatus::interrupted));
+  { auto died = SessionLog::begin(a, at_station("P01", "a"), sample::segment()); }
+  sample::session(a, 4, at_station("P01", "b"));  // another person, at another station
+  backup(a, {dir, 9});
+  withdraw(server, {"P01", "a", "", ""});
+  auto elsewhere = sample::raw(server);
+  const auto stones = list_tombstones(elsewhere);
+  const auto gone = follow_tombstones(a, stones, dir);
+  CHECK(gone.sessions.size() == 3);
+  CHECK(gone.bearers == std::vector<Bearer>{{"a", "P01"}});
+  CHECK(gone.removed_copies.size() == 1);
+  CHECK(verify(a).good());
+  CHECK(list_sessions(a).size() == 2);
+  CHECK_FALSE(interrupted_session(a));
+  CHECK(sample::failure([&] { sample::session(a, 1, at_station("P01", "a")); }).first == ErrorKind::refused);
+  CHECK(follow_tombstones(a, stones).sessions.empty());
+  CHECK(sample::raw(a).integer("SELECT count(*) FROM tombstone") == 3);
+}
+
+TEST_CASE("a tombstone that names another station or another person than its session deletes nothing",
+          "[store]") {
+  TemporaryFolder folder;
+  const auto a = folder / "a.sqlite";
+  const auto id = sample::session(a, 3, at_station("P01", "a"));
+  const auto hash = [](const std::string& code) { return turnpoint::text::sha256("salt/" + code); };
+  CHECK(follow_tombstones(a, {{id, "salt", hash("P01"), 1, "b"}}).sessions.empty());
+  CHECK(follow_tombstones(a, {{id, "salt", hash("P02"), 1, "a"}}).sessions.empty());
+  CHECK(follow_tombstones(a, {{id, "salt", "", 1, "b"}}).sessions.empty());
+  CHECK(list_sessions(a).size() == 1);
+  CHECK(sample::raw(a).integer("SELECT count(*) FROM tombstone") == 0);
+  CHECK(verify(a).good());
+  CHECK(follow_tombstones(a, {{id, "salt", "", 1, "a"}}).sessions.size() == 1);
+  CHECK(sample::raw(a).integer("SELECT count(*) FROM enrolment") == 1);  // the code stays in use
+}
+
+TEST_CASE("a code whose sessions were withdrawn one by one can still be withdrawn", "[store]") {
+  TemporaryFolder folder;
+  const auto a = folder / "a.sqlite";
+  const auto id = sample::session(a, 1, at_station("P01", "a"));
+  withdraw(a, {"P01", "", id, ""});
+  CHECK(sample::raw(a).integer("SELECT count(*) FROM enrolment") == 1);
+  withdraw(a, {"P01", "", "", ""});
+  CHECK(sample::raw(a).integer("SELECT count(*) FROM participant") == 0);
+  CHECK(verify(a).good());
 }
