@@ -16,6 +16,7 @@
 #include "station/store/places.hpp"
 #include "station/store/read.hpp"
 #include "station/store/schema.hpp"
+#include "station/store/station.hpp"
 
 namespace turnpoint::collector {
 
@@ -295,7 +296,10 @@ void push_sessions(Database& snapshot, const std::set<std::string>& stations, co
 
 PushReport push(const PushOptions& options) {
   PushReport report;
-  store::open_reader(options.database);  // A wrong file is reported before the server is asked.
+  {  // A wrong file, or a copy of another machine's, is reported before the server is asked.
+    auto reader = store::open_reader(options.database);
+    store::require_own_machine(reader, store::machine_identity());
+  }
   Connection server(options.to);
   const auto stations = greet(server);
   Received received;

@@ -13,6 +13,7 @@
 #include "station/store/files.hpp"
 #include "station/store/schema.hpp"
 #include "station/store/seal.hpp"
+#include "station/store/station.hpp"
 
 namespace turnpoint::store {
 
@@ -47,6 +48,7 @@ StoredBackup read_backup(const std::string& path, const std::smatch& name) {
     if (const auto noted = meta(database, "backup_of"); !noted.empty()) backup.stem = noted;
     if (const auto noted = meta(database, "backup_number"); !noted.empty()) backup.number = std::stoll(noted);
     backup.station = database.text("SELECT station_id FROM session LIMIT 1");
+    backup.machine = meta(database, "backup_machine");
     backup.database_id = meta(database, "database_id");
   } catch (const StoreError& error) {
     if (error.kind() == ErrorKind::other_schema)
@@ -81,12 +83,13 @@ void write_backup_note(Database& copy, const std::string& stem, std::int64_t num
   Statement note(copy, "INSERT OR REPLACE INTO meta VALUES (?, ?)");
   note.bind("backup_of", stem).run();
   note.bind("backup_number", std::to_string(number)).run();
+  note.bind("backup_machine", machine_identity()).run();
   transaction.commit();
 }
 
 void clear_backup_note(Database& copy) {
   SealedTransaction transaction(copy);
-  copy.execute("DELETE FROM meta WHERE key IN ('backup_of', 'backup_number')");
+  copy.execute("DELETE FROM meta WHERE key IN ('backup_of', 'backup_number', 'backup_machine')");
   transaction.commit();
 }
 

@@ -5,6 +5,7 @@
 #include <bit>
 #include <optional>
 #include <set>
+#include <string_view>
 #include <utility>
 
 #include "station/store/fields.hpp"
@@ -32,21 +33,28 @@ std::string row_bytes(const Statement& row) {
 /// because each trial of a session adds two links.
 class Encoder {
  public:
-  Encoder(Database& database, std::string schema, std::string session_id)
-      : database_(database), schema_(std::move(schema)), id_(std::move(session_id)) {}
+  /// `station` takes the place of the session's station if it is not "".
+  Encoder(Database& database, std::string schema, std::string session_id, std::string station = "")
+      : database_(database),
+        schema_(std::move(schema)),
+        id_(std::move(session_id)),
+        station_(std::move(station)) {}
 
   /// Hashes the data with which the session started. The session's status is left out: it changes later, and
   /// each link contains it anyway.
   void add_provenance(text::Sha256& hash) const {
     auto session = session_table();
     session.fields.resize(session.fields.size() - 2);
+    auto columns = column_list(session, "s.");
+    constexpr std::string_view kStation = "s.station_id";
+    columns.replace(columns.find(kStation), kStation.size(), "coalesce(nullif(?2, ''), s.station_id)");
     Statement row(database_,
                   fmt::format("SELECT {1}, {2}, {3}, {4} FROM {0}.session s LEFT JOIN {0}.protocol p"
                               " USING (protocol_key) LEFT JOIN {0}.rig r USING (rig_key)"
-                              " LEFT JOIN {0}.calibration c USING (calibration_id) WHERE s.session_id = ?",
-                              schema_, column_list(session, "s."), column_list(protocol_table(), "p."),
+                              " LEFT JOIN {0}.calibration c USING (calibration_id) WHERE s.session_id = ?1",
+                              schema_, columns, column_list(protocol_table(), "p."),
                               column_list(rig_table(), "r."), column_list(calibration_table(), "c.")));
-    row.bind(id_);
+    row.bind(id_, station_);
     while (row.step()) hash.add(row_bytes(row));
   }
 
@@ -114,7 +122,7 @@ class Encoder {
   }
 
   Database& database_;
-  std::string schema_, id_;
+  std::string schema_, id_, station_;
   std::optional<Statement> segment_, block_, trial_, tone_, signal_, event_, check_, answer_, friction_,
       program_, estimate_, extent_;
 };
@@ -284,10 +292,47 @@ VerifiedSession verify_session(Database& database, const std::string& session_id
   return verify_one(database, session_id, schema, enrolled(database, schema, session_id));
 }
 
+namespace {
+
+std::vector<Link> links_of(Database& database, const std::string& session_id) {
+  std::vector<Link> links;
+  Statement rows(database,
+                 fmt::format("SELECT {} FROM link WHERE session_id = ? ORDER BY link_index", kLinkColumns));
+  rows.bind(session_id);
+  while (rows.step()) links.push_back(link_from(rows));
+  return links;
+}
+
+}  // namespace
+
+void renew_links(Database& database, const std::string& session_id) {
+  Encoder encoder(database, "main", session_id);
+  Statement update(database, "UPDATE link SET sha256 = ? WHERE session_id = ? AND link_index = ?");
+  Link previous;
+  for (auto& link : links_of(database, session_id)) {
+    link.sha256 = checksum_of(encoder, previous, link);
+    update.bind(link.sha256, session_id, link.index).run();
+    previous = link;
+  }
+}
+
 bool holds_link(Database& database, const std::string& session_id, const std::string& sha256) {
   Statement row(database, "SELECT 1 FROM link WHERE session_id = ? AND sha256 = ?");
-  row.bind(session_id, sha256);
-  return row.step();
+  if (row.bind(session_id, sha256).step()) return true;
+  // The rows still give the checksums that they had under an earlier name of the station.
+  Statement renamed(database, "SELECT station_id, link_index FROM renamed WHERE session_id = ?");
+  renamed.bind(session_id);
+  while (renamed.step()) {
+    Encoder encoder(database, "main", session_id, renamed.text(0));
+    Link previous;
+    for (auto& link : links_of(database, session_id)) {
+      if (link.index > renamed.integer(1)) break;
+      link.sha256 = checksum_of(encoder, previous, link);
+      if (link.sha256 == sha256) return true;
+      previous = link;
+    }
+  }
+  return false;
 }
 
 std::string last_checksum(Database& database, const std::string& session_id) {

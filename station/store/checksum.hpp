@@ -76,7 +76,10 @@ VerifiedSession verify_session(Database& database, const std::string& session_id
 /// Checks every session with verify_session().
 std::vector<VerifiedSession> verify_database(Database& database, const std::string& schema = "main");
 
-/// True if one link of the session's chain has this checksum.
+/// Computes the checksums of all links of a session anew, after its station got another name (station.hpp).
+void renew_links(Database& database, const std::string& session_id);
+
+/// True if one link of the session's chain has this checksum, or had it under an earlier name of its station.
 bool holds_link(Database& database, const std::string& session_id, const std::string& sha256);
 
 /// Returns the checksum of a session's last link; "" if there is no such session.

@@ -8,6 +8,7 @@
 #include "station/store/checksum.hpp"
 #include "station/store/files.hpp"
 #include "station/store/open.hpp"
+#include "station/store/station.hpp"
 #include "station/store/verify.hpp"
 #include "station/store/whole_file.hpp"
 #include "station/system/clocks.hpp"
@@ -25,7 +26,9 @@ StoredBackup newest_backup(const std::string& directory, const std::string& path
   const auto stem = std::filesystem::path(path).stem().string();
   StoredBackup newest;
   for (const auto& backup : stored_backups(directory))
-    if (backup.readable() ? backup.database_id == id : backup.stem == stem) newest = backup;
+    if (backup.readable() ? backup.database_id == id && !backup.is_of_other_machine(machine_identity())
+                          : backup.stem == stem)
+      newest = backup;
   if (newest.path.empty())
     throw StoreError(ErrorKind::missing,
                      fmt::format("drill: folder {} contains no backup of {}", directory, path));

@@ -26,8 +26,8 @@ const Table<SegmentStart>& segment_table() {
       {"session_id", "segment_index"},
       {field<&SegmentStart::boot_id>({"boot_id"}), field<&SegmentStart::reason>({"reason"}),
        field<&SegmentStart::monotonic_ns>({"monotonic_ns"}),
-       field<&SegmentStart::boottime_ns>({"boottime_ns"}),
-       field<&SegmentStart::realtime_ns>({"realtime_ns"})}};
+       field<&SegmentStart::boottime_ns>({"boottime_ns"}), field<&SegmentStart::realtime_ns>({"realtime_ns"}),
+       field<&SegmentStart::machine>({"machine"})}};
   return table;
 }
 

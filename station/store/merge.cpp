@@ -9,6 +9,7 @@
 #include "station/store/files.hpp"
 #include "station/store/open.hpp"
 #include "station/store/seal.hpp"
+#include "station/store/station.hpp"
 #include "station/store/verify.hpp"
 #include "station/store/whole_file.hpp"
 #include "station/store/withdraw.hpp"
@@ -53,6 +54,7 @@ const std::vector<Part>& parts() {
       {"estimate", "session_id,event_index,estimate_index", "", kBySession},
       {"link", "session_id,link_index", "", kBySession},
       {"annotation", "annotation_id", "", kBySession},
+      {"renamed", "session_id,station_id", "", kBySession},
   };
   return all;
 }
@@ -232,6 +234,7 @@ MergeReport merge_attached(Database& database) {
   database.execute(
       "INSERT INTO temp.bearer SELECT station_id, participant FROM main.session"
       " UNION SELECT station_id, participant FROM temp.incoming");
+  refuse_two_machines(database);
   refuse_shared_places(database);
   for (const auto& part : parts()) refuse_conflicts(database, part);
   for (const auto& part : parts()) copy_rows(database, part);

@@ -5,8 +5,13 @@
 #include <sqlite3.h>
 #include <sys/file.h>
 #include <sys/stat.h>
+#include <sys/statvfs.h>
 #include <unistd.h>
 
+#include <cerrno>
+#include <cstdlib>
+#include <filesystem>
+#include <system_error>
 #include <utility>
 
 #include "station/store/files.hpp"
@@ -64,8 +69,43 @@ void require_writable(Database& database) {
                   database.path()));
 }
 
+/// Copies a file and its log into a temporary database, which SQLite removes when it is closed. Only for a
+/// read-only medium: elsewhere, somebody could write between the two copies.
+Database copy_with_log(const std::string& path) {
+  namespace fs = std::filesystem;
+  auto folder = (fs::temp_directory_path() / "turnpoint-XXXXXX").string();
+  if (::mkdtemp(folder.data()) == nullptr)
+    fail_system(kind_of_errno(errno), "temporary copy of " + path, errno,
+                "set TMPDIR to a folder with space");
+  try {
+    for (const auto* suffix : {"", "-wal"}) fs::copy_file(path + suffix, folder + "/copy" + suffix);
+    Database all("", Database::Access::create);
+    {
+      Database copy(folder + "/copy", Database::Access::read_write);
+      copy_database(copy, all);
+    }
+    fs::remove_all(folder);
+    all.set_path(path);
+    return all;
+  } catch (const std::exception& error) {
+    std::error_code ignored;
+    fs::remove_all(folder, ignored);
+    if (dynamic_cast<const StoreError*>(&error) != nullptr) throw;
+    throw StoreError(ErrorKind::io,
+                     fmt::format("temporary copy of {}, which lies on a read-only medium with its log: {}; "
+                                 "set TMPDIR to a folder with space",
+                                 path, error.what()));
+  }
+}
+
+bool is_read_only_medium(const std::string& path) {
+  struct statvfs disk {};
+  return ::statvfs(path.c_str(), &disk) == 0 && (disk.f_flag & ST_RDONLY) != 0;
+}
+
 /// Opens a file for reading. WAL mode needs shared memory beside the file, which some file systems and
-/// folders do not allow. The file is then read without shared memory, but only if there is no log.
+/// folders do not allow. The file is then read without shared memory, but only if there is no log; with a
+/// log, a copy is read if the medium is read-only.
 Database open_plain_reader(const std::string& path) {
   try {
     Database database(path, Database::Access::read_only);
@@ -75,7 +115,11 @@ Database open_plain_reader(const std::string& path) {
   } catch (const StoreError& error) {
     const bool no_shared_memory =
         error.kind() == ErrorKind::cannot_open || error.kind() == ErrorKind::read_only;
-    if (!no_shared_memory || file_exists(path + "-wal")) throw;
+    if (!no_shared_memory) throw;
+    if (file_size(path + "-wal") > 0) {
+      if (!is_read_only_medium(path)) throw;
+      return copy_with_log(path);
+    }
   }
   return Database(path, Database::Access::immutable);
 }

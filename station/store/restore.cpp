@@ -11,6 +11,7 @@
 #include "station/store/files.hpp"
 #include "station/store/open.hpp"
 #include "station/store/schema.hpp"
+#include "station/store/station.hpp"
 #include "station/store/verify.hpp"
 #include "station/store/whole_file.hpp"
 
@@ -90,6 +91,21 @@ void refuse_unread(const StoredBackup& backup) {
                                backup.path, backup.trouble));
 }
 
+/// Leaves out backups that another machine has made. Throws if no others are left, because then either the
+/// machine was replaced, or these are backups of the original of a copy, whose data do not belong here.
+void keep_own(const std::string& path, std::vector<StoredBackup>& backups) {
+  const auto here = machine_identity();
+  const auto all = backups;
+  std::erase_if(backups, [&](const auto& backup) { return backup.is_of_other_machine(here); });
+  if (all.empty() || !backups.empty()) return;
+  throw StoreError(
+      ErrorKind::other_machine,
+      fmt::format(
+          "restore: another machine made the backups of {} (the newest, of station {}: {}); nothing was "
+          "changed; if this machine replaces that one, add --moved",
+          path, all.back().station, all.back().path));
+}
+
 struct Candidates {
   std::vector<StoredBackup> backups;    ///< backups of the lost database, newest first
   std::vector<std::string> unreadable;  ///< unreadable files with this database's name
@@ -108,6 +124,7 @@ Candidates candidates_for(const std::string& path, const RestoreOptions& options
     ids.insert(backup.database_id);
   }
   if (ids.size() > 1) refuse_ambiguous(path, candidates.backups);
+  if (options.whose == Whose::found) keep_own(path, candidates.backups);
   std::reverse(candidates.backups.begin(), candidates.backups.end());
   return candidates;
 }
@@ -127,9 +144,12 @@ bool is_good(const StoredBackup& candidate) {
 }
 
 /// Copies the backup to `path`.restored and checks the copy.
-void prepare(const std::string& path, const StoredBackup& candidate) {
+void prepare(const std::string& path, const StoredBackup& candidate, Whose whose) {
   auto good = open_reader(candidate.path);
-  copy_to_file(good, path + ".restored", candidate.path, clear_backup_note);
+  copy_to_file(good, path + ".restored", candidate.path, [&](Database& copy) {
+    clear_backup_note(copy);
+    if (whose == Whose::moved) move_station(copy, machine_identity());
+  });
 }
 
 void count(Restoration& restoration, const std::string& path) {
@@ -156,7 +176,7 @@ Restoration restore_backup(const std::string& name, const RestoreOptions& option
       restoration.rejected.push_back(candidate.path);
       continue;
     }
-    prepare(path, candidate);
+    prepare(path, candidate, options.whose);
     restoration.quarantined = replace_by_restored(path);
     restoration.from = candidate.path;
     count(restoration, path);

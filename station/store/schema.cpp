@@ -115,6 +115,7 @@ CREATE TABLE segment (
   monotonic_ns INTEGER NOT NULL,
   boottime_ns INTEGER NOT NULL,
   realtime_ns INTEGER NOT NULL,
+  machine TEXT NOT NULL,
   PRIMARY KEY (session_id, segment_index)
 ) STRICT, WITHOUT ROWID;
 
@@ -357,6 +358,14 @@ CREATE TABLE merged (
   source_database_id TEXT NOT NULL,
   realtime_ns INTEGER NOT NULL,
   PRIMARY KEY (session_id, sha256)
+) STRICT, WITHOUT ROWID;
+
+-- A session whose station got another name (station.hpp): the name before, and the last link that was made under it.
+CREATE TABLE renamed (
+  session_id TEXT NOT NULL REFERENCES session (session_id),
+  station_id TEXT NOT NULL,
+  link_index INTEGER NOT NULL,
+  PRIMARY KEY (session_id, station_id)
 ) STRICT, WITHOUT ROWID;
 
 -- How many rows the tables without a chain of checksums have, and the sum of their hashes (seal.hpp).

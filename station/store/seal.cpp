@@ -23,7 +23,7 @@ const std::vector<Sealed>& sealed_tables() {
   static const std::vector<Sealed> all = [] {
     std::vector<Sealed> list;
     for (const auto* table : {"meta", "participant", "enrolment", "same_person", "lease", "tombstone",
-                              "protocol", "rig", "calibration", "annotation", "merged"})
+                              "protocol", "rig", "calibration", "annotation", "merged", "renamed"})
       list.push_back({table, fmt::format("SELECT * FROM {}", table)});
     list.push_back(
         {"session",

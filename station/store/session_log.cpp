@@ -15,6 +15,7 @@
 #include "station/store/read.hpp"
 #include "station/store/rows.hpp"
 #include "station/store/seal.hpp"
+#include "station/store/station.hpp"
 #include "station/store/withdraw.hpp"
 #include "station/system/clocks.hpp"
 #include "station/system/uuid.hpp"
@@ -187,6 +188,7 @@ SessionLog SessionLog::begin(const std::string& path, const SessionStart& start,
   auto& database = impl->writer.database;
   const auto id = system::new_uuid();
   SealedTransaction transaction(database);
+  claim_station(database, start.station_id, segment.machine);
   insert_session(database, id, start);
   insert_segment(database, id, 1, segment);
   impl->chain.emplace(database, id);
@@ -222,6 +224,7 @@ SessionLog SessionLog::resume(const std::string& path, const std::string& id, co
                             static_cast<int>(*trial)});
   open.reset();
   SealedTransaction transaction(database);
+  claim_station(database, stored.session.start.station_id, segment.machine);
   insert_segment(database, id, index, segment);
   impl->write_events();
   Statement(database, "UPDATE session SET status = 'running', status_reason = '' WHERE session_id = ?")

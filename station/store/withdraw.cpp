@@ -146,8 +146,8 @@ void remove_sessions(Database& database, const std::vector<Tombstone>& tombstone
               stone.station_id)
         .run();
     for (const auto* table :
-         {"annotation", "merged", "link", "self_test", "answer", "friction_level", "program", "estimate",
-          "event", "signal", "tone", "trial", "block", "segment", "session"})
+         {"annotation", "merged", "renamed", "link", "self_test", "answer", "friction_level", "program",
+          "estimate", "event", "signal", "tone", "trial", "block", "segment", "session"})
       remove(database, table, stone.session_id);
   }
   for (const auto& bearer : bearers) remove_bearer(database, bearer);

@@ -8,6 +8,7 @@
 #include "station/store/merge.hpp"
 #include "station/store/people.hpp"
 #include "station/store/places.hpp"
+#include "station/store/station.hpp"
 #include "station/store/withdraw.hpp"
 #include "tests/store/sample.hpp"
 
@@ -47,6 +48,8 @@ void fill_every_table(const std::string& folder) {
   auto there = sample::start("P07");
   there.station_id = "bench-b";
   sample::session(other, 2, there);
+  name_station(other, {"bench-b", Whose::found, false});
+  name_station(other, {"bench-c", Whose::found, true});
   merge(db, other);
   join(db, "P01", "P07");
   withdraw(db, {"P03", "", "", ""});

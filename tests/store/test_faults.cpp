@@ -1,4 +1,6 @@
 #include <fcntl.h>
+#include <sched.h>
+#include <sys/mount.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -252,4 +254,34 @@ TEST_CASE("nothing is recorded in a database with somebody else's trigger, and i
   CHECK(sample::contains(message, "DROP TRIGGER \"better\""));
   CHECK(list_sessions(db).size() == 1);
   CHECK(verify(db).problems == std::vector<std::string>{"trigger better was added"});
+}
+
+TEST_CASE("a database on a read-only medium is read together with its log", "[store]") {
+  TemporaryFolder folder;
+  const auto db = folder / "a.sqlite", medium = folder / "medium";
+  std::filesystem::create_directory(medium);
+  {
+    auto log = SessionLog::begin(db, sample::start(), sample::segment());
+    log.begin_block(sample::block());
+    log.append(sample::answered(0));
+    for (const auto* suffix : {"", "-wal"})
+      std::filesystem::copy_file(db + suffix, medium + "/a.sqlite" + suffix);
+  }
+  REQUIRE(std::filesystem::file_size(medium + "/a.sqlite-wal") > 0);
+  const int status = in_child([&] {
+    const int spaces = CLONE_NEWNS | (::geteuid() == 0 ? 0 : CLONE_NEWUSER);
+    if (::unshare(spaces) != 0 || ::mount("none", "/", nullptr, MS_REC | MS_PRIVATE, nullptr) != 0 ||
+        ::mount(medium.c_str(), medium.c_str(), nullptr, MS_BIND, nullptr) != 0 ||
+        ::mount("none", medium.c_str(), nullptr, MS_BIND | MS_REMOUNT | MS_RDONLY, nullptr) != 0)
+      return 77;
+    const auto copy = medium + "/a.sqlite";
+    if (list_sessions(copy).at(0).trials != 1) return 1;
+    if (!verify(copy).good()) return 2;
+    if (export_data(copy, folder / "out", {})[0].rows != 1) return 3;
+    if (backup(copy, {folder / "backups", 0}).trials != 1) return 4;
+    if (merge(folder / "b.sqlite", copy).sessions.size() != 1) return 5;
+    return sample::failure([&] { sample::session(copy, 1); }).first == ErrorKind::read_only ? 0 : 6;
+  });
+  if (status == 77) WARN("not tested: this machine does not allow a mount");
+  CHECK((status == 0 || status == 77));
 }

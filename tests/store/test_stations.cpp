@@ -11,6 +11,7 @@
 #include "station/store/merge.hpp"
 #include "station/store/read.hpp"
 #include "station/store/seal.hpp"
+#include "station/store/station.hpp"
 #include "station/store/verify.hpp"
 #include "station/store/withdraw.hpp"
 #include "station/terms/usage_error.hpp"
@@ -422,4 +423,140 @@ TEST_CASE("a code whose sessions were withdrawn one by one can still be withdraw
   withdraw(a, {"P01", "", "", ""});
   CHECK(sample::raw(a).integer("SELECT count(*) FROM participant") == 0);
   CHECK(verify(a).good());
+}
+
+namespace {
+
+/// Makes a finished session at a station on a machine.
+std::string recorded(const std::string& db, const std::string& participant, const std::string& station,
+                     const std::string& machine) {
+  auto segment = sample::segment();
+  segment.machine = machine;
+  auto log = SessionLog::begin(db, at_station(participant, station), segment);
+  log.begin_block(sample::block());
+  log.append(sample::answered(0));
+  log.finish(SessionStatus::completed, "");
+  return log.session().session_id;
+}
+
+}  // namespace
+
+TEST_CASE("a machine is known by its machine-id and its board, and an image's name gets a part of that",
+          "[store]") {
+  TemporaryFolder folder;
+  CHECK(machine_identity(folder.path).empty());
+  const auto write = [&](const std::string& path, const std::string& text) {
+    const auto name = std::filesystem::path(folder / path.c_str());
+    std::filesystem::create_directories(name.parent_path());
+    std::ofstream(name) << text;
+    return name;
+  };
+  write("etc/machine-id", "4c1d\n");
+  const auto of_card = machine_identity(folder.path);
+  const auto uuid = write("sys/class/dmi/id/product_uuid", "uuid-1\n");
+  std::filesystem::permissions(uuid, std::filesystem::perms::owner_read);
+  CHECK(machine_identity(folder.path) == of_card);  // it must not depend on who asks
+  std::filesystem::permissions(uuid, std::filesystem::perms::others_read, std::filesystem::perm_options::add);
+  const auto of_pc = machine_identity(folder.path);
+  CHECK(of_pc != of_card);
+  write("sys/firmware/devicetree/base/serial-number", std::string("100000008a7d\0", 13));
+  const auto of_board = machine_identity(folder.path);
+  CHECK(of_board != of_pc);
+  CHECK(of_board.size() == 64);
+  write("etc/turnpoint/station", "lab-3\n");
+  CHECK(suggested_station_name(folder.path) == "lab-3");
+}
+
+TEST_CASE("a database keeps the name of its station, whatever the host is called", "[store]") {
+  TemporaryFolder folder;
+  const auto db = folder / "a.sqlite";
+  CHECK(station_name(db) == suggested_station_name());
+  recorded(db, "P01", "lab-1", "board-1");
+  CHECK(station_name(db) == "lab-1");
+  CHECK(read_station(db).machine == "board-1");
+  CHECK(verify(db).good());
+}
+
+TEST_CASE("a copied card is noticed, and becomes a station of its own when it is named", "[store]") {
+  TemporaryFolder folder;
+  const auto db = folder / "a.sqlite", copy = folder / "copy.sqlite", hub = folder / "hub.sqlite";
+  const auto first = recorded(db, "P01", "lab", "board-1");
+  sample::raw(db).execute("PRAGMA wal_checkpoint(TRUNCATE)");
+  std::filesystem::copy_file(db, copy);
+  const auto [kind, message] = sample::failure([&] { recorded(copy, "P02", "lab", "board-2"); });
+  CHECK(kind == ErrorKind::other_machine);
+  CHECK(sample::contains(message, "if this is a copy"));
+  CHECK(sample::contains(message, "--moved"));
+  CHECK(sample::failure([&] { name_station(copy, {}, "board-2"); }).first == ErrorKind::other_machine);
+  CHECK(sample::failure([&] { name_station(copy, {"lab"}, "board-2"); }).first == ErrorKind::refused);
+  CHECK(sample::failure([&] { name_station(copy, {"no name"}, "board-2"); }).first == ErrorKind::refused);
+  const auto named = name_station(copy, {"lab-2"}, "board-2");
+  CHECK(named.is_new_identity);
+  CHECK(named.database_id != read_station(db).database_id);
+  recorded(copy, "P02", station_name(copy), "board-2");
+  recorded(db, "P02", station_name(db), "board-1");
+  merge(hub, db);
+  merge(hub, copy);
+  CHECK(list_sessions(hub).size() == 3);
+  CHECK(list_sessions(hub, {"", "P02@lab-2", ""}).size() == 1);
+  for (const auto& path : {db, copy, hub}) CHECK(verify(path).good());
+}
+
+TEST_CASE("a replaced board goes on as the same station when somebody has said so", "[store]") {
+  TemporaryFolder folder;
+  const auto db = folder / "a.sqlite", hub = folder / "hub.sqlite";
+  recorded(db, "P01", "lab", "board-1");
+  merge(hub, db);
+  StationName moved;
+  moved.whose = Whose::moved;
+  const auto named = name_station(db, moved, "board-2");
+  CHECK(named.name == "lab");
+  CHECK_FALSE(named.is_new_identity);
+  recorded(db, "P01", "lab", "board-2");
+  merge(hub, db);
+  CHECK(list_sessions(hub, {"", "P01", ""}).size() == 2);
+  CHECK(verify(db).good());
+}
+
+TEST_CASE("two machines with one name are not merged until one of them has another, which exports outlive",
+          "[store]") {
+  TemporaryFolder folder;
+  const auto a = folder / "a.sqlite", b = folder / "b.sqlite", hub = folder / "hub.sqlite";
+  recorded(a, "P01", "turnpoint", "board-1");
+  recorded(b, "P01", "turnpoint", "board-2");
+  export_data(b, folder / "out", {});
+  const auto csv = folder / "out/two-boundaries/sessions.csv";
+  merge(hub, a);
+  const auto [kind, message] = sample::failure([&] { merge(hub, b); });
+  CHECK(kind == ErrorKind::conflict);
+  CHECK(sample::contains(message, "two machines have recorded as station turnpoint"));
+  StationName how{"lab-2"};
+  how.stored_sessions = true;
+  CHECK(name_station(b, how, "board-2").sessions == 1);
+  CHECK(verify(b, {"", csv}).good());
+  merge(hub, b);
+  CHECK(list_sessions(hub, {"", "P01@lab-2", ""}).size() == 1);
+  CHECK(verify(hub, {"", csv}).good());
+  // Nobody is exempt: rows that differ do not give the earlier checksum, even with a new chain.
+  auto raw = sample::raw(b);
+  raw.execute(
+      "DROP TRIGGER trial_is_never_changed; DROP TRIGGER link_is_never_changed; UPDATE trial SET level = 3");
+  const auto id = list_sessions(raw)[0].session_id;
+  CHECK_FALSE(verify_session(raw, id).problems.empty());
+  renew_links(raw, id);
+  CHECK(verify_session(raw, id).problems.empty());
+  CHECK_FALSE(verify(b, {"", csv}).sessions[0].problems.empty());
+}
+
+TEST_CASE("under a new name, a station's participants stay the same people", "[store]") {
+  TemporaryFolder folder;
+  const auto db = folder / "a.sqlite";
+  recorded(db, "P01", "lab", "board-1");
+  name_station(db, {"attic"}, "board-1");
+  recorded(db, "P01", station_name(db), "board-1");
+  const auto sessions = list_sessions(db, {"", "P01", ""});
+  REQUIRE(sessions.size() == 2);
+  CHECK(sessions[1].session_index == 2);
+  CHECK(sessions[1].sequence_index == sessions[0].sequence_index);
+  CHECK(verify(db).good());
 }
