@@ -1,9 +1,12 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <random>
+#include <set>
 
 #include "station/store/annotate.hpp"
 #include "station/store/backup.hpp"
@@ -559,4 +562,92 @@ TEST_CASE("under a new name, a station's participants stay the same people", "[s
   CHECK(sessions[1].session_index == 2);
   CHECK(sessions[1].sequence_index == sessions[0].sequence_index);
   CHECK(verify(db).good());
+}
+
+namespace {
+
+/// A station, its backups, and a second database that stands for the collector: it gets the station's
+/// sessions, and each of the two follows the withdrawals of the other.
+struct Room {
+  TemporaryFolder folder;
+  std::string station = folder / "station.sqlite", server = folder / "server.sqlite",
+              backups = folder / "backups";
+  std::set<std::string> staying;  ///< sessions of the participant who stays
+  bool withdrawn = false;
+
+  Room() {
+    staying.insert(recorded(station, "P02", "a", ""));
+    send();
+  }
+
+  void send() { merge(server, station); }
+
+  static void follow(const std::string& there, const std::string& here, const std::string& backups) {
+    auto reader = sample::raw(there);
+    follow_tombstones(here, list_tombstones(reader), backups);
+  }
+
+  void withdraw_at(const std::string& database) {
+    withdraw(database, {"P01", "a", "", database == station ? backups : ""});
+    withdrawn = true;
+  }
+
+  void step(int which) {
+    if (which == 0) recorded(station, "P01", "a", "");
+    if (which == 1) staying.insert(recorded(station, "P02", "a", ""));
+    if (which == 2) sample::session(station, 1, at_station("P01", "a"), SessionStatus::interrupted);
+    if (which == 3) send();
+    if (which == 4) withdraw_at(server);
+    if (which == 5) withdraw_at(station);
+    if (which == 6) follow(server, station, backups);
+    if (which == 7) follow(station, server, "");
+    if (which == 8) backup(station, {backups, 0});
+  }
+
+  /// Returns the ids of a participant's sessions.
+  static std::set<std::string> sessions(const std::string& database, const std::string& code) {
+    std::set<std::string> ids;
+    for (const auto& session : list_sessions(database))
+      if (session.start.participant == code) ids.insert(session.session_id);
+    return ids;
+  }
+};
+
+}  // namespace
+
+TEST_CASE("in whatever order things happen, withdrawn is withdrawn, and nothing else is", "[store]") {
+  const auto* wanted = std::getenv("TURNPOINT_INTERLEAVINGS");
+  const int runs = wanted != nullptr ? std::atoi(wanted) : 20;
+  std::mt19937 random(20261128);
+  int withdrawals = 0;
+  for (int run = 0; run < runs; ++run) {
+    Room room;
+    std::string steps;
+    for (int i = 0; i < 8; ++i) {
+      const int which = static_cast<int>(random() % 9);
+      steps += std::to_string(which) + " ";
+      try {
+        room.step(which);
+      } catch (const StoreError& error) {
+        // a withdrawn code is refused, and a participant whom the database has never had cannot withdraw
+        CHECK((error.kind() == ErrorKind::refused || error.kind() == ErrorKind::missing));
+      }
+    }
+    INFO(steps);
+    Room::follow(room.server, room.station, room.backups);
+    room.send();
+    Room::follow(room.station, room.server, "");
+    Room::follow(room.server, room.station, room.backups);
+    for (const auto& database : {room.station, room.server}) {
+      CHECK(verify(database).good());
+      CHECK(Room::sessions(database, "P02") == room.staying);
+      if (room.withdrawn) CHECK(Room::sessions(database, "P01").empty());
+    }
+    CHECK(Room::sessions(room.station, "P01") == Room::sessions(room.server, "P01"));
+    if (std::filesystem::exists(room.backups) && room.withdrawn)
+      for (const auto& path : backups_in(room.backups, room.station))
+        CHECK(Room::sessions(path, "P01").empty());
+    withdrawals += room.withdrawn ? 1 : 0;
+  }
+  CHECK(withdrawals > runs / 4);
 }
