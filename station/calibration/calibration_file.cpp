@@ -122,10 +122,8 @@ rig::SurfaceFit::Parameter read_parameter(const text::Value& table, std::size_t 
   return parameter;
 }
 
-/// Calibrations of earlier releases have a different kind of boundary fit, which nothing ever used. Skip it.
-std::optional<BoundaryFit> read_boundary(const text::Value& table, text::Findings& findings) {
+BoundaryFit read_boundary(const text::Value& table, text::Findings& findings) {
   text::TableReader reader(table, "boundary", findings);
-  if (reader.has("law")) return std::nullopt;
   BoundaryFit fit;
   fit.edge = reader.string("edge", phrase("problem.measured_edge"));
   const Range mm{-1e6, 1e6, Ends::closed, "mm"};
@@ -133,10 +131,8 @@ std::optional<BoundaryFit> read_boundary(const text::Value& table, text::Finding
              boundary = reader.numbers("boundary_mm", mm), sd = reader.numbers("sd_mm", mm),
              residual = reader.numbers("residual_mm", mm),
              deviation = reader.numbers("deviation", {-large, large}),
-             outlier = reader.numbers("outlier", {0, 1});
+             outlier = reader.numbers("outlier", {0, 1}), left_out = reader.numbers("left_out", {0, 1});
   const auto n = frequency.size();
-  // in calibration files of earlier releases `left_out` is missing, because the fit used every boundary
-  const auto left_out = reader.has("left_out") ? reader.numbers("left_out", {0, 1}) : std::vector<double>(n);
   if (same_length(reader, "boundary_mm", boundary.size(), n) && same_length(reader, "sd_mm", sd.size(), n) &&
       same_length(reader, "residual_mm", residual.size(), n) &&
       same_length(reader, "deviation", deviation.size(), n) &&

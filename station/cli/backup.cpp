@@ -18,7 +18,7 @@ struct Options {
   std::string database;
   store::BackupOptions backup;
   std::string database_id, to = "folder";
-  bool restore = false, drill = false;
+  bool restore = false, drill = false, moved = false;
 };
 
 void back_up(const Options& options, Context& context) {
@@ -72,8 +72,9 @@ void drill(const Options& options, Context& context) {
 
 void restore(const Options& options, Context& context) {
   const auto restored =
-      store::restore_backup(options.database, {options.backup.directory, options.database_id});
-  if (!restored.changed.empty()) context.exit_code = 1;
+      store::restore_backup(options.database, {options.backup.directory, options.database_id,
+                                               options.moved ? store::Whose::moved : store::Whose::found});
+  if (!restored.changed.empty() || !restored.problems.empty()) context.exit_code = 1;
   if (context.json) {
     context.out << Json{{"from", restored.from},
                         {"database_id", restored.database_id},
@@ -81,7 +82,8 @@ void restore(const Options& options, Context& context) {
                         {"sessions", restored.sessions},
                         {"trials", restored.trials},
                         {"rejected", restored.rejected},
-                        {"changed", restored.changed}}
+                        {"changed", restored.changed},
+                        {"problems", restored.problems}}
                        .dump(2)
                 << "\n";
     return;
@@ -95,6 +97,8 @@ void restore(const Options& options, Context& context) {
                "session {} differs from what was recorded, and already did when the backup was made; "
                "`turnpoint verify` lists the differences\n",
                id);
+  for (const auto& problem : restored.problems)
+    fmt::print(context.out, "already in the backup: {}\n", problem);
   if (!restored.quarantined.empty())
     fmt::print(context.out, "the previous file was kept as {}, together with its log if it had one\n",
                restored.quarantined);
@@ -120,6 +124,9 @@ void add_backup(CommandLine& app, Context& context) {
   command->add_option(
       "--database-id", options->database_id,
       "With --restore: id of the database, if the folder contains backups of several databases");
+  command->add_flag(
+      "--moved", options->moved,
+      "With --restore: this machine replaces the one that made the backups (another board or disk)");
   command
       ->add_option(
           "--to", options->to,

@@ -67,6 +67,7 @@ void add_power(CommandLine& app, Context& context);
 void add_design(CommandLine& app, Context& context);
 void add_preview(CommandLine& app, Context& context);
 void add_station(CommandLine& app, Context& context);
+void add_station_name(CommandLine& app, Context& context);
 void add_push(CommandLine& app, Context& context);
 void add_receive(CommandLine& app, Context& context);
 void add_collector_schema(CommandLine& app, Context& context);

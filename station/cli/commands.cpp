@@ -15,14 +15,17 @@ namespace {
 
 using Add = void (*)(CommandLine&, Context&);
 constexpr Add kCommands[] = {
-    add_map,       add_field,         add_plan,      add_synth,
-    add_trace,     add_run,           add_resume,    add_export,
-    add_sessions,  add_backup,        add_merge,     add_join,
-    add_verify,    add_withdraw,      add_annotate,  add_check,
-    add_new,       add_protocols,     add_report,    add_power,
-    add_doctor,    add_amplifier_off, add_calibrate, add_figures,
-    add_design,    add_preview,       add_station,   add_operator_code,
-    add_self_test, add_push,          add_receive,   add_collector_schema,
+    add_map,           add_field,         add_plan,
+    add_synth,         add_trace,         add_run,
+    add_resume,        add_export,        add_sessions,
+    add_backup,        add_merge,         add_join,
+    add_verify,        add_withdraw,      add_annotate,
+    add_check,         add_new,           add_protocols,
+    add_report,        add_power,         add_doctor,
+    add_amplifier_off, add_calibrate,     add_figures,
+    add_design,        add_preview,       add_station,
+    add_station_name,  add_operator_code, add_self_test,
+    add_push,          add_receive,       add_collector_schema,
 };
 
 constexpr auto kDescription = "Turnpoint: a psychophysics station for ultrasonic tapered friction displays";

@@ -31,19 +31,15 @@ Json to_json(const store::Verification& result) {
 }
 
 void print(std::ostream& out, const store::Verification& result) {
-  int changed = 0, unsealed = 0;
+  int changed = 0;
   for (const auto& s : result.sessions) {
     changed += !s.problems.empty();
-    unsealed += s.links == 0;
     fmt::print(out, "{}  {} {}, {} trials: {}\n", s.session_id, s.participant, s.protocol_id, s.trials,
-               !s.problems.empty() ? "CHANGED"
-               : s.links == 0      ? "no checksums, because an earlier release recorded this session"
-                                   : "as recorded, checksum " + s.last_sha256);
+               s.problems.empty() ? "as recorded, checksum " + s.last_sha256 : "CHANGED");
     for (const auto& problem : s.problems) fmt::print(out, "    {}\n", problem);
   }
   for (const auto& problem : result.problems) fmt::print(out, "{}\n", problem);
-  fmt::print(out, "{} sessions, {} changed, {} without checksums\n", result.sessions.size(), changed,
-             unsealed);
+  fmt::print(out, "{} sessions, {} changed\n", result.sessions.size(), changed);
 }
 
 void verify(const Options& options, Context& context) {

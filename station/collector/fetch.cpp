@@ -32,12 +32,11 @@ std::string make_folder() {
 void require_version(Connection& server) {
   const auto rows = server.query("SELECT schema FROM turnpoint.version");
   const auto schema = rows.count() > 0 ? rows.integer(0, 0) : 0;
-  if (schema == store::schema_version()) return;
+  if (schema == store::kSchema) return;
   throw ServerError(
-      fmt::format("collector: the server has schema {}, but this program reads schema {}; {}", schema,
-                  store::schema_version(),
-                  schema < store::schema_version() ? "update the server: deploy/collector upgrade"
-                                                   : "update Turnpoint here"),
+      fmt::format(
+          "collector: the server has schema {}, but this program reads schema {}; {}", schema, store::kSchema,
+          schema < store::kSchema ? "update the server: deploy/collector upgrade" : "update Turnpoint here"),
       "");
 }
 

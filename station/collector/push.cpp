@@ -16,6 +16,7 @@
 #include "station/store/places.hpp"
 #include "station/store/read.hpp"
 #include "station/store/schema.hpp"
+#include "station/store/station.hpp"
 
 namespace turnpoint::collector {
 
@@ -35,7 +36,7 @@ struct Known {
 std::set<std::string> greet(Connection& server) {
   std::optional<Rows> rows;
   try {
-    rows.emplace(server.query("SELECT schema, encoding, station_id FROM turnpoint.hello()"));
+    rows.emplace(server.query("SELECT schema, station_id FROM turnpoint.hello()"));
   } catch (const ServerError& error) {
     const std::set<std::string> absent = {"3F000", "42883", "42P01", "42501"};
     if (absent.count(error.state()) == 0) throw;
@@ -46,16 +47,16 @@ std::set<std::string> greet(Connection& server) {
         error.state());
   }
   const auto schema = rows->count() > 0 ? rows->integer(0, 0) : 0;
-  if (schema != store::schema_version())
+  if (schema != store::kSchema)
     throw ServerError(
         fmt::format("collector: the server has schema {}, this station {}; nothing was sent; {}", schema,
-                    store::schema_version(),
-                    schema < store::schema_version() ? "update the server first: deploy/collector upgrade"
-                                                     : "update Turnpoint on this station"),
+                    store::kSchema,
+                    schema < store::kSchema ? "update the server first: deploy/collector upgrade"
+                                            : "update Turnpoint on this station"),
         "");
   std::set<std::string> stations;
   for (int i = 0; i < rows->count(); ++i)
-    if (!rows->is_null(i, 2)) stations.insert(rows->text(i, 2));
+    if (!rows->is_null(i, 1)) stations.insert(rows->text(i, 1));
   return stations;
 }
 
@@ -174,8 +175,6 @@ PushedSession push_session(Database& database, const store::SessionRecord& sessi
   pushed.sha256 = verified.last_sha256;
   if (!verified.problems.empty())
     pushed.problem = verified.problems.front();
-  else if (verified.last_sha256.empty())
-    pushed.problem = "an earlier release recorded it without checksums, so the server could not verify it";
   else if (known != nullptr)
     pushed.problem = conflict_of(database, id, known->last);
   if (!pushed.problem.empty()) return pushed;
@@ -297,7 +296,10 @@ void push_sessions(Database& snapshot, const std::set<std::string>& stations, co
 
 PushReport push(const PushOptions& options) {
   PushReport report;
-  store::open_reader(options.database);  // A wrong file is reported before the server is asked.
+  {  // A wrong file, or a copy of another machine's, is reported before the server is asked.
+    auto reader = store::open_reader(options.database);
+    store::require_own_machine(reader, store::machine_identity());
+  }
   Connection server(options.to);
   const auto stations = greet(server);
   Received received;

@@ -57,14 +57,6 @@ std::string create_table(const CollectedTable& table) {
 }
 
 /// Returns the SQL that adds the columns which an older version of the collector did not have.
-std::string add_columns(const CollectedTable& table) {
-  std::string sql;
-  for (const auto& column : table.columns)
-    sql += fmt::format("ALTER TABLE turnpoint.{} ADD COLUMN IF NOT EXISTS {};\n", table.name,
-                       definition(column));
-  return sql;
-}
-
 std::string comments(const CollectedTable& table) {
   std::string sql;
   for (const auto& column : table.columns) {
@@ -109,8 +101,7 @@ GRANT USAGE ON SCHEMA turnpoint TO turnpoint_station, turnpoint_reader;
 constexpr const char* kOwnTables = R"sql(
 CREATE TABLE IF NOT EXISTS turnpoint.version (
   only_row boolean PRIMARY KEY DEFAULT true CHECK (only_row),
-  schema bigint NOT NULL,
-  encoding bigint NOT NULL
+  schema bigint NOT NULL
 );
 CREATE TABLE IF NOT EXISTS turnpoint.station (
   station_id text PRIMARY KEY CHECK (station_id <> ''),
@@ -133,20 +124,19 @@ std::string schema_sql() {
   std::string sql = fmt::format(
       "-- Collector of Turnpoint, schema {}, written by `turnpoint collector-schema`.\n"
       "\\set ON_ERROR_STOP on\nSET client_min_messages = warning;\nBEGIN;\n{}",
-      store::schema_version(), kRoles);
+      store::kSchema, kRoles);
   sql += kOwnTables;
-  for (const auto& table : collected_tables())
-    sql += create_table(table) + add_columns(table) + comments(table) + protection(table.name);
-  for (const auto* own : {"version", "station", "lease"}) sql += protection(own);
-  // Refuse to downgrade: an older program must not replace the schema of a newer one.
   sql += fmt::format(
-      "DO $do$ BEGIN IF (SELECT schema FROM turnpoint.version) > {0} THEN\n"
-      "  RAISE EXCEPTION 'this database has schema %, but this program only knows {0}; update Turnpoint "
-      "here',\n"
-      "    (SELECT schema FROM turnpoint.version);\nEND IF; END $do$;\n"
-      "INSERT INTO turnpoint.version (schema, encoding) VALUES ({0}, {1})\n"
-      "  ON CONFLICT (only_row) DO UPDATE SET schema = {0}, encoding = {1};\n",
-      store::schema_version(), store::kEncoding);
+      "DO $do$ BEGIN IF (SELECT schema FROM turnpoint.version) <> {0} THEN\n"
+      "  RAISE EXCEPTION 'this database has schema %, and this program writes only schema {0}; `turnpoint "
+      "export` of commit {1} reads a lower one; create a new collector, or update Turnpoint here',\n"
+      "    (SELECT schema FROM turnpoint.version);\nEND IF; END $do$;\n",
+      store::kSchema, store::kLastReader);
+  for (const auto& table : collected_tables())
+    sql += create_table(table) + comments(table) + protection(table.name);
+  for (const auto* own : {"version", "station", "lease"}) sql += protection(own);
+  sql += fmt::format("INSERT INTO turnpoint.version (schema) VALUES ({}) ON CONFLICT DO NOTHING;\n",
+                     store::kSchema);
   return sql + checksum_sql() + functions_sql() + views_sql() + "COMMIT;\n";
 }
 

@@ -6,6 +6,7 @@
 
 #include "station/collector/schema.hpp"
 #include "station/collector/tables.hpp"
+#include "station/store/schema.hpp"
 
 namespace turnpoint::collector {
 
@@ -27,18 +28,16 @@ CREATE OR REPLACE FUNCTION turnpoint.coded(v bytea) RETURNS bytea LANGUAGE sql I
 
 /// Returns an SQL expression of type bytea: the bytes that store/checksum.cpp hashes for a row, without the
 /// newline at their end.
-std::string coded_columns(const CollectedTable& table, const std::vector<Covered>& columns,
+std::string coded_columns(const CollectedTable& table, const std::vector<std::string>& columns,
                           const std::string& alias) {
   std::string expression = "''::bytea", texts;
   const auto flush = [&] {
     if (!texts.empty()) expression += fmt::format("\n    || convert_to({}, 'UTF8')", texts);
     texts.clear();
   };
-  for (const auto& covered : columns) {
-    auto value = fmt::format("turnpoint.coded({}.{})", alias, quoted(covered.name));
-    const bool is_bytes = table.column(covered.name).type == "BLOB";
-    if (covered.since > 1)
-      value = fmt::format("CASE WHEN l.encoding >= {} THEN {} ELSE '' END", covered.since, value);
+  for (const auto& name : columns) {
+    const auto value = fmt::format("turnpoint.coded({}.{})", alias, quoted(name));
+    const bool is_bytes = table.column(name).type == "BLOB";
     if (is_bytes) flush();
     if (is_bytes)
       expression += " || " + value;
@@ -64,13 +63,13 @@ std::string qualified_order(const std::string& order, const CollectedTable& tabl
 std::string hash_table(const CollectedTable& table) {
   const auto& part = *table.chain;
   return fmt::format(
-      "  IF l.{3} <> p.{3} AND l.encoding >= {6} THEN\n"
+      "  IF l.{3} <> p.{3} THEN\n"
       "    SELECT string_agg({1}\n    || '\\x0a'::bytea, ''::bytea ORDER BY {2}) INTO part\n"
       "    FROM turnpoint.{0} t WHERE t.session_id = l.session_id AND t.{4} > p.{3} AND t.{4} <= l.{3};\n"
       "    content := content || convert_to('{0}' || E'\\n', 'UTF8') || coalesce(part, ''::bytea);\n"
-      "  END IF;\n{5}",
+      "  END IF;\n",
       table.name, coded_columns(table, part.columns, "t"), qualified_order(part.order, table), part.last,
-      quoted(part.counter), "", part.since);
+      quoted(part.counter));
 }
 
 std::string link_function() {
@@ -84,7 +83,7 @@ CREATE OR REPLACE FUNCTION turnpoint.link_sha256(p turnpoint.link, l turnpoint.l
 LANGUAGE plpgsql STABLE AS $fn$
 DECLARE content bytea; part bytea;
 BEGIN
-  content := convert_to('turnpoint/' || l.encoding || ' ' || l.link_index || ' ' || p.sha256 || E'\n' || l.status
+  content := convert_to('turnpoint/{} ' || l.link_index || ' ' || p.sha256 || E'\n' || l.status
     || E'\n' || octet_length(l.status_reason) || ':' || l.status_reason || E'\n', 'UTF8');
   IF l.link_index = 0 THEN
     SELECT content || {} || {} || {} || {} || '\x0a'::bytea INTO content
@@ -93,7 +92,7 @@ BEGIN
     WHERE s.session_id = l.session_id;
   END IF;
 )sql",
-                                provenance("session", "s"), provenance("protocol", "p1"),
+                                store::kSchema, provenance("session", "s"), provenance("protocol", "p1"),
                                 provenance("rig", "r"), provenance("calibration", "c"));
   for (const auto& table : collected_tables())
     if (table.chain) sql += hash_table(table);

@@ -79,7 +79,6 @@ BEGIN
   END IF;
   IF EXISTS (SELECT FROM pg_temp.incoming_link WHERE session_id <> id)
     OR EXISTS (SELECT FROM pg_temp.incoming_annotation WHERE session_id <> id)
-    OR EXISTS (SELECT FROM pg_temp.incoming_unsealed WHERE session_id <> id)
     OR EXISTS (SELECT FROM pg_temp.incoming_enrolment e WHERE (e.station_id, e.participant)
                  IS DISTINCT FROM (s.station_id, s.participant)) THEN
     RAISE EXCEPTION 'session %: rows of another session', id USING ERRCODE = 'TP004';
@@ -113,10 +112,6 @@ BEGIN
     IF l.link_index <> p.link_index + 1 THEN
       RAISE EXCEPTION 'session %: checksum % is missing', id, p.link_index + 1 USING ERRCODE = 'TP004';
     END IF;
-    IF l.encoding NOT BETWEEN 1 AND (SELECT v.encoding FROM turnpoint.version v) THEN
-      RAISE EXCEPTION 'session %: checksum % has encoding %, which this server does not know', id, l.link_index,
-        l.encoding USING ERRCODE = 'TP004';
-    END IF;
     IF turnpoint.link_sha256(p, l) IS DISTINCT FROM l.sha256 THEN
       RAISE EXCEPTION 'session %: the rows that arrived differ from checksum %', id, l.link_index
         USING ERRCODE = 'TP001';
@@ -124,7 +119,6 @@ BEGIN
     p := l;
   END LOOP;
   INSERT INTO turnpoint.link ({0}) SELECT {0} FROM pg_temp.incoming_link;
-  INSERT INTO turnpoint.unsealed SELECT session_id FROM pg_temp.incoming_unsealed ON CONFLICT DO NOTHING;
 )sql",
                      column_list(collected_table("link")));
   for (const auto& table : collected_tables())
@@ -175,10 +169,10 @@ CREATE OR REPLACE FUNCTION turnpoint.annotations_sha256(id text) RETURNS text LA
        ORDER BY annotation_id COLLATE "C"), ''::bytea)), 'hex')
      FROM turnpoint.annotation WHERE session_id = id $$;
 
--- The versions that the server knows, and the stations for which the caller may speak.
-CREATE OR REPLACE FUNCTION turnpoint.hello() RETURNS TABLE (schema bigint, encoding bigint, station_id text)
+-- The schema of the server, and the stations for which the caller may speak.
+CREATE OR REPLACE FUNCTION turnpoint.hello() RETURNS TABLE (schema bigint, station_id text)
 LANGUAGE sql STABLE SECURITY DEFINER SET search_path = pg_catalog, pg_temp AS
-  $$ SELECT v.schema, v.encoding, s.station_id FROM turnpoint.version v
+  $$ SELECT v.schema, s.station_id FROM turnpoint.version v
      LEFT JOIN turnpoint.station s ON s.role = session_user ORDER BY s.station_id COLLATE "C" $$;
 
 -- The last link of each of the caller's sessions.

@@ -65,11 +65,10 @@ void read_references(Database& database, CollectedTable& table) {
 /// Adds the columns' descriptions, and returns the columns that the checksum chain covers, in the order in
 /// which it hashes them.
 template <class Record>
-std::vector<Covered> describe(CollectedTable& table, const store::Table<Record>& described) {
-  std::vector<Covered> covered;
-  for (const auto* name : described.place) covered.push_back({name, 1});
+std::vector<std::string> describe(CollectedTable& table, const store::Table<Record>& described) {
+  std::vector<std::string> covered(described.place.begin(), described.place.end());
   for (const auto& field : described.fields) {
-    covered.push_back({field.name, field.since});
+    covered.emplace_back(field.name);
     for (auto& column : table.columns)
       if (column.name == field.name) {
         column.description = field.description;
@@ -82,8 +81,8 @@ std::vector<Covered> describe(CollectedTable& table, const store::Table<Record>&
 
 void describe_chain(CollectedTable& table) {
   const auto part = [&](const auto& described, const std::string& counter, const std::string& order,
-                        const std::string& last, int since = 1) {
-    table.chain = ChainPart{describe(table, described), counter, order, last, since};
+                        const std::string& last) {
+    table.chain = ChainPart{describe(table, described), counter, order, last};
   };
   const auto& name = table.name;
   if (name == "segment") part(store::segment_table(), "segment_index", "segment_index", "last_segment");
@@ -92,18 +91,16 @@ void describe_chain(CollectedTable& table) {
   if (name == "tone")
     part(store::tone_table(), "trial_index", "trial_index,interval_index,scene_index,tone_index",
          "last_trial");
-  if (name == "signal") part(store::signal_table(), "trial_index", "trial_index,stream", "last_trial", 3);
+  if (name == "signal") part(store::signal_table(), "trial_index", "trial_index,stream", "last_trial");
   if (name == "event") part(store::event_table(), "event_index", "event_index", "last_event");
-  if (name == "self_test")
-    part(store::check_table(), "event_index", "event_index,check_index", "last_event", 4);
-  if (name == "answer")
-    part(store::answer_table(), "event_index", "event_index,answer_index", "last_event", 5);
+  if (name == "self_test") part(store::check_table(), "event_index", "event_index,check_index", "last_event");
+  if (name == "answer") part(store::answer_table(), "event_index", "event_index,answer_index", "last_event");
   if (name == "friction_level")
-    part(store::friction_level_table(), "event_index", "event_index,level_index", "last_event", 5);
+    part(store::friction_level_table(), "event_index", "event_index,level_index", "last_event");
   if (name == "program")
-    part(store::program_table(), "event_index", "event_index,program_index", "last_event", 5);
+    part(store::program_table(), "event_index", "event_index,program_index", "last_event");
   if (name == "estimate")
-    part(store::estimate_table(), "event_index", "event_index,estimate_index", "last_event", 5);
+    part(store::estimate_table(), "event_index", "event_index,estimate_index", "last_event");
   if (name == "session") {
     table.provenance = describe(table, store::session_table());
     // the last two columns, status and reason, are part of each link instead
@@ -116,13 +113,12 @@ void describe_chain(CollectedTable& table) {
 
 std::vector<CollectedTable> read_tables() {
   Database database(":memory:", Database::Access::create);
-  store::create_schema(database, store::schema_version());
+  store::create_schema(database);
   std::vector<CollectedTable> tables;
   for (const auto* name :
-       {"participant", "enrolment",  "protocol",       "rig",      "calibration", "session",
-        "segment",     "block",      "trial",          "tone",     "signal",      "event",
-        "self_test",   "answer",     "friction_level", "program",  "estimate",    "link",
-        "unsealed",    "annotation", "same_person",    "tombstone"}) {
+       {"participant",    "enrolment", "protocol", "rig",    "calibration", "session",     "segment",
+        "block",          "trial",     "tone",     "signal", "event",       "self_test",   "answer",
+        "friction_level", "program",   "estimate", "link",   "annotation",  "same_person", "tombstone"}) {
     CollectedTable table;
     table.name = name;
     read_columns(database, table);

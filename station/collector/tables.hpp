@@ -21,20 +21,12 @@ struct Reference {
   std::vector<std::string> to;
 };
 
-/// A column that the checksum chain covers. `since` is the first encoding of the chain that contains the
-/// column.
-struct Covered {
-  std::string name;
-  int since = 1;
-};
-
 /// How the checksum chain of a session covers a table. Each link of the chain is a hash over, in the order of
 /// `order`, the rows whose value in the column `counter` is greater than the value that the previous link
 /// stored in its column `last` (of table link).
 struct ChainPart {
-  std::vector<Covered> columns;
+  std::vector<std::string> columns;
   std::string counter, order, last;
-  int since = 1;  ///< the first encoding of the chain that covers the table
 };
 
 /// A table that a station sends to the server.
@@ -46,7 +38,7 @@ struct CollectedTable {
   std::vector<Reference> references;
   /// how the checksum chain covers the table; empty if it is not hashed row by row
   std::optional<ChainPart> chain;
-  std::vector<Covered> provenance;  ///< columns that the first link of a session's checksum chain covers
+  std::vector<std::string> provenance;  ///< columns that the first link of a session's checksum chain covers
 
   const Column& column(std::string_view name) const;
   bool has(std::string_view name) const;

@@ -219,8 +219,7 @@ void add_health(const store::StoredSession& stored, report::SessionData& data) {
                               {plain(text::number(stored.session.sequence_index, 6))}));
   add("station.planned", start.planned_session ? whole(*start.planned_session) : phrase("station.none"));
   add("station.group", or_none(start.group));
-  add("station.checksum",
-      stored.session.checksum.empty() ? phrase("station.no_checksum") : plain(stored.session.checksum));
+  add("station.checksum", or_none(stored.session.checksum));
   add("station.software", plain(start.software_version));
 }
 

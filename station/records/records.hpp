@@ -78,6 +78,7 @@ struct SessionStart {
 struct SegmentStart {
   std::string boot_id, reason;  ///< reason for starting this run: "start", "resume" or "fault"
   std::int64_t monotonic_ns = 0, boottime_ns = 0, realtime_ns = 0;
+  std::string machine = {};  ///< identity of the machine (store/station.hpp); "" if it is not known
 };
 
 /// One check of the self-test: what was measured, and how it was judged.

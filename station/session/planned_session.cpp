@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 #include <time.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <charconv>
@@ -17,6 +16,7 @@
 #include "station/store/open.hpp"
 #include "station/store/people.hpp"
 #include "station/store/read.hpp"
+#include "station/store/station.hpp"
 #include "station/texts/refusal.hpp"
 
 namespace turnpoint::session {
@@ -134,7 +134,8 @@ NextSession next_session(const Setup& setup) {
   std::vector<store::SessionRecord> earlier;
   if (setup.protocol.sessions && std::filesystem::exists(setup.database)) {
     auto database = store::open_reader(setup.database);
-    earlier = sessions_of(database, {station_id(), setup.participant}, setup.protocol.id);
+    earlier =
+        sessions_of(database, {store::station_name(setup.database), setup.participant}, setup.protocol.id);
   }
   return next_session(setup, earlier, local_time());
 }
@@ -175,17 +176,11 @@ procedure::EarlierTrials earlier_trials(const std::string& database_path, const 
 procedure::EarlierTrials earlier_trials(const Setup& setup, const NextSession& next) {
   store::SessionRecord session;
   session.start.participant = setup.participant;
-  session.start.station_id = station_id();
+  session.start.station_id = store::station_name(setup.database);
   session.start.run_mode = setup.run_mode;
   session.start.planned_session = next.number;
   session.session_index = std::numeric_limits<int>::max();
   return earlier_trials(setup.database, setup.protocol, session);
-}
-
-std::string station_id() {
-  char name[256] = {};
-  ::gethostname(name, sizeof name - 1);
-  return name;
 }
 
 std::string local_time() {

@@ -47,9 +47,6 @@ procedure::EarlierTrials earlier_trials(const Setup& setup, const NextSession& n
 /// The next session of this setup, for the sessions in its database and the current date.
 NextSession next_session(const Setup& setup);
 
-/// The station's name, under which its sessions are stored.
-std::string station_id();
-
 /// The current time in the station's time zone, in the form that is stored (ISO 8601).
 std::string local_time();
 

@@ -20,6 +20,7 @@
 #include "station/session/session_run.hpp"
 #include "station/session/simulated_room.hpp"
 #include "station/session/stage.hpp"
+#include "station/store/station.hpp"
 #include "station/system/clocks.hpp"
 #include "station/terms/force_carrier.hpp"
 #include "station/text/canonical.hpp"
@@ -80,7 +81,7 @@ records::SessionStart start_of(const Setup& setup, std::uint64_t seed, const std
   start.software_version = TURNPOINT_VERSION;
   start.columns_version = "1";
   start.kernel = kernel();
-  start.station_id = station_id();
+  start.station_id = store::station_name(setup.database);
   start.realtime_rights = rights;
   start.started_local = local_time();
   start.consent_version = setup.consent_version;
@@ -96,7 +97,7 @@ records::SessionStart start_of(const Setup& setup, std::uint64_t seed, const std
 /// a simulated session.
 records::SegmentStart segment(const std::string& reason, std::int64_t now_ns) {
   const auto clocks = system::read_clocks();
-  return {boot_id(), reason, now_ns, clocks.boottime_ns, clocks.realtime_ns};
+  return {boot_id(), reason, now_ns, clocks.boottime_ns, clocks.realtime_ns, store::machine_identity()};
 }
 
 }  // namespace

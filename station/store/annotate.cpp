@@ -4,6 +4,7 @@
 
 #include "station/store/open.hpp"
 #include "station/store/read.hpp"
+#include "station/store/seal.hpp"
 #include "station/system/clocks.hpp"
 #include "station/system/uuid.hpp"
 #include "station/terms/usage_error.hpp"
@@ -14,7 +15,7 @@ void annotate(const std::string& path, const std::string& session_id, const std:
   if (text.empty()) throw terms::UsageError("annotate: the note is empty");
   auto writer = open_writer(path, IfMissing::fail);
   const auto session = session_record(writer.database, session_id);
-  Transaction transaction(writer.database);
+  SealedTransaction transaction(writer.database);
   Statement(writer.database, "INSERT INTO annotation VALUES (?,?,?,?)")
       .bind(system::new_uuid(), session.session_id, system::realtime_ns(), text)
       .run();
@@ -29,7 +30,7 @@ void abandon(const std::string& path, const std::string& session_id, const std::
         ErrorKind::refused,
         fmt::format("database {}: session {} is {}; only an interrupted session can be abandoned", path,
                     session_id, name(session.status)));
-  Transaction transaction(writer.database);
+  SealedTransaction transaction(writer.database);
   Statement(writer.database,
             "UPDATE session SET status = 'abandoned', status_reason = ? WHERE session_id = ?")
       .bind(reason, session_id)

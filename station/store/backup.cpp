@@ -11,6 +11,7 @@
 #include "station/store/export_files.hpp"
 #include "station/store/files.hpp"
 #include "station/store/open.hpp"
+#include "station/store/station.hpp"
 #include "station/store/whole_file.hpp"
 #include "station/system/clocks.hpp"
 #include "station/system/write_file.hpp"
@@ -37,7 +38,10 @@ std::string id_of(Database& database) {
 
 std::vector<StoredBackup> backups_of(const std::string& directory, const std::string& database_id) {
   auto all = stored_backups(directory);
-  std::erase_if(all, [&](const auto& backup) { return backup.database_id != database_id; });
+  const auto here = machine_identity();
+  std::erase_if(all, [&](const auto& backup) {
+    return backup.database_id != database_id || backup.is_of_other_machine(here);
+  });
   return all;
 }
 

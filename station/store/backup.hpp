@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "station/store/error.hpp"
+#include "station/store/station.hpp"
 
 namespace turnpoint::store {
 
@@ -54,6 +55,8 @@ struct RestoreOptions {
   std::string directory;
   /// id of the database whose backups to use; if "", the damaged file or its lock file gives the id
   std::string database_id;
+  /// moved: this machine replaces the one that has made the backup
+  Whose whose = Whose::found;
 };
 
 struct Restoration {
@@ -65,6 +68,7 @@ struct Restoration {
   /// Sessions whose rows do not match their recorded checksums (see checksum.hpp). The backup already
   /// contained these changes.
   std::vector<std::string> changed;
+  std::vector<std::string> problems;  ///< of the file as a whole (file_problems in verify.hpp), likewise
 };
 
 /// Replaces a missing, empty or damaged database by its newest good backup. The old file and its log are
@@ -72,7 +76,8 @@ struct Restoration {
 /// damaged file or from its lock file. If neither contains the id, the backups with the database's file name
 /// are used, provided that they all have the same id.
 ///
-/// Throws StoreError: refused if the database is good, conflict if the backups belong to several databases.
+/// Throws StoreError: refused if the database is good, conflict if the backups belong to several databases,
+/// other_machine if only another machine has made backups of it.
 /// If the database cannot be opened but is not known to be damaged, throws the error of opening it.
 Restoration restore_backup(const std::string& database, const RestoreOptions& options);
 

@@ -11,13 +11,16 @@
 #include <regex>
 
 #include "station/store/files.hpp"
+#include "station/store/schema.hpp"
+#include "station/store/seal.hpp"
+#include "station/store/station.hpp"
 
 namespace turnpoint::store {
 
 namespace {
 
-/// Backups are named STEM-NUMBER-TIME.sqlite. Older releases wrote STEM-TIME.sqlite.
-const std::regex kName(R"((.*?)(?:-(\d{6,12}))?-(\d{8}T\d{6})\.\d{3}Z\.sqlite)");
+/// Backups are named STEM-NUMBER-TIME.sqlite.
+const std::regex kName(R"((.*?)-(\d{6,12})-(\d{8}T\d{6})\.\d{3}Z\.sqlite)");
 
 /// Converts a UTC time such as "20240229T120000" to ns since 1970.
 std::int64_t nanoseconds_of(const std::string& stamp) {
@@ -37,17 +40,21 @@ StoredBackup read_backup(const std::string& path, const std::smatch& name) {
   StoredBackup backup;
   backup.path = path;
   backup.stem = name[1];
-  if (name[2].matched) backup.number = std::stoll(name[2]);
+  backup.number = std::stoll(name[2]);
   backup.made_realtime_ns = nanoseconds_of(name[3]);
   try {
     Database database(path, Database::Access::immutable);
+    require_schema(database);
     if (const auto noted = meta(database, "backup_of"); !noted.empty()) backup.stem = noted;
     if (const auto noted = meta(database, "backup_number"); !noted.empty()) backup.number = std::stoll(noted);
     backup.station = database.text("SELECT station_id FROM session LIMIT 1");
+    backup.machine = meta(database, "backup_machine");
     backup.database_id = meta(database, "database_id");
   } catch (const StoreError& error) {
-    const bool damaged = error.kind() == ErrorKind::corrupt || error.kind() == ErrorKind::not_a_database;
-    if (!damaged) backup.trouble = error.what();
+    if (error.kind() == ErrorKind::other_schema)
+      backup.stem.clear();  // nobody can restore it with this program
+    else if (error.kind() != ErrorKind::corrupt && error.kind() != ErrorKind::not_a_database)
+      backup.trouble = error.what();
     backup.database_id.clear();
   }
   return backup;
@@ -72,15 +79,18 @@ std::int64_t next_backup_number(const std::string& folder) {
 }
 
 void write_backup_note(Database& copy, const std::string& stem, std::int64_t number) {
-  Transaction transaction(copy);
+  SealedTransaction transaction(copy);
   Statement note(copy, "INSERT OR REPLACE INTO meta VALUES (?, ?)");
   note.bind("backup_of", stem).run();
   note.bind("backup_number", std::to_string(number)).run();
+  note.bind("backup_machine", machine_identity()).run();
   transaction.commit();
 }
 
 void clear_backup_note(Database& copy) {
-  copy.execute("DELETE FROM meta WHERE key IN ('backup_of', 'backup_number')");
+  SealedTransaction transaction(copy);
+  copy.execute("DELETE FROM meta WHERE key IN ('backup_of', 'backup_number', 'backup_machine')");
+  transaction.commit();
 }
 
 void remove_backup(const std::string& path) {

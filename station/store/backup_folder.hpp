@@ -14,14 +14,18 @@ struct StoredBackup {
   std::string path;
   std::string database_id;  ///< id of the backed-up database; "" if the backup cannot be read
   std::string station;      ///< station of one of the sessions in the backup; "" if there are no sessions
+  std::string machine;      ///< identity of the machine that made the backup (station.hpp); "" if not known
   /// file name of the database at the time of the backup, without folder and ending
   std::string stem;
-  /// increases with each backup in the folder; 0 for backups of older releases
-  std::int64_t number = 0;
+  std::int64_t number = 0;            ///< increases with each backup in the folder
   std::int64_t made_realtime_ns = 0;  ///< time of the backup, read from its file name
   /// error that prevented reading the backup; "" if it could be read or is known to be damaged
   std::string trouble;
   bool readable() const { return !database_id.empty(); }
+  /// True if a machine other than this one has made the backup: of the original, if this one has a copy.
+  bool is_of_other_machine(const std::string& machine_here) const {
+    return !machine.empty() && !machine_here.empty() && machine != machine_here;
+  }
 };
 
 /// Returns the backups of all databases in a folder, ordered by number and then by name (oldest first). Files
@@ -31,8 +35,8 @@ std::vector<StoredBackup> stored_backups(const std::string& folder);
 /// Returns a number greater than that of any backup in the folder, whichever database it belongs to.
 std::int64_t next_backup_number(const std::string& folder);
 
-/// Writes the database's file name (stem) and the number of the backup into the backup. clear_backup_note()
-/// removes them after the backup was restored.
+/// Writes the database's file name (stem), the number of the backup and the machine into the backup.
+/// clear_backup_note() removes them after the backup was restored.
 void write_backup_note(Database& copy, const std::string& stem, std::int64_t number);
 void clear_backup_note(Database& copy);
 

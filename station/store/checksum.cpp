@@ -3,20 +3,18 @@
 #include <fmt/format.h>
 
 #include <bit>
-#include <map>
 #include <optional>
 #include <set>
+#include <string_view>
 #include <utility>
 
 #include "station/store/fields.hpp"
+#include "station/store/schema.hpp"
 #include "station/text/sha256.hpp"
 
 namespace turnpoint::store {
 
-namespace {
-
-/// Hashes each value together with its type and length, so that different rows never give the same bytes.
-void add_row(text::Sha256& hash, const Statement& row) {
+std::string row_bytes(const Statement& row) {
   std::string bytes;
   for (int i = 0; i < row.columns(); ++i) {
     const auto text = row.is_null(i)   ? std::string()
@@ -28,34 +26,36 @@ void add_row(text::Sha256& hash, const Statement& row) {
     bytes += ':';
     bytes += text;
   }
-  bytes += '\n';
-  hash.add(bytes);
+  return bytes + '\n';
 }
 
-}  // namespace
-
-/// Turns the rows of one session into the bytes that are hashed, in a given encoding. The statements are
-/// prepared only once, because each trial of a session adds two links.
+/// Turns the rows of one session into the bytes that are hashed. The statements are prepared only once,
+/// because each trial of a session adds two links.
 class Encoder {
  public:
-  Encoder(Database& database, std::string schema, std::string session_id, std::int64_t encoding = kEncoding)
-      : database_(database), schema_(std::move(schema)), id_(std::move(session_id)), encoding_(encoding) {}
+  /// `station` takes the place of the session's station if it is not "".
+  Encoder(Database& database, std::string schema, std::string session_id, std::string station = "")
+      : database_(database),
+        schema_(std::move(schema)),
+        id_(std::move(session_id)),
+        station_(std::move(station)) {}
 
   /// Hashes the data with which the session started. The session's status is left out: it changes later, and
   /// each link contains it anyway.
   void add_provenance(text::Sha256& hash) const {
     auto session = session_table();
     session.fields.resize(session.fields.size() - 2);
+    auto columns = column_list(session, "s.");
+    constexpr std::string_view kStation = "s.station_id";
+    columns.replace(columns.find(kStation), kStation.size(), "coalesce(nullif(?2, ''), s.station_id)");
     Statement row(database_,
                   fmt::format("SELECT {1}, {2}, {3}, {4} FROM {0}.session s LEFT JOIN {0}.protocol p"
                               " USING (protocol_key) LEFT JOIN {0}.rig r USING (rig_key)"
-                              " LEFT JOIN {0}.calibration c USING (calibration_id) WHERE s.session_id = ?",
-                              schema_, column_list(covered(session, encoding_), "s."),
-                              column_list(covered(protocol_table(), encoding_), "p."),
-                              column_list(covered(rig_table(), encoding_), "r."),
-                              column_list(covered(calibration_table(), encoding_), "c.")));
-    row.bind(id_);
-    while (row.step()) add_row(hash, row);
+                              " LEFT JOIN {0}.calibration c USING (calibration_id) WHERE s.session_id = ?1",
+                              schema_, columns, column_list(protocol_table(), "p."),
+                              column_list(rig_table(), "r."), column_list(calibration_table(), "c.")));
+    row.bind(id_, station_);
+    while (row.step()) hash.add(row_bytes(row));
   }
 
   /// Hashes the session's rows after `from`, up to and including `to`, table by table.
@@ -65,21 +65,15 @@ class Encoder {
     add(hash, trial_, trial_table(), "trial_index", "trial_index", from.trial, to.trial);
     add(hash, tone_, tone_table(), "trial_index", "trial_index, interval_index, scene_index, tone_index",
         from.trial, to.trial);
-    if (encoding_ >= 3)
-      add(hash, signal_, signal_table(), "trial_index", "trial_index, stream", from.trial, to.trial);
+    add(hash, signal_, signal_table(), "trial_index", "trial_index, stream", from.trial, to.trial);
     add(hash, event_, event_table(), "event_index", "event_index", from.event, to.event);
-    if (encoding_ >= 4)
-      add(hash, check_, check_table(), "event_index", "event_index, check_index", from.event, to.event);
-    if (encoding_ >= 5)
-      add(hash, answer_, answer_table(), "event_index", "event_index, answer_index", from.event, to.event);
-    if (encoding_ >= 5)
-      add(hash, friction_, friction_level_table(), "event_index", "event_index, level_index", from.event,
-          to.event);
-    if (encoding_ >= 5)
-      add(hash, program_, program_table(), "event_index", "event_index, program_index", from.event, to.event);
-    if (encoding_ >= 5)
-      add(hash, estimate_, estimate_table(), "event_index", "event_index, estimate_index", from.event,
-          to.event);
+    add(hash, check_, check_table(), "event_index", "event_index, check_index", from.event, to.event);
+    add(hash, answer_, answer_table(), "event_index", "event_index, answer_index", from.event, to.event);
+    add(hash, friction_, friction_level_table(), "event_index", "event_index, level_index", from.event,
+        to.event);
+    add(hash, program_, program_table(), "event_index", "event_index, program_index", from.event, to.event);
+    add(hash, estimate_, estimate_table(), "event_index", "event_index, estimate_index", from.event,
+        to.event);
   }
 
   Extent extent() {
@@ -118,19 +112,17 @@ class Encoder {
            const std::string& key, const std::string& order, std::int64_t from, std::int64_t to) {
     if (from == to) return;
     if (!rows)
-      rows.emplace(database_,
-                   fmt::format("SELECT {} FROM {}.{} WHERE session_id = ? AND {} > ? AND {} <= ?"
-                               " ORDER BY {}",
-                               column_list(covered(table, encoding_)), schema_, table.name, key, key, order));
+      rows.emplace(database_, fmt::format("SELECT {} FROM {}.{} WHERE session_id = ? AND {} > ? AND {} <= ?"
+                                          " ORDER BY {}",
+                                          column_list(table), schema_, table.name, key, key, order));
     hash.add(std::string(table.name) + '\n');
     rows->bind(id_, from, to);
-    while (rows->step()) add_row(hash, *rows);
+    while (rows->step()) hash.add(row_bytes(*rows));
     rows->reset();
   }
 
   Database& database_;
-  std::string schema_, id_;
-  std::int64_t encoding_;
+  std::string schema_, id_, station_;
   std::optional<Statement> segment_, block_, trial_, tone_, signal_, event_, check_, answer_, friction_,
       program_, estimate_, extent_;
 };
@@ -139,24 +131,23 @@ namespace {
 
 std::string checksum_of(Encoder& encoder, const Link& previous, const Link& link) {
   text::Sha256 hash;
-  hash.add(fmt::format("turnpoint/{} {} {}\n{}\n{}:{}\n", link.encoding, link.index, previous.sha256,
-                       link.status, link.status_reason.size(), link.status_reason));
+  hash.add(fmt::format("turnpoint/{} {} {}\n{}\n{}:{}\n", kSchema, link.index, previous.sha256, link.status,
+                       link.status_reason.size(), link.status_reason));
   if (link.index == 0) encoder.add_provenance(hash);
   encoder.add_rows(hash, previous.last, link.last);
   return hash.hex();
 }
 
 constexpr const char* kLinkColumns =
-    "link_index, encoding, last_segment, last_block, last_trial, last_event, status, status_reason, sha256";
+    "link_index, last_segment, last_block, last_trial, last_event, status, status_reason, sha256";
 
 Link link_from(const Statement& row) {
   Link link;
   link.index = row.integer(0);
-  link.encoding = row.integer(1);
-  link.last = {row.integer(2), row.integer(3), row.integer(4), row.integer(5)};
-  link.status = row.text(6);
-  link.status_reason = row.text(7);
-  link.sha256 = row.text(8);
+  link.last = {row.integer(1), row.integer(2), row.integer(3), row.integer(4)};
+  link.status = row.text(5);
+  link.status_reason = row.text(6);
+  link.sha256 = row.text(7);
   return link;
 }
 
@@ -188,23 +179,16 @@ std::string place(const Link& previous, const Link& link) {
 
 /// Checks each link against the rows that it covers, and counts the links. Returns the last link.
 Link check_links(Database& database, const std::string& schema, VerifiedSession& verified) {
-  std::map<std::int64_t, Encoder> encoders;
+  Encoder encoder(database, schema, verified.session_id);
   Statement rows(database, fmt::format("SELECT {} FROM {}.link WHERE session_id = ? ORDER BY link_index",
                                        kLinkColumns, schema));
   rows.bind(verified.session_id);
   Link previous;
   for (; rows.step(); ++verified.links) {
     auto link = link_from(rows);
-    const auto encoder = [&]() -> Encoder& {
-      return encoders.try_emplace(link.encoding, database, schema, verified.session_id, link.encoding)
-          .first->second;
-    };
-    if (link.encoding < 1 || link.encoding > kEncoding)
-      verified.problems.push_back(fmt::format("checksum {} has encoding {}, which this release does not know",
-                                              link.index, link.encoding));
-    else if (link.index != previous.index + 1)
+    if (link.index != previous.index + 1)
       verified.problems.push_back(fmt::format("checksum {} is missing", previous.index + 1));
-    else if (checksum_of(encoder(), previous, link) != link.sha256)
+    else if (checksum_of(encoder, previous, link) != link.sha256)
       verified.problems.push_back(
           fmt::format("{} differs from what was recorded (checksum {})", place(previous, link), link.index));
     previous = std::move(link);
@@ -258,9 +242,9 @@ Link Chain::add() {
   link.status_reason = status.text(1);
   link.sha256 = checksum_of(*encoder_, last_, link);
   Statement(*database_,
-            fmt::format("INSERT INTO link (session_id, {}) VALUES (?,?,?,?,?,?,?,?,?,?)", kLinkColumns))
-      .bind(session_id_, link.index, link.encoding, link.last.segment, link.last.block, link.last.trial,
-            link.last.event, link.status, link.status_reason, link.sha256)
+            fmt::format("INSERT INTO link (session_id, {}) VALUES (?,?,?,?,?,?,?,?,?)", kLinkColumns))
+      .bind(session_id_, link.index, link.last.segment, link.last.block, link.last.trial, link.last.event,
+            link.status, link.status_reason, link.sha256)
       .run();
   return link;
 }
@@ -290,9 +274,7 @@ VerifiedSession verify_one(Database& database, const std::string& session_id, co
         "the participant is enrolled with another place in the counterbalancing than this session used");
   const auto last = check_links(database, schema, verified);
   if (verified.links == 0) {
-    Statement earlier(database, "SELECT 1 FROM " + schema + ".unsealed WHERE session_id = ?");
-    earlier.bind(session_id);
-    if (!earlier.step()) verified.problems.push_back("the checksums of this session are missing");
+    verified.problems.push_back("the checksums of this session are missing");
     return verified;
   }
   verified.last_sha256 = last.sha256;
@@ -310,10 +292,47 @@ VerifiedSession verify_session(Database& database, const std::string& session_id
   return verify_one(database, session_id, schema, enrolled(database, schema, session_id));
 }
 
+namespace {
+
+std::vector<Link> links_of(Database& database, const std::string& session_id) {
+  std::vector<Link> links;
+  Statement rows(database,
+                 fmt::format("SELECT {} FROM link WHERE session_id = ? ORDER BY link_index", kLinkColumns));
+  rows.bind(session_id);
+  while (rows.step()) links.push_back(link_from(rows));
+  return links;
+}
+
+}  // namespace
+
+void renew_links(Database& database, const std::string& session_id) {
+  Encoder encoder(database, "main", session_id);
+  Statement update(database, "UPDATE link SET sha256 = ? WHERE session_id = ? AND link_index = ?");
+  Link previous;
+  for (auto& link : links_of(database, session_id)) {
+    link.sha256 = checksum_of(encoder, previous, link);
+    update.bind(link.sha256, session_id, link.index).run();
+    previous = link;
+  }
+}
+
 bool holds_link(Database& database, const std::string& session_id, const std::string& sha256) {
   Statement row(database, "SELECT 1 FROM link WHERE session_id = ? AND sha256 = ?");
-  row.bind(session_id, sha256);
-  return row.step();
+  if (row.bind(session_id, sha256).step()) return true;
+  // The rows still give the checksums that they had under an earlier name of the station.
+  Statement renamed(database, "SELECT station_id, link_index FROM renamed WHERE session_id = ?");
+  renamed.bind(session_id);
+  while (renamed.step()) {
+    Encoder encoder(database, "main", session_id, renamed.text(0));
+    Link previous;
+    for (auto& link : links_of(database, session_id)) {
+      if (link.index > renamed.integer(1)) break;
+      link.sha256 = checksum_of(encoder, previous, link);
+      if (link.sha256 == sha256) return true;
+      previous = link;
+    }
+  }
+  return false;
 }
 
 std::string last_checksum(Database& database, const std::string& session_id) {
@@ -338,7 +357,7 @@ std::string annotations_checksum(Database& database, const std::string& session_
                   "SELECT annotation_id, realtime_ns, text FROM annotation WHERE session_id = ?"
                   " ORDER BY annotation_id");
   notes.bind(session_id);
-  while (notes.step()) add_row(hash, notes);
+  while (notes.step()) hash.add(row_bytes(notes));
   return hash.hex();
 }
 
@@ -357,7 +376,7 @@ std::string session_checksum(Database& database, const std::string& schema, cons
   Statement notes(database,
                   "SELECT * FROM " + schema + ".annotation WHERE session_id = ? ORDER BY annotation_id");
   notes.bind(session_id);
-  while (notes.step()) add_row(hash, notes);
+  while (notes.step()) hash.add(row_bytes(notes));
   return hash.hex();
 }
 

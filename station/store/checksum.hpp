@@ -11,11 +11,6 @@
 
 namespace turnpoint::store {
 
-/// Version of the rule that turns rows into the bytes to be hashed. The bytes of a version never change. A
-/// later release that adds columns or tables adds a version; older links are still checked with the version
-/// with which they were made.
-constexpr int kEncoding = 6;
-
 /// The keys of a session's last row in each table. If a table has no rows, its value is below the first key.
 struct Extent {
   std::int64_t segment = 0;  ///< segment_index of the last segment; the first has index 1
@@ -26,12 +21,12 @@ struct Extent {
 };
 
 /// One link of a session's checksum chain. Its checksum covers the previous link, the session's status, and
-/// all rows committed together with the link: SHA-256 of "turnpoint/ENCODING INDEX PREVIOUS", status, reason
+/// all rows committed together with the link: SHA-256 of "turnpoint/SCHEMA INDEX PREVIOUS", status, reason
 /// and the rows, in this order. The first link also covers the session's participant, protocol, rig and
-/// calibration. Annotations are not covered, because they may be added afterwards.
+/// calibration. Annotations are not covered, because they may be added afterwards; the seal covers them
+/// (seal.hpp).
 struct Link {
   std::int64_t index = -1;  ///< position in the chain, from 0; -1 if the chain is empty
-  std::int64_t encoding = kEncoding;
   Extent last;
   std::string status, status_reason;  ///< status of the session when this link was made
   std::string sha256;                 ///< checksum in hexadecimal; "" if the chain is empty
@@ -59,12 +54,15 @@ class Chain {
   Link last_;
 };
 
+/// Returns the bytes that are hashed for a row: each value with its type and length, so that different rows
+/// never give the same bytes.
+std::string row_bytes(const Statement& row);
+
 /// The result of checking one session.
 struct VerifiedSession {
   std::string session_id, participant, protocol_id;
   std::int64_t trials = 0, links = 0;
-  /// checksum of the last link; "" if an earlier release recorded the session without a chain
-  std::string last_sha256;
+  std::string last_sha256;            ///< checksum of the last link; "" if the links are missing
   std::vector<std::string> problems;  ///< differences from what was recorded; empty if there are none
 };
 
@@ -75,14 +73,16 @@ struct VerifiedSession {
 VerifiedSession verify_session(Database& database, const std::string& session_id,
                                const std::string& schema = "main");
 
-/// Checks every session with verify_session(). Rows that belong to no session are found by check_pages()
-/// (whole_file.hpp).
+/// Checks every session with verify_session().
 std::vector<VerifiedSession> verify_database(Database& database, const std::string& schema = "main");
 
-/// True if one link of the session's chain has this checksum.
+/// Computes the checksums of all links of a session anew, after its station got another name (station.hpp).
+void renew_links(Database& database, const std::string& session_id);
+
+/// True if one link of the session's chain has this checksum, or had it under an earlier name of its station.
 bool holds_link(Database& database, const std::string& session_id, const std::string& sha256);
 
-/// Returns the checksum of a session's last link; "" if the session has no chain.
+/// Returns the checksum of a session's last link; "" if there is no such session.
 std::string last_checksum(Database& database, const std::string& session_id);
 
 /// Returns the SHA-256 over the annotations of a session, which its chain does not cover.

@@ -5,6 +5,7 @@
 
 #include "station/store/backup_folder.hpp"
 #include "station/store/files.hpp"
+#include "station/store/schema.hpp"
 
 namespace turnpoint::store {
 
@@ -19,6 +20,7 @@ Holds holds(const std::string& path, const std::vector<std::string>& session_ids
       // session.
       if (file_size(path + suffix) > 0) return Holds::unreadable;
     Database copy(path, Database::Access::immutable);
+    require_schema(copy);
     Statement rows(copy, "SELECT 1 FROM session WHERE session_id = ?");
     return std::any_of(session_ids.begin(), session_ids.end(),
                        [&](const auto& id) { return rows.bind(id).step(); })
@@ -41,13 +43,9 @@ Copies copies_of(const std::string& path, Database& database, const std::string&
   Copies copies;
   const auto stem = std::filesystem::path(path).filename().string();
   for (const auto& name : list_folder(folder_of(path))) {
-    const bool before = name.rfind(stem + ".before-v", 0) == 0,
-               damaged = name.rfind(stem + ".damaged-", 0) == 0;
-    if ((!before && !damaged) || is_log(name)) continue;
+    if (!name.starts_with(stem + ".damaged-") || is_log(name)) continue;
     const auto file = folder_of(path) + "/" + name;
-    const auto found = holds(file, session_ids);
-    if (found == Holds::yes && before) copies.own.push_back(file);
-    if (found == Holds::unreadable || (found == Holds::yes && damaged)) copies.foreign.push_back(file);
+    if (holds(file, session_ids) != Holds::no) copies.foreign.push_back(file);
   }
   if (backup_folder.empty()) return copies;
   const auto id = database.text("SELECT value FROM meta WHERE key = 'database_id'");

@@ -9,7 +9,7 @@ namespace turnpoint::store {
 /// Files beside a database that contain some of the given sessions, or that cannot be read and therefore may
 /// contain them.
 struct Copies {
-  std::vector<std::string> own;  ///< backups of this database, and its copies from before a migration
+  std::vector<std::string> own;  ///< backups of this database
   /// Files that must not be removed without asking: backups of other databases, damaged files that were set
   /// aside, and files that cannot be read.
   std::vector<std::string> foreign;

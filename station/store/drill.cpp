@@ -8,6 +8,8 @@
 #include "station/store/checksum.hpp"
 #include "station/store/files.hpp"
 #include "station/store/open.hpp"
+#include "station/store/station.hpp"
+#include "station/store/verify.hpp"
 #include "station/store/whole_file.hpp"
 #include "station/system/clocks.hpp"
 
@@ -24,7 +26,9 @@ StoredBackup newest_backup(const std::string& directory, const std::string& path
   const auto stem = std::filesystem::path(path).stem().string();
   StoredBackup newest;
   for (const auto& backup : stored_backups(directory))
-    if (backup.readable() ? backup.database_id == id : backup.stem == stem) newest = backup;
+    if (backup.readable() ? backup.database_id == id && !backup.is_of_other_machine(machine_identity())
+                          : backup.stem == stem)
+      newest = backup;
   if (newest.path.empty())
     throw StoreError(ErrorKind::missing,
                      fmt::format("drill: folder {} contains no backup of {}", directory, path));
@@ -96,6 +100,7 @@ Drill drill_restore(const std::string& name, const std::string& folder) {
     auto database = open_reader(restored.path());
     drill.sessions = sessions_in(database);
     drill.trials = trials_in(database);
+    drill.problems = file_problems(database);
     for (auto& session : verify_database(database)) {
       if (const auto differs = difference(live, session); !differs.empty())
         session.problems.push_back(differs);

@@ -12,8 +12,9 @@ enum class ErrorKind {
   read_only,       ///< the file, folder or disk cannot be written
   corrupt,         ///< the file is damaged; it was not changed
   not_a_database,  ///< the file is empty, or it is not a Turnpoint database
-  newer_schema,    ///< a newer release wrote the database
+  other_schema,    ///< another version of the program wrote the database
   cannot_open,     ///< the file exists but cannot be opened: its permissions forbid it, or it is a folder
+  other_machine,   ///< the database belongs to another machine; somebody has to say what happened
   busy,            ///< another station process is using the database
   missing,         ///< there is no such file, session or participant
   conflict,        ///< rows to be added contradict existing rows
@@ -22,11 +23,13 @@ enum class ErrorKind {
   io,              ///< any other error of the disk
 };
 
-constexpr std::array store_error_names{"disk_full",    "read_only",   "corrupt", "not_a_database",
-                                       "newer_schema", "cannot_open", "busy",    "missing",
-                                       "conflict",     "refused",     "no_disk", "io"};
+constexpr std::array store_error_names{
+    "disk_full", "read_only", "corrupt",  "not_a_database", "other_schema", "cannot_open", "other_machine",
+    "busy",      "missing",   "conflict", "refused",        "no_disk",      "io"};
 /// Returns the name of a kind of error, as in the text catalogue.
-constexpr const char* error_name(ErrorKind kind) { return store_error_names.at(static_cast<std::size_t>(kind)); }
+constexpr const char* error_name(ErrorKind kind) {
+  return store_error_names.at(static_cast<std::size_t>(kind));
+}
 
 /// Thrown for every failure of the store. The message says what was tried, on which file, what SQLite or the
 /// system reported, and what to do.

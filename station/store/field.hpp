@@ -141,12 +141,4 @@ Field<typename MemberOf<decltype(First)>::Record> field(const About& about) {
           [](const Record& r) { return cell_of(member<First, Rest...>(r)); }};
 }
 
-/// Marks a column as covered by checksums only since this version of the encoding (kEncoding in
-/// checksum.hpp).
-template <class Record>
-Field<Record> since(int encoding, Field<Record> field) {
-  field.since = encoding;
-  return field;
-}
-
 }  // namespace turnpoint::store

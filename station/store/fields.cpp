@@ -15,7 +15,7 @@ Field<SessionRecord> start(const About& about) {
 /// Describes the database column that stores one of a session's conditions, such as the humidity.
 template <auto Member>
 Field<SessionRecord> condition(const About& about) {
-  return since(4, field<&SessionRecord::start, &SessionStart::conditions, Member>(about));
+  return field<&SessionRecord::start, &SessionStart::conditions, Member>(about);
 }
 
 }  // namespace
@@ -26,8 +26,8 @@ const Table<SegmentStart>& segment_table() {
       {"session_id", "segment_index"},
       {field<&SegmentStart::boot_id>({"boot_id"}), field<&SegmentStart::reason>({"reason"}),
        field<&SegmentStart::monotonic_ns>({"monotonic_ns"}),
-       field<&SegmentStart::boottime_ns>({"boottime_ns"}),
-       field<&SegmentStart::realtime_ns>({"realtime_ns"})}};
+       field<&SegmentStart::boottime_ns>({"boottime_ns"}), field<&SegmentStart::realtime_ns>({"realtime_ns"}),
+       field<&SegmentStart::machine>({"machine"})}};
   return table;
 }
 
@@ -193,14 +193,12 @@ const Table<SessionRecord>& session_table() {
        condition<&Conditions::skin_moisture>({"skin_moisture", "skin_moisture",
                                               "Moisture of the fingertip, as a moisture meter read it before "
                                               "the session, in the meter's unit"}),
-       since(5, field<&R::leased_place>({"leased_place"})),
-       since(5,
-             start<&S::planned_session>(
-                 {"planned_session", "planned_session",
-                  "Number of this session in the protocol's plan of sessions, from 1; n/a without a plan"})),
-       since(5, start<&S::group>(
-                    {"participant_group", "participant_group",
-                     "Group of the participant: a level of the factor that is drawn per participant"})),
+       field<&R::leased_place>({"leased_place"}),
+       start<&S::planned_session>(
+           {"planned_session", "planned_session",
+            "Number of this session in the protocol's plan of sessions, from 1; n/a without a plan"}),
+       start<&S::group>({"participant_group", "participant_group",
+                         "Group of the participant: a level of the factor that is drawn per participant"}),
        field<&R::status>({"status", "status", "State of the session", "",
                           "running | completed | interrupted | stopped | abandoned"}),
        field<&R::status_reason>({"status_reason", "status_reason", "Why the session has this state"})}};

@@ -16,8 +16,8 @@ namespace turnpoint::store {
 
 /// One column of a database table: where its value is in the C++ struct, its name in the exports, and its
 /// meaning. All code that handles records uses these descriptions: writing, reading, exports, codebook and
-/// checksum. Only the SQL that creates the tables is separate (schema_steps.cpp), because a released schema
-/// never changes. A test compares that SQL with these descriptions.
+/// checksum. Only the SQL that creates the tables is separate (schema.cpp). A test compares that SQL with
+/// these descriptions.
 template <class Record>
 struct Field {
   const char* name;
@@ -30,7 +30,6 @@ struct Field {
   void (*bind)(Statement&, int index, const Record&);
   void (*read)(const Statement&, int column, Record&);
   Cell (*cell)(const Record&);
-  int since = 1;  ///< the first encoding of the checksum that covers this column (see checksum.hpp)
 };
 
 /// A table of the database. Its first columns (`place`) contain the keys, and other values that are known to
@@ -70,13 +69,6 @@ std::string column_list(const Table<Record>& table, const std::string& prefix = 
   for (const auto* name : table.place) add(name);
   for (const auto& field : table.fields) add(field.name);
   return list;
-}
-
-/// Returns a copy of the table with only the fields that this encoding of the checksum covers.
-template <class Record>
-Table<Record> covered(Table<Record> table, std::int64_t encoding) {
-  std::erase_if(table.fields, [&](const auto& field) { return field.since > encoding; });
-  return table;
 }
 
 template <class Record>

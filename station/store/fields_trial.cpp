@@ -23,7 +23,7 @@ Field<TrialRow> response_time_quality() {
 /// Describes a column with a value that force sensors measured in a trial.
 template <auto Member>
 Field<TrialRow> finger(const About& about) {
-  return since(3, field<&TrialRow::finger, Member>(about));
+  return field<&TrialRow::finger, Member>(about);
 }
 
 }  // namespace
@@ -103,28 +103,26 @@ const Table<TrialRow>& trial_table() {
        field<&T::clock_slope_ns_per_frame>({"clock_slope_ns_per_frame"}),
        field<&T::clock_residual_ns>({"clock_residual_ns"}),
        field<&T::state_hash>({"state_hash"}),
-       since(2, field<&T::proof>({"proof", "proof",
-                                  "What the pick-up on the surface says about the trial's stimuli", "",
-                                  "unproven | ok | flagged | refused | stopped | lost"})),
-       since(2, field<&T::proof_cause>({"proof_cause", "proof_cause",
-                                        "Why the stimuli are not proven to be as planned", "",
-                                        "gap | clipped | dead | frequency | half | late | phase | level | "
-                                        "residual | noisy | n/a"})),
-       since(2,
-             field<&T::drive_ratio_dB>(
-                 {"drive_ratio_dB", "drive_ratio_db",
-                  "Measured over planned amplitude of the vibration, of the tone that differs most", "dB"})),
-       since(2, field<&T::drive_residual_dB>({"drive_residual_dB", "drive_residual_db",
-                                              "Vibration that was not planned, relative to the plan", "dB"})),
-       since(2, field<&T::onset_error_us>(
-                    {"onset_error_us", "onset_error_us",
-                     "Measured minus planned onset of the stimulus; of several, the largest", "us"})),
-       since(3, field<&T::confidence>({"confidence", "confidence",
-                                       "How sure the participant was of the answer, from 1 (least) up; n/a "
-                                       "if the task does not ask"})),
-       since(3, field<&T::confidence_time_s>(
-                    {"confidence_time_s", "confidence_time",
-                     "Time from the answer to the participant's statement of confidence", "s"})),
+       field<&T::proof>({"proof", "proof", "What the pick-up on the surface says about the trial's stimuli",
+                         "", "unproven | ok | flagged | refused | stopped | lost"}),
+       field<&T::proof_cause>({"proof_cause", "proof_cause",
+                               "Why the stimuli are not proven to be as planned", "",
+                               "gap | clipped | dead | frequency | half | late | phase | level | "
+                               "residual | noisy | n/a"}),
+       field<&T::drive_ratio_dB>(
+           {"drive_ratio_dB", "drive_ratio_db",
+            "Measured over planned amplitude of the vibration, of the tone that differs most", "dB"}),
+       field<&T::drive_residual_dB>({"drive_residual_dB", "drive_residual_db",
+                                     "Vibration that was not planned, relative to the plan", "dB"}),
+       field<&T::onset_error_us>({"onset_error_us", "onset_error_us",
+                                  "Measured minus planned onset of the stimulus; of several, the largest",
+                                  "us"}),
+       field<&T::confidence>({"confidence", "confidence",
+                              "How sure the participant was of the answer, from 1 (least) up; n/a "
+                              "if the task does not ask"}),
+       field<&T::confidence_time_s>({"confidence_time_s", "confidence_time",
+                                     "Time from the answer to the participant's statement of confidence",
+                                     "s"}),
        finger<&F::sensing>(
            {"sensing", "sensing",
             "Whether the touch met the requirements of the protocol's [sensing]: ok, or too few "
@@ -164,20 +162,19 @@ const Table<TrialRow>& trial_table() {
             "mm"}),
        finger<&F::tare_mN>(
            {"tare_mN", "tare_mn", "Change of the force sensors' zero since the previous trial", "mN"}),
-       since(5, field<&T::finger, &F::mu>(
-                    {"mu", "mu",
-                     "Measured coefficient of friction over all strokes during the interval presented last; "
-                     "in a block that measures a friction table, over its part of the surface"})),
-       since(6,
-             field<&T::silence_dB>({"silence_dB", "silence_db",
-                                    "Level of the pick-up in the silence before the first stimulus (rms of "
-                                    "the loudest 50 ms), relative to the planned vibration",
-                                    "dB"})),
-       since(6, field<&T::silence_tone_dB>(
-                    {"silence_tone_dB", "silence_tone_db",
-                     "Level of the strongest tone in this silence, relative to the planned vibration; n/a if "
-                     "no tone stands out of the noise",
-                     "dB"}))}};
+       field<&T::finger, &F::mu>(
+           {"mu", "mu",
+            "Measured coefficient of friction over all strokes during the interval presented last; "
+            "in a block that measures a friction table, over its part of the surface"}),
+       field<&T::silence_dB>({"silence_dB", "silence_db",
+                              "Level of the pick-up in the silence before the first stimulus (rms of "
+                              "the loudest 50 ms), relative to the planned vibration",
+                              "dB"}),
+       field<&T::silence_tone_dB>(
+           {"silence_tone_dB", "silence_tone_db",
+            "Level of the strongest tone in this silence, relative to the planned vibration; n/a if "
+            "no tone stands out of the noise",
+            "dB"})}};
   return table;
 }
 
@@ -216,13 +213,12 @@ const Table<ToneRow>& tone_table() {
                                "frames"}),
        field<&T::length_frames>(
            {"length_frames", "length_frames", "Length of the tone, including both ramps", "frames"}),
-       since(2,
-             field<&T::measured_dB>(
-                 {"measured_dB", "measured_db",
-                  "Amplitude of the tone at the pick-up, relative to the plan; n/a if not measured", "dB"})),
-       since(2, field<&T::measured_phase_deg>(
-                    {"measured_phase_deg", "measured_phase_deg",
-                     "Phase of the tone at the pick-up, relative to the calibration", "deg"}))}};
+       field<&T::measured_dB>(
+           {"measured_dB", "measured_db",
+            "Amplitude of the tone at the pick-up, relative to the plan; n/a if not measured", "dB"}),
+       field<&T::measured_phase_deg>({"measured_phase_deg", "measured_phase_deg",
+                                      "Phase of the tone at the pick-up, relative to the calibration",
+                                      "deg"})}};
   return table;
 }
 

@@ -8,6 +8,9 @@
 #include "station/store/checksum.hpp"
 #include "station/store/files.hpp"
 #include "station/store/open.hpp"
+#include "station/store/seal.hpp"
+#include "station/store/station.hpp"
+#include "station/store/verify.hpp"
 #include "station/store/whole_file.hpp"
 #include "station/store/withdraw.hpp"
 #include "station/system/clocks.hpp"
@@ -50,8 +53,8 @@ const std::vector<Part>& parts() {
       {"program", "session_id,event_index,program_index", "", kBySession},
       {"estimate", "session_id,event_index,estimate_index", "", kBySession},
       {"link", "session_id,link_index", "", kBySession},
-      {"unsealed", "session_id", "", kBySession},
       {"annotation", "annotation_id", "", kBySession},
+      {"renamed", "session_id,station_id", "", kBySession},
   };
   return all;
 }
@@ -162,16 +165,23 @@ std::vector<MergedSession> list_incoming(Database& database) {
   return sessions;
 }
 
-/// Throws if rows in `source` were changed after they were recorded. Such changes must not spread to other
+[[noreturn]] void refuse_source(const std::string& source, const std::string& problem) {
+  throw StoreError(ErrorKind::corrupt,
+                   fmt::format("merge: {}: {}; nothing was merged; `turnpoint verify --db {}` lists all "
+                               "differences; merge a backup of that station instead",
+                               source, problem, source));
+}
+
+/// Throws if the copy of `source` was changed after it was recorded. Such changes must not spread to other
 /// databases.
-void refuse_changed(Database& database, const std::string& source) {
-  for (const auto& session : verify_database(database, "source"))
+void refuse_changed(const std::string& copy, const std::string& source) {
+  auto database = open_reader(copy);
+  for (const auto& session : verify_database(database))
     if (!session.problems.empty())
-      throw StoreError(
-          ErrorKind::corrupt,
-          fmt::format("merge: {}: session {} of {}: {}; nothing was merged; `turnpoint verify --db {}` "
-                      "lists all differences; merge a backup of that station instead",
-                      source, session.session_id, session.participant, session.problems.front(), source));
+      refuse_source(source, fmt::format("session {} of {}: {}", session.session_id, session.participant,
+                                        session.problems.front()));
+  if (const auto problems = file_problems(database); !problems.empty())
+    refuse_source(source, problems.front());
 }
 
 /// Copies a session's status from `source`. Call this if the rows of the session in `source` are newer.
@@ -205,10 +215,9 @@ void settle(Database& database, MergedSession& session, std::int64_t trials_befo
       .run();
 }
 
-MergeReport merge_attached(Database& database, const std::string& source) {
+MergeReport merge_attached(Database& database) {
   MergeReport report;
-  Transaction transaction(database);
-  refuse_changed(database, source);
+  SealedTransaction transaction(database);
   report.sessions = list_incoming(database);
   Statement gone(database, "SELECT session_id FROM source.tombstone JOIN main.session USING (session_id)");
   while (gone.step()) report.withdrawn_there.push_back(gone.text(0));
@@ -225,6 +234,7 @@ MergeReport merge_attached(Database& database, const std::string& source) {
   database.execute(
       "INSERT INTO temp.bearer SELECT station_id, participant FROM main.session"
       " UNION SELECT station_id, participant FROM temp.incoming");
+  refuse_two_machines(database);
   refuse_shared_places(database);
   for (const auto& part : parts()) refuse_conflicts(database, part);
   for (const auto& part : parts()) copy_rows(database, part);
@@ -235,8 +245,8 @@ MergeReport merge_attached(Database& database, const std::string& source) {
   return report;
 }
 
-/// A private, migrated and checked copy of the source. Because of the copy, neither the source's schema nor a
-/// session that is writing to the source affects the merge.
+/// A private, checked copy of the source, so that a session that is writing to the source does not affect the
+/// merge.
 class SourceCopy {
  public:
   SourceCopy(const std::string& source, const std::string& beside) : path_(beside + ".merging") {
@@ -284,12 +294,13 @@ MergeReport merge(const std::string& name, const std::string& source) {
   auto& database = writer.database;
   check_pages(database);
   const SourceCopy copy(source, path);
+  refuse_changed(copy.path(), source);
   Statement(database, "ATTACH ? AS source").bind(copy.path()).run();
   database.execute(
       "CREATE TEMP TABLE incoming (session_id, station_id, participant, protocol_key, rig_key, "
       "calibration_id);"
       "CREATE TEMP TABLE bearer (station_id, code)");
-  return merge_attached(database, source);
+  return merge_attached(database);
 }
 
 }  // namespace turnpoint::store

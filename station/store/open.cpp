@@ -5,13 +5,19 @@
 #include <sqlite3.h>
 #include <sys/file.h>
 #include <sys/stat.h>
+#include <sys/statvfs.h>
 #include <unistd.h>
 
+#include <cerrno>
+#include <cstdlib>
+#include <filesystem>
+#include <system_error>
 #include <utility>
 
 #include "station/store/files.hpp"
 #include "station/store/names.hpp"
 #include "station/store/schema.hpp"
+#include "station/store/seal.hpp"
 #include "station/store/whole_file.hpp"
 
 namespace turnpoint::store {
@@ -35,15 +41,19 @@ void refuse_empty(const std::string& path) {
 }
 
 void recover_sessions(Database& database) {
-  Transaction transaction(database);
+  constexpr const char* kEmpty =
+      "status = 'interrupted' AND NOT EXISTS (SELECT 1 FROM trial WHERE trial.session_id = "
+      "session.session_id)"
+      " AND NOT EXISTS (SELECT 1 FROM answer WHERE answer.session_id = session.session_id)";
+  if (database.integer(
+          fmt::format("SELECT count(*) FROM session WHERE status = 'running' OR ({})", kEmpty)) == 0)
+    return;
+  SealedTransaction transaction(database);
   Statement(database, "UPDATE session SET status = 'interrupted', status_reason = ? WHERE status = 'running'")
       .bind(kLostReason)
       .run();
-  Statement(
-      database,
-      "UPDATE session SET status = 'abandoned', status_reason = ? WHERE status = 'interrupted' AND NOT EXISTS"
-      " (SELECT 1 FROM trial WHERE trial.session_id = session.session_id) AND NOT EXISTS"
-      " (SELECT 1 FROM answer WHERE answer.session_id = session.session_id)")
+  Statement(database,
+            fmt::format("UPDATE session SET status = 'abandoned', status_reason = ? WHERE {}", kEmpty))
       .bind(kAbandonedReason)
       .run();
   transaction.commit();
@@ -59,8 +69,43 @@ void require_writable(Database& database) {
                   database.path()));
 }
 
+/// Copies a file and its log into a temporary database, which SQLite removes when it is closed. Only for a
+/// read-only medium: elsewhere, somebody could write between the two copies.
+Database copy_with_log(const std::string& path) {
+  namespace fs = std::filesystem;
+  auto folder = (fs::temp_directory_path() / "turnpoint-XXXXXX").string();
+  if (::mkdtemp(folder.data()) == nullptr)
+    fail_system(kind_of_errno(errno), "temporary copy of " + path, errno,
+                "set TMPDIR to a folder with space");
+  try {
+    for (const auto* suffix : {"", "-wal"}) fs::copy_file(path + suffix, folder + "/copy" + suffix);
+    Database all("", Database::Access::create);
+    {
+      Database copy(folder + "/copy", Database::Access::read_write);
+      copy_database(copy, all);
+    }
+    fs::remove_all(folder);
+    all.set_path(path);
+    return all;
+  } catch (const std::exception& error) {
+    std::error_code ignored;
+    fs::remove_all(folder, ignored);
+    if (dynamic_cast<const StoreError*>(&error) != nullptr) throw;
+    throw StoreError(ErrorKind::io,
+                     fmt::format("temporary copy of {}, which lies on a read-only medium with its log: {}; "
+                                 "set TMPDIR to a folder with space",
+                                 path, error.what()));
+  }
+}
+
+bool is_read_only_medium(const std::string& path) {
+  struct statvfs disk {};
+  return ::statvfs(path.c_str(), &disk) == 0 && (disk.f_flag & ST_RDONLY) != 0;
+}
+
 /// Opens a file for reading. WAL mode needs shared memory beside the file, which some file systems and
-/// folders do not allow. The file is then read without shared memory, but only if there is no log.
+/// folders do not allow. The file is then read without shared memory, but only if there is no log; with a
+/// log, a copy is read if the medium is read-only.
 Database open_plain_reader(const std::string& path) {
   try {
     Database database(path, Database::Access::read_only);
@@ -70,7 +115,11 @@ Database open_plain_reader(const std::string& path) {
   } catch (const StoreError& error) {
     const bool no_shared_memory =
         error.kind() == ErrorKind::cannot_open || error.kind() == ErrorKind::read_only;
-    if (!no_shared_memory || file_exists(path + "-wal")) throw;
+    if (!no_shared_memory) throw;
+    if (file_size(path + "-wal") > 0) {
+      if (!is_read_only_medium(path)) throw;
+      return copy_with_log(path);
+    }
   }
   return Database(path, Database::Access::immutable);
 }
@@ -132,18 +181,6 @@ std::string remembered_database_id(const std::string& database) {
   return lock.is_open() ? note_in(lock.get()).database_id : "";
 }
 
-namespace {
-
-/// Returns a name for the copy of a database before its migration. No file with that name exists: an existing
-/// one could be a copy of another database.
-std::string copy_before_migration(const std::string& path) {
-  const auto name = fmt::format("{}.before-v{}", path, schema_version());
-  if (!file_exists(name)) return name;
-  return name + "-" + time_stamp();
-}
-
-}  // namespace
-
 Writer open_writer(const std::string& name, IfMissing if_missing) {
   const auto path = canonical(name);
   if (if_missing == IfMissing::fail && state_of(path) == FileState::absent) refuse_absent(path);
@@ -153,13 +190,12 @@ Writer open_writer(const std::string& name, IfMissing if_missing) {
   if (state == FileState::absent) create_file(path);
   Database database(path, Database::Access::read_write);
   database.execute("PRAGMA busy_timeout = 2000");
-  const int version = checked_version(database);
+  require_schema(database);
+  require_no_trigger(database);
   require_writable(database);
   check_ends(database);
   remove_leftovers(path);
-  if (version < schema_version()) copy_to_file(database, copy_before_migration(path), path);
   database.execute("PRAGMA journal_mode = WAL; PRAGMA synchronous = FULL; PRAGMA foreign_keys = ON");
-  migrate(database);
   recover_sessions(database);
   lock.remember(database.text("SELECT value FROM meta WHERE key = 'database_id'"));
   return {std::move(lock), std::move(database)};
@@ -171,13 +207,9 @@ Database open_reader(const std::string& name) {
   if (state == FileState::absent) refuse_absent(path);
   if (state == FileState::empty) refuse_empty(path);
   auto database = open_plain_reader(path);
-  const int version = checked_version(database);
+  require_schema(database);
   check_ends(database);
-  if (version == schema_version()) return database;
-  Database migrated("", Database::Access::create);
-  copy_database(database, migrated);
-  migrate(migrated);
-  return migrated;
+  return database;
 }
 
 }  // namespace turnpoint::store

@@ -36,18 +36,17 @@ enum class IfMissing { create, fail };
 
 /// Opens a database for writing (WAL, synchronous FULL, foreign keys).
 /// - It checks the file with check_ends(), which takes no longer for a large file than for a small one.
-/// - It migrates an older schema, and first makes a copy FILE.before-vN.
+/// - It refuses a database with triggers that the program has not made.
 /// - It creates a missing file under another name and renames it when it is complete.
 /// - It removes what interrupted operations have left beside the database.
 /// - If root creates files in another user's folder, including the lock, it gives them to that user.
 /// - Sessions that a dead process left running become interrupted; those without trials become abandoned.
-/// Throws StoreError and changes nothing if the file is empty, damaged, from a newer release, or not
+/// Throws StoreError and changes nothing if the file is empty, damaged, of another schema, or not
 /// Turnpoint's.
 Writer open_writer(const std::string& path, IfMissing if_missing);
 
 /// Opens a database for reading only, and checks it with check_ends(). This works while a session is running,
-/// and on a read-only disk. Before copying or verifying the whole file, call check_pages() too. If the schema
-/// is older, a migrated copy in a temporary file is opened instead.
+/// and on a read-only disk. Before copying or verifying the whole file, call check_pages() too.
 Database open_reader(const std::string& path);
 
 }  // namespace turnpoint::store

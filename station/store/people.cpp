@@ -6,6 +6,7 @@
 #include <set>
 
 #include "station/store/open.hpp"
+#include "station/store/seal.hpp"
 #include "station/system/clocks.hpp"
 
 namespace turnpoint::store {
@@ -119,7 +120,7 @@ std::string join(const std::string& path, const std::string& first, const std::s
     throw StoreError(ErrorKind::refused,
                      fmt::format("join: {} and {} are the same code at the same station; nothing was changed",
                                  first, second));
-  Transaction transaction(database);
+  SealedTransaction transaction(database);
   if (relation == Relation::two_people)
     Statement(database,
               "DELETE FROM same_person WHERE (station_a, code_a, station_b, code_b) IN"

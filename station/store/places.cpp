@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "station/store/open.hpp"
+#include "station/store/seal.hpp"
 #include "station/store/sqlite.hpp"
 
 namespace turnpoint::store {
@@ -60,7 +61,7 @@ void set_leased_places(const std::string& path, const std::string& protocol_id,
     if (integers(rows) == places) return;
   }
   auto writer = open_writer(path, IfMissing::fail);
-  Transaction transaction(writer.database);
+  SealedTransaction transaction(writer.database);
   Statement(writer.database, "DELETE FROM lease WHERE protocol_id = ?").bind(protocol_id).run();
   Statement insert(writer.database, "INSERT INTO lease VALUES (?,?)");
   for (const auto place : places) insert.bind(protocol_id, place).run();
@@ -77,7 +78,7 @@ std::vector<std::int64_t> used_places(Database& database, const std::string& pro
 
 std::vector<std::int64_t> give_up_places(const std::string& path, const std::string& protocol_id) {
   auto writer = open_writer(path, IfMissing::fail);
-  Transaction transaction(writer.database);
+  SealedTransaction transaction(writer.database);
   Statement free(writer.database, kFreeLeases);
   free.bind(protocol_id);
   auto places = integers(free);

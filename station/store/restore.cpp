@@ -10,6 +10,9 @@
 #include "station/store/checksum.hpp"
 #include "station/store/files.hpp"
 #include "station/store/open.hpp"
+#include "station/store/schema.hpp"
+#include "station/store/station.hpp"
+#include "station/store/verify.hpp"
 #include "station/store/whole_file.hpp"
 
 namespace turnpoint::store {
@@ -38,6 +41,7 @@ void require_lost(const std::string& path) {
 std::string id_of_lost(const std::string& path) {
   try {
     Database damaged(path, Database::Access::immutable);
+    require_schema(damaged);
     const auto id = damaged.text("SELECT value FROM meta WHERE key = 'database_id'");
     if (id.size() == 36) return id;
   } catch (const StoreError&) {
@@ -87,6 +91,21 @@ void refuse_unread(const StoredBackup& backup) {
                                backup.path, backup.trouble));
 }
 
+/// Leaves out backups that another machine has made. Throws if no others are left, because then either the
+/// machine was replaced, or these are backups of the original of a copy, whose data do not belong here.
+void keep_own(const std::string& path, std::vector<StoredBackup>& backups) {
+  const auto here = machine_identity();
+  const auto all = backups;
+  std::erase_if(backups, [&](const auto& backup) { return backup.is_of_other_machine(here); });
+  if (all.empty() || !backups.empty()) return;
+  throw StoreError(
+      ErrorKind::other_machine,
+      fmt::format(
+          "restore: another machine made the backups of {} (the newest, of station {}: {}); nothing was "
+          "changed; if this machine replaces that one, add --moved",
+          path, all.back().station, all.back().path));
+}
+
 struct Candidates {
   std::vector<StoredBackup> backups;    ///< backups of the lost database, newest first
   std::vector<std::string> unreadable;  ///< unreadable files with this database's name
@@ -105,6 +124,7 @@ Candidates candidates_for(const std::string& path, const RestoreOptions& options
     ids.insert(backup.database_id);
   }
   if (ids.size() > 1) refuse_ambiguous(path, candidates.backups);
+  if (options.whose == Whose::found) keep_own(path, candidates.backups);
   std::reverse(candidates.backups.begin(), candidates.backups.end());
   return candidates;
 }
@@ -124,9 +144,12 @@ bool is_good(const StoredBackup& candidate) {
 }
 
 /// Copies the backup to `path`.restored and checks the copy.
-void prepare(const std::string& path, const StoredBackup& candidate) {
+void prepare(const std::string& path, const StoredBackup& candidate, Whose whose) {
   auto good = open_reader(candidate.path);
-  copy_to_file(good, path + ".restored", candidate.path, clear_backup_note);
+  copy_to_file(good, path + ".restored", candidate.path, [&](Database& copy) {
+    clear_backup_note(copy);
+    if (whose == Whose::moved) move_station(copy, machine_identity());
+  });
 }
 
 void count(Restoration& restoration, const std::string& path) {
@@ -134,6 +157,7 @@ void count(Restoration& restoration, const std::string& path) {
   restoration.sessions = restored.integer("SELECT count(*) FROM session");
   restoration.trials = restored.integer("SELECT count(*) FROM trial");
   restoration.database_id = restored.text("SELECT value FROM meta WHERE key = 'database_id'");
+  restoration.problems = file_problems(restored);
   for (const auto& session : verify_database(restored))
     if (!session.problems.empty()) restoration.changed.push_back(session.session_id);
 }
@@ -152,7 +176,7 @@ Restoration restore_backup(const std::string& name, const RestoreOptions& option
       restoration.rejected.push_back(candidate.path);
       continue;
     }
-    prepare(path, candidate);
+    prepare(path, candidate, options.whose);
     restoration.quarantined = replace_by_restored(path);
     restoration.from = candidate.path;
     count(restoration, path);

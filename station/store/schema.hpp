@@ -6,29 +6,29 @@
 
 namespace turnpoint::store {
 
-/// SQL statements; step i migrates the schema from version i to i + 1. A new database runs all steps too, so
-/// that it cannot differ from a migrated one. Never edit a step that was released.
-const std::vector<std::string>& schema_steps();
+/// The number of the schema, which databases have as PRAGMA user_version. It changes with the tables, the
+/// columns, and the bytes that the checksums cover. The program reads no other schema.
+constexpr int kSchema = 10;
 
-/// The first of these steps.
-const char* schema_version_1();
-
-/// The schema version that this program writes. Databases have it as PRAGMA user_version.
-int schema_version();
+/// The commit whose `turnpoint export` reads the schemas before the present one.
+constexpr const char* kLastReader = "7a2fd061";
 
 /// Identifies the files of the program as PRAGMA application_id: "TPNT".
 constexpr int kApplicationId = 0x54504e54;
 
-/// Creates the schema of this version in an empty database. Used for new files, and with old versions in
-/// tests.
-void create_schema(Database& database, int version);
+/// Creates all tables, indexes and triggers in an empty database.
+void create_schema(Database& database);
 
-/// Migrates an older database to the current version, in one transaction. Throws StoreError for a database of
-/// a newer release, and for a file that is not Turnpoint's.
-void migrate(Database& database);
+/// Throws StoreError if the file is not Turnpoint's, if it has another schema, or if one of its tables is not
+/// as create_schema() makes it. Read nothing else before: a view in place of a table could keep its reader
+/// busy for ever.
+void require_schema(Database& database);
 
-/// Returns the schema version of a database. Throws StoreError if the file is not Turnpoint's, or if a newer
-/// release wrote it.
-int checked_version(Database& database);
+/// Throws StoreError if the database has a trigger that create_schema() does not make.
+void require_no_trigger(Database& database);
+
+/// Compares all tables, columns, indexes, triggers and views with those that create_schema() makes. Returns
+/// one sentence for each difference.
+std::vector<std::string> schema_problems(Database& database);
 
 }  // namespace turnpoint::store

@@ -14,6 +14,8 @@
 #include "station/store/places.hpp"
 #include "station/store/read.hpp"
 #include "station/store/rows.hpp"
+#include "station/store/seal.hpp"
+#include "station/store/station.hpp"
 #include "station/store/withdraw.hpp"
 #include "station/system/clocks.hpp"
 #include "station/system/uuid.hpp"
@@ -153,7 +155,8 @@ struct SessionLog::Impl {
   }
   /// Adds a checksum link over everything that the transaction wrote, and commits. The commit also stores the
   /// events that were kept in memory.
-  void commit(Transaction& transaction) {
+  template <class AnyTransaction>
+  void commit(AnyTransaction& transaction) {
     auto link = chain->add();
     transaction.commit();
     session.checksum = link.sha256;
@@ -184,7 +187,8 @@ SessionLog SessionLog::begin(const std::string& path, const SessionStart& start,
   auto impl = std::make_unique<Impl>(open_writer(path, IfMissing::create));
   auto& database = impl->writer.database;
   const auto id = system::new_uuid();
-  Transaction transaction(database);
+  SealedTransaction transaction(database);
+  claim_station(database, start.station_id, segment.machine);
   insert_session(database, id, start);
   insert_segment(database, id, 1, segment);
   impl->chain.emplace(database, id);
@@ -219,7 +223,8 @@ SessionLog SessionLog::resume(const std::string& path, const std::string& id, co
                             "the trial was presented, but the program ended before the trial was over",
                             static_cast<int>(*trial)});
   open.reset();
-  Transaction transaction(database);
+  SealedTransaction transaction(database);
+  claim_station(database, stored.session.start.station_id, segment.machine);
   insert_segment(database, id, index, segment);
   impl->write_events();
   Statement(database, "UPDATE session SET status = 'running', status_reason = '' WHERE session_id = ?")
@@ -289,7 +294,7 @@ void SessionLog::append(const TrialRow& trial) {
 }
 
 void SessionLog::annotate(const std::string& text) {
-  Transaction transaction(impl_->writer.database);
+  SealedTransaction transaction(impl_->writer.database);
   Statement(impl_->writer.database, "INSERT INTO annotation VALUES (?,?,?,?)")
       .bind(system::new_uuid(), impl_->place.session_id, system::realtime_ns(), text)
       .run();
@@ -298,7 +303,7 @@ void SessionLog::annotate(const std::string& text) {
 }
 
 void SessionLog::finish(SessionStatus status, const std::string& reason) {
-  Transaction transaction(impl_->writer.database);
+  SealedTransaction transaction(impl_->writer.database);
   impl_->write_events();
   Statement(impl_->writer.database, "UPDATE session SET status = ?, status_reason = ? WHERE session_id = ?")
       .bind(name(status), reason, impl_->place.session_id)

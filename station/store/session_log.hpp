@@ -28,8 +28,7 @@ struct SessionRecord {
   std::int64_t last_trial_id = 0;
   bool merged = false;                   ///< true if the session came from another database
   std::vector<std::string> annotations;  ///< notes of researchers, oldest first
-  /// last link of the session's checksum chain (checksum.hpp); "" if an earlier release recorded the session
-  std::string checksum;
+  std::string checksum;                  ///< last link of the session's checksum chain (checksum.hpp)
 };
 
 /// Writes one session. It has the station's only connection for writing (WAL, synchronous FULL, foreign keys)
@@ -38,8 +37,8 @@ struct SessionRecord {
 /// tried, on which file, what SQLite reported, and what to do.
 class SessionLog {
  public:
-  /// Opens or creates the database, migrates an older schema, and begins a session. A new participant gets
-  /// the protocol's next free sequence index.
+  /// Opens or creates the database, and begins a session. A new participant gets the protocol's next free
+  /// sequence index.
   static SessionLog begin(const std::string& database, const SessionStart& start,
                           const SegmentStart& segment);
 

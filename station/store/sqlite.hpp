@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 #include <type_traits>
+#include <utility>
 
 #include "station/store/error.hpp"
 
@@ -96,6 +97,7 @@ class Database {
   int changes() const;
 
   const std::string& path() const { return path_; }
+  void set_path(std::string path) { path_ = std::move(path); }  ///< for messages, if this is a copy of a file
   sqlite3* handle() { return handle_; }
 
   /// Prepared statements that begin and end a transaction. They are kept, because every transaction needs

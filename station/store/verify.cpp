@@ -4,8 +4,11 @@
 
 #include <algorithm>
 #include <system_error>
+#include <utility>
 
 #include "station/store/open.hpp"
+#include "station/store/schema.hpp"
+#include "station/store/seal.hpp"
 #include "station/store/text_table.hpp"
 #include "station/store/whole_file.hpp"
 #include "station/system/read_file.hpp"
@@ -51,7 +54,6 @@ std::vector<Exported> read_export(const std::string& path) {
 
 /// Adds a problem unless the session's chain in the database has a link with the exported checksum.
 void compare(Database& database, const Exported& exported, Verification& result) {
-  if (exported.checksum == "n/a") return;  // the session was recorded by a release without checksums
   if (holds_link(database, exported.session_id, exported.checksum)) return;
   const auto problem =
       fmt::format("the checksum in the export, {}, does not occur in this session", exported.checksum);
@@ -66,6 +68,21 @@ void compare(Database& database, const Exported& exported, Verification& result)
 
 }  // namespace
 
+std::vector<std::string> file_problems(Database& database) {
+  auto problems = schema_problems(database);
+  for (auto& problem : seal_problems(database)) problems.push_back(std::move(problem));
+  const auto unused = [&](const char* table, const char* key, const std::string& users) {
+    Statement rows(database, fmt::format("SELECT {1} FROM {0} WHERE {1} NOT IN ({2})", table, key, users));
+    while (rows.step()) problems.push_back(fmt::format("{} {} belongs to no session", table, rows.text(0)));
+  };
+  unused("participant", "code", "SELECT participant FROM session UNION SELECT participant FROM enrolment");
+  unused("protocol", "protocol_key", "SELECT protocol_key FROM session");
+  unused("rig", "rig_key", "SELECT rig_key FROM session");
+  unused("calibration", "calibration_id",
+         "SELECT calibration_id FROM session WHERE calibration_id IS NOT NULL");
+  return problems;
+}
+
 bool Verification::good() const {
   return problems.empty() && std::all_of(sessions.begin(), sessions.end(),
                                          [](const auto& session) { return session.problems.empty(); });
@@ -75,8 +92,11 @@ Verification verify(const std::string& path, const VerifyOptions& options) {
   std::vector<Exported> exported;
   if (!options.against.empty()) exported = read_export(options.against);
   auto database = open_reader(path);
+  // one snapshot, because a session may be writing
+  database.execute("BEGIN");
   check_pages(database);
   Verification result;
+  result.problems = file_problems(database);
   if (options.session_id.empty())
     result.sessions = verify_database(database);
   else

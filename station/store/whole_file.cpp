@@ -10,6 +10,7 @@
 
 #include "station/store/files.hpp"
 #include "station/store/schema.hpp"
+#include "station/store/seal.hpp"
 #include "station/system/clocks.hpp"
 #include "station/system/uuid.hpp"
 
@@ -24,7 +25,7 @@ void verify(const std::string& path) {
       throw StoreError(ErrorKind::io,
                        fmt::format("{}: SQLite left the file's {} behind; check the disk", path, suffix));
   Database copy(path, Database::Access::immutable);
-  checked_version(copy);
+  require_schema(copy);
   check_pages(copy);
   if (copy.text("SELECT value FROM meta WHERE key = 'database_id'").empty())
     copy.fail(SQLITE_CORRUPT, "the database has no id");
@@ -84,11 +85,9 @@ void check_ends(Database& database) {
   for (const auto& table : tables) database.integer("SELECT 1 FROM \"" + table + "\" LIMIT 1");
   Statement last(database, "SELECT * FROM trial ORDER BY trial_id DESC LIMIT 1");
   if (!last.step()) return;
-  const bool has_signals = database.integer("PRAGMA user_version") >= 6;
   for (const auto& [table, key] : {std::pair("session", "status"), std::pair("segment", "segment_index"),
                                    std::pair("block", "run_order"), std::pair("tone", "trial_index"),
                                    std::pair("signal", "trial_index"), std::pair("event", "event_index")}) {
-    if (std::string_view(table) == "signal" && !has_signals) continue;
     Statement row(database,
                   fmt::format("SELECT * FROM {} WHERE session_id = ? ORDER BY {} DESC LIMIT 1", table, key));
     row.bind(last.text(1));
@@ -124,8 +123,9 @@ void create_file(const std::string& path) {
     // In rollback mode, all data are in this one file once the transaction has ended.
     Database database(temporary, Database::Access::read_write);
     database.execute("PRAGMA journal_mode = DELETE; PRAGMA synchronous = EXTRA");
-    create_schema(database, schema_version());
+    create_schema(database);
     Statement(database, "INSERT INTO meta VALUES ('database_id', ?)").bind(system::new_uuid()).run();
+    create_seal(database);
   });
 }
 
@@ -163,7 +163,6 @@ std::string replace_by_restored(const std::string& path) {
 void remove_leftovers(const std::string& path) {
   for (const auto* name : {".new", ".merging", ".merging.new", ".restored", ".restored.new"})
     remove_database(path + name);
-  remove_database(fmt::format("{}.before-v{}.new", path, schema_version()));
 }
 
 }  // namespace turnpoint::store

@@ -3,12 +3,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <set>
+#include <utility>
 
 #include "station/store/backup.hpp"
 #include "station/store/copies.hpp"
 #include "station/store/files.hpp"
 #include "station/store/open.hpp"
 #include "station/store/read.hpp"
+#include "station/store/seal.hpp"
 #include "station/store/sqlite.hpp"
 #include "station/store/whole_file.hpp"
 #include "station/system/clocks.hpp"
@@ -26,9 +29,8 @@ std::string digest(const std::string& salt, const std::string& code) {
 /// True if this code has a tombstone (the mark of a withdrawal): of this station, or of any station if
 /// `station` is "".
 bool has_tombstone(Database& database, const std::string& station, const std::string& code) {
-  Statement rows(
-      database,
-      "SELECT DISTINCT salt, participant_sha256 FROM tombstone WHERE ?1 = '' OR station_id IN ('', ?1)");
+  Statement rows(database,
+                 "SELECT DISTINCT salt, participant_sha256 FROM tombstone WHERE ?1 IN ('', station_id)");
   rows.bind(station);
   while (rows.step())
     if (rows.text(1) == digest(rows.text(0), code)) return true;
@@ -75,7 +77,7 @@ Withdrawal choose(Database& database, const WithdrawOptions& options) {
     throw StoreError(ErrorKind::missing,
                      fmt::format("withdraw: participant \"{}\" has no session {}; nothing was removed",
                                  options.participant, options.session_id));
-  if (withdrawal.sessions.empty()) require_withdrawn_before(database, options);
+  if (withdrawal.sessions.empty() && bearers.empty()) require_withdrawn_before(database, options);
   return withdrawal;
 }
 
@@ -137,18 +139,22 @@ std::vector<Tombstone> new_tombstones(const Withdrawal& withdrawal) {
 /// Writes the tombstones (the marks of withdrawals), and deletes the sessions and codes that they withdraw.
 void remove_sessions(Database& database, const std::vector<Tombstone>& tombstones,
                      const std::vector<Bearer>& bearers) {
-  Transaction transaction(database);
+  SealedTransaction transaction(database);
   for (const auto& stone : tombstones) {
     Statement(database, "INSERT INTO tombstone VALUES (?,?,?,?,?)")
         .bind(stone.session_id, stone.salt, stone.participant_sha256, stone.withdrawn_realtime_ns,
               stone.station_id)
         .run();
     for (const auto* table :
-         {"annotation", "merged", "link", "unsealed", "self_test", "answer", "friction_level", "program",
+         {"annotation", "merged", "renamed", "link", "self_test", "answer", "friction_level", "program",
           "estimate", "event", "signal", "tone", "trial", "block", "segment", "session"})
       remove(database, table, stone.session_id);
   }
   for (const auto& bearer : bearers) remove_bearer(database, bearer);
+  for (const auto& [table, key] : {std::pair("protocol", "protocol_key"), std::pair("rig", "rig_key"),
+                                   std::pair("calibration", "calibration_id")})
+    database.execute(fmt::format(
+        "DELETE FROM {0} WHERE NOT EXISTS (SELECT 1 FROM session WHERE session.{1} = {0}.{1})", table, key));
   transaction.commit();
 }
 
@@ -210,28 +216,56 @@ void carry_out(const std::string& path, Database& database, Withdrawal& withdraw
   }
 }
 
-/// Returns those of the given tombstones that the database does not have yet.
-std::vector<Tombstone> missing_in(Database& database, std::vector<Tombstone> tombstones) {
-  Statement known(database, "SELECT 1 FROM tombstone WHERE session_id = ?");
-  std::erase_if(tombstones, [&](const auto& stone) { return known.bind(stone.session_id).step(); });
-  return tombstones;
+/// True if this tombstone (the mark of a withdrawal) withdraws the code, not only one session.
+bool withdraws(const Tombstone& stone, const Bearer& bearer) {
+  return stone.station_id == bearer.station_id && stone.participant_sha256 == digest(stone.salt, bearer.code);
 }
 
-/// Returns the codes in this database that the tombstones (the marks of withdrawals) withdraw.
-std::vector<Bearer> bearers_of(Database& database, const std::vector<Tombstone>& tombstones) {
-  std::vector<Bearer> bearers;
-  Statement rows(
+/// What tombstones of another database have to remove from this one, and the tombstones that then remain.
+struct Following {
+  Withdrawal withdrawal;
+  std::vector<Tombstone> tombstones;
+};
+
+/// Takes every session of a withdrawn code, also those that the other database has never seen. A tombstone
+/// that names another station or another person than its session is not followed.
+Following following(Database& database, const std::vector<Tombstone>& tombstones) {
+  Following follow;
+  Statement known(database, "SELECT 1 FROM tombstone WHERE session_id = ?");
+  const auto is_new = [&](const std::string& id) { return !known.bind(id).step(); };
+  std::set<std::string> foreign, there;
+  for (auto& session : list_sessions(database, {})) {
+    const Bearer bearer{session.start.station_id, session.start.participant};
+    const auto& id = session.session_id;
+    const auto own = std::find_if(tombstones.begin(), tombstones.end(), [&](const auto& stone) {
+      return stone.session_id == id && stone.station_id == bearer.station_id &&
+             (stone.participant_sha256.empty() || withdraws(stone, bearer));
+    });
+    const auto of_code = std::find_if(tombstones.begin(), tombstones.end(),
+                                      [&](const auto& stone) { return withdraws(stone, bearer); });
+    if (own == tombstones.end() && of_code == tombstones.end()) {
+      foreign.insert(id);
+      continue;
+    }
+    auto stone = own != tombstones.end() ? *own : *of_code;
+    stone.session_id = id;
+    there.insert(id);
+    follow.tombstones.push_back(std::move(stone));
+    follow.withdrawal.sessions.push_back(std::move(session));
+  }
+  for (const auto& stone : tombstones)
+    if (foreign.count(stone.session_id) + there.count(stone.session_id) == 0 && is_new(stone.session_id))
+      follow.tombstones.push_back(stone);
+  Statement codes(
       database,
       "SELECT station_id, participant FROM enrolment UNION SELECT station_id, participant FROM session");
-  while (rows.step()) {
-    const Bearer bearer{rows.text(0), rows.text(1)};
-    if (std::any_of(tombstones.begin(), tombstones.end(), [&](const auto& stone) {
-          return (stone.station_id.empty() || stone.station_id == bearer.station_id) &&
-                 stone.participant_sha256 == digest(stone.salt, bearer.code);
-        }))
-      bearers.push_back(bearer);
+  while (codes.step()) {
+    const Bearer bearer{codes.text(0), codes.text(1)};
+    if (std::any_of(tombstones.begin(), tombstones.end(),
+                    [&](const auto& stone) { return withdraws(stone, bearer); }))
+      follow.withdrawal.bearers.push_back(bearer);
   }
-  return bearers;
+  return follow;
 }
 
 }  // namespace
@@ -260,22 +294,18 @@ std::vector<Tombstone> list_tombstones(Database& database) {
 Withdrawal follow_tombstones(const std::string& name, const std::vector<Tombstone>& tombstones,
                              const std::string& backup_directory) {
   const auto path = canonical(name);
-  Withdrawal withdrawal;
   {
     auto reader = open_reader(path);
-    if (missing_in(reader, tombstones).empty()) return withdrawal;
+    if (const auto follow = following(reader, tombstones);
+        follow.tombstones.empty() && follow.withdrawal.bearers.empty())
+      return {};
   }
   auto writer = open_writer(path, IfMissing::fail);
   auto& database = writer.database;
   check_pages(database);
-  const auto missing = missing_in(database, tombstones);
-  for (auto& session : list_sessions(database, {}))
-    if (std::any_of(missing.begin(), missing.end(),
-                    [&](const auto& stone) { return stone.session_id == session.session_id; }))
-      withdrawal.sessions.push_back(std::move(session));
-  withdrawal.bearers = bearers_of(database, missing);
-  carry_out(path, database, withdrawal, missing, backup_directory);
-  return withdrawal;
+  auto follow = following(database, tombstones);
+  carry_out(path, database, follow.withdrawal, follow.tombstones, backup_directory);
+  return std::move(follow.withdrawal);
 }
 
 }  // namespace turnpoint::store

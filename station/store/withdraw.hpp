@@ -24,7 +24,7 @@ struct Withdrawal {
   std::vector<SessionRecord> sessions;
   std::vector<Bearer> bearers;  ///< codes that will not be assigned to another person
   std::int64_t trials = 0, tones = 0, events = 0, annotations = 0;
-  /// files that contained the sessions and were removed: backups, and copies from before a migration
+  /// backups that contained the sessions and were removed
   std::vector<std::string> removed_copies;
   /// files that still contain the sessions or cannot be read; somebody must remove them by hand
   std::vector<std::string> remaining_copies;
@@ -39,8 +39,8 @@ Withdrawal plan_withdrawal(const std::string& database, const WithdrawOptions& o
 ///
 /// It deletes the sessions from every table, and then from the file's free pages and its log (secure_delete,
 /// VACUUM, checkpoint). Then it deletes copies of this database that contain the sessions: files that
-/// interrupted operations and migrations have left beside the database, and its backups, if a folder of
-/// backups is given. Before it removes backups, it makes a new one.
+/// interrupted operations have left beside the database, and its backups, if a folder of backups is given.
+/// Before it removes backups, it makes a new one.
 ///
 /// Tombstones remain in the database. They prevent a merge from bringing the sessions back, and the code from
 /// being assigned again. Repeating the call does no harm and completes an interrupted withdrawal. Before
@@ -52,14 +52,15 @@ Withdrawal withdraw(const std::string& database, const WithdrawOptions& options)
 struct Tombstone {
   std::string session_id, salt, participant_sha256;
   std::int64_t withdrawn_realtime_ns = 0;
-  std::string station_id;  ///< station of the code; "" means any
+  std::string station_id;  ///< station of the code
 };
 
 std::vector<Tombstone> list_tombstones(Database& database);
 
-/// Withdraws from this database what was withdrawn from another: deletes the sessions and codes to which the
-/// tombstones belong, as withdraw() does, and keeps the tombstones. Changes nothing if the database has them
-/// all.
+/// Withdraws from this database what was withdrawn from another: deletes the sessions to which the tombstones
+/// belong, as withdraw() does, and keeps the tombstones. If a tombstone withdraws a code, all sessions with
+/// this code at its station go, also those that the other database has never seen. Changes nothing if there
+/// is nothing to do. A tombstone whose station or code is not that of its session is not followed.
 Withdrawal follow_tombstones(const std::string& database, const std::vector<Tombstone>& tombstones,
                              const std::string& backup_directory = "");
 

@@ -132,18 +132,11 @@ TEST_CASE("boundaries that cannot be used are refused, wrong ones are named", "[
   CHECK(parse(text, "a.toml").boundary->points[1].left_out);
   const auto line = text.find("left_out");
   text.erase(line, text.find('\n', line) - line);
-  CHECK_FALSE(parse(text, "a.toml").boundary->points[1].left_out);
+  CHECK_THROWS_AS(parse(text, "a.toml"), text::BadInput);
   points[1].sd_m = 0;
   CHECK_THROWS_AS(fit_boundaries(plate(), "p50", points), terms::UsageError);
   CHECK_THROWS_AS(fit_boundaries(plate(), "friction=0.7", points), terms::UsageError);
   CHECK_THROWS_AS(fit_boundaries(plate(), "p50", {}), terms::UsageError);
-}
-
-TEST_CASE("the boundary fit of an earlier release is skipped when a calibration is read", "[calibration]") {
-  auto calibration = made();
-  calibration.boundary.reset();
-  const auto text = to_toml(calibration) + "\n[boundary]\nlaw = \"plate\"\napex_mm = 466\nconstant = 55\n";
-  CHECK_FALSE(parse(text, "old.toml").boundary.has_value());
 }
 
 TEST_CASE("a calibration expires, belongs to one rig file, and says why it must not be used",

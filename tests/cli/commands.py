@@ -32,7 +32,7 @@ COMMANDS = {
     "operator-code": {"needs": "code"}, "plan": {}, "power": {}, "preview": {}, "protocols": {},
     "push": {"needs": "server"}, "receive": {"needs": "server"}, "report": {"needs": "session"}, "resume": {"needs": "session"}, "run": {}, "self-test": {"status": (0, 1)},
     "sessions": {"needs": "session"},
-    "station": {"needs": "screen"}, "synth": {}, "trace": {}, "verify": {"needs": "session"},
+    "station": {"needs": "screen"}, "station-name": {"needs": "session"}, "synth": {}, "trace": {}, "verify": {"needs": "session"},
     "withdraw": {"needs": "session"},
 }
 # Commands whose JSON documents are fuller than those of the examples in --help. They are used instead of the
@@ -51,7 +51,7 @@ WITH_RIG = {"amplifier-off": [], "calibrate": ["--sweep"], "check": ["demo"], "d
             "synth": ["--tone", "30000", "--seconds", "1", "--out", "null:"]}
 WITH_DATABASE = {"annotate": ["a note"], "backup": ["--dir", "copies"], "export": ["--out", "export"], "join": ["P01", "P02"],
                  "push": ["--to", "host=/nowhere"], "receive": ["received.json"], "report": [], "resume": [], "sessions": [], "verify": [], "withdraw": ["--participant", "P01", "--yes"]}
-CREATES_DATABASE = {"merge": ["good.sqlite"], "run": ["demo", "--participant", "P01", "--observer", "sim"]}
+CREATES_DATABASE = {"merge": ["good.sqlite"], "run": ["demo", "--participant", "P01", "--observer", "sim"], "station-name": ["bench-2"]}
 WRITES_DATABASE = {**CREATES_DATABASE, **{name: WITH_DATABASE[name] for name in ("annotate", "join", "withdraw")}}
 OUT_OF_RANGE = [
     (["backup", "--dir", "copies", "--keep", "-1", "--db", "good.sqlite"], "0 or more"),

@@ -1,6 +1,5 @@
 #!/usr/bin/env python3
-"""sweep.py PROGRAM FAULTY_SYSTEM SCHEMA_V1 [--seed N --points N | --all] [OPERATION...]: tests a fault at each system
-call.
+"""sweep.py PROGRAM FAULTY_SYSTEM [--seed N --points N | --all] [OPERATION...]: tests a fault at each system call.
 
 Each operation runs once without a fault, to list its system calls on files. Then it runs again from the same files
 for each chosen call. At that call the program is killed, or the call fails with EIO or ENOSPC. Afterwards this script
@@ -142,25 +141,6 @@ class Run(Create):
         return self.session("lab.sqlite", "P02")
 
 
-class Migrate(Create):
-    def prepare(self, folder):
-        connection = sqlite3.connect(os.path.join(folder, "lab.sqlite"))
-        with open(self.sweep.schema, encoding="utf-8") as file:
-            connection.executescript(file.read())
-        connection.executescript(f"PRAGMA application_id = {0x54504E54}; PRAGMA user_version = 1; PRAGMA journal_mode = WAL")
-        connection.close()
-
-    def done(self, folder):
-        Create.done(self, folder)
-        if not glob.glob(os.path.join(folder, "lab.sqlite.before-v*[0-9Z]")):
-            wrong("no copy was kept before the migration")
-
-    def check(self, folder, before):
-        Operation.check(self, folder, before)
-        for copy in glob.glob(os.path.join(folder, "lab.sqlite.before-v*[0-9Z]")):
-            self.kept(before["lab.sqlite"], trials(copy))
-
-
 class Resume(Create):
     def prepare(self, folder):
         self.good(folder, *self.session("lab.sqlite", "P01"))
@@ -271,7 +251,7 @@ class Withdraw(Backup):
     def prepare(self, folder):
         Backup.prepare(self, folder)
         path = os.path.join(folder, "lab.sqlite")
-        for name in (".merging", ".merging.new", ".restored", ".new", ".before-v3", ".before-v2"):
+        for name in (".merging", ".merging.new", ".restored", ".new"):
             shutil.copy(path, path + name)
         newest = self.backups(folder)[-1]
         shutil.copy(newest, newest + ".new")
@@ -332,13 +312,13 @@ class Calibrate(Operation):
             wrong("calibration.toml is neither the old nor the complete new file")
 
 
-OPERATIONS = {"create": Create, "migrate": Migrate, "run": Run, "resume": Resume, "backup": Backup, "restore": Restore, "drill": Drill,
-              "merge": Merge, "withdraw": Withdraw, "export": Export, "calibrate": Calibrate}
+OPERATIONS = {"create": Create, "run": Run, "resume": Resume, "backup": Backup, "restore": Restore, "drill": Drill, "merge": Merge,
+              "withdraw": Withdraw, "export": Export, "calibrate": Calibrate}
 
 
 class Sweep:
-    def __init__(self, program, faulty_system, schema, work, careless):
-        self.program, self.faulty_system, self.schema, self.work = program, faulty_system, schema, work
+    def __init__(self, program, faulty_system, work, careless):
+        self.program, self.faulty_system, self.work = program, faulty_system, work
         self.careless = careless
         self.start = ""
 
@@ -429,7 +409,6 @@ def main():
     parser = argparse.ArgumentParser()
     parser.add_argument("program")
     parser.add_argument("faulty_system")
-    parser.add_argument("schema")
     parser.add_argument("operations", nargs="*", help="any of: " + " ".join(OPERATIONS))
     parser.add_argument("--seed", type=int, default=commits(),
                         help="chooses the points to test; default: the number of commits")
@@ -446,7 +425,7 @@ def main():
 
     failures = []
     with tempfile.TemporaryDirectory(dir="/dev/shm" if os.path.isdir("/dev/shm") else None) as work:
-        sweep = Sweep(os.path.abspath(options.program), os.path.abspath(options.faulty_system), options.schema, os.path.realpath(work),
+        sweep = Sweep(os.path.abspath(options.program), os.path.abspath(options.faulty_system), os.path.realpath(work),
                       options.careless)
         for name in options.operations or OPERATIONS:
             failures += sweep.run(name, choose)

@@ -9,6 +9,7 @@
 #include "station/store/checksum.hpp"
 #include "station/store/open.hpp"
 #include "station/store/rows.hpp"
+#include "station/store/seal.hpp"
 #include "station/store/session_log.hpp"
 #include "station/text/number.hpp"
 
@@ -105,7 +106,7 @@ TrialRow trial_of(int session, int trial) {
 
 /// Writes the rows of a session that begin() has created, in one transaction.
 void fill(Database& database, const std::string& id, int session, int trials) {
-  Transaction transaction(database);
+  SealedTransaction transaction(database);
   RowWriter rows(database);
   Chain chain(database, id);
   const TrialPlace place{id, 1, 0, 0};

@@ -230,24 +230,22 @@ TEST_CASE("the newest interrupted session is the one that was written last, even
   CHECK(interrupted_session(db, ahead)->age_s < 0);
 }
 
-TEST_CASE(
-    "withdrawing a participant includes files that interrupted operations and migrations have left behind",
-    "[store]") {
+TEST_CASE("withdrawing a participant includes files that interrupted operations have left behind",
+          "[store]") {
   TemporaryFolder folder;
   const auto db = folder / "a.sqlite", dir = folder / "backups";
   sample::session(db, 4, sample::start("XQ77ZK"));
   sample::session(db, 2, sample::start("P02"));
   const auto good = backup(db, {dir, 9});
   sample::raw(db).execute("PRAGMA wal_checkpoint(TRUNCATE)");
-  for (const auto* name :
-       {".new", ".merging", ".merging.new", ".restored", ".restored.new", ".before-v2", ".before-v4"})
+  for (const auto* name : {".new", ".merging", ".merging.new", ".restored", ".restored.new"})
     fs::copy_file(db, db + name);
   fs::copy_file(good.path, good.path + ".new");
   const auto plan = plan_withdrawal(db, {"XQ77ZK", "", "", dir});
-  CHECK(plan.removed_copies.size() == 3);
+  CHECK(plan.removed_copies.size() == 1);
   CHECK(list_sessions(db).size() == 2);
   const auto gone = withdraw(db, {"XQ77ZK", "", "", dir});
-  CHECK(gone.removed_copies.size() == 3);
+  CHECK(gone.removed_copies.size() == 1);
   CHECK(gone.remaining_copies.empty());
   for (const auto& entry : fs::recursive_directory_iterator(folder.path))
     if (entry.is_regular_file()) {

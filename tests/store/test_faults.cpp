@@ -1,4 +1,6 @@
 #include <fcntl.h>
+#include <sched.h>
+#include <sys/mount.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -6,7 +8,11 @@
 
 #include "station/store/backup.hpp"
 #include "station/store/export.hpp"
+#include "station/store/merge.hpp"
 #include "station/store/read.hpp"
+#include "station/store/schema.hpp"
+#include "station/store/verify.hpp"
+#include "station/store/withdraw.hpp"
 #include "tests/store/failing_disk.hpp"
 #include "tests/store/sample.hpp"
 #include "tests/support/catch.hpp"
@@ -186,4 +192,96 @@ TEST_CASE("the error for a missing folder names the folder", "[store]") {
       [] { SessionLog::begin("/nonexistent/folder/a.sqlite", sample::start(), sample::segment()); });
   CHECK(fault == ErrorKind::missing);
   CHECK(sample::contains(message, "/nonexistent/folder"));
+}
+
+TEST_CASE("a database of another schema is not changed, and the message says which program reads it",
+          "[store]") {
+  TemporaryFolder folder;
+  const auto db = folder / "a.sqlite";
+  sample::session(db, 1);
+  const int schema = GENERATE(1, kSchema - 1, kSchema + 1);
+  sample::raw(db).execute("PRAGMA user_version = " + std::to_string(schema));
+  const auto before = sample::bytes_of(db);
+  const auto check = [&](auto&& action) {
+    const auto [kind, message] = sample::failure(action);
+    CHECK(kind == ErrorKind::other_schema);
+    CHECK(sample::contains(message, "has schema " + std::to_string(schema)));
+    CHECK(sample::contains(message, schema < kSchema ? "`turnpoint export` of commit 7a2fd061" : "update"));
+  };
+  check([&] { sample::session(db, 1); });
+  check([&] { list_sessions(db); });
+  check([&] { export_data(db, folder / "out", {}); });
+  check([&] { merge(folder / "b.sqlite", db); });
+  CHECK(sample::bytes_of(db) == before);
+}
+
+TEST_CASE("a view in place of a table is refused by every function, even one that never ends", "[store]") {
+  TemporaryFolder folder;
+  const auto db = folder / "a.sqlite", dir = folder / "backups", other = folder / "b.sqlite";
+  sample::session(db, 1);
+  sample::session(other, 1, sample::start("P02"));
+  const auto stored = backup(db, {dir, 9});
+  const std::string endless =
+      "WITH RECURSIVE n(i) AS (VALUES (1) UNION ALL SELECT i + 1 FROM n) SELECT i AS annotation_id, i AS "
+      "session_id, i AS realtime_ns, i AS text, i AS key, i AS value FROM n";
+  const std::string table = GENERATE("annotation", "meta");
+  for (const auto& path : {db, stored.path})
+    sample::raw(path).execute("DROP TABLE " + table + "; CREATE VIEW " + table + " AS " + endless);
+  std::filesystem::remove(stored.path + ".sha256");
+  const auto refused = [&](auto&& action) {
+    const auto [kind, message] = sample::failure(action);
+    CHECK(kind == ErrorKind::corrupt);
+    CHECK(sample::contains(message, "table " + table + " is not as this program makes it"));
+  };
+  refused([&] { list_sessions(db); });
+  refused([&] { export_data(db, folder / "out", {}); });
+  refused([&] { sample::session(db, 1); });
+  refused([&] { merge(other, db); });
+  refused([&] { backup(db, {dir, 9}); });
+  refused([&] { verify(db); });
+  refused([&] { withdraw(db, {"P01", "", "", dir}); });
+  CHECK(withdraw(other, {"P02", "", "", dir}).remaining_copies == std::vector{stored.path});
+  CHECK(sample::failure([&] { restore_backup(db, {dir, ""}); }).first == ErrorKind::missing);
+}
+
+TEST_CASE("nothing is recorded in a database with somebody else's trigger, and it can be read", "[store]") {
+  TemporaryFolder folder;
+  const auto db = folder / "a.sqlite";
+  sample::session(db, 1);
+  sample::raw(db).execute("CREATE TRIGGER better AFTER INSERT ON session BEGIN DELETE FROM annotation; END");
+  const auto [kind, message] = sample::failure([&] { sample::session(db, 1); });
+  CHECK(kind == ErrorKind::refused);
+  CHECK(sample::contains(message, "DROP TRIGGER \"better\""));
+  CHECK(list_sessions(db).size() == 1);
+  CHECK(verify(db).problems == std::vector<std::string>{"trigger better was added"});
+}
+
+TEST_CASE("a database on a read-only medium is read together with its log", "[store]") {
+  TemporaryFolder folder;
+  const auto db = folder / "a.sqlite", medium = folder / "medium";
+  std::filesystem::create_directory(medium);
+  {
+    auto log = SessionLog::begin(db, sample::start(), sample::segment());
+    log.begin_block(sample::block());
+    log.append(sample::answered(0));
+    for (const auto* suffix : {"", "-wal"})
+      std::filesystem::copy_file(db + suffix, medium + "/a.sqlite" + suffix);
+  }
+  REQUIRE(std::filesystem::file_size(medium + "/a.sqlite-wal") > 0);
+  const int status = in_child([&] {
+    const int spaces = CLONE_NEWNS | (::geteuid() == 0 ? 0 : CLONE_NEWUSER);
+    if (::unshare(spaces) != 0 || ::mount("none", "/", nullptr, MS_REC | MS_PRIVATE, nullptr) != 0 ||
+        ::mount(medium.c_str(), medium.c_str(), nullptr, MS_BIND, nullptr) != 0 ||
+        ::mount("none", medium.c_str(), nullptr, MS_BIND | MS_REMOUNT | MS_RDONLY, nullptr) != 0)
+      return 77;
+    const auto copy = medium + "/a.sqlite";
+    if (list_sessions(copy).at(0).trials != 1) return 1;
+    if (!verify(copy).good()) return 2;
+    if (export_data(copy, folder / "out", {})[0].rows != 1) return 3;
+    if (backup(copy, {folder / "backups", 0}).trials != 1) return 4;
+    if (merge(folder / "b.sqlite", copy).sessions.size() != 1) return 5;
+    return sample::failure([&] { sample::session(copy, 1); }).first == ErrorKind::read_only ? 0 : 6;
+  });
+  if (status == 77) WARN("not tested: this machine does not allow a mount");
+  CHECK((status == 0 || status == 77));
 }

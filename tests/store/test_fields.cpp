@@ -50,7 +50,7 @@ std::string differences(Database& database, const Table<Record>& table) {
 
 TEST_CASE("the records' tables of fields contain each column of the schema with its type", "[store]") {
   Database database(":memory:", Database::Access::create);
-  create_schema(database, schema_version());
+  create_schema(database);
   CHECK(differences(database, segment_table()).empty());
   CHECK(differences(database, block_table()).empty());
   CHECK(differences(database, trial_table()) == "trial_id is only in the schema\n");

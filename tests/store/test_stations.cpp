@@ -1,17 +1,24 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <random>
+#include <set>
 
 #include "station/store/annotate.hpp"
 #include "station/store/backup.hpp"
 #include "station/store/export.hpp"
 #include "station/store/merge.hpp"
 #include "station/store/read.hpp"
+#include "station/store/seal.hpp"
+#include "station/store/station.hpp"
+#include "station/store/verify.hpp"
 #include "station/store/withdraw.hpp"
 #include "station/terms/usage_error.hpp"
+#include "station/text/number.hpp"
 #include "tests/store/sample.hpp"
 #include "tests/support/catch.hpp"
 
@@ -93,7 +100,10 @@ TEST_CASE("merging refuses contradictory rows, says which they are, and changes 
   std::string expected;
   SECTION("a session that was continued on both stations") {
     for (const auto& db : {a, b}) {
-      sample::raw(db).execute("UPDATE session SET status = 'interrupted' WHERE participant = 'P01'");
+      auto raw = sample::raw(db);
+      SealedTransaction change(raw);
+      raw.execute("UPDATE session SET status = 'interrupted' WHERE participant = 'P01'");
+      change.commit();
       auto log = SessionLog::resume(db, id, sample::segment("resume"));
       log.begin_block(sample::block());
       auto trial = sample::answered(4);
@@ -362,4 +372,282 @@ TEST_CASE("an interrupted session can be closed for good, but a completed one ca
   CHECK(read_session(db, open).session.status_reason == "too old");
   CHECK(sample::failure([&] { abandon(db, done, ""); }).first == ErrorKind::refused);
   CHECK_THROWS_AS(annotate(db, done, ""), turnpoint::terms::UsageError);
+}
+
+TEST_CASE("a withdrawal that arrives from elsewhere takes all sessions of the person, sent or not",
+          "[store]") {
+  TemporaryFolder folder;
+  const auto a = folder / "a.sqlite", server = folder / "server.sqlite", dir = folder / "backups";
+  sample::session(a, 3, at_station("P01", "a"));
+  sample::session(a, 2, at_station("P02", "a"));
+  merge(server, a);  // the server has the first sessions only
+  sample::session(a, 1, at_station("P01", "a"),
+                  GENERATE(SessionStatus::completed, SessionStatus::interrupted));
+  { auto died = SessionLog::begin(a, at_station("P01", "a"), sample::segment()); }
+  sample::session(a, 4, at_station("P01", "b"));  // another person, at another station
+  backup(a, {dir, 9});
+  withdraw(server, {"P01", "a", "", ""});
+  auto elsewhere = sample::raw(server);
+  const auto stones = list_tombstones(elsewhere);
+  const auto gone = follow_tombstones(a, stones, dir);
+  CHECK(gone.sessions.size() == 3);
+  CHECK(gone.bearers == std::vector<Bearer>{{"a", "P01"}});
+  CHECK(gone.removed_copies.size() == 1);
+  CHECK(verify(a).good());
+  CHECK(list_sessions(a).size() == 2);
+  CHECK_FALSE(interrupted_session(a));
+  CHECK(sample::failure([&] { sample::session(a, 1, at_station("P01", "a")); }).first == ErrorKind::refused);
+  CHECK(follow_tombstones(a, stones).sessions.empty());
+  CHECK(sample::raw(a).integer("SELECT count(*) FROM tombstone") == 3);
+}
+
+TEST_CASE("a tombstone that names another station or another person than its session deletes nothing",
+          "[store]") {
+  TemporaryFolder folder;
+  const auto a = folder / "a.sqlite";
+  const auto id = sample::session(a, 3, at_station("P01", "a"));
+  const auto hash = [](const std::string& code) { return turnpoint::text::sha256("salt/" + code); };
+  CHECK(follow_tombstones(a, {{id, "salt", hash("P01"), 1, "b"}}).sessions.empty());
+  CHECK(follow_tombstones(a, {{id, "salt", hash("P02"), 1, "a"}}).sessions.empty());
+  CHECK(follow_tombstones(a, {{id, "salt", "", 1, "b"}}).sessions.empty());
+  CHECK(list_sessions(a).size() == 1);
+  CHECK(sample::raw(a).integer("SELECT count(*) FROM tombstone") == 0);
+  CHECK(verify(a).good());
+  CHECK(follow_tombstones(a, {{id, "salt", "", 1, "a"}}).sessions.size() == 1);
+  CHECK(sample::raw(a).integer("SELECT count(*) FROM enrolment") == 1);  // the code stays in use
+}
+
+TEST_CASE("a code whose sessions were withdrawn one by one can still be withdrawn", "[store]") {
+  TemporaryFolder folder;
+  const auto a = folder / "a.sqlite";
+  const auto id = sample::session(a, 1, at_station("P01", "a"));
+  withdraw(a, {"P01", "", id, ""});
+  CHECK(sample::raw(a).integer("SELECT count(*) FROM enrolment") == 1);
+  withdraw(a, {"P01", "", "", ""});
+  CHECK(sample::raw(a).integer("SELECT count(*) FROM participant") == 0);
+  CHECK(verify(a).good());
+}
+
+namespace {
+
+/// Makes a finished session at a station on a machine.
+std::string recorded(const std::string& db, const std::string& participant, const std::string& station,
+                     const std::string& machine) {
+  auto segment = sample::segment();
+  segment.machine = machine;
+  auto log = SessionLog::begin(db, at_station(participant, station), segment);
+  log.begin_block(sample::block());
+  log.append(sample::answered(0));
+  log.finish(SessionStatus::completed, "");
+  return log.session().session_id;
+}
+
+}  // namespace
+
+TEST_CASE("a machine is known by its machine-id and its board, and an image's name gets a part of that",
+          "[store]") {
+  TemporaryFolder folder;
+  CHECK(machine_identity(folder.path).empty());
+  const auto write = [&](const std::string& path, const std::string& text) {
+    const auto name = std::filesystem::path(folder / path.c_str());
+    std::filesystem::create_directories(name.parent_path());
+    std::ofstream(name) << text;
+    return name;
+  };
+  write("etc/machine-id", "4c1d\n");
+  const auto of_card = machine_identity(folder.path);
+  const auto uuid = write("sys/class/dmi/id/product_uuid", "uuid-1\n");
+  std::filesystem::permissions(uuid, std::filesystem::perms::owner_read);
+  CHECK(machine_identity(folder.path) == of_card);  // it must not depend on who asks
+  std::filesystem::permissions(uuid, std::filesystem::perms::others_read, std::filesystem::perm_options::add);
+  const auto of_pc = machine_identity(folder.path);
+  CHECK(of_pc != of_card);
+  write("sys/firmware/devicetree/base/serial-number", std::string("100000008a7d\0", 13));
+  const auto of_board = machine_identity(folder.path);
+  CHECK(of_board != of_pc);
+  CHECK(of_board.size() == 64);
+  write("etc/turnpoint/station", "lab-3\n");
+  CHECK(suggested_station_name(folder.path) == "lab-3");
+}
+
+TEST_CASE("a database keeps the name of its station, whatever the host is called", "[store]") {
+  TemporaryFolder folder;
+  const auto db = folder / "a.sqlite";
+  CHECK(station_name(db) == suggested_station_name());
+  recorded(db, "P01", "lab-1", "board-1");
+  CHECK(station_name(db) == "lab-1");
+  CHECK(read_station(db).machine == "board-1");
+  CHECK(verify(db).good());
+}
+
+TEST_CASE("a copied card is noticed, and becomes a station of its own when it is named", "[store]") {
+  TemporaryFolder folder;
+  const auto db = folder / "a.sqlite", copy = folder / "copy.sqlite", hub = folder / "hub.sqlite";
+  const auto first = recorded(db, "P01", "lab", "board-1");
+  sample::raw(db).execute("PRAGMA wal_checkpoint(TRUNCATE)");
+  std::filesystem::copy_file(db, copy);
+  const auto [kind, message] = sample::failure([&] { recorded(copy, "P02", "lab", "board-2"); });
+  CHECK(kind == ErrorKind::other_machine);
+  CHECK(sample::contains(message, "if this is a copy"));
+  CHECK(sample::contains(message, "--moved"));
+  CHECK(sample::failure([&] { name_station(copy, {}, "board-2"); }).first == ErrorKind::other_machine);
+  CHECK(sample::failure([&] { name_station(copy, {"lab"}, "board-2"); }).first == ErrorKind::refused);
+  CHECK(sample::failure([&] { name_station(copy, {"no name"}, "board-2"); }).first == ErrorKind::refused);
+  const auto named = name_station(copy, {"lab-2"}, "board-2");
+  CHECK(named.is_new_identity);
+  CHECK(named.database_id != read_station(db).database_id);
+  recorded(copy, "P02", station_name(copy), "board-2");
+  recorded(db, "P02", station_name(db), "board-1");
+  merge(hub, db);
+  merge(hub, copy);
+  CHECK(list_sessions(hub).size() == 3);
+  CHECK(list_sessions(hub, {"", "P02@lab-2", ""}).size() == 1);
+  for (const auto& path : {db, copy, hub}) CHECK(verify(path).good());
+}
+
+TEST_CASE("a replaced board goes on as the same station when somebody has said so", "[store]") {
+  TemporaryFolder folder;
+  const auto db = folder / "a.sqlite", hub = folder / "hub.sqlite";
+  recorded(db, "P01", "lab", "board-1");
+  merge(hub, db);
+  StationName moved;
+  moved.whose = Whose::moved;
+  const auto named = name_station(db, moved, "board-2");
+  CHECK(named.name == "lab");
+  CHECK_FALSE(named.is_new_identity);
+  recorded(db, "P01", "lab", "board-2");
+  merge(hub, db);
+  CHECK(list_sessions(hub, {"", "P01", ""}).size() == 2);
+  CHECK(verify(db).good());
+}
+
+TEST_CASE("two machines with one name are not merged until one of them has another, which exports outlive",
+          "[store]") {
+  TemporaryFolder folder;
+  const auto a = folder / "a.sqlite", b = folder / "b.sqlite", hub = folder / "hub.sqlite";
+  recorded(a, "P01", "turnpoint", "board-1");
+  recorded(b, "P01", "turnpoint", "board-2");
+  export_data(b, folder / "out", {});
+  const auto csv = folder / "out/two-boundaries/sessions.csv";
+  merge(hub, a);
+  const auto [kind, message] = sample::failure([&] { merge(hub, b); });
+  CHECK(kind == ErrorKind::conflict);
+  CHECK(sample::contains(message, "two machines have recorded as station turnpoint"));
+  StationName how{"lab-2"};
+  how.stored_sessions = true;
+  CHECK(name_station(b, how, "board-2").sessions == 1);
+  CHECK(verify(b, {"", csv}).good());
+  merge(hub, b);
+  CHECK(list_sessions(hub, {"", "P01@lab-2", ""}).size() == 1);
+  CHECK(verify(hub, {"", csv}).good());
+  // Nobody is exempt: rows that differ do not give the earlier checksum, even with a new chain.
+  auto raw = sample::raw(b);
+  raw.execute(
+      "DROP TRIGGER trial_is_never_changed; DROP TRIGGER link_is_never_changed; UPDATE trial SET level = 3");
+  const auto id = list_sessions(raw)[0].session_id;
+  CHECK_FALSE(verify_session(raw, id).problems.empty());
+  renew_links(raw, id);
+  CHECK(verify_session(raw, id).problems.empty());
+  CHECK_FALSE(verify(b, {"", csv}).sessions[0].problems.empty());
+}
+
+TEST_CASE("under a new name, a station's participants stay the same people", "[store]") {
+  TemporaryFolder folder;
+  const auto db = folder / "a.sqlite";
+  recorded(db, "P01", "lab", "board-1");
+  name_station(db, {"attic"}, "board-1");
+  recorded(db, "P01", station_name(db), "board-1");
+  const auto sessions = list_sessions(db, {"", "P01", ""});
+  REQUIRE(sessions.size() == 2);
+  CHECK(sessions[1].session_index == 2);
+  CHECK(sessions[1].sequence_index == sessions[0].sequence_index);
+  CHECK(verify(db).good());
+}
+
+namespace {
+
+/// A station, its backups, and a second database that stands for the collector: it gets the station's
+/// sessions, and each of the two follows the withdrawals of the other.
+struct Room {
+  TemporaryFolder folder;
+  std::string station = folder / "station.sqlite", server = folder / "server.sqlite",
+              backups = folder / "backups";
+  std::set<std::string> staying;  ///< sessions of the participant who stays
+  bool withdrawn = false;
+
+  Room() {
+    staying.insert(recorded(station, "P02", "a", ""));
+    send();
+  }
+
+  void send() { merge(server, station); }
+
+  static void follow(const std::string& there, const std::string& here, const std::string& backups) {
+    auto reader = sample::raw(there);
+    follow_tombstones(here, list_tombstones(reader), backups);
+  }
+
+  void withdraw_at(const std::string& database) {
+    withdraw(database, {"P01", "a", "", database == station ? backups : ""});
+    withdrawn = true;
+  }
+
+  void step(int which) {
+    if (which == 0) recorded(station, "P01", "a", "");
+    if (which == 1) staying.insert(recorded(station, "P02", "a", ""));
+    if (which == 2) sample::session(station, 1, at_station("P01", "a"), SessionStatus::interrupted);
+    if (which == 3) send();
+    if (which == 4) withdraw_at(server);
+    if (which == 5) withdraw_at(station);
+    if (which == 6) follow(server, station, backups);
+    if (which == 7) follow(station, server, "");
+    if (which == 8) backup(station, {backups, 0});
+  }
+
+  /// Returns the ids of a participant's sessions.
+  static std::set<std::string> sessions(const std::string& database, const std::string& code) {
+    std::set<std::string> ids;
+    for (const auto& session : list_sessions(database))
+      if (session.start.participant == code) ids.insert(session.session_id);
+    return ids;
+  }
+};
+
+}  // namespace
+
+TEST_CASE("in whatever order things happen, withdrawn is withdrawn, and nothing else is", "[store]") {
+  const auto* wanted = std::getenv("TURNPOINT_INTERLEAVINGS");
+  const int runs = wanted != nullptr ? std::atoi(wanted) : 20;
+  std::mt19937 random(20261128);
+  int withdrawals = 0;
+  for (int run = 0; run < runs; ++run) {
+    Room room;
+    std::string steps;
+    for (int i = 0; i < 8; ++i) {
+      const int which = static_cast<int>(random() % 9);
+      steps += std::to_string(which) + " ";
+      try {
+        room.step(which);
+      } catch (const StoreError& error) {
+        // a withdrawn code is refused, and a participant whom the database has never had cannot withdraw
+        CHECK((error.kind() == ErrorKind::refused || error.kind() == ErrorKind::missing));
+      }
+    }
+    INFO(steps);
+    Room::follow(room.server, room.station, room.backups);
+    room.send();
+    Room::follow(room.station, room.server, "");
+    Room::follow(room.server, room.station, room.backups);
+    for (const auto& database : {room.station, room.server}) {
+      CHECK(verify(database).good());
+      CHECK(Room::sessions(database, "P02") == room.staying);
+      if (room.withdrawn) CHECK(Room::sessions(database, "P01").empty());
+    }
+    CHECK(Room::sessions(room.station, "P01") == Room::sessions(room.server, "P01"));
+    if (std::filesystem::exists(room.backups) && room.withdrawn)
+      for (const auto& path : backups_in(room.backups, room.station))
+        CHECK(Room::sessions(path, "P01").empty());
+    withdrawals += room.withdrawn ? 1 : 0;
+  }
+  CHECK(withdrawals > runs / 4);
 }

@@ -8,6 +8,7 @@
 #include "station/desk/live_facts.hpp"
 #include "station/session/planned_session.hpp"
 #include "station/store/session_log.hpp"
+#include "station/store/station.hpp"
 
 namespace turnpoint::ui {
 
@@ -37,7 +38,7 @@ OperatorController* OperatorDesk::early() {
   records::SessionStart start;
   start.participant = "P01", start.protocol_id = "friction-training", start.planned_session = 1;
   start.run_mode = terms::RunMode::pilot;
-  start.station_id = session::station_id(), start.started_local = session::local_time();
+  start.station_id = store::suggested_station_name(), start.started_local = session::local_time();
   store::SessionLog::begin(database, start, {}).finish(records::SessionStatus::completed, "");
   early_ = std::make_unique<OperatorController>(setup::StationRequest{
       early_folder_.path().toStdString(), TURNPOINT_SOURCE_DIR "/tests/support/thin_plate.toml", database});

@@ -9,6 +9,7 @@
 #include "station/session/planned_session.hpp"
 #include "station/setup/prepare.hpp"
 #include "station/store/session_log.hpp"
+#include "station/store/station.hpp"
 
 namespace turnpoint::ui {
 
@@ -119,7 +120,7 @@ std::string today_exhibit(const std::string& folder) {
   records::SessionStart today;
   today.participant = "P01", today.protocol_id = "friction-training", today.planned_session = 1;
   today.run_mode = terms::RunMode::pilot;
-  today.station_id = session::station_id(), today.started_local = session::local_time();
+  today.station_id = store::suggested_station_name(), today.started_local = session::local_time();
   store::SessionLog::begin(path, today, {}).finish(records::SessionStatus::completed, "");
   return path;
 }

@@ -18,6 +18,7 @@
 #include "station/setup/prepare.hpp"
 #include "station/store/export.hpp"
 #include "station/store/session_log.hpp"
+#include "station/store/station.hpp"
 #include "tests/support/child.hpp"
 
 namespace turnpoint::ui {
@@ -122,7 +123,7 @@ void StationRoom::planSessions() {
   records::SessionStart start;
   start.participant = "T1", start.protocol_id = "short", start.planned_session = 1;
   start.run_mode = terms::RunMode::pilot;
-  start.station_id = session::station_id(), start.started_local = session::local_time();
+  start.station_id = store::suggested_station_name(), start.started_local = session::local_time();
   store::SessionLog::begin(path("lab.sqlite"), start, {}).finish(records::SessionStatus::completed, "");
 }
 

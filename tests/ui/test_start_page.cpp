@@ -11,6 +11,7 @@
 #include "station/setup/prepare.hpp"
 #include "station/store/backup.hpp"
 #include "station/store/session_log.hpp"
+#include "station/store/station.hpp"
 #include "station/system/clocks.hpp"
 #include "station/ui/operator/operator_controller.hpp"
 #include "tests/support/catch.hpp"
@@ -215,7 +216,7 @@ TEST_CASE("the operator begins a session that comes too early only with a reason
   records::SessionStart today;
   today.participant = "P01", today.protocol_id = "friction-training", today.planned_session = 1;
   today.run_mode = terms::RunMode::pilot;
-  today.station_id = session::station_id(), today.started_local = session::local_time();
+  today.station_id = store::suggested_station_name(), today.started_local = session::local_time();
   store::SessionLog::begin(start.folder / "lab.sqlite", today, {})
       .finish(records::SessionStatus::completed, "");
   start.open();
