@@ -74,9 +74,14 @@ const Spoken* find(std::string_view language) {
   return nullptr;
 }
 
-const Texts& in(std::string_view language) {
-  const auto* spoken = find(language);
-  return (spoken == nullptr ? find("en") : spoken)->texts;
+/// Returns the text with this key in the given language, or in English if that catalogue does not have it;
+/// null if there is no such text.
+const std::string* find_text(std::string_view key, std::string_view language) {
+  for (const auto* spoken : {find(language), find("en")}) {
+    if (spoken == nullptr) continue;
+    if (const auto found = spoken->texts.find(key); found != spoken->texts.end()) return &found->second;
+  }
+  return nullptr;
 }
 
 }  // namespace
@@ -99,10 +104,9 @@ Translation translation(const std::string& language) {
 }
 
 const std::string& text(std::string_view key, std::string_view language) {
-  const auto& texts = in(language);
-  const auto found = texts.find(key);
-  if (found == texts.end()) throw std::logic_error("no text has the key \"" + std::string(key) + "\"");
-  return found->second;
+  const auto* found = find_text(key, language);
+  if (found == nullptr) throw std::logic_error("no text has the key \"" + std::string(key) + "\"");
+  return *found;
 }
 
 std::string say(const Phrase& phrase, std::string_view language) {
@@ -111,7 +115,10 @@ std::string say(const Phrase& phrase, std::string_view language) {
     for (const auto& value : phrase.values) said += say(value, language);
     return said;
   }
-  const auto& pattern = text(phrase.key, language);
+  // A sentence is not a key: keys have no spaces and no places.
+  const bool is_key =
+      phrase.key.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789_.-") == std::string::npos;
+  const auto& pattern = is_key ? text(phrase.key, language) : phrase.key;
   // In Arabic, which is written from right to left, invisible characters around a value keep its parts in
   // their order ("-30" would be drawn as "30-"). Texts.qml does the same.
   const bool mirrored = language.starts_with("ar");
@@ -129,7 +136,7 @@ std::string say(const Phrase& phrase, std::string_view language) {
 
 FaultText fault_text(terms::FaultKind kind, const std::string& language) {
   const auto key = std::string("fault.") + terms::name(kind);
-  const bool own = in(language).count(key + ".safe") > 0;
+  const bool own = find_text(key + ".safe", language) != nullptr;
   return {text(key + ".happened", language), text(own ? key + ".safe" : "fault.safe", language),
           text(key + ".to_do", language)};
 }

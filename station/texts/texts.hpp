@@ -25,12 +25,13 @@ enum class Translation { none, unread, participant_read, read };
 Translation translation(const std::string& language);
 
 /// Returns one text in the given language ("de", "de-CH"), or in English if the station does not speak that
-/// language. Throws std::logic_error for a key that no catalogue has.
+/// language or its catalogue lacks the text. Throws std::logic_error for a key that no catalogue has.
 const std::string& text(std::string_view key, std::string_view language);
 
 /// What somebody is to be told, in a language that is chosen later: the text with this key, with `values` in
-/// its places %1, %2 and so on. Without a key: `words`, which are the same in every language (a number, a
-/// name from a protocol), and then all `values` one after another.
+/// its places %1, %2 and so on. A key with a space or a place is itself the text, in English: what is wrong
+/// in a file is said so, where it is found. Without a key: `words`, which are the same in every language (a
+/// number, a name from a protocol), and then all `values` one after another.
 struct Phrase {
   std::string key, words;
   std::vector<Phrase> values;
@@ -41,7 +42,7 @@ struct Phrase {
 /// A phrase that is the same in every language.
 inline Phrase plain(std::string words) { return {"", std::move(words), {}}; }
 inline Phrase plain(std::integral auto number) { return plain(std::to_string(number)); }
-/// The text with this key, with `values` in its places.
+/// The text with this key, or this English sentence, with `values` in its places.
 inline Phrase phrase(std::string key, std::vector<Phrase> values = {}) {
   return {std::move(key), "", std::move(values)};
 }

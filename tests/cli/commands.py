@@ -621,7 +621,6 @@ class LongWork(Folder):
         self.assertEqual(len([name for name in os.listdir(self.folder) if name.startswith("part")]), 5)
         return joined
 
-    @unittest.skipUnless(shutil.which("parallel"), "GNU parallel is not installed (deploy/install test)")
     def test_the_example_with_gnu_parallel_gives_what_one_process_gives(self):
         shutil.copy(os.path.join(SOURCE, "protocols", "boundary-constant.toml"), os.path.join(self.folder, "my-study.toml"))
         joined = self.divided("parallel --joblog")
@@ -740,7 +739,6 @@ class LongWork(Folder):
 
 
 class Manual(Folder):
-    @unittest.skipUnless(shutil.which("man"), "man-db is not installed")
     def test_every_command_has_a_manual_page_that_renders_without_warnings(self):
         status, _, err = run(["help", "--man", "man"], self.folder)
         self.assertEqual(status, 0, err)
@@ -797,7 +795,6 @@ class Surroundings(Folder):
         self.assertIn(status, (0, 1))
 
 
-@unittest.skipUnless(os.path.exists(PROGRAM + "-ui"), "built without the screen")
 class Screen(Folder):
     def test_every_command_of_the_program_with_a_screen(self):
         status, out, _ = run("turnpoint-ui help", self.folder)
@@ -812,7 +809,7 @@ class Screen(Folder):
                 self.refused_in_one_sentence(words, "no screen: nothing answers at ", *displays.values(), QT_QPA_PLATFORM=None,
                                              **displays)
 
-    @unittest.skipIf(os.path.exists("/dev/dri") or os.path.exists("/dev/fb0"), "this machine has a screen")
+    @unittest.skipIf(os.path.exists("/dev/dri") or os.path.exists("/dev/fb0"), "this machine has a screen; run the tests on one without")
     def test_without_a_screen_each_command_advises_what_it_accepts(self):
         for words, advice in ((["station", "--db", "lab.sqlite"], "turnpoint run"), (["design", "x.toml"], "turnpoint new"), (["preview", "demo"], "--out"),
                               (["run", "demo", "--db", "lab.sqlite", "--participant", "P03"], "--buttons-only"),
@@ -832,4 +829,4 @@ class Screen(Folder):
 
 
 if __name__ == "__main__":
-    unittest.main(argv=[sys.argv[0], *sys.argv[2:]])
+    unittest.main(argv=[sys.argv[0], *sys.argv[2:]], verbosity=2)  # says which are skipped, and why

@@ -55,7 +55,7 @@ class SmallDisk {
 
 bool can_mount() {
   if (::geteuid() == 0) return true;
-  WARN("not root: nothing was tried, because a small disk cannot be mounted");
+  WARN("skipped: only root can mount a small disk; sudo tests/run");
   return false;
 }
 

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """test_collector.py PROGRAM: sets up a collector with deploy/collector on a PostgreSQL server of its own, joins a station
 to it with deploy/collector-join, and sends sessions over TLS. Needs root (as deploy/collector does) and the package
-postgresql; otherwise the exit status is 77."""
+postgresql; without root the exit status is 77."""
 import glob
 import json
 import os
@@ -13,7 +13,8 @@ import tempfile
 
 SOURCE = os.path.dirname(os.path.dirname(os.path.dirname(os.path.realpath(__file__))))
 BIN = max(glob.glob("/usr/lib/postgresql/*/bin"), default="")
-if os.geteuid() != 0 or not BIN or not shutil.which("openssl"):
+if os.geteuid() != 0:
+    print("skipped: only root can set up a server; sudo tests/run")
     sys.exit(77)
 PROGRAM = os.path.realpath(sys.argv[1])
 AS_POSTGRES = ["setpriv", "--reuid=postgres", "--regid=postgres", "--init-groups", "--"]

@@ -40,6 +40,7 @@ class Run(unittest.TestCase):
         ran = subprocess.run([os.path.join(self.folder, "deploy/run"), *arguments], env=environment, cwd=self.folder,
                              stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
                              check=False)
+        self.last = ran.stdout.splitlines()[-1] if ran.stdout else ""
         calls = ""
         if os.path.exists(self.calls):
             with open(self.calls, encoding="utf-8") as file:
@@ -84,6 +85,7 @@ class Run(unittest.TestCase):
         self.assertIn(f"turnpoint run mine.toml --rig {self.folder}/deploy/rigs/simulated-forces.toml --participant demo "
                       f"--db {self.folder}/.local/share/turnpoint/turnpoint.sqlite "
                       "--mode pilot --seed 3 --json --headless --observer sim\n", calls)
+        self.assertRegex(self.last, r"^deploy/run: done in \d+ s: .* the session run without a screen and exported\.$")
 
     def test_help_names_each_option(self):
         ran = subprocess.run([os.path.join(self.folder, "deploy/run"), "--help"], stdout=subprocess.PIPE, text=True,

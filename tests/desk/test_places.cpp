@@ -104,7 +104,7 @@ TEST_CASE("a check's remarks have file, line and hint, problems first", "[studie
   CHECK(words.remarks[2].kind == Kind::note);
 }
 
-TEST_CASE("what is wrong in a study is said in the language of the page", "[studies]") {
+TEST_CASE("what is wrong in a study is said with its hint, in English on every page", "[studies]") {
   const TemporaryFolder folder;
   auto source = system::read_file(kHere + "/protocols/demo.toml");
   const auto replace = [&source](const std::string& from, const std::string& to) {
@@ -118,28 +118,14 @@ TEST_CASE("what is wrong in a study is said in the language of the page", "[stud
   std::ofstream(path) << source;
   const auto check = simulation::check(path, kHere + "/tests/support/thin_plate.toml", {5});
   const auto words = desk::words_of(check);
-  const auto says = [&words](const std::string& what, const std::string& hint, const char* language) {
+  const auto says = [&words](const std::string& what, const std::string& hint) {
     return std::any_of(words.remarks.begin(), words.remarks.end(), [&](const auto& remark) {
-      return texts::say(remark.what, language) == what &&
-             texts::say(remark.hint, language).find(hint) != std::string::npos;
+      return texts::say(remark.what, "en") == what &&
+             texts::say(remark.hint, "en").find(hint) != std::string::npos;
     });
   };
-  CHECK(says("unknown key \"titel\" in [protocol]", "did you mean \"title\"? known: ", "en"));
-  CHECK(says("unbekannter Schl\u00fcssel \"titel\" in [protocol]", "ist \"title\" gemeint? bekannt: ", "de"));
-  CHECK(says("[protocol] \u306b\u4e0d\u660e\u306a\u30ad\u30fc \"titel\" \u304c\u3042\u308a\u307e\u3059",
-             "\"title\" \u306e\u3053\u3068\u3067\u3059\u304b? ", "ja"));
-  CHECK(says("unknown factor \"ofset_mm\"", "did you mean \"offset_mm\"?", "en"));
-  CHECK(says("unbekannter Faktor \"ofset_mm\"", "ist \"offset_mm\" gemeint?", "de"));
-  CHECK(says("\u4e0d\u660e\u306a\u8981\u56e0 \"ofset_mm\"",
-             "\"offset_mm\" \u306e\u3053\u3068\u3067\u3059\u304b?", "ja"));
-  REQUIRE(words.remarks.size() >= 3);
-  for (const auto& remark : words.remarks)
-    for (const auto& language : texts::languages())
-      if (language != "en") {
-        INFO(language << ": " << texts::say(remark.what, "en"));
-        CHECK(texts::say(remark.what, language) != texts::say(remark.what, "en"));
-        CHECK(texts::say(remark.hint, language) != texts::say(remark.hint, "en"));
-      }
+  CHECK(says("unknown key \"titel\" in [protocol]", "did you mean \"title\"? known: "));
+  CHECK(says("unknown factor \"ofset_mm\"", "did you mean \"offset_mm\"?"));
 }
 
 TEST_CASE("there is advice for every cue that a check reports, and only a cue that helps gets it",

@@ -86,7 +86,7 @@ TEST_CASE("if memory is recorded as locked, the audio thread's stack, its blocks
     const auto allocations = end_record();
     if (!stream->rights().memory_locked) {
       CHECK_FALSE(stream->rights().note.empty());
-      WARN("not allowed to lock memory here: " << stream->rights().note);
+      WARN("skipped: memory cannot be locked here, " << stream->rights().note << "; sudo tests/run");
       return;
     }
     while (probe.address == 0) std::this_thread::yield();
@@ -123,7 +123,7 @@ TEST_CASE("the buffer from which a device is written is locked, and memory that 
     const auto allocations = end_record();
     const auto rights = lock_memory(stream.memory(), stream.memory_left_out());
     if (!rights.memory_locked) {
-      WARN("not allowed to lock memory here: " << rights.note);
+      WARN("skipped: memory cannot be locked here, " << rights.note << "; sudo tests/run");
       return;
     }
     CHECK(rights.note == "not locked: alsa-lib's own objects");

@@ -1,23 +1,14 @@
 """validate_schema.py SOURCE_DIR: tests the JSON schemas with which editors check protocols and rigs.
 
 The schemas must accept all files in protocols/ and deploy/rigs/, and reject files with mistakes that a schema can
-detect. The exit status is 77 (skipped) if the Python modules tomllib and jsonschema are missing, and 1 if the machine
-declares jsonschema in TURNPOINT_READERS.
+detect.
 """
 import json
-import os
 import pathlib
 import sys
+import tomllib
 
-try:
-    import tomllib
-
-    import jsonschema
-except ImportError as error:
-    if "jsonschema" in os.environ.get("TURNPOINT_READERS", "").split():
-        sys.exit(f"TURNPOINT_READERS says that jsonschema is installed here, but: {error}")
-    print(f"skipped: {error}")
-    sys.exit(77)
+import jsonschema
 
 root = pathlib.Path(sys.argv[1])
 faults = []

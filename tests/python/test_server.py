@@ -17,7 +17,6 @@ TABLES = ("trials", "intervals", "events", "sessions", "self_tests", "answers", 
           "programs", "estimates")
 
 
-@unittest.skipUnless(BIN, "the package postgresql is not installed")
 class Collector(unittest.TestCase):
     @classmethod
     def setUpClass(cls):

@@ -160,7 +160,7 @@ TEST_CASE("a backup that requires a separate disk is refused if none is mounted"
   }, build{};
   if (::stat("/dev/shm", &memory) != 0 || ::stat(TURNPOINT_BINARY_DIR, &build) != 0 ||
       memory.st_dev == build.st_dev) {
-    WARN("part of this test was skipped: /dev/shm is not a separate file system here");
+    WARN("skipped: /dev/shm is not a separate file system here; mount -t tmpfs tmpfs /dev/shm");
     return;
   }
   const auto dir = "/dev/shm/turnpoint-" + new_uuid(), other = TURNPOINT_BINARY_DIR "/drill-" + new_uuid();

@@ -194,7 +194,7 @@ TEST_CASE(
     "permissions",
     "[store]") {
   if (::geteuid() != 0) {
-    WARN("not root: nothing was tried");
+    WARN("skipped: only root can try this; sudo tests/run");
     return;
   }
   TemporaryFolder folder;
@@ -227,7 +227,7 @@ TEST_CASE(
     "owner",
     "[store]") {
   if (::geteuid() != 0) {
-    WARN("not root: nothing was tried");
+    WARN("skipped: only root can try this; sudo tests/run");
     return;
   }
   TemporaryFolder folder;

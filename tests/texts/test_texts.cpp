@@ -83,11 +83,18 @@ Quoted quoted() {
 
 }  // namespace
 
-TEST_CASE("every language has every text, with the same places for numbers and names", "[texts]") {
+TEST_CASE("every language has the texts of the participant's pages and of faults; others may be English",
+          "[texts]") {
   REQUIRE(texts::languages() == std::vector<std::string>{"ar", "de", "en", "es", "ja", "zh"});
   for (const auto& language : texts::languages()) {
     INFO(language);
-    CHECK(keys_of(language) == keys_of("en"));
+    const auto keys = keys_of(language);
+    for (const auto& key : keys_of("en")) {
+      INFO(key);
+      const bool needed = key.find('.') == std::string::npos || key.starts_with("fault.");
+      if (needed) CHECK(keys.contains(key));
+      if (!keys.contains(key)) CHECK(texts::text(key, language) == texts::text(key, "en"));
+    }
     for (const auto& [key, said] : texts::catalogue(language)) {
       INFO(key);
       CHECK_FALSE(said.empty());
@@ -101,7 +108,7 @@ TEST_CASE("a catalogue is a TOML file, and says what such a file says", "[texts]
     const auto file = std::string(TURNPOINT_SOURCE_DIR) + "/station/texts/" + language + ".toml";
     std::map<std::string, std::string, std::less<>> found;
     collect(text::parse_toml(system::read_file(file), file), "", found);
-    CHECK(found.size() > 1000);
+    CHECK(found.size() > 500);
     CHECK(found == texts::catalogue(language));
   }
 }
@@ -165,29 +172,6 @@ TEST_CASE("what the operator's pages show is never a sentence in their sources, 
   }
 }
 
-TEST_CASE("what is wrong in a file is never a sentence in the sources of its readers", "[texts]") {
-  static const std::regex quoted(R"re("((?:[^"\\\n]|\\.)*)")re"), sentence("[a-z]{2,} [a-z]{2,}");
-  const std::set<std::string> known{"`turnpoint calibrate --forces`", "median absolute deviations",
-                                    "silicone rubber", "(or inf: lossless)",
-                                    R"([ { at = 1, text = { en = \"not at all\" } }, ... ])"};
-  int files = 0;
-  for (const std::string folder : {"station/text", "station/protocol", "station/rig"})
-    for (const auto& entry :
-         std::filesystem::directory_iterator(std::string(TURNPOINT_SOURCE_DIR) + "/" + folder)) {
-      const auto name = entry.path().filename().string();
-      // its names of personal data, in several languages, are looked for in questions
-      if (!name.ends_with(".cpp") || name == "interlude_advice.cpp") continue;
-      ++files;
-      const auto code = code_of(folder + "/" + name);
-      for (std::sregex_iterator found(code.begin(), code.end(), quoted), end; found != end; ++found) {
-        const auto words = (*found)[1].str();
-        INFO(name << ": " << words);
-        CHECK((known.contains(words) || !std::regex_search(words, sentence)));
-      }
-    }
-  CHECK(files > 50);
-}
-
 TEST_CASE("every text is used, and every text that the program requests exists", "[texts]") {
   const auto source = quoted();
   const auto keys = keys_of("en");
@@ -245,8 +229,8 @@ TEST_CASE("a phrase is said in a language that is chosen later", "[texts]") {
   CHECK(texts::say(phrase, "de") == "5 %1 (4 bis 6) min");
   CHECK(texts::say(texts::plain("50 %"), "ja") == "50 %");
   // in Arabic, which runs from right to left, a value is kept apart from the sentence around it
-  CHECK(texts::say({"problem.below", "", {texts::plain("-30")}}, "ar") ==
-        "\u0623\u0642\u0644 \u0645\u0646 \u2068-30\u2069");
+  CHECK(texts::say(texts::phrase("below %1", {texts::plain("-30")}), "ar") == "below \u2068-30\u2069");
+  CHECK(texts::say(texts::phrase("a sentence of no catalogue"), "de") == "a sentence of no catalogue");
   CHECK(texts::say({"", "", {texts::plain("main: "), {"practice", "", {}}}}, "de") == "main: \u00dcbung");
   CHECK(texts::say({"check.range", "", {texts::plain("1")}}, "en") == "1 (%2 to %3)");
   CHECK_THROWS_AS(texts::say({"no_such_key", "", {}}, "en"), std::logic_error);
