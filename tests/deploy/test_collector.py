@@ -233,6 +233,11 @@ def roles(lab):
     for words in (("station", "none", "y"), ("reader", "none", "y"), ("backup", "none", lab.at("none")), ("upgrade", "none")):
         lab.collector(*words, status=1)
     lab.sql("CREATE DATABASE empty", "postgres")
+    lab.sql("CREATE DATABASE busy", "postgres")
+    lab.sql("CREATE TABLE mine (a int)", "busy")
+    for database in ("busy", "postgres", "template1"):
+        check("what is used for something else does not become a collector", "something else" in lab.collector("create", database, status=1))
+        check("and nobody is shut out from it", lab.sql(f"SELECT has_database_privilege('carl', '{database}', 'CONNECT')") == "t")
     for words in (("station", "empty", "y"), ("reader", "empty", "y"), ("backup", "empty", lab.at("none"))):
         check("no password of a role that was not made", "password" not in lab.collector(*words, status=1))
     check("no archive of what is no collector", not glob.glob(lab.at("none/*")))
