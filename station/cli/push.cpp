@@ -35,6 +35,8 @@ Json to_json(const collector::PushReport& report) {
   return {{"sessions", sessions},
           {"running", report.running},
           {"other_stations", report.foreign},
+          {"refused_stations", report.unsent},
+          {"refused_withdrawals", report.disputed},
           {"withdrawn_here", withdrawn},
           {"places", places},
           {"waiting", report.waiting},
@@ -50,8 +52,17 @@ void print(std::ostream& out, const collector::PushReport& report) {
   for (const auto& [protocol_id, free] : report.places)
     fmt::print(out, "{}: {} free places leased to this station\n", protocol_id, free);
   for (const auto& station : report.foreign)
-    fmt::print(out, "sessions of station {} are not sent: the server does not accept them from this role\n",
+    fmt::print(out, "sessions of station {} were merged from another database: that station sends them\n",
                station);
+  for (const auto& station : report.unsent)
+    fmt::print(
+        out,
+        "sessions of station {} were recorded here but are not sent: the server does not accept them from "
+        "this role; give the station its earlier name, or assign this name to the role on the server\n",
+        station);
+  for (const auto& id : report.disputed)
+    fmt::print(out, "withdrawal of session {} refused: it contradicts what the server knows of the session\n",
+               id);
   for (const auto& s : report.withdrawn.sessions)
     fmt::print(out, "withdrawn on the server, deleted here: session {}, {} trials\n", s.session_id, s.trials);
   for (const auto& path : report.withdrawn.remaining_copies)

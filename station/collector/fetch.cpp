@@ -42,7 +42,7 @@ void require_version(Connection& server) {
 
 /// True for tables whose rows belong to one session.
 bool is_part_of_session(const CollectedTable& table) {
-  return table.name != "session" && table.name != "tombstone" && table.has("session_id");
+  return table.name != "session" && table.has("session_id");
 }
 
 /// Orders trials by the age of their session. A reader takes the session of the last row as the newest one,
@@ -121,7 +121,8 @@ void ReadableDatabase::fetch(const std::string& address, const store::SessionFil
   const bool all = filter.session_id.empty() && filter.participant.empty() && filter.protocol_id.empty();
   const auto chosen = store::list_sessions(database, filter);
   for (const auto& table : collected_tables())
-    if (is_part_of_session(table)) copy(table, all ? "" : condition(chosen));
+    if (is_part_of_session(table) && table.name != "tombstone")  // readers may not read tombstones
+      copy(table, all ? "" : condition(chosen));
   transaction.commit();
   for (const auto& session : chosen) refuse_changed(database, session.session_id);
 }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <map>
+#include <nlohmann/json.hpp>
 #include <set>
 
 #include "station/collector/postgres.hpp"
@@ -60,12 +61,15 @@ std::set<std::string> greet(Connection& server) {
   return stations;
 }
 
+/// Sends the tombstones of this database, and the ids of the sessions of other stations that it has a copy
+/// of. Returns the server's tombstones of this station and of those sessions.
 std::vector<store::Tombstone> exchange_tombstones(Connection& server,
-                                                  const std::vector<store::Tombstone>& own) {
+                                                  const std::vector<store::Tombstone>& own,
+                                                  const std::vector<std::string>& held) {
   const auto rows = server.query(
       "SELECT session_id, salt, participant_sha256, withdrawn_realtime_ns, station_id"
-      " FROM turnpoint.exchange_tombstones($1::json)",
-      {tombstones_json(own)});
+      " FROM turnpoint.exchange_tombstones($1::json, $2::json)",
+      {tombstones_json(own), nlohmann::json(held).dump()});
   std::vector<store::Tombstone> theirs;
   for (int i = 0; i < rows.count(); ++i)
     theirs.push_back(
@@ -220,9 +224,21 @@ std::vector<std::int64_t> lease_places(Database& database, const std::string& pr
   }
 }
 
-std::vector<store::Tombstone> exchange_tombstones(const PushOptions& options, Connection& server) {
+std::vector<store::Tombstone> exchange_tombstones(const PushOptions& options,
+                                                  const std::set<std::string>& stations, Connection& server,
+                                                  PushReport& report) {
   auto reader = store::open_reader(options.database);
-  return exchange_tombstones(server, store::list_tombstones(reader));
+  const auto own = store::list_tombstones(reader);
+  std::vector<std::string> held;
+  for (const auto& session : store::list_sessions(reader))
+    if (stations.count(session.start.station_id) == 0) held.push_back(session.session_id);
+  auto theirs = exchange_tombstones(server, own, held);
+  std::set<std::string> known;
+  for (const auto& stone : theirs) known.insert(stone.session_id);
+  for (const auto& stone : own)
+    if (stations.count(stone.station_id) != 0 && known.count(stone.session_id) == 0)
+      report.disputed.push_back(stone.session_id);
+  return theirs;
 }
 
 void use(const Received& received, const PushOptions& options, PushReport& report) {
@@ -264,8 +280,9 @@ const char* name(PushedSession::What what) {
 }
 
 bool PushReport::complete() const {
-  return waiting.empty() && std::none_of(sessions.begin(), sessions.end(),
-                                         [](const auto& session) { return session.what == What::refused; });
+  return waiting.empty() && unsent.empty() && disputed.empty() &&
+         std::none_of(sessions.begin(), sessions.end(),
+                      [](const auto& session) { return session.what == What::refused; });
 }
 
 namespace {
@@ -273,7 +290,7 @@ namespace {
 /// Sends the sessions in a snapshot of the database.
 void push_sessions(Database& snapshot, const std::set<std::string>& stations, const Received& received,
                    Connection& server, PushReport& report) {
-  std::set<std::string> withdrawn, foreign;
+  std::set<std::string> withdrawn, foreign, unsent;
   for (const auto& stone : received.tombstones) withdrawn.insert(stone.session_id);
   server.query("SELECT turnpoint.prepare()");
   const auto known = known_sessions(server);
@@ -282,7 +299,7 @@ void push_sessions(Database& snapshot, const std::set<std::string>& stations, co
     const auto it = known.find(session.session_id);
     if (withdrawn.count(session.session_id) != 0) continue;  // withdrawn, but not deleted here yet
     if (stations.count(station) == 0)
-      foreign.insert(station);
+      (session.merged ? foreign : unsent).insert(station);
     else if (session.status == store::SessionStatus::running)
       ++report.running;
     else
@@ -290,6 +307,7 @@ void push_sessions(Database& snapshot, const std::set<std::string>& stations, co
           push_session(snapshot, session, it == known.end() ? nullptr : &it->second, server));
   }
   report.foreign.assign(foreign.begin(), foreign.end());
+  report.unsent.assign(unsent.begin(), unsent.end());
 }
 
 }  // namespace
@@ -303,7 +321,7 @@ PushReport push(const PushOptions& options) {
   Connection server(options.to);
   const auto stations = greet(server);
   Received received;
-  received.tombstones = exchange_tombstones(options, server);
+  received.tombstones = exchange_tombstones(options, stations, server, report);
   use(received, options, report);
   Database snapshot("", Database::Access::create);
   {

@@ -43,15 +43,19 @@ struct PushReport {
   /// for each protocol that was asked for: number of free places in its counterbalancing that this station
   /// now holds
   std::map<std::string, std::int64_t> places;
-  /// stations in the database whose sessions this database role may not send
-  std::vector<std::string> foreign;
+  /// stations in the database whose sessions this database role may not send: `foreign` for sessions that
+  /// were merged from the database of another station, which sends them itself, `unsent` for sessions that
+  /// were recorded here, which nobody else sends. The usual reason is that the station has another name now.
+  std::vector<std::string> foreign, unsent;
+  /// sessions that were withdrawn here, but whose withdrawal contradicts what the server knows of them
+  std::vector<std::string> disputed;
   store::Withdrawal withdrawn;  ///< what was deleted here, because the server lists it as withdrawn
   /// why the withdrawals and places from the server could not be carried out here, for example because a
   /// session is running; "" if they were
   std::string waiting;
 
-  /// False if a session was refused, or if withdrawals or places from the server still wait to be carried
-  /// out.
+  /// False if a session or a withdrawal was refused, if a session that was recorded here may not be sent, or
+  /// if withdrawals or places from the server still wait to be carried out.
   bool complete() const;
 };
 

@@ -69,14 +69,18 @@ std::string comments(const CollectedTable& table) {
 }
 
 /// Returns the SQL that turns on row security. turnpoint_reader may read the rows by a policy. All other
-/// roles reach the rows only through functions, which run as turnpoint_owner.
+/// roles reach the rows only through functions, which run as turnpoint_owner. Readers do not see tombstones:
+/// the codes of participants are short, so a dictionary of codes would find those behind the hashes.
 std::string protection(const std::string& table) {
-  return fmt::format(
+  const auto sql = fmt::format(
       "ALTER TABLE turnpoint.{0} ENABLE ROW LEVEL SECURITY;\n"
-      "DROP POLICY IF EXISTS readers ON turnpoint.{0};\n"
-      "CREATE POLICY readers ON turnpoint.{0} FOR SELECT TO turnpoint_reader USING (true);\n"
-      "GRANT SELECT ON turnpoint.{0} TO turnpoint_reader;\n",
+      "DROP POLICY IF EXISTS readers ON turnpoint.{0};\n",
       table);
+  if (table == "tombstone") return sql + "REVOKE ALL ON turnpoint.tombstone FROM turnpoint_reader;\n";
+  return sql + fmt::format(
+                   "CREATE POLICY readers ON turnpoint.{0} FOR SELECT TO turnpoint_reader USING (true);\n"
+                   "GRANT SELECT ON turnpoint.{0} TO turnpoint_reader;\n",
+                   table);
 }
 
 constexpr const char* kRoles = R"sql(
@@ -88,10 +92,26 @@ BEGIN
       EXECUTE format('CREATE ROLE %I NOLOGIN', wanted);
     END IF;
   END LOOP;
+  -- The groups are those of the whole server, which may have several collectors. So each role of a station or
+  -- reader is let into its own database, and nobody into another.
+  EXECUTE format('REVOKE CONNECT ON DATABASE %I FROM PUBLIC', current_database());
   -- A station that could make temporary objects could put its own in the place of those that the functions use.
   EXECUTE format('REVOKE TEMPORARY, CREATE ON DATABASE %I FROM PUBLIC', current_database());
   EXECUTE format('GRANT TEMPORARY, CREATE ON DATABASE %I TO turnpoint_owner', current_database());
+  -- Nobody waits for ever for a lock that another holds, and a connection that has begun a transaction and does
+  -- nothing is ended. A role can change these for itself, so turnpoint.end_stale() ends those that did.
+  EXECUTE format('ALTER DATABASE %I SET lock_timeout = %L', current_database(), '30s');
+  EXECUTE format('ALTER DATABASE %I SET idle_in_transaction_session_timeout = %L', current_database(), '60s');
+  -- PostgreSQL lets everybody store large objects, take advisory locks, fill the queue of notifications and run
+  -- programs in DO. The collector uses none of these.
+  FOR wanted IN SELECT p.oid::regprocedure FROM pg_proc p WHERE p.pronamespace = 'pg_catalog'::regnamespace
+      AND (p.proname ~ '^(lo_|pg_(try_)?advisory_)' OR p.proname IN ('loread', 'lowrite', 'pg_notify')) LOOP
+    EXECUTE 'REVOKE EXECUTE ON FUNCTION ' || wanted || ' FROM PUBLIC';
+  END LOOP;
+  REVOKE USAGE ON LANGUAGE plpgsql FROM PUBLIC;
+  GRANT USAGE ON LANGUAGE plpgsql TO turnpoint_owner;
 END $do$;
+GRANT pg_signal_backend, pg_read_all_stats TO turnpoint_owner;  -- for turnpoint.end_stale()
 REVOKE ALL ON SCHEMA public FROM PUBLIC;
 CREATE SCHEMA IF NOT EXISTS turnpoint AUTHORIZATION turnpoint_owner;
 SET LOCAL ROLE turnpoint_owner;
@@ -123,7 +143,8 @@ COMMENT ON TABLE turnpoint.lease IS 'Places in the counterbalancing of a protoco
 std::string schema_sql() {
   std::string sql = fmt::format(
       "-- Collector of Turnpoint, schema {}, written by `turnpoint collector-schema`.\n"
-      "\\set ON_ERROR_STOP on\nSET client_min_messages = warning;\nBEGIN;\n{}",
+      "\\set ON_ERROR_STOP on\nSET client_min_messages = warning;\n"
+      "SET lock_timeout = '60s';\nBEGIN;\n{}",
       store::kSchema, kRoles);
   sql += kOwnTables;
   sql += fmt::format(

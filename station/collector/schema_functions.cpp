@@ -19,6 +19,19 @@ std::string take_rows(const CollectedTable& table) {
       table.name, quoted(part.counter), part.last, column_list(table));
 }
 
+/// Returns the SQL that checks the protocol, rig or calibration that arrived: the session refers to it, and
+/// its key is the hash of its content. (`content` is an SQL expression over the row i. store/session_log.cpp
+/// makes the keys.) Without this, the first station that sends a key could choose what all others must have.
+std::string check_content(const std::string& table, const std::string& key, const std::string& content) {
+  return fmt::format(
+      "  IF EXISTS (SELECT FROM pg_temp.incoming_{0} i WHERE i.{1} IS DISTINCT FROM s.{1}\n"
+      "      OR i.{1} <> encode(sha256(convert_to({2}, 'UTF8')), 'hex')) THEN\n"
+      "    RAISE EXCEPTION 'session %: a {0} that arrived is not the session''s, or its key is not the hash "
+      "of "
+      "its content', id\n      USING ERRCODE = 'TP004';\n  END IF;\n",
+      table, key, content);
+}
+
 /// Returns the SQL that inserts rows which several sessions share. A session is refused if a row with the
 /// same key is already there but differs.
 std::string take_shared(const CollectedTable& table, const std::string& conflict) {
@@ -65,7 +78,6 @@ SET plan_cache_mode = force_generic_plan AS $fn$
 #variable_conflict use_column
 DECLARE p turnpoint.link; l turnpoint.link; s turnpoint.session; known boolean;
 BEGIN
-  PERFORM pg_advisory_xact_lock(hashtextextended(id, 0));
   SELECT * INTO s FROM pg_temp.incoming_session;
   IF NOT FOUND OR s.session_id <> id OR (SELECT count(*) FROM pg_temp.incoming_session) <> 1 THEN
     RAISE EXCEPTION 'session %: exactly one row of table session is needed', id USING ERRCODE = 'TP004';
@@ -74,17 +86,24 @@ BEGIN
     RAISE EXCEPTION 'session %: % may not store sessions of station %', id, session_user, s.station_id
       USING ERRCODE = 'TP003';
   END IF;
+  -- One transaction at a time for each station. Only the station's own role can hold this lock.
+  PERFORM FROM turnpoint.station t WHERE t.station_id = s.station_id FOR UPDATE;
   IF turnpoint.is_withdrawn(id, s.station_id, s.participant) THEN
     RAISE EXCEPTION 'session %: it was withdrawn', id USING ERRCODE = 'TP002';
   END IF;
   IF EXISTS (SELECT FROM pg_temp.incoming_link WHERE session_id <> id)
     OR EXISTS (SELECT FROM pg_temp.incoming_annotation WHERE session_id <> id)
+     OR EXISTS (SELECT FROM pg_temp.incoming_participant i WHERE i.code <> s.participant)
     OR EXISTS (SELECT FROM pg_temp.incoming_enrolment e WHERE (e.station_id, e.participant)
                  IS DISTINCT FROM (s.station_id, s.participant)) THEN
     RAISE EXCEPTION 'session %: rows of another session', id USING ERRCODE = 'TP004';
   END IF;
   INSERT INTO turnpoint.participant SELECT * FROM pg_temp.incoming_participant ON CONFLICT DO NOTHING;
 )sql";
+  sql += check_content("protocol", "protocol_key",
+                       R"(concat_ws(E'\n', i.protocol_id, i.version, i.sha256, i.text, i.canonical))");
+  sql += check_content("rig", "rig_key", R"(concat_ws(E'\n', i.name, i.sha256, i.text))");
+  sql += check_content("calibration", "calibration_id", "i.text");
   sql += take_shared(collected_table("enrolment"), "its participant has another place on the server");
   for (const auto* table : {"protocol", "rig", "calibration"})
     sql += take_shared(collected_table(table), fmt::format("its {} differs on the server", table));
@@ -118,6 +137,9 @@ BEGIN
     END IF;
     p := l;
   END LOOP;
+  IF p.link_index < 0 THEN
+    RAISE EXCEPTION 'session %: it has no checksum', id USING ERRCODE = 'TP004';
+  END IF;
   INSERT INTO turnpoint.link ({0}) SELECT {0} FROM pg_temp.incoming_link;
 )sql",
                      column_list(collected_table("link")));
@@ -158,10 +180,26 @@ constexpr const char* kFunctions = R"sql(
 CREATE OR REPLACE FUNCTION turnpoint.is_own(station text) RETURNS boolean LANGUAGE sql STABLE AS
   $$ SELECT EXISTS (SELECT FROM turnpoint.station s WHERE s.station_id = station AND s.role = session_user) $$;
 
+CREATE OR REPLACE FUNCTION turnpoint.code_sha256(salt text, code text) RETURNS text LANGUAGE sql IMMUTABLE AS
+  $$ SELECT encode(sha256(convert_to(salt || '/' || code, 'UTF8')), 'hex') $$;
+
+-- A tombstone concerns the sessions and codes of its own station only, and so does every use of it below.
 CREATE OR REPLACE FUNCTION turnpoint.is_withdrawn(id text, station text, code text) RETURNS boolean
-LANGUAGE sql STABLE AS $$ SELECT EXISTS (SELECT FROM turnpoint.tombstone t WHERE t.session_id = id
-  OR (t.station_id IN ('', station) AND t.participant_sha256 =
-        encode(sha256(convert_to(t.salt || '/' || code, 'UTF8')), 'hex'))) $$;
+LANGUAGE sql STABLE AS $$ SELECT EXISTS (SELECT FROM turnpoint.tombstone t WHERE t.station_id = station
+  AND (t.session_id = id OR t.participant_sha256 = turnpoint.code_sha256(t.salt, code))) $$;
+
+-- How long a transaction of a station may stand idle, and how long it may last, while others want to send.
+CREATE OR REPLACE FUNCTION turnpoint.longest_idle() RETURNS interval LANGUAGE sql AS $$ SELECT interval '1 minute' $$;
+CREATE OR REPLACE FUNCTION turnpoint.longest_transaction() RETURNS interval LANGUAGE sql AS
+  $$ SELECT interval '2 hours' $$;
+
+-- Ends the transactions of stations that last too long: each may hold rows for which other stations wait.
+CREATE OR REPLACE FUNCTION turnpoint.end_stale() RETURNS bigint LANGUAGE sql AS $$
+  SELECT count(pg_terminate_backend(a.pid, 1000)) FROM pg_stat_activity a
+  WHERE a.datname = current_database() AND a.pid <> pg_backend_pid()
+    AND a.usename IN (SELECT s.role FROM turnpoint.station s)
+    AND (a.xact_start < now() - turnpoint.longest_transaction()
+      OR (a.state LIKE 'idle in transaction%' AND a.state_change < clock_timestamp() - turnpoint.longest_idle())) $$;
 
 CREATE OR REPLACE FUNCTION turnpoint.annotations_sha256(id text) RETURNS text LANGUAGE sql STABLE AS
   $$ SELECT encode(sha256(coalesce(string_agg(convert_to(turnpoint.coded(annotation_id)
@@ -189,32 +227,42 @@ LANGUAGE sql STABLE SECURITY DEFINER SET search_path = pg_catalog, pg_temp AS
 -- Deletes what has a tombstone, on condition that the caller may.
 CREATE OR REPLACE FUNCTION turnpoint.delete_withdrawn() RETURNS void LANGUAGE plpgsql AS $fn$
 BEGIN
-  DELETE FROM turnpoint.session s USING turnpoint.tombstone t WHERE s.session_id = t.session_id;
-  DELETE FROM turnpoint.enrolment e USING turnpoint.tombstone t WHERE t.station_id IN ('', e.station_id)
-    AND t.participant_sha256 = encode(sha256(convert_to(t.salt || '/' || e.participant, 'UTF8')), 'hex');
+  DELETE FROM turnpoint.session s USING turnpoint.tombstone t
+    WHERE (t.session_id, t.station_id) = (s.session_id, s.station_id);
+  DELETE FROM turnpoint.enrolment e USING turnpoint.tombstone t
+    WHERE t.station_id = e.station_id AND t.participant_sha256 = turnpoint.code_sha256(t.salt, e.participant);
   DELETE FROM turnpoint.same_person e USING turnpoint.tombstone t
-    WHERE (t.station_id IN ('', e.station_a)
-        AND t.participant_sha256 = encode(sha256(convert_to(t.salt || '/' || e.code_a, 'UTF8')), 'hex'))
-      OR (t.station_id IN ('', e.station_b)
-        AND t.participant_sha256 = encode(sha256(convert_to(t.salt || '/' || e.code_b, 'UTF8')), 'hex'));
-  DELETE FROM turnpoint.participant p WHERE NOT EXISTS (SELECT FROM turnpoint.session s WHERE s.participant = p.code)
-    AND NOT EXISTS (SELECT FROM turnpoint.enrolment e WHERE e.participant = p.code);
+    WHERE (t.station_id = e.station_a AND t.participant_sha256 = turnpoint.code_sha256(t.salt, e.code_a))
+      OR (t.station_id = e.station_b AND t.participant_sha256 = turnpoint.code_sha256(t.salt, e.code_b));
+  -- A code that another transaction has locked is about to be used, so do not wait for it.
+  DELETE FROM turnpoint.participant WHERE code IN (SELECT p.code FROM turnpoint.participant p
+    WHERE NOT EXISTS (SELECT FROM turnpoint.session s WHERE s.participant = p.code)
+      AND NOT EXISTS (SELECT FROM turnpoint.enrolment e WHERE e.participant = p.code) FOR UPDATE SKIP LOCKED);
 END $fn$;
 
--- Takes the tombstones that a station holds, as a JSON list of rows of table tombstone, and returns all that the
--- server holds. Those of other stations' sessions are ignored: no station deletes what is another's.
-CREATE OR REPLACE FUNCTION turnpoint.exchange_tombstones(theirs json) RETURNS SETOF turnpoint.tombstone
-LANGUAGE plpgsql SECURITY DEFINER SET search_path = pg_catalog, pg_temp AS $fn$
+-- Takes the tombstones that a station holds, as a JSON list of rows of table tombstone, and the ids of the sessions of
+-- other stations that it has a copy of. A tombstone counts if it is about the caller's own station and agrees with the
+-- session, if the server has that session; others are ignored. Returns the tombstones of the caller's stations and
+-- those of the sessions that it named. It sees no others: a dictionary of codes would find the codes behind the hashes.
+DROP FUNCTION IF EXISTS turnpoint.exchange_tombstones(json);
+CREATE OR REPLACE FUNCTION turnpoint.exchange_tombstones(theirs json, held json DEFAULT '[]')
+RETURNS SETOF turnpoint.tombstone LANGUAGE plpgsql SECURITY DEFINER SET search_path = pg_catalog, pg_temp AS $fn$
 DECLARE new_rows bigint;
 BEGIN
+  PERFORM turnpoint.end_stale();
   INSERT INTO turnpoint.tombstone (session_id, salt, participant_sha256, withdrawn_realtime_ns, station_id)
     SELECT t.session_id, t.salt, t.participant_sha256, t.withdrawn_realtime_ns, t.station_id
     FROM json_populate_recordset(NULL::turnpoint.tombstone, theirs) t
-      LEFT JOIN turnpoint.session s ON s.session_id = t.session_id
-    WHERE turnpoint.is_own(coalesce(s.station_id, t.station_id)) ON CONFLICT DO NOTHING;
+    WHERE turnpoint.is_own(t.station_id) AND NOT EXISTS (SELECT FROM turnpoint.session s
+      WHERE s.session_id = t.session_id AND (s.station_id <> t.station_id
+        OR t.participant_sha256 NOT IN ('', turnpoint.code_sha256(t.salt, s.participant))))
+    ON CONFLICT DO NOTHING;
   GET DIAGNOSTICS new_rows = ROW_COUNT;
   IF new_rows > 0 THEN PERFORM turnpoint.delete_withdrawn(); END IF;
-  RETURN QUERY SELECT * FROM turnpoint.tombstone t ORDER BY t.session_id;
+  RETURN QUERY SELECT * FROM turnpoint.tombstone t WHERE turnpoint.is_own(t.station_id)
+    OR (t.session_id IN (SELECT json_array_elements_text(held))
+      AND NOT EXISTS (SELECT FROM turnpoint.session s WHERE s.session_id = t.session_id))
+    ORDER BY t.session_id;
 END $fn$;
 
 -- The station of a role that speaks for one station only.
@@ -237,7 +285,7 @@ BEGIN
   IF more NOT BETWEEN 0 AND 10000 THEN
     RAISE EXCEPTION 'a station cannot lease % places; allowed are 0 to 10000', more USING ERRCODE = 'TP003';
   END IF;
-  PERFORM pg_advisory_xact_lock(hashtextextended('lease ' || protocol, 0));
+  LOCK TABLE turnpoint.lease IN SHARE ROW EXCLUSIVE MODE;  -- the database's lock_timeout limits how long this waits
   INSERT INTO turnpoint.lease (protocol_id, sequence_index, station_id)
     SELECT protocol, i, mine FROM generate_series(0::bigint,
       (SELECT count(*) FROM turnpoint.lease t WHERE t.protocol_id = protocol)
@@ -298,7 +346,7 @@ SET search_path = pg_catalog, pg_temp AS $fn$
 DECLARE new_rows bigint; new_salt text := gen_random_uuid();
 BEGIN
   INSERT INTO turnpoint.tombstone (session_id, salt, participant_sha256, withdrawn_realtime_ns, station_id)
-    SELECT s.session_id, new_salt, encode(sha256(convert_to(new_salt || '/' || code, 'UTF8')), 'hex'),
+    SELECT s.session_id, new_salt, turnpoint.code_sha256(new_salt, code),
       (extract(epoch FROM now()) * 1000000000)::bigint, s.station_id
     FROM turnpoint.session s WHERE s.station_id = station AND s.participant = code;
   GET DIAGNOSTICS new_rows = ROW_COUNT;
@@ -311,7 +359,7 @@ END $fn$;
 constexpr const char* kRights = R"sql(
 REVOKE ALL ON ALL FUNCTIONS IN SCHEMA turnpoint FROM PUBLIC;
 GRANT EXECUTE ON FUNCTION turnpoint.hello(), turnpoint.chains(), turnpoint.prepare(), turnpoint.store_session(text),
-  turnpoint.exchange_tombstones(json), turnpoint.store_joins(json), turnpoint.lease_places(text, bigint),
+  turnpoint.exchange_tombstones(json, json), turnpoint.store_joins(json), turnpoint.lease_places(text, bigint),
   turnpoint.return_places(text, json)
   TO turnpoint_station;
 GRANT EXECUTE ON FUNCTION turnpoint.hello() TO turnpoint_reader;

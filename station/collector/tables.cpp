@@ -125,6 +125,9 @@ std::vector<CollectedTable> read_tables() {
     read_unique(database, table);
     read_references(database, table);
     describe_chain(table);
+    // On a server, a station can make a tombstone with the id of another station's session. It must not stand
+    // in the place of the other station's own.
+    if (table.name == "tombstone") table.key = {"session_id", "station_id"};
     tables.push_back(std::move(table));
   }
   return tables;

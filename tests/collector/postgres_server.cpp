@@ -101,6 +101,7 @@ PostgresServer::PostgresServer(const Options& options) {
   add_station("bench-b", "station_b");
   auto server = admin();
   server.query("CREATE ROLE reader LOGIN IN ROLE turnpoint_reader");
+  server.query("GRANT CONNECT ON DATABASE turnpoint TO reader");
 }
 
 PostgresServer::~PostgresServer() {
@@ -145,5 +146,6 @@ turnpoint::collector::Connection PostgresServer::admin() const {
 void PostgresServer::add_station(const std::string& station_id, const std::string& role) const {
   auto server = admin();
   server.query(fmt::format("CREATE ROLE {} LOGIN IN ROLE turnpoint_station", role));
+  server.query(fmt::format("GRANT CONNECT ON DATABASE turnpoint TO {}", role));
   server.query("INSERT INTO turnpoint.station (station_id, role) VALUES ($1, $2)", {station_id, role});
 }

@@ -23,7 +23,8 @@ class Server:
         self.run("createdb", "-h", work, "-U", "postgres", "lab")
         schema = subprocess.run([turnpoint, "collector-schema"], capture_output=True, check=True).stdout
         subprocess.run(["psql", "-Xq", "-h", work, "-U", "postgres", "lab"], input=schema, check=True)
-        self.sql("CREATE ROLE s LOGIN IN ROLE turnpoint_station; CREATE ROLE r LOGIN IN ROLE turnpoint_reader")
+        self.sql("CREATE ROLE s LOGIN IN ROLE turnpoint_station; CREATE ROLE r LOGIN IN ROLE turnpoint_reader; "
+                 "GRANT CONNECT ON DATABASE lab TO s, r")
         for station in stations:
             self.sql(f"INSERT INTO turnpoint.station VALUES ('{station}', 's')")
 

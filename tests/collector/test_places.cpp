@@ -5,6 +5,7 @@
 #include "station/collector/received.hpp"
 #include "station/store/places.hpp"
 #include "station/store/read.hpp"
+#include "station/text/number.hpp"
 #include "tests/collector/postgres_server.hpp"
 #include "tests/store/sample.hpp"
 #include "tests/support/catch.hpp"
@@ -110,8 +111,8 @@ TEST_CASE("the example queries run for a reader, and count what was recorded", "
   auto start = sample::start();
   start.run_mode = store::RunMode::live;
   start.observer = "";
-  start.calibration_id = std::string(64, 'c');
   start.calibration_text = "format = \"x\"\nmade_on = 2023-02-28\n";
+  start.calibration_id = text::sha256(start.calibration_text);
   sample::session(folder / "a.sqlite", 10, start);
   REQUIRE(collector::push({folder / "a.sqlite", postgres.as("station_a"), "", "", {}, {}}).complete());
   std::filesystem::copy_file(TURNPOINT_SOURCE_DIR "/station/collector/queries.sql",
