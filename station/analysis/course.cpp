@@ -60,10 +60,11 @@ Proportion proportion(int right, int trials) {
 std::optional<Proportion> catch_accuracy(const std::vector<TrialRecord>& trials) {
   Proportion result;
   for (const auto& trial : trials) {
-    if (trial.type != TrialType::catch_trial || trial.outcome != Outcome::answered || !trial.correct)
+    const bool missed = trial.outcome == Outcome::timeout || trial.outcome == Outcome::anticipation;
+    if (trial.type != TrialType::catch_trial || !(missed ? trial.right_choice.has_value() : trial.correct.has_value()))
       continue;
     ++result.trials;
-    result.right += *trial.correct;
+    result.right += !missed && *trial.correct;
   }
   if (result.trials == 0) return std::nullopt;
   return proportion(result.right, result.trials);

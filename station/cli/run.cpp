@@ -37,7 +37,10 @@ Json to_json(const session::Summary& summary) {
                          {"sd", json_number(e.sd)},
                          {"interval", json_interval(e.interval)},
                          {"basis", e.basis.empty() ? Json(nullptr) : Json(e.basis)}});
+  Json early_ends = Json::array();
+  for (const auto& end : summary.early_ends) early_ends.push_back(texts::say(end, "en"));
   return {{"session_id", summary.session_id},
+          {"early_ends", early_ends},
           {"participant", summary.participant},
           {"protocol", summary.protocol_id},
           {"database", summary.database},

@@ -94,8 +94,10 @@ Facts course_of(const std::vector<LiveTrial>& trials, const std::string& languag
   for (const auto& trial : trials) {
     xruns += trial.xruns, extra += trial.extra_touches;
     if (trial.response_time_s) times.push_back(*trial.response_time_s);
+    const bool missed = trial.outcome == Outcome::timeout || trial.outcome == Outcome::anticipation;
+    if (trial.type == terms::TrialType::catch_trial && (missed || trial.correct))
+      ++catches, caught += trial.correct.value_or(false) ? 1 : 0;
     if (!trial.correct) continue;
-    if (trial.type == terms::TrialType::catch_trial) ++catches, caught += *trial.correct ? 1 : 0;
     if (trial.type == terms::TrialType::experimental) ++scored, right += *trial.correct ? 1 : 0;
   }
   const auto whole = [](auto value) { return std::to_string(value); };

@@ -6,6 +6,7 @@
 
 #include "station/observer/first_passage.hpp"
 #include "station/random/elementary.hpp"
+#include "station/terms/limits.hpp"
 
 namespace turnpoint::observer {
 
@@ -313,7 +314,7 @@ Reply Observer::answer(const Question& q) const {
   }
   if (q.confidence > 0) {
     reply.confidence = confidence(q, *reply.choice, draws);
-    reply.confidence_time_s = p.residual_s + p.travel_s;
+    reply.confidence_time_s = std::max(p.residual_s + p.travel_s, terms::kConfidenceGuard_s);
   }
   return reply;
 }

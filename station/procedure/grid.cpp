@@ -1,5 +1,6 @@
 #include "station/procedure/grid.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "station/random/elementary.hpp"
@@ -37,7 +38,7 @@ std::vector<double> even_steps(TableReader& reader, double from, double to) {
                           {plain(text::number(from)), plain(text::number(step)), plain(text::number(to))}),
                    phrase("problem.possible_end", {plain(text::number(from + std::max(whole, 0.0) * step))}));
   std::vector<double> values;
-  for (int i = 0; i <= static_cast<int>(whole); ++i) values.push_back(from + i * step);
+  for (int i = 0; i <= static_cast<int>(whole); ++i) values.push_back(at_step(from, i, step));
   return values;
 }
 
@@ -72,6 +73,25 @@ std::vector<double> log_axis(TableReader& reader) {
 }
 
 }  // namespace
+
+double decimal_places(const std::vector<double>& values) {
+  constexpr double most = 1e9, largest = 1e15, rounding = 1e-12;
+  for (double places = 1; places <= most; places *= 10)
+    if (std::ranges::all_of(values, [&](double value) {
+          const double scaled = std::fabs(value * places);
+          return scaled <= largest &&
+                 std::fabs(scaled - std::round(scaled)) <= rounding * std::max(1.0, scaled);
+        }))
+      return places;
+  return 0;
+}
+
+double at_step(double from, std::int64_t steps, double step) {
+  const double places = decimal_places({from, step});
+  if (places == 0 || !(std::fabs(static_cast<double>(steps) * step * places) < 4e15))
+    return from + static_cast<double>(steps) * step;
+  return static_cast<double>(std::llround(from * places) + steps * std::llround(step * places)) / places;
+}
 
 Grid read_grid(const text::Value& table, const std::string& name, Axis axis, text::Findings& findings) {
   Grid grid;

@@ -1,5 +1,7 @@
 #pragma once
+#include <cstdint>
 #include <string>
+#include <vector>
 
 #include "station/procedure/spec.hpp"
 #include "station/text/reader.hpp"
@@ -13,6 +15,13 @@ enum class Axis { stimuli, parameter };
 /// Reads a grid in one of the forms { from, to, step }, { from, to, count }, { log_from, log_to, count }, {
 /// values } or { tied = "lapse" }, and computes its values, which are the same on every machine.
 Grid read_grid(const text::Value& table, const std::string& name, Axis axis, text::Findings& findings);
+
+/// Returns the smallest power of 10 by which all values become whole numbers, up to 10^9; 0 if none does.
+double decimal_places(const std::vector<double>& values);
+
+/// Returns from + steps * step. If `from` and `step` are decimal fractions, this is the number nearest to the
+/// exact decimal, so that a level is the same to the last bit from wherever it was reached.
+double at_step(double from, std::int64_t steps, double step);
 
 /// Reads a prior in one of the forms { normal = { mean, sd } } or { weights = [...] }.
 Prior read_prior(const text::Value& table, const std::string& name, text::Findings& findings);

@@ -47,6 +47,13 @@ void read_stop(TableReader& reader, Spec& spec) {
   spec.stop.min_trials = inner.maybe_integer("min_trials", 1, 100000);
   spec.stop.threshold_sd = inner.maybe_number("threshold_sd", {0, 1e6, Range::Ends::open_low});
   spec.stop.entropy_nats = inner.maybe_number("entropy_nats", {-100, 100});
+  spec.stop.max_trials = inner.maybe_integer("max_trials", 1, 100000);
+  if (spec.stop.max_trials && *spec.stop.max_trials < std::max(spec.stop.trials.value_or(0),
+                                                               spec.stop.min_trials.value_or(0)))
+    inner.problem("max_trials", phrase("problem.max_trials"),
+                  phrase("problem.at_least", {plain(std::max(spec.stop.trials.value_or(0),
+                                                             spec.stop.min_trials.value_or(0)))}));
+  if (spec.start) spec.stop.limit_steps = inner.maybe_integer("limit_steps", 1, 1000);
   read_right_of_last(inner, spec);
   const int rules = inner.has("right") + inner.has("trials") + inner.has("reversals") +
                     inner.has("threshold_sd") + inner.has("entropy_nats");

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "station/procedure/description.hpp"
+#include "station/procedure/grid.hpp"
 #include "station/procedure/keys.hpp"
 #include "station/procedure/state_hash.hpp"
 #include "station/random/elementary.hpp"
@@ -72,8 +73,8 @@ void Limits::set_starts(Direction direction, const SeriesStarts& starts, random:
 
 double Limits::position_after(int steps) const {
   const auto& series = series_[current_];
-  const double way = steps * spec_.step.front() * (series.direction == Direction::up ? 1 : -1);
-  return position_of(series.start, spec_.scale) + way;
+  const int way = series.direction == Direction::up ? steps : -steps;
+  return at_step(position_of(series.start, spec_.scale), way, spec_.step.front());
 }
 
 bool Limits::inside(double position) const {

@@ -62,6 +62,19 @@ std::vector<Problem> validate(const Spec& spec) {
   return problems;
 }
 
+std::optional<texts::Phrase> end_in_words(Ended ended, const std::string& procedure, int count) {
+  switch (ended) {
+    case Ended::limit:
+      return phrase("report.ended_limit", {plain(procedure), plain(count)});
+    case Ended::most:
+      return phrase("report.ended_most", {plain(procedure), plain(count)});
+    case Ended::unanswered:
+      return phrase("report.ended_unanswered", {plain(procedure)});
+    default:
+      return std::nullopt;
+  }
+}
+
 void Procedure::record_setting(double) {
   throw std::logic_error("procedure: only an adjustment can record a setting");
 }

@@ -34,6 +34,19 @@ enum class Answer {
 /// after kSpentAtMost spent trials, so that it ends even if nobody answers.
 inline constexpr int kRepeatsInARow = 3, kSpentAtMost = 20;
 
+/// Why a procedure has ended. All but `rule` are ends that its stopping rules did not ask for.
+enum class Ended {
+  no,          ///< it has not ended
+  rule,        ///< its list is done, or its stopping rules are met
+  limit,       ///< the end of its range stopped steps_at_limit() steps in a row
+  most,        ///< it has reached most_trials() before its rules were met
+  unanswered,  ///< too many trials were left unanswered (kSpentAtMost)
+};
+
+/// Says about the procedure with this name how it ended if that was not by its rules; otherwise empty.
+/// `count` is the number of steps or trials.
+std::optional<texts::Phrase> end_in_words(Ended ended, const std::string& procedure, int count);
+
 struct Estimate {
   double mode = 0, mean = 0;
   /// standard deviation of the estimate; empty if the estimate is a single number
@@ -76,6 +89,10 @@ class Procedure {
   virtual bool ready() const { return true; }
   /// returns the next level to present; empty when the procedure is done
   virtual std::optional<Proposal> next() const = 0;
+  /// why next() returns nothing
+  virtual Ended ended() const { return next() ? Ended::no : Ended::rule; }
+  /// says the same if it was not by its rules; otherwise empty
+  virtual std::optional<texts::Phrase> end() const { return std::nullopt; }
   /// records the answer to the proposal of next(); must not be called when the procedure is done
   virtual void record(Answer answer) = 0;
   /// Records the setting of an adjustment. Other kinds of procedures throw std::logic_error.

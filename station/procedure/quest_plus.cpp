@@ -17,10 +17,10 @@ std::size_t QuestPlus::chosen() const {
   return posterior_.best_stimulus();
 }
 
-bool QuestPlus::done() const {
+bool QuestPlus::rules_met() const {
   const auto& stop = spec_.stop;
   const int trials = recorded_ + spent_;
-  const bool by_trials = stop.trials ? trials >= *stop.trials : spent_ >= kSpentAtMost;
+  const bool by_trials = stop.trials && trials >= *stop.trials;
   if (by_trials && stop.rule == StopRule::any) return true;
   if (stop.min_trials && trials < *stop.min_trials) return false;
   const bool by_sd = stop.threshold_sd && *posterior_.estimate(Posterior::threshold).sd <= *stop.threshold_sd;
@@ -28,12 +28,19 @@ bool QuestPlus::done() const {
   const bool by_right =
       enough_right(stop, history_.size(), [this](std::size_t i) { return history_[i] % 2 == 1; });
   if (stop.rule == StopRule::any) return by_trials || by_sd || by_entropy || by_right;
-  return spent_ >= kSpentAtMost || ((!stop.right || by_right) && (!stop.trials || by_trials) &&
-                                    (!stop.threshold_sd || by_sd) && (!stop.entropy_nats || by_entropy));
+  return (!stop.right || by_right) && (!stop.trials || by_trials) && (!stop.threshold_sd || by_sd) &&
+         (!stop.entropy_nats || by_entropy);
+}
+
+Ended QuestPlus::ended() const {
+  if (rules_met()) return Ended::rule;
+  if (recorded_ + spent_ >= most_trials(spec_.stop)) return Ended::most;
+  const bool counted = spec_.stop.trials && spec_.stop.rule == StopRule::any;
+  return spent_ >= kSpentAtMost && !counted ? Ended::unanswered : Ended::no;
 }
 
 std::optional<Proposal> QuestPlus::next() const {
-  if (done()) return std::nullopt;
+  if (ended() != Ended::no) return std::nullopt;
   const auto& stimulus = posterior_.stimuli()[stimulus_];
   return Proposal{stimulus.level, spec_.second ? std::optional(stimulus.second) : std::nullopt, {}};
 }

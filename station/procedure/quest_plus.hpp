@@ -19,13 +19,17 @@ class QuestPlus : public Procedure {
   void record(Answer answer) override;
   int recorded() const override { return recorded_; }
   int expected() const override;
+  Ended ended() const override;
+  std::optional<texts::Phrase> end() const override {
+    return end_in_words(ended(), spec_.name, recorded_ + spent_);
+  }
   std::map<std::string, Estimate> estimates() const override;
   std::vector<ThresholdAt> thresholds() const override { return posterior_.thresholds(); }
   std::optional<double> entropy_nats() const override { return posterior_.entropy_nats(); }
   std::uint64_t state_hash() const override;
 
  private:
-  bool done() const;
+  bool rules_met() const;
   std::size_t chosen() const;  ///< index of the stimulus to present next
 
   Spec spec_;

@@ -12,6 +12,13 @@ std::pair<double, double> SeriesStarts::ends() const {
   return {*low, *high};
 }
 
+int most_trials(const Stop& stop) {
+  constexpr int kLeast = 400, kTimes = 4, kForReversal = 10;
+  const int asked = std::max({stop.trials.value_or(0), stop.min_trials.value_or(0), stop.of_last.value_or(0),
+                              kForReversal * stop.reversals.value_or(0)});
+  return stop.max_trials.value_or(std::max(kLeast, kTimes * asked));
+}
+
 std::vector<Problem> advise(const Spec& spec) {
   std::vector<Problem> advice;
   if (spec.stimuli.values.size() == 1)

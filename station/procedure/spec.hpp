@@ -68,7 +68,17 @@ struct Stop {
   /// ends the procedure when this many of the last `of_last` answers were 1; both are set, or neither
   std::optional<int> right, of_last;
   StopRule rule = StopRule::any;
+  std::optional<int> max_trials;   ///< the most trials, whatever `rule` says; see most_trials()
+  std::optional<int> limit_steps;  ///< see steps_at_limit()
 };
+
+/// Returns the number of trials after which a procedure ends, whichever of its rules are not met:
+/// `max_trials` or, if that is not given, 400 or four times what the other rules ask for, if that is more.
+/// 10 trials are reckoned for each reversal.
+int most_trials(const Stop& stop);
+/// Returns the number of steps in a row that the end of the range stops and after which a track ends:
+/// `limit_steps`, or 10. The rules of `stop` could then often not be met at all.
+inline int steps_at_limit(const Stop& stop) { return stop.limit_steps.value_or(10); }
 
 /// Starting levels of the series in one direction. Either a list, of which each is used equally often, or an
 /// interval, from which each series draws one. If both are empty, there are no series in this direction.

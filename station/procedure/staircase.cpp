@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <tuple>
+#include <utility>
 
 #include "station/procedure/description.hpp"
 #include "station/procedure/keys.hpp"
@@ -11,27 +13,40 @@ namespace turnpoint::procedure {
 
 using texts::phrase, texts::plain;
 
-Staircase::Staircase(const Spec& spec) : Track(spec) {
-  steps_down_ = spec.step_down.empty() ? spec.step : spec.step_down;
-  steps_up_ = spec.step_up.empty() ? spec.step : spec.step_up;
+namespace {
+
+/// The sizes of the steps in each direction.
+std::pair<std::vector<double>, std::vector<double>> step_sizes(const Spec& spec) {
+  auto down = spec.step_down.empty() ? spec.step : spec.step_down;
+  auto up = spec.step_up.empty() ? spec.step : spec.step_up;
   if (spec.kind == Kind::weighted_up_down) {
     // At the target level, an answer of 1 has the probability `target` and causes a step down. Steps balance
     // there if target * step_down = (1 - target) * step_up.
     const double ratio = *spec.target / (1 - *spec.target);
     if (spec.step_up.empty())
-      for (steps_up_ = steps_down_; auto& step : steps_up_) step *= ratio;
+      for (up = down; auto& step : up) step *= ratio;
     if (spec.step_down.empty() && spec.step.empty())
-      for (steps_down_ = steps_up_; auto& step : steps_down_) step /= ratio;
+      for (down = up; auto& step : down) step /= ratio;
   }
+  return {down, up};
 }
 
-double Staircase::step(const std::vector<double>& steps) const {
-  return steps[std::min(reversals_.size(), steps.size() - 1)];
+std::vector<double> all_steps(const Spec& spec) {
+  auto [all, up] = step_sizes(spec);
+  all.insert(all.end(), up.begin(), up.end());
+  return all;
+}
+
+}  // namespace
+
+Staircase::Staircase(const Spec& spec) : Track(spec, all_steps(spec)) {
+  std::tie(steps_down_, steps_up_) = step_sizes(spec);
 }
 
 void Staircase::step_towards(Direction direction) {
   turn(direction);
-  move(direction == Direction::down ? -step(steps_down_) : step(steps_up_));
+  const auto& sizes = direction == Direction::down ? steps_down_ : steps_up_;
+  step(sizes[std::min(reversals_.size(), sizes.size() - 1)], direction);
 }
 
 void Staircase::learn(Answer answer) {
@@ -66,6 +81,7 @@ std::map<std::string, Estimate> Staircase::estimates() const {
   estimate.sd = logs ? estimate.mean * sd : sd;
   const auto count = std::to_string(reversals_.size());
   estimate.basis = "reversals " + std::to_string(first + 1) + " to " + count + " of " + count;
+  estimate.basis = with_end(std::move(estimate.basis));
   return {{"threshold", estimate}};
 }
 

@@ -18,7 +18,6 @@ class Staircase : public Track {
  private:
   void learn(Answer answer) override;
   void step_towards(Direction direction);
-  double step(const std::vector<double>& steps) const;
 
   std::vector<double> steps_down_, steps_up_;
   int ones_ = 0, zeros_ = 0;

@@ -26,7 +26,7 @@ namespace {
 /// moved in one direction only.
 class StochasticApproximation : public Track {
  public:
-  using Track::Track;
+  explicit StochasticApproximation(const Spec& spec) : Track(spec) {}
 
   std::map<std::string, Estimate> estimates() const override {
     if (reversals_.empty()) return {};
@@ -35,6 +35,7 @@ class StochasticApproximation : public Track {
     estimate.mean = estimate.mode = level_;
     estimate.basis = "the level after " + std::to_string(recorded_) + " answers with " +
                      std::to_string(changes) + (changes == 1 ? " reversal" : " reversals");
+    estimate.basis = with_end(std::move(estimate.basis));
     return {{"threshold", estimate}};
   }
 

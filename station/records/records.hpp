@@ -272,6 +272,8 @@ struct EventRow {
 /// Kinds of events that belong to separate programs.
 inline constexpr const char* kProgramEvent = "program";
 inline constexpr const char* kEstimatesEvent = "estimates";
+/// An event that says how a procedure ended whose stopping rules were not met.
+inline constexpr const char* kEndedEarlyEvent = "ended_early";
 
 /// Kinds of events of a flash (a response signal): when its frame was handed to the screen, and how many
 /// seconds after the flash was due. The second kind is for flashes that were too late (terms::kSignalLate_s).

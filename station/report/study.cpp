@@ -17,13 +17,18 @@ using analysis::TrialType;
 void count_trials(const SessionData& data, StudyPerson& person) {
   int right = 0, scored = 0, timeouts = 0, anticipations = 0;
   std::vector<double> times;
+  int with_catches = 0;
   for (const auto& trial : data.trials) {
-    if (trial.type != TrialType::experimental || trial.outcome == Outcome::fault ||
+    const bool catches = trial.type == TrialType::catch_trial;
+    if ((trial.type != TrialType::experimental && !catches) || trial.outcome == Outcome::fault ||
         trial.outcome == Outcome::aborted)
       continue;
-    ++person.presented;
+    // Whoever leaves catch trials unanswered is too late as well.
+    ++with_catches;
     timeouts += trial.outcome == Outcome::timeout;
     anticipations += trial.outcome == Outcome::anticipation;
+    if (catches) continue;
+    ++person.presented;
     if (trial.outcome != Outcome::answered) continue;
     ++person.answered;
     if (trial.response_time_s) times.push_back(*trial.response_time_s);
@@ -31,9 +36,9 @@ void count_trials(const SessionData& data, StudyPerson& person) {
     ++scored;
     right += *trial.correct;
   }
-  if (person.presented > 0) {
-    person.timeouts = static_cast<double>(timeouts) / person.presented;
-    person.anticipations = static_cast<double>(anticipations) / person.presented;
+  if (with_catches > 0) {
+    person.timeouts = static_cast<double>(timeouts) / with_catches;
+    person.anticipations = static_cast<double>(anticipations) / with_catches;
   }
   if (scored > 0 && data.scored) person.accuracy = static_cast<double>(right) / scored;
   if (!times.empty()) person.median_time_s = analysis::quantile(std::move(times), 0.5);

@@ -49,17 +49,21 @@ void Interludes::restore(const Earlier& earlier) {
     if (event.kind == records::kDoneEvent) done_.insert(event.value);
   for (const auto& block : earlier.blocks)
     for (const auto& trial : block.trials)
-      if (trial.correct && trial.type != terms::TrialType::warmup)
-        score(block.start.block_index, block.start.attempt, block.start.name, *trial.correct);
+      score(block.start.block_index, block.start.attempt, block.start.name, trial);
 }
 
-void Interludes::score(int block_index, int attempt, const std::string& block, bool correct) {
+void Interludes::score(int block_index, int attempt, const std::string& block,
+                       const records::TrialRow& trial) {
+  const bool missed =
+      trial.outcome == terms::Outcome::timeout || trial.outcome == terms::Outcome::anticipation;
+  if (trial.type == terms::TrialType::warmup || !(missed ? trial.correct_response.has_value() : trial.correct.has_value()))
+    return;
   auto& score = scores_[block_index];
   if (score.attempt != attempt) score = {};
   score.block = block;
   score.attempt = attempt;
   ++score.trials;
-  score.right += correct ? 1 : 0;
+  score.right += !missed && *trial.correct ? 1 : 0;
 }
 
 protocol::Answers Interludes::answers() const {

@@ -40,8 +40,9 @@ class Interludes {
   /// Interludes that are already done are skipped.
   Flow before(int block_index);
 
-  /// Adds one scored trial to the score of its block.
-  void score(int block_index, int attempt, const std::string& block, bool correct);
+  /// Adds a trial to the score of its block, as the pass mark of practice counts it: a trial that was not
+  /// answered in time is wrong. Void, warm-up and unscored trials are left out.
+  void score(int block_index, int attempt, const std::string& block, const records::TrialRow& trial);
 
   /// Why the session ends before its blocks are done; "" if it does not.
   const std::string& ended_because() const { return ended_because_; }

@@ -83,6 +83,7 @@ struct Summary {
   /// last link of the checksum chain over the session's rows (`turnpoint verify`)
   std::string checksum;
   std::vector<trial::ProcedureEstimate> estimates;
+  std::vector<texts::Phrase> early_ends;  ///< see Director::early_ends()
 };
 
 /// Runs a session to its end on the calling thread, with the real clock, pages on `display` and input from

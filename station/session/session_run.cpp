@@ -97,6 +97,10 @@ Flow SessionRun::run_block() {
 Flow SessionRun::leave_block() {
   log_estimates();
   for (auto& e : director_.estimates()) summary_.estimates.push_back(std::move(e));
+  for (auto& end : director_.early_ends()) {
+    log_.event({stage_->now_ns(), records::kEndedEarlyEvent, texts::say(end, "en"), {}});
+    summary_.early_ends.push_back(std::move(end));
+  }
   if (director_.block()->kind == protocol::BlockKind::friction_table && finish_friction_table() == Flow::stop)
     return Flow::stop;
   ++summary_.blocks;

@@ -345,8 +345,7 @@ void SessionRun::count(const trial::TrialSpec& spec, const records::TrialRow& ro
       ++summary_.voided;
       break;
   }
-  if (spec.type != terms::TrialType::warmup && row.correct)
-    interludes_.score(spec.block_index, spec.attempt, director_.block()->name, *row.correct);
+  interludes_.score(spec.block_index, spec.attempt, director_.block()->name, row);
   if (spec.type == terms::TrialType::experimental && row.correct) ++scored_, right_ += *row.correct ? 1 : 0;
 }
 

@@ -25,6 +25,10 @@ inline constexpr std::int64_t kTouchToAnswer_ns = 60'000'000;
 inline constexpr std::int64_t kWatermark_ns = 80'000'000;
 static_assert(kOneTouch_ns < kTouchToAnswer_ns && kTouchToAnswer_ns < kWatermark_ns);
 
+/// A press sooner than this after an answer is a second press of the answer and never its confidence.
+inline constexpr std::int64_t kConfidenceGuard_ns = 350'000'000;
+inline constexpr double kConfidenceGuard_s = 0.35;
+
 /// Length of the tone that asks for an answer (a response signal on headphones).
 inline constexpr double kSignal_s = 0.05;
 /// Length of a frame of an ordinary screen, which shows 60 of them in a second.

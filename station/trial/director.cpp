@@ -203,6 +203,13 @@ std::vector<ProcedureEstimate> Director::estimates() const {
   return all;
 }
 
+std::vector<texts::Phrase> Director::early_ends() const {
+  std::vector<texts::Phrase> all;
+  for (const auto& procedure : state_->procedures)
+    if (const auto end = procedure->end()) all.push_back(*end);
+  return all;
+}
+
 std::optional<std::pair<double, std::optional<double>>> Director::threshold() const {
   if (state_->current_procedure == State::no_procedure) return std::nullopt;
   const auto estimates = state_->procedures[static_cast<std::size_t>(state_->current_procedure)]->estimates();

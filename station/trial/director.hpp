@@ -106,6 +106,8 @@ class Director {
   int trials_expected() const;
   /// Returns the current estimates of the block's procedures. Procedures without an estimate are left out.
   std::vector<ProcedureEstimate> estimates() const;
+  /// Says which of the block's procedures have ended, and how, if that was not by their rules.
+  std::vector<texts::Phrase> early_ends() const;
   /// Threshold (or PSE) and its SD, as estimated by the procedure of the last trial; empty if that procedure
   /// has no estimate.
   std::optional<std::pair<double, std::optional<double>>> threshold() const;

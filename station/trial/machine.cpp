@@ -5,6 +5,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "station/terms/limits.hpp"
+
 namespace turnpoint::trial {
 
 namespace {
@@ -259,7 +261,8 @@ void Machine::answer(const Event& event) {
 
 void Machine::confide(const Event& event) {
   const auto answered_ns = *result_.zero_ns + *result_.response_time_ns;
-  if (event.value < 0 || event.value >= plan_.confidence || event.time_ns < answered_ns) {
+  if (event.value < 0 || event.value >= plan_.confidence ||
+      event.time_ns < answered_ns + terms::kConfidenceGuard_ns) {
     ++result_.extra_touches;
     return;
   }

@@ -55,7 +55,8 @@ struct Timing {
   int answers = 2;             ///< number of possible answers
   std::optional<int> correct;  ///< index of the right answer; empty if no answer is right or wrong
   /// number of confidence levels that the participant chooses from after the answer, without a deadline; 0:
-  /// confidence is not asked for
+  /// confidence is not asked for. A second press of the answer, within terms::kConfidenceGuard_ns of the
+  /// first, is no confidence
   int confidence = 0;
 };
 

@@ -36,7 +36,7 @@ TEST_CASE("A preference for one answer is detected, and guessing without a prefe
   CHECK_FALSE(choice_bias({}).has_value());
 }
 
-TEST_CASE("Catch accuracy counts only catch trials that were answered", "[analysis]") {
+TEST_CASE("a catch trial that was not answered in time was not right", "[analysis]") {
   std::vector<TrialRecord> trials{answered(0, 1, 1, 0.5), answered(1, 0, 0, 0.5), answered(2, 1, 0, 0.5),
                                   answered(3, 1, 1, 0.5)};
   CHECK_FALSE(catch_accuracy(trials).has_value());
@@ -44,9 +44,15 @@ TEST_CASE("Catch accuracy counts only catch trials that were answered", "[analys
   trials[3].outcome = Outcome::timeout;
   trials[3].correct.reset();
   const auto result = catch_accuracy(trials);
-  CHECK(result->trials == 3);
+  CHECK(result->trials == 4);
   CHECK(result->right == 2);
   CHECK(result->interval.low < 0.12);
+  // Nobody answers: 0 of 3, and void trials do not count.
+  for (auto& trial : trials) trial.outcome = Outcome::timeout, trial.correct.reset(), trial.response.reset();
+  trials[0].outcome = Outcome::fault;
+  trials[1].outcome = Outcome::anticipation;
+  CHECK(catch_accuracy(trials)->trials == 3);
+  CHECK(catch_accuracy(trials)->right == 0);
 }
 
 TEST_CASE(

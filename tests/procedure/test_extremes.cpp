@@ -21,7 +21,9 @@ Answer answer(Pattern pattern, int trial) {
 /// [low, high], and the estimates at the end must be finite.
 void run(const Spec& spec, Pattern pattern, double low, double high) {
   INFO(spec.name << ", pattern " << static_cast<int>(pattern));
-  const auto procedure = make_procedure(spec, {}, {});
+  auto endless = spec;
+  endless.stop.max_trials = endless.stop.limit_steps = 2 * kTrials;
+  const auto procedure = make_procedure(endless, {}, {});
   bool inside = true;
   for (int trial = 0; trial < kTrials; ++trial) {
     const auto proposal = procedure->next();

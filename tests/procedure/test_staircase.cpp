@@ -1,3 +1,6 @@
+#include <cmath>
+#include <set>
+
 #include "station/procedure/trace.hpp"
 #include "station/terms/usage_error.hpp"
 #include "tests/support/catch.hpp"
@@ -112,4 +115,104 @@ TEST_CASE("a procedure ends even if the observer never answers", "[procedure]") 
   }
   CHECK(asked == 80);
   CHECK(procedure->recorded() == 0);
+}
+
+namespace {
+
+/// A staircase from 0.4 in steps of 0.1 that ends after eight reversals.
+Spec by_tenths(Scale scale, double start, double min, double max, double step) {
+  Spec spec;
+  spec.name = "tenths";
+  spec.level = "level";
+  spec.kind = Kind::up_down;
+  spec.scale = scale;
+  spec.start = start, spec.min = min, spec.max = max;
+  spec.step = {step};
+  spec.stop.trials = 4000;
+  spec.stop.limit_steps = 1000;
+  return spec;
+}
+
+}  // namespace
+
+TEST_CASE("a level is the same to the last bit however it was reached, and 0 is 0", "[procedure]") {
+  struct Case {
+    Scale scale;
+    double start, min, max, step;
+    std::size_t levels;  ///< number of whole steps between min and max, ends included
+  };
+  // 0.07 cannot reach the limits 0 and 0.5 from 0.4: its levels are 0.05, 0.12, ..., 0.47.
+  for (const auto& c : {Case{Scale::linear, 0.4, 0, 0.5, 0.1, 6}, Case{Scale::linear, 0.4, 0, 0.5, 0.07, 7},
+                        Case{Scale::linear, -0.3, -0.6, 0.6, 0.05, 25},
+                        Case{Scale::log10, 100, 1, 1000, 0.1, 31}, Case{Scale::dB, 8, 0.5, 32, 0.5, 73}}) {
+    const auto procedure = make_procedure(by_tenths(c.scale, c.start, c.min, c.max, c.step), {}, {});
+    std::set<double> levels;
+    std::uint64_t random = 12345;
+    for (int trial = 0; trial < 3000; ++trial) {
+      const double level = procedure->next()->level;
+      levels.insert(level);
+      random = random * 6364136223846793005u + 1442695040888963407u;
+      // Walk from one end to the other, with random steps on the way.
+      const bool down = (trial / 150) % 2 == 0 ? (random >> 60) < 13 : (random >> 60) < 3;
+      procedure->record(down ? Answer::one : Answer::zero);
+    }
+    INFO(c.start << " " << c.step);
+    CHECK(levels.size() == c.levels);
+    if (c.scale == Scale::linear)
+      for (const double level : levels) CHECK(level == std::round(level * 100) / 100);
+    if (c.step < 0.3 && c.step != 0.07) CHECK(*levels.begin() == c.min);
+    if (c.step < 0.3 && c.step != 0.07) CHECK(*levels.rbegin() == c.max);
+  }
+}
+
+TEST_CASE("steps without a common one are counted too, and begin again at a limit", "[procedure]") {
+  auto spec = by_tenths(Scale::linear, 1, 0, 2, 0.1);
+  spec.kind = Kind::weighted_up_down;
+  spec.target = 0.7071;
+  // Up by one step up and down again by ratios that do not divide it: the same counts give the same level.
+  const auto one = trace(spec, {}, "10110").levels, other = trace(spec, {}, "11010").levels;
+  CHECK(*trace(spec, {}, "10110").next == *trace(spec, {}, "11010").next);
+  CHECK(one != other);
+}
+
+TEST_CASE("a track ends after ten steps at the end of its range, and after its largest number of trials",
+          "[procedure]") {
+  const auto run = [](const Spec& spec, auto&& answer) {
+    const auto procedure = make_procedure(spec, {}, {});
+    int trials = 0;
+    while (procedure->next()) procedure->record(answer(trials++));
+    return std::pair(trials, procedure->ended());
+  };
+  auto spec = by_tenths(Scale::linear, 0.4, 0, 0.5, 0.1);
+  spec.n_down = 3;
+  spec.stop = {};
+  spec.stop.reversals = 8;
+  const auto right = [](int) { return Answer::one; };
+  const auto wrong = [](int) { return Answer::zero; };
+  // Four steps to 0, then ten that the limit stops, of three right answers each.
+  CHECK(run(spec, right) == std::pair(42, Ended::limit));
+  CHECK(run(spec, wrong) == std::pair(11, Ended::limit));
+  spec.stop.limit_steps = 2;
+  CHECK(run(spec, right) == std::pair(18, Ended::limit));
+  // The same with rules that must all be met, with a step that does not reach the limit, and on a log scale.
+  spec.stop.trials = 100, spec.stop.rule = StopRule::all, spec.stop.limit_steps = {};
+  CHECK(run(spec, right).second == Ended::limit);
+  spec.step = {0.07};
+  CHECK(run(spec, right).second == Ended::limit);
+  spec.scale = Scale::log10, spec.min = 0.01;
+  CHECK(run(spec, right).second == Ended::limit);
+  auto approximation = spec;
+  approximation.kind = Kind::accelerated_stochastic_approximation;
+  approximation.target = 0.75;
+  CHECK(run(approximation, right).second == Ended::limit);
+  // Many small steps never reach the end: the largest number of trials ends them.
+  spec.step = {1e-5}, spec.scale = Scale::linear, spec.stop = {};
+  spec.stop.reversals = 8;
+  CHECK(run(spec, right) == std::pair(400, Ended::most));
+  spec.stop.max_trials = 50;
+  CHECK(run(spec, right) == std::pair(50, Ended::most));
+  // A track whose rules are met has ended by its rules, wherever it is.
+  spec.stop = {};
+  spec.stop.trials = 20;
+  CHECK(run(spec, right) == std::pair(20, Ended::rule));
 }

@@ -136,7 +136,7 @@ TEST_CASE("numbers, confidence and settings of a slider come from a program too"
   const auto path = written_program(folder / "o", shell_observer(R"(
   case "$line" in
   *'"type":"adjustment"'*) reply="{\"id\":$id,\"type\":\"setting\",\"moves\":[{\"time_s\":0.5,\"value\":2},{\"time_s\":1,\"value\":3}],\"done_s\":2}" ;;
-  *) reply="{\"id\":$id,\"type\":\"reply\",\"value\":12.5,\"response_time_s\":1,\"confidence\":3,\"confidence_time_s\":0.25}" ;;
+  *) reply="{\"id\":$id,\"type\":\"reply\",\"value\":12.5,\"response_time_s\":1,\"confidence\":3,\"confidence_time_s\":0.5}" ;;
   esac)"));
   const auto observer = programs.respondent("program:" + path);
   auto number = question();
@@ -146,7 +146,7 @@ TEST_CASE("numbers, confidence and settings of a slider come from a program too"
   CHECK(reply.choice == 0);
   CHECK(reply.value == 12.5);
   CHECK(reply.confidence == 3);
-  CHECK(reply.confidence_time_s == 0.25);
+  CHECK(reply.confidence_time_s == 0.5);
   number.value->high = 12;
   CHECK_THROWS_WITH(observer.answer(number), ContainsSubstring("\"value\" is 12.5; allowed are 0 to 12"));
   const auto setting = observer.adjust({1, 0, 5, {}});

@@ -281,6 +281,21 @@ TEST_CASE("confidence is asked for after an answer, and completes the trial", "[
   CHECK(machine.result().confidence_time_ns == 18'500 * ms);
 }
 
+TEST_CASE("a second press soon after the answer is never its confidence", "[trial]") {
+  for (const auto after : {0 * ms, 1 * ms, 150 * ms, 349 * ms}) {
+    auto plan = exploration();
+    plan.confidence = 4;
+    auto machine = exploring(plan);
+    machine.handle({1500 * ms, EventKind::answer, 1});
+    machine.handle({1500 * ms + after, EventKind::answer, 1});
+    CHECK_FALSE(machine.result().confidence);
+    CHECK(machine.phase() == Phase::confidence);
+    CHECK(machine.result().extra_touches == 1);
+    machine.handle({1850 * ms, EventKind::answer, 1});
+    CHECK(machine.result().confidence == 2);
+  }
+}
+
 TEST_CASE("no confidence is asked for after a timeout, and a void trial has none", "[trial]") {
   auto plan = exploration();
   plan.confidence = 4;
