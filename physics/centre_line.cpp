@@ -8,6 +8,7 @@
 #include "physics/airy_profile.hpp"
 #include "physics/dispersion.hpp"
 #include "physics/field.hpp"
+#include "physics/gate.hpp"
 #include "physics/modal_field.hpp"
 #include "physics/uniform_profile.hpp"
 
@@ -106,6 +107,7 @@ std::optional<double> turning_point_m(const Surface& surface, double frequency_H
 
 std::unique_ptr<CentreLine> make_centre_line(const Surface& surface, double frequency_Hz, Model model,
                                              Losses losses) {
+  validate(surface, frequency_Hz);
   switch (model) {
     case Model::edge:
       throw std::invalid_argument("model edge gives positions only; it has no profile");

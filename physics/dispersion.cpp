@@ -3,9 +3,8 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
-#include <sstream>
-#include <stdexcept>
 
+#include "physics/gate.hpp"
 #include "physics/root.hpp"
 
 namespace turnpoint::physics {
@@ -33,13 +32,6 @@ double clamped_root(double tau) noexcept {
   };
   return newton({pi / 2, pi}, 2.4, tangent,
                 [](double next, double b) { return std::abs(next - b) <= 2 * epsilon * b; });
-}
-
-double positive(const char* quantity, double value) {
-  if (value > 0 && std::isfinite(value)) return value;
-  std::ostringstream text;
-  text << quantity << " is " << value << "; allowed: above 0";
-  throw std::invalid_argument(text.str());
 }
 
 }  // namespace
@@ -106,16 +98,24 @@ double Dispersion::cut_off_half_width_m(double f) const noexcept {
 }
 
 double wavenumber_per_m(const Surface& s, double f) {
-  return Dispersion(s).wavenumber_per_m(positive("frequency_Hz", f));
+  validate(s);
+  require_size("frequency_Hz", f);
+  return Dispersion(s).wavenumber_per_m(f);
 }
 double frequency_for_wavenumber_Hz(const Surface& s, double k) {
-  return Dispersion(s).frequency_Hz(positive("wavenumber_per_m", k));
+  validate(s);
+  require_size("wavenumber_per_m", k);
+  return Dispersion(s).frequency_Hz(k);
 }
 double cut_off_frequency_Hz(const Surface& s, double w) {
-  return Dispersion(s).cut_off_frequency_Hz(positive("half_width_m", w));
+  validate(s);
+  require_size("half_width_m", w);
+  return Dispersion(s).cut_off_frequency_Hz(w);
 }
 double cut_off_half_width_m(const Surface& s, double f) {
-  return Dispersion(s).cut_off_half_width_m(positive("frequency_Hz", f));
+  validate(s);
+  require_size("frequency_Hz", f);
+  return Dispersion(s).cut_off_half_width_m(f);
 }
 
 }  // namespace turnpoint::physics

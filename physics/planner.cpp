@@ -10,6 +10,7 @@
 #include "physics/centre_line.hpp"
 #include "physics/dispersion.hpp"
 #include "physics/edge_feature.hpp"
+#include "physics/gate.hpp"
 #include "physics/map_bounds.hpp"
 #include "physics/mode_bound.hpp"
 #include "physics/modes_bound.hpp"
@@ -304,6 +305,20 @@ bool inside(const RungEstimate& e, const Tolerance& tolerance) {
          (!tolerance.level_dB || e.level_bound_dB <= *tolerance.level_dB);
 }
 
+void check(const Surface& surface, const PlanRequest& request) {
+  if (request.tones.empty()) throw std::invalid_argument("a plan needs at least one tone");
+  validate(surface);
+  for (const Tone& tone : request.tones) validate(surface, tone.frequency_Hz);
+  validate(request.edge);
+  for (const Edge& edge : request.edges) validate(edge);
+  if (!request.edges.empty() && request.edges.size() != request.tones.size())
+    throw std::invalid_argument("a plan needs as many edges as tones, or none");
+  require(request.points >= 0 && request.points <= 1'000'000, "points", request.points, "0 to 1 000 000");
+  for (const auto& one :
+       {request.tolerance.boundary_m, request.tolerance.amplitude, request.tolerance.level_dB})
+    if (one) require_size("tolerance", *one);
+}
+
 std::string numbers(const RungEstimate& e, const Tolerance& tolerance) {
   std::ostringstream text;
   text.precision(3);
@@ -322,6 +337,7 @@ std::string numbers(const RungEstimate& e, const Tolerance& tolerance) {
 }  // namespace
 
 RungEstimate estimate(const Surface& surface, const PlanRequest& request, Model model) {
+  check(surface, request);
   const auto references = references_for(surface, request);
   if (model == Model::modes && modes_bound_applies(surface))
     return compared_modes(surface, request, references, Comparison::finer);
@@ -333,8 +349,7 @@ RungEstimate estimate(const Surface& surface, const PlanRequest& request, Model 
 }
 
 PlanChoice choose_model(const Surface& surface, const PlanRequest& request) {
-  validate(surface);
-  if (request.tones.empty()) throw std::invalid_argument("a plan needs at least one tone");
+  check(surface, request);
   PlanChoice choice;
   const auto references = references_for(surface, request);
   for (const Model model : all_models)

@@ -6,6 +6,7 @@
 #include "physics/centre_line.hpp"
 #include "physics/dispersion.hpp"
 #include "physics/field.hpp"
+#include "physics/gate.hpp"
 #include "physics/plate_theory.hpp"
 #include "physics/statement.hpp"
 
@@ -42,6 +43,7 @@ std::vector<Warning> tone_warnings(const Surface& s, std::span<const Tone> tones
   };
   for (const Tone& tone : tones) {
     const double f = tone.frequency_Hz, kHz = f / 1e3;
+    validate(s, f);
     if (f < audible_limit_Hz)
       warn("audible",
            "%1 kHz: below 22.4 kHz, so it may be audible, and the stricter limit of airborne sound applies",
