@@ -55,6 +55,22 @@ std::vector<Place> places_around(double length_m, double distance_m, double step
 
 }  // namespace
 
+AirLoad air_load(const Surface& surface, double f, const Air& air) {
+  validate(surface, f);
+  validate(air);
+  const double omega = 2 * std::numbers::pi * f, k = wavenumber_per_m(surface, f);
+  const double in_air = omega / air.speed_m_s, mass = surface.density_kg_m3 * surface.thickness_m;
+  const double squares = (in_air - k) * (in_air + k);
+  // at the speed of sound itself, an infinite plane would be held still
+  const double along = std::sqrt(std::max(std::abs(squares), 1e-12 * k * k));
+  AirLoad load;
+  if (squares > 0)
+    load.quality_factor = omega * mass * along / in_air / (2 * air.density_kg_m3 * air.speed_m_s);
+  else
+    load.mass_share = 2 * air.density_kg_m3 / (along * mass);
+  return load;
+}
+
 std::vector<std::complex<double>> radiated_pressure_Pa(std::span<const SoundSource> sources,
                                                        double frequency_Hz, std::span<const Place> places,
                                                        const Air& air) {

@@ -63,6 +63,17 @@ double Dispersion::wavenumber_per_m(double f) const noexcept {
   return std::sqrt(2 * inertia / (n + std::sqrt(n * n + 4 * stiffness_N_m * inertia)));
 }
 
+double Dispersion::wave_quality(double f, double quality_factor) const noexcept {
+  if (!bending) return quality_factor;
+  if (theory != PlateTheory::kirchhoff) return 2 * quality_factor;
+  const double k = wavenumber_per_m(f), bent = stiffness_N_m * k * k;
+  return quality_factor * (2 * bent + tension_N_per_m) / (bent + tension_N_per_m);
+}
+
+std::complex<double> Dispersion::loss(double f, double quality_factor) const noexcept {
+  return {1, -0.5 / wave_quality(f, quality_factor)};
+}
+
 double Dispersion::frequency_Hz(double k) const noexcept {
   if (!bending) return k * speed_m_s / (2 * pi);
   if (theory != PlateTheory::kirchhoff) return mindlin_.frequency_Hz(k);

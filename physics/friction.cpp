@@ -15,6 +15,8 @@ constexpr double smallest_share = 0.02;
 // Number of steps in the table of start values. It is fine enough that two Newton steps from a start value
 // reach rounding accuracy.
 constexpr int start_steps = 256;
+// Standard deviation of ln(u_s) between fingers, which is assumed
+constexpr double finger_length_sd = 0.3;
 
 // Returns the excursion e (amplitude divided by gap) that causes an overpressure q (in units of the ambient
 // pressure). It solves (1 + q)^2 = (1 + 3 e^2/2)/(1 - e^2).
@@ -35,12 +37,17 @@ std::optional<double> without_floor(double friction, double floor) {
   return std::min(1.0, std::pow(share4, 0.25));
 }
 
+// The gap without vibration, where the contacts carry the whole load.
+double rest_gap_m(const LoadSharing& m) {
+  return m.decay_length_m * std::log(m.contact_pressure_Pa / m.pressure_Pa);
+}
+
 // Returns the displacement at which the skin contacts carry the fraction `share` of the load, in closed form:
 // `share` determines the gap, the rest of the load determines the pressure of the air film, and this pressure
 // determines the excursion.
 double displacement_for_share(const LoadSharing& m, double share) {
   if (share >= 1) return 0;
-  const double gap = m.rest_gap_m - m.decay_length_m * std::log(share);
+  const double gap = rest_gap_m(m) - m.decay_length_m * std::log(share);
   return gap * excursion(m.pressure_Pa * (1 - share) / m.ambient_Pa);
 }
 
@@ -51,7 +58,7 @@ double share_at(const LoadSharing& m, double displacement_m, double ln_guess) {
   const double lowest = std::log(smallest_share);
   const auto tangent = [&](double x) {
     const double share = std::exp(x);
-    const double gap = m.rest_gap_m - m.decay_length_m * x;
+    const double gap = rest_gap_m(m) - m.decay_length_m * x;
     const double e = displacement_m / gap;
     if (e >= 1) return Tangent{1, x};  // the displacement exceeds the gap: halve the bracket
     const double r = 2.5 * e * e / ((1 - e) * (1 + e));
@@ -80,7 +87,9 @@ FrictionMap::FrictionMap(const LoadSharing& m) {
   require_size("pressure_Pa", m.pressure_Pa);
   require(m.floor >= 0 && m.floor < 1, "floor", m.floor, "0 to below 1");
   require_size("decay_length_m", m.decay_length_m);
-  require_size("rest_gap_m", m.rest_gap_m);
+  require_size("contact_pressure_Pa", m.contact_pressure_Pa);
+  require(m.pressure_Pa <= 0.999 * m.contact_pressure_Pa, "pressure_Pa", m.pressure_Pa,
+          "below the pressure that closes the gap (contact_pressure_Pa)");
   require_size("ambient_Pa", m.ambient_Pa);
   Sharing sharing{m, displacement_for_share(m, smallest_share), {0}};
   for (int i = 1; i <= start_steps; ++i) {
@@ -134,7 +143,11 @@ std::optional<double> FrictionMap::displacement_m(double friction) const {
 double FrictionMap::sd(double a) const {
   const auto* table = std::get_if<Table>(&model_);
   require(a >= 0 && std::isfinite(a), "displacement_m", a, "0 or more, finite");
-  return table == nullptr ? 0 : table->sd(std::clamp(a, 0.0, highest_displacement_m()));
+  if (table != nullptr) return table->sd(std::clamp(a, 0.0, highest_displacement_m()));
+  // All lengths of the model are proportional to u_s, so a finger with another u_s feels another
+  // displacement.
+  const double step = 1e-3, slope = relative_friction(a * (1 - step)) - relative_friction(a * (1 + step));
+  return finger_length_sd * slope / (2 * step);
 }
 
 double FrictionMap::lowest_friction() const {

@@ -110,7 +110,7 @@ ModalSetup make_modal_setup(const Surface& surface, double f, Losses losses,
   const double k = dispersion.wavenumber_per_m(f);
   if (resolution.across == ModalResolution::Across::polynomials) require_work(surface, f);
   const std::complex<double> lossy =
-      k * std::complex<double>(1, losses == Losses::kept ? -0.5 / surface.quality_factor : 0);
+      losses == Losses::kept ? k * dispersion.loss(f, surface.quality_factor) : k;
   const bool plate = dispersion.clamped_bending();
   const bool thick = plate && surface.theory != PlateTheory::kirchhoff;
   ModalEquation equation;

@@ -220,7 +220,7 @@ Surface aluminium_plate() {
   s.yield_strength_Pa = 0.28e9;
   s.thickness_m = 2e-3;
   s.length_m = 0.3;
-  s.quality_factor = 60;
+  s.quality_factor = 30;
   s.taper = LinearTaper{0.014, 0.03};
   s.edges = Edges::clamped;
   return s;
