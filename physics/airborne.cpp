@@ -8,6 +8,7 @@
 
 #include "physics/dispersion.hpp"
 #include "physics/field.hpp"
+#include "physics/gate.hpp"
 #include "physics/taper.hpp"
 #include "physics/transverse_basis.hpp"
 
@@ -17,6 +18,12 @@ namespace {
 // Number of Gauss-Legendre nodes per half wavelength in air along the strip, and per half-width across it.
 constexpr int nodes_along = 4, nodes_across = 12;
 constexpr double reference_Pa = 20e-6;
+constexpr double most_paths = 1e8;  // number of sources times places, a second's work
+
+void validate(const Air& air) {
+  require_size("density_kg_m3 of air", air.density_kg_m3);
+  require_size("speed_m_s of air", air.speed_m_s);
+}
 
 // Displacement across the strip divided by the displacement of its centre, at eta = y / W, with W the
 // half-width.
@@ -48,11 +55,30 @@ std::vector<Place> places_around(double length_m, double distance_m, double step
 
 }  // namespace
 
+AirLoad air_load(const Surface& surface, double f, const Air& air) {
+  validate(surface, f);
+  validate(air);
+  const double omega = 2 * std::numbers::pi * f, k = wavenumber_per_m(surface, f);
+  const double in_air = omega / air.speed_m_s, mass = surface.density_kg_m3 * surface.thickness_m;
+  const double squares = (in_air - k) * (in_air + k);
+  // at the speed of sound itself, an infinite plane would be held still
+  const double along = std::sqrt(std::max(std::abs(squares), 1e-12 * k * k));
+  AirLoad load;
+  if (squares > 0)
+    load.quality_factor = omega * mass * along / in_air / (2 * air.density_kg_m3 * air.speed_m_s);
+  else
+    load.mass_share = 2 * air.density_kg_m3 / (along * mass);
+  return load;
+}
+
 std::vector<std::complex<double>> radiated_pressure_Pa(std::span<const SoundSource> sources,
                                                        double frequency_Hz, std::span<const Place> places,
                                                        const Air& air) {
-  if (!(frequency_Hz > 0 && std::isfinite(frequency_Hz)))
-    throw std::invalid_argument("sound: a frequency above 0 Hz is needed");
+  require_size("frequency_Hz", frequency_Hz);
+  validate(air);
+  require(static_cast<double>(sources.size()) * static_cast<double>(places.size()) <= most_paths,
+          "number of sources times places", static_cast<double>(sources.size() * places.size()),
+          "at most 1e8");
   const double omega = 2 * std::numbers::pi * frequency_Hz, k = omega / air.speed_m_s;
   const double factor = -air.density_kg_m3 * omega * omega / (2 * std::numbers::pi);
   std::vector<std::complex<double>> pressure;
@@ -73,11 +99,14 @@ std::vector<std::complex<double>> radiated_pressure_Pa(std::span<const SoundSour
 
 std::vector<SoundSource> sound_sources(const Surface& surface, const Tone& tone, Model model,
                                        const Air& air) {
+  validate(surface, {&tone, 1});
+  validate(air);
+  const double half_waves = 2 * surface.length_m * tone.frequency_Hz / air.speed_m_s;
+  require(half_waves <= 2000, "half wavelengths in air along the surface", half_waves, "at most 2000");
   const Taper taper(surface);
   const bool clamped_plate = Dispersion(surface).clamped_bending();
   const Quadrature along = gauss_legendre(nodes_along), across = gauss_legendre(nodes_across);
-  const double half_wave_m = 0.5 * air.speed_m_s / tone.frequency_Hz;
-  const int pieces = std::max(1, static_cast<int>(std::ceil(surface.length_m / half_wave_m)));
+  const int pieces = std::max(1, static_cast<int>(std::ceil(half_waves)));
   const double piece_m = surface.length_m / pieces;
   std::vector<double> x, dx;
   for (int piece = 0; piece < pieces; ++piece)
@@ -103,6 +132,9 @@ std::vector<SoundSource> sound_sources(const Surface& surface, const Tone& tone,
 
 LoudestSound loudest_sound(const Surface& surface, const Tone& tone, Model model, double distance_m,
                            const Air& air) {
+  validate(surface, {&tone, 1});
+  validate(air);
+  require_size("distance_m", distance_m);
   const double wave_m = air.speed_m_s / tone.frequency_Hz, half_width = half_width_m(surface, 0);
   if (!(distance_m > wave_m && half_width * half_width < wave_m * distance_m))
     throw std::invalid_argument("sound: the distance must be above a wavelength in air (" +
@@ -113,7 +145,11 @@ LoudestSound loudest_sound(const Surface& surface, const Tone& tone, Model model
   // enough to add up one half and count it twice.
   std::erase_if(sources, [](const SoundSource& source) { return source.y_m < 0; });
   for (SoundSource& source : sources) source.volume_m3 *= 2;
-  const auto places = places_around(surface.length_m, distance_m, std::min(5e-3, 0.5 * wave_m));
+  const double step_m = std::min(5e-3, 0.5 * wave_m);
+  const double places_needed = (surface.length_m + std::numbers::pi * distance_m) / step_m;
+  require(places_needed * static_cast<double>(sources.size()) <= most_paths, "distance_m", distance_m,
+          "so near that at most 1e8 paths of sound are added up");
+  const auto places = places_around(surface.length_m, distance_m, step_m);
   const auto pressure = radiated_pressure_Pa(sources, tone.frequency_Hz, places, air);
   LoudestSound loudest{std::numeric_limits<double>::lowest(), places.front()};
   for (std::size_t i = 0; i < places.size(); ++i) {

@@ -4,6 +4,7 @@
 // treated as an infinite rigid baffle and the air as lossless. Both simplifications make the computed sound
 // louder than the real one.
 #include <complex>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -17,6 +18,19 @@ struct Air {
   double density_kg_m3 = 1.204;  // dry air at 20 degrees C and 101.325 kPa
   double speed_m_s = 343.2;
 };
+
+// What the air on both faces does to a wave that runs over the surface, as over an infinite plane (Cremer &
+// Heckl, Structure-Borne Sound; Fahy & Gardonio, Sound and Structural Vibration, ch. 3). Neither is part of
+// the surface's equations: a stated or measured quality factor and tension have to include them.
+struct AirLoad {
+  // The quality factor that radiation alone would leave, omega rho h / (2 rho_air c / cos theta) with sin
+  // theta = c k / omega. Empty if the wave is slower than sound, because it then radiates nothing.
+  std::optional<double> quality_factor;
+  // The mass of air that moves with the surface, 2 rho_air / sqrt(k^2 - (omega/c)^2), divided by the mass of
+  // the surface. 0 if the wave is faster than sound.
+  double mass_share = 0;
+};
+AirLoad air_load(const Surface& surface, double frequency_Hz, const Air& air = {});
 
 // A place in the air. The origin is the centre of the drive edge; x runs along the strip, y across it, and z
 // upwards from the surface.

@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "physics/dispersion.hpp"
+#include "physics/gate.hpp"
 #include "physics/taper.hpp"
 
 namespace turnpoint::physics {
@@ -135,6 +136,7 @@ std::vector<Parameter> parameters(const Surface& surface) {
 }
 
 Surface changed(Surface s, Parameter parameter, double by) {
+  require(std::abs(by) <= largest_size, "change of a parameter", by, "-1e18 to 1e18");
   switch (parameter) {
     case Parameter::density:
       s.density_kg_m3 += by;
@@ -173,6 +175,9 @@ Surface changed(Surface s, Parameter parameter, double by) {
 // taper's local slope to the power 2/3, because the boundary's distance from the turning point is
 // proportional to the slope to the power -1/3.
 double boundary_derivative(const Surface& s, Parameter parameter, double f, double x) {
+  validate(s, f);
+  require_on_surface(s, "boundary_m", x);
+  require_fall(s);
   const Taper taper(s);
   const double w = taper.half_width_m(x), slope = taper.slope(x), cut_off_m = cut_off_half_width_m(s, f);
   const double ratio = w / cut_off_m, by_ln_slope = 2.0 / 3 * (ratio - 1) * cut_off_m;
@@ -210,6 +215,8 @@ double boundary_derivative(const Surface& s, Parameter parameter, double f, doub
 }
 
 BoundaryBudget boundary_budget(const Surface& surface, double f, double x) {
+  validate(surface, f);
+  require_on_surface(surface, "boundary_m", x);
   BoundaryBudget budget;
   if (!(Taper(surface).slope(x) < 0)) return budget;
   auto& parts = budget.contributions;

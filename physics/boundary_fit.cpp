@@ -8,6 +8,7 @@
 
 #include "physics/boundary_budget.hpp"
 #include "physics/edge_feature.hpp"
+#include "physics/gate.hpp"
 #include "physics/statement.hpp"
 
 namespace turnpoint::physics {
@@ -155,7 +156,9 @@ BoundaryFit fit_boundaries(const Surface& surface, const MapOptions& options,
   Problem problem{surface, options, measured};
   for (const Parameter p : parameters(surface))
     if (standard_deviation(surface, p) > 0) problem.unknown.push_back(p);
+  validate(options.edge);
   check(options, measured, problem);
+  for (const MeasuredBoundary& m : measured) validate(surface, m.frequency_Hz);
   Solution s = solve(problem);
   BoundaryFit fit;
   const Outliers outliers = find_outliers(s);

@@ -11,6 +11,7 @@
 #include "physics/edge_feature.hpp"
 #include "physics/edge_table.hpp"
 #include "physics/field.hpp"
+#include "physics/gate.hpp"
 #include "physics/map_bounds.hpp"
 #include "physics/plate_theory.hpp"
 #include "physics/statement.hpp"
@@ -80,26 +81,24 @@ namespace {
 void check(const Surface& surface, const MapOptions& options) {
   validate(surface);
   const Edge& edge = options.edge;
-  const bool graded = edge.kind == Edge::Kind::percent || edge.kind == Edge::Kind::friction;
-  if (graded && !(edge.level > 0 && edge.level < 1)) {
-    throw std::invalid_argument("edge level is " + std::to_string(edge.level) +
-                                "; allowed: above 0, below 1");
+  validate(edge);
+  if (options.friction) {
+    require_size("displacement_m", options.friction->displacement_m);
+    require_size_or_0("fingertip_m", options.friction->fingertip_m);
+  }
+  if (options.band) {
+    require_size("low_Hz", options.band->low_Hz);
+    require_size("high_Hz", options.band->high_Hz);
   }
   if (edge.kind == Edge::Kind::friction && !options.friction) {
     throw std::invalid_argument("a friction edge needs a friction map and a displacement");
   }
-  if (options.tolerance_m && !(*options.tolerance_m > 0)) {
-    throw std::invalid_argument("tolerance is " + std::to_string(*options.tolerance_m) +
-                                " m; allowed: above 0");
-  }
+  if (options.tolerance_m) require_size("tolerance_m", *options.tolerance_m);
   if (options.model == Model::uniform && Dispersion(surface).clamped_bending()) {
     throw std::domain_error(
         "model uniform is not available for clamped plates; allowed: edge, airy, seed, mode, modes");
   }
-  if (const auto* taper = std::get_if<LinearTaper>(&surface.taper); taper != nullptr && taper->slope == 0) {
-    throw Refused(make_statement("constant-width",
-                                 "a strip of constant width has no boundary that follows the frequency"));
-  }
+  require_fall(surface);
 }
 
 std::optional<double> edge_at(const Surface& surface, const MapOptions& options, double f, Model model) {
@@ -162,6 +161,7 @@ std::optional<double> field_frequency_Hz(const Surface& surface, const MapOption
 std::optional<double> solve_frequency_Hz(const Surface& surface, const MapOptions& options, double x,
                                          std::optional<double> near_Hz) {
   check(surface, options);
+  if (near_Hz) validate(surface, *near_Hz);
   const double w = x >= 0 && x <= surface.length_m ? half_width_m(surface, x) : 0;
   if (!(w > 0)) return std::nullopt;
   const bool by_field = options.model == Model::modes && options.edge.kind != Edge::Kind::turning;
@@ -196,6 +196,7 @@ BoundaryMap::Reach BoundaryMap::reach_m() const noexcept {
 
 MapAnswer BoundaryMap::at_frequency(double f) const {
   const State& s = *state_;
+  validate(s.surface, f);
   MapAnswer answer;
   answer.edge = s.options.edge;
   answer.model = s.model;

@@ -8,6 +8,7 @@
 #include "physics/airy_profile.hpp"
 #include "physics/dispersion.hpp"
 #include "physics/field.hpp"
+#include "physics/gate.hpp"
 #include "physics/modal_field.hpp"
 #include "physics/uniform_profile.hpp"
 
@@ -68,12 +69,14 @@ Surface moving_part(const Surface& surface, double frequency_Hz) {
 }
 
 MarchEquation march_equation(const Surface& surface, double frequency_Hz, Model model, Losses losses) {
-  const double k = wavenumber_per_m(surface, frequency_Hz);
-  const std::complex<double> lossy(1, losses == Losses::kept ? -0.5 / surface.quality_factor : 0);
+  const Dispersion dispersion(surface);
+  const double k = dispersion.wavenumber_per_m(frequency_Hz);
+  const std::complex<double> lossy =
+      losses == Losses::kept ? dispersion.loss(frequency_Hz, surface.quality_factor) : 1;
   MarchEquation equation;
   equation.a = k * k * lossy * lossy;
   equation.b = pi * pi / 4;
-  if (Dispersion(surface).clamped_bending()) {
+  if (dispersion.clamped_bending()) {
     const double root = k * cut_off_half_width_m(surface, frequency_Hz);
     equation.b = root * root;
   }
@@ -106,6 +109,7 @@ std::optional<double> turning_point_m(const Surface& surface, double frequency_H
 
 std::unique_ptr<CentreLine> make_centre_line(const Surface& surface, double frequency_Hz, Model model,
                                              Losses losses) {
+  validate(surface, frequency_Hz);
   switch (model) {
     case Model::edge:
       throw std::invalid_argument("model edge gives positions only; it has no profile");

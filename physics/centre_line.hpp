@@ -32,7 +32,7 @@ class CentreLine {
   virtual double drive_conditioning(double wavenumber_per_m) const;
 };
 
-// Whether losses are included (k becomes k (1 - i/2Q)) or left out.
+// Whether losses are included (see Dispersion::loss) or left out.
 enum class Losses { kept, left_out };
 
 // Makes the centre line for a model. Throws std::invalid_argument for Model::edge, which has no profile, and

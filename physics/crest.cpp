@@ -1,4 +1,5 @@
 #include "physics/crest.hpp"
+#include "physics/gate.hpp"
 
 #include <algorithm>
 #include <array>
@@ -12,6 +13,17 @@ namespace {
 
 using std::numbers::pi;
 constexpr double longest_period_s = 0.05;
+
+void validate(std::span<const Tone> tones) {
+  require(tones.size() <= 200, "number of tones", static_cast<double>(tones.size()), "at most 200");
+  for (const Tone& tone : tones) {
+    require(tone.frequency_Hz >= 1e-3 && tone.frequency_Hz <= 1e7, "frequency_Hz", tone.frequency_Hz,
+            "1e-3 to 1e7");
+    require_size_or_0("tone amplitude_m", tone.amplitude_m);
+    require(std::abs(tone.phase_rad) <= 1e9, "tone phase_rad", tone.phase_rad, "-1e9 to 1e9");
+  }
+}
+
 // with more tones than this, improving the phases would take too long, so Schroeder's phases are kept
 constexpr std::size_t most_descended = 12;
 
@@ -83,6 +95,7 @@ class Envelope {
 }  // namespace
 
 void assign_phases(std::span<Tone> tones) {
+  validate(tones);
   if (tones.empty()) return;
   schroeder(tones);
   if (tones.size() < 3 || tones.size() > most_descended) return;
@@ -105,6 +118,7 @@ void assign_phases(std::span<Tone> tones) {
 }
 
 double crest_factor(std::span<const Tone> tones) {
+  validate(tones);
   double power = 0, fastest = 0;
   for (const Tone& tone : tones) {
     power += 0.5 * tone.amplitude_m * tone.amplitude_m;
@@ -138,6 +152,7 @@ double crest_factor(std::span<const Tone> tones) {
 }
 
 std::vector<Product> audible_products(std::span<const Tone> tones, double below_Hz) {
+  validate(tones);
   std::vector<Product> found;
   const auto add = [&](double f, int order) {
     f = std::abs(f);

@@ -3,9 +3,8 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
-#include <sstream>
-#include <stdexcept>
 
+#include "physics/gate.hpp"
 #include "physics/root.hpp"
 
 namespace turnpoint::physics {
@@ -35,13 +34,6 @@ double clamped_root(double tau) noexcept {
                 [](double next, double b) { return std::abs(next - b) <= 2 * epsilon * b; });
 }
 
-double positive(const char* quantity, double value) {
-  if (value > 0 && std::isfinite(value)) return value;
-  std::ostringstream text;
-  text << quantity << " is " << value << "; allowed: above 0";
-  throw std::invalid_argument(text.str());
-}
-
 }  // namespace
 
 Dispersion::Dispersion(const Surface& s)
@@ -69,6 +61,17 @@ double Dispersion::wavenumber_per_m(double f) const noexcept {
   const double inertia = mass_kg_per_m2 * omega * omega;
   const double n = tension_N_per_m;
   return std::sqrt(2 * inertia / (n + std::sqrt(n * n + 4 * stiffness_N_m * inertia)));
+}
+
+double Dispersion::wave_quality(double f, double quality_factor) const noexcept {
+  if (!bending) return quality_factor;
+  if (theory != PlateTheory::kirchhoff) return 2 * quality_factor;
+  const double k = wavenumber_per_m(f), bent = stiffness_N_m * k * k;
+  return quality_factor * (2 * bent + tension_N_per_m) / (bent + tension_N_per_m);
+}
+
+std::complex<double> Dispersion::loss(double f, double quality_factor) const noexcept {
+  return {1, -0.5 / wave_quality(f, quality_factor)};
 }
 
 double Dispersion::frequency_Hz(double k) const noexcept {
@@ -106,16 +109,24 @@ double Dispersion::cut_off_half_width_m(double f) const noexcept {
 }
 
 double wavenumber_per_m(const Surface& s, double f) {
-  return Dispersion(s).wavenumber_per_m(positive("frequency_Hz", f));
+  validate(s);
+  require_size("frequency_Hz", f);
+  return Dispersion(s).wavenumber_per_m(f);
 }
 double frequency_for_wavenumber_Hz(const Surface& s, double k) {
-  return Dispersion(s).frequency_Hz(positive("wavenumber_per_m", k));
+  validate(s);
+  require_size("wavenumber_per_m", k);
+  return Dispersion(s).frequency_Hz(k);
 }
 double cut_off_frequency_Hz(const Surface& s, double w) {
-  return Dispersion(s).cut_off_frequency_Hz(positive("half_width_m", w));
+  validate(s);
+  require_size("half_width_m", w);
+  return Dispersion(s).cut_off_frequency_Hz(w);
 }
 double cut_off_half_width_m(const Surface& s, double f) {
-  return Dispersion(s).cut_off_half_width_m(positive("frequency_Hz", f));
+  validate(s);
+  require_size("frequency_Hz", f);
+  return Dispersion(s).cut_off_half_width_m(f);
 }
 
 }  // namespace turnpoint::physics

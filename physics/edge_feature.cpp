@@ -65,10 +65,12 @@ std::optional<double> friction_edge_m(double length_m, const CentreLine& line, c
   };
   // Search from the tip towards the drive edge. In this direction friction falls from 1 until the last
   // maximum, so the first crossing found is the outermost one.
-  const double step = std::min(context.fingertip_m / 8, length_m / 100) + 1e-9 * length_m;
   // Start one fingertip's width beyond the point where the amplitude is 1e-4 of the maximum. In every
   // friction map, the friction there is close to 1.
-  const double quiet = line.level_m(1e-4).value_or(length_m) + context.fingertip_m;
+  const double silent = line.level_m(1e-4).value_or(length_m), quiet = silent + context.fingertip_m;
+  // Friction varies over the fingertip and over the decay of the wave, whichever is longer.
+  const double step =
+      std::min(std::max(context.fingertip_m / 8, (silent - *peak) / 100), length_m / 100) + 1e-9 * length_m;
   double outer = std::min(length_m, quiet), f_outer = mean(outer) - level;
   if (f_outer <= 0) return std::nullopt;
   while (outer > 0) {

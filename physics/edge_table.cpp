@@ -8,6 +8,7 @@
 
 #include "physics/dispersion.hpp"
 #include "physics/edge_feature.hpp"
+#include "physics/gate.hpp"
 #include "physics/root.hpp"
 #include "physics/statement.hpp"
 
@@ -83,10 +84,11 @@ class Builder {
       const double w = taper_.half_width_m(surface_.length_m * i / count);
       if (w > 1e-6 * taper_.half_width_m(0)) f.push_back(dispersion_.cut_off_frequency_Hz(w));
     }
+    std::erase_if(f, [high = highest_frequency_Hz(surface_)](double one) { return one > high; });
     if (!options_.band) return f;
     const double low =
         std::max(options_.band->low_Hz, dispersion_.cut_off_frequency_Hz(taper_.half_width_m(0)));
-    const double high = options_.band->high_Hz;
+    const double high = std::min(options_.band->high_Hz, highest_frequency_Hz(surface_));
     if (!(low < high)) return {};
     std::erase_if(f, [low, high](double one) { return one <= low || one >= high; });
     f.insert(f.begin(), low);
@@ -208,9 +210,11 @@ EdgeTable make_edge_table(const Surface& surface, const MapOptions& options, Mod
   const double end = taper.half_width_m(surface.length_m);
   const bool apex = end <= 1e-9 * taper.half_width_m(0);
   if (scale_free(surface, options)) {
-    const auto constant = options.edge.kind == Edge::Kind::turning
-                              ? std::optional(1.0)
-                              : builder.ratio(dispersion.cut_off_frequency_Hz(taper.half_width_m(0) * 0.02));
+    // far from the drive edge, where every edge exists
+    const double far_Hz = std::min(dispersion.cut_off_frequency_Hz(taper.half_width_m(0) * 0.02),
+                                   0.999 * highest_frequency_Hz(surface));
+    const auto constant =
+        options.edge.kind == Edge::Kind::turning ? std::optional(1.0) : builder.ratio(far_Hz);
     if (!constant) throw no_such_edge(options.edge);
     table.constant = *constant;
     table.low_Hz = dispersion.cut_off_frequency_Hz(taper.half_width_m(0) / *constant);

@@ -1,4 +1,5 @@
 #include "physics/elastic_section.hpp"
+#include "physics/gate.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -18,6 +19,8 @@ constexpr double thin_root = 2.3650203724313520;
 }  // namespace
 
 double elastic_cut_off(double t, double poisson) {
+  require(t >= 1e-3 && t <= 2, "thickness over half-width", t, "0.001 to 2");
+  require(poisson >= 0 && poisson <= 0.49, "poisson", poisson, "0 to 0.49");
   return section_cut_off(SectionElements(t, poisson).pencil).omega;
 }
 
@@ -41,6 +44,7 @@ ElasticCutOff::ElasticCutOff(double poisson)
 const ElasticCutOff& ElasticCutOff::of(double poisson) {
   static std::mutex mutex;
   static std::map<double, ElasticCutOff> tables;
+  require(poisson >= 0 && poisson <= 0.49, "poisson", poisson, "0 to 0.49");
   const std::lock_guard lock(mutex);
   const auto found = tables.find(poisson);
   return found != tables.end() ? found->second

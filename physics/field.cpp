@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <sstream>
 #include <stdexcept>
 
 #include "physics/centre_line.hpp"
 #include "physics/dispersion.hpp"
+#include "physics/gate.hpp"
 #include "physics/modes_bound.hpp"
 #include "physics/planner.hpp"
 #include "physics/statement.hpp"
@@ -55,24 +55,9 @@ Solved solve(const Surface& surface, double frequency_Hz, Model model) {
   return s;
 }
 
-void require_points(const Surface& surface, std::span<const double> x) {
-  for (const double one : x) {
-    if (one >= 0 && one <= surface.length_m) continue;
-    std::ostringstream text;
-    text << "point at " << one * 1e3 << " mm; allowed: 0 to " << surface.length_m * 1e3 << " mm";
-    throw std::invalid_argument(text.str());
-  }
-}
-
 double strongest(std::span<const Tone> tones) {
   double most = 0;
-  for (const Tone& tone : tones) {
-    if (!std::isfinite(tone.amplitude_m) || tone.amplitude_m < 0 || !std::isfinite(tone.phase_rad)) {
-      throw std::invalid_argument("tone amplitude_m must be 0 or more and phase_rad finite");
-    }
-    most = std::max(most, tone.amplitude_m);
-  }
-  if (!(most > 0)) throw std::invalid_argument("tones: at least one with an amplitude above 0 is needed");
+  for (const Tone& tone : tones) most = std::max(most, tone.amplitude_m);
   return most;
 }
 
@@ -112,7 +97,7 @@ void sum_tones(Field& field, std::size_t points) {
       if (tone.ln_amplitude[i] > ln_zero) sum += std::exp(2 * (tone.ln_amplitude[i] - most));
     }
     field.ln_amplitude[i] = sum > 0 ? most + 0.5 * std::log(sum) : ln_zero;
-    field.amplitude[i] = sum > 0 ? std::exp(field.ln_amplitude[i]) : 0;
+    field.amplitude[i] = sum > 0 ? std::exp(std::min(700.0, field.ln_amplitude[i])) : 0;
   }
 }
 
@@ -175,8 +160,8 @@ Normalise parse_normalise(std::string_view text) {
 
 std::vector<ToneField> evaluate_tones(const Surface& surface, std::span<const Tone> tones,
                                       std::span<const double> x, Model model, Normalise normalise) {
-  validate(surface);
-  require_points(surface, x);
+  validate(surface, tones);
+  for (const double one : x) require_on_surface(surface, "x_m of a point", one);
   const double most = strongest(tones);
   std::vector<ToneField> fields;
   for (const Tone& tone : tones) {
@@ -211,6 +196,9 @@ Field evaluate(const Surface& surface, std::span<const Tone> tones, std::span<co
 }
 
 FieldNotes describe(const Surface& surface, std::span<const Tone> tones, const Field& field) {
+  validate(surface, tones);
+  if (field.tones.size() != tones.size())
+    throw std::invalid_argument("description: the field must be that of the tones");
   FieldNotes notes;
   const PlanRequest request{
       {tones.begin(), tones.end()}, static_cast<int>(field.amplitude.size()), {}, field.normalise, {}};
@@ -236,21 +224,23 @@ FieldNotes describe(const Surface& surface, std::span<const Tone> tones, const F
 }
 
 ToneInfo tone_info(const Surface& surface, double frequency_Hz, Model model) {
-  validate(surface);
+  validate(surface, frequency_Hz);
   ToneInfo info = solve(surface, frequency_Hz, model).info;
   info.nearest_resonance_Hz = nearest_resonance_Hz(surface, frequency_Hz);
   return info;
 }
 
 double drive_amplitude_m(const Surface& surface, double frequency_Hz, double displacement_m, Model model) {
-  validate(surface);
+  validate(surface, frequency_Hz);
+  require_size("displacement_m", displacement_m);
   const ToneInfo info = solve(surface, frequency_Hz, model).info;
   if (!info.last_peak_m) throw Refused(why_no_peak(surface, frequency_Hz));
   return displacement_m / info.gain;
 }
 
 std::vector<double> linspace_points(const Surface& surface, int n) {
-  if (n < 2) throw std::invalid_argument("points is " + std::to_string(n) + "; allowed: 2 or more");
+  require(n >= 2 && n <= 1'000'000, "points", n, "2 to 1 000 000");
+  require_size("length_m", surface.length_m);
   std::vector<double> x(static_cast<std::size_t>(n));
   for (int i = 0; i < n; ++i) x[static_cast<std::size_t>(i)] = surface.length_m * i / (n - 1);
   x.back() = surface.length_m;

@@ -5,6 +5,7 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "physics/gate.hpp"
 #include "physics/modal_load.hpp"
 
 namespace turnpoint::physics {
@@ -34,12 +35,15 @@ std::optional<double> feature(const std::vector<double>& x, const std::vector<do
 
 std::vector<FingerLoad> finger_load(const Surface& surface, double f, const std::vector<double>& x_m,
                                     const Finger& finger) {
-  validate(surface);
-  for (const double x : x_m) {
-    if (!(x >= 0 && x <= surface.length_m))
-      throw std::invalid_argument("finger position: it must be on the surface");
-  }
-  if (!(finger.contact_radius_m > 0)) throw std::invalid_argument("contact radius: it must be above 0");
+  validate(surface, f);
+  for (const double x : x_m) require_on_surface(surface, "finger position", x);
+  require_size("contact_radius_m", finger.contact_radius_m);
+  require(finger.contact_radius_m >= 1e-6 * surface.length_m && finger.contact_radius_m <= surface.length_m,
+          "contact_radius_m", finger.contact_radius_m, "1e-6 to 1 times the surface's length");
+  require(std::abs(finger.beside_m) <= surface.length_m, "beside_m", finger.beside_m,
+          "not more than the surface's length");
+  require(std::abs(finger.impedance_Ns_per_m) <= largest_size, "impedance_Ns_per_m",
+          std::abs(finger.impedance_Ns_per_m), "up to 1e18");
   const std::complex<double> i_omega(0, 2 * std::numbers::pi * f);
   std::vector<FingerLoad> all;
   for (const DiscResponse& disc :

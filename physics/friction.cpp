@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <sstream>
 #include <stdexcept>
 
+#include "physics/gate.hpp"
 #include "physics/root.hpp"
 
 namespace turnpoint::physics {
@@ -15,6 +15,8 @@ constexpr double smallest_share = 0.02;
 // Number of steps in the table of start values. It is fine enough that two Newton steps from a start value
 // reach rounding accuracy.
 constexpr int start_steps = 256;
+// Standard deviation of ln(u_s) between fingers, which is assumed
+constexpr double finger_length_sd = 0.3;
 
 // Returns the excursion e (amplitude divided by gap) that causes an overpressure q (in units of the ambient
 // pressure). It solves (1 + q)^2 = (1 + 3 e^2/2)/(1 - e^2).
@@ -35,12 +37,17 @@ std::optional<double> without_floor(double friction, double floor) {
   return std::min(1.0, std::pow(share4, 0.25));
 }
 
+// The gap without vibration, where the contacts carry the whole load.
+double rest_gap_m(const LoadSharing& m) {
+  return m.decay_length_m * std::log(m.contact_pressure_Pa / m.pressure_Pa);
+}
+
 // Returns the displacement at which the skin contacts carry the fraction `share` of the load, in closed form:
 // `share` determines the gap, the rest of the load determines the pressure of the air film, and this pressure
 // determines the excursion.
 double displacement_for_share(const LoadSharing& m, double share) {
   if (share >= 1) return 0;
-  const double gap = m.rest_gap_m - m.decay_length_m * std::log(share);
+  const double gap = rest_gap_m(m) - m.decay_length_m * std::log(share);
   return gap * excursion(m.pressure_Pa * (1 - share) / m.ambient_Pa);
 }
 
@@ -51,7 +58,7 @@ double share_at(const LoadSharing& m, double displacement_m, double ln_guess) {
   const double lowest = std::log(smallest_share);
   const auto tangent = [&](double x) {
     const double share = std::exp(x);
-    const double gap = m.rest_gap_m - m.decay_length_m * x;
+    const double gap = rest_gap_m(m) - m.decay_length_m * x;
     const double e = displacement_m / gap;
     if (e >= 1) return Tangent{1, x};  // the displacement exceeds the gap: halve the bracket
     const double r = 2.5 * e * e / ((1 - e) * (1 + e));
@@ -66,13 +73,6 @@ double share_at(const LoadSharing& m, double displacement_m, double ln_guess) {
   return std::exp(newton({0, lowest}, std::max(lowest, ln_guess), tangent, close, 100));
 }
 
-void require(bool holds, const char* quantity, double value, const char* allowed) {
-  if (holds) return;
-  std::ostringstream text;
-  text << quantity << " is " << value << "; allowed: " << allowed;
-  throw std::invalid_argument(text.str());
-}
-
 }  // namespace
 
 double squeeze_film_overpressure(double e) {
@@ -84,11 +84,13 @@ double squeeze_film_overpressure(double e) {
 }
 
 FrictionMap::FrictionMap(const LoadSharing& m) {
-  require(m.pressure_Pa > 0 && std::isfinite(m.pressure_Pa), "pressure_Pa", m.pressure_Pa, "above 0");
+  require_size("pressure_Pa", m.pressure_Pa);
   require(m.floor >= 0 && m.floor < 1, "floor", m.floor, "0 to below 1");
-  require(m.decay_length_m > 0, "decay_length_m", m.decay_length_m, "above 0");
-  require(m.rest_gap_m > 0, "rest_gap_m", m.rest_gap_m, "above 0");
-  require(m.ambient_Pa > 0, "ambient_Pa", m.ambient_Pa, "above 0");
+  require_size("decay_length_m", m.decay_length_m);
+  require_size("contact_pressure_Pa", m.contact_pressure_Pa);
+  require(m.pressure_Pa <= 0.999 * m.contact_pressure_Pa, "pressure_Pa", m.pressure_Pa,
+          "below the pressure that closes the gap (contact_pressure_Pa)");
+  require_size("ambient_Pa", m.ambient_Pa);
   Sharing sharing{m, displacement_for_share(m, smallest_share), {0}};
   for (int i = 1; i <= start_steps; ++i) {
     const double a = sharing.highest_m * i / start_steps;
@@ -100,9 +102,9 @@ FrictionMap::FrictionMap(const LoadSharing& m) {
 FrictionMap::FrictionMap(std::vector<FrictionPoint> table) {
   std::vector<double> a, mu, sd;
   for (const FrictionPoint& point : table) {
-    require(std::isfinite(point.displacement_m), "displacement_m", point.displacement_m, "finite, ascending");
-    require(point.relative_friction > 0, "relative_friction", point.relative_friction, "above 0");
-    require(point.sd >= 0, "sd of relative_friction", point.sd, "0 or more");
+    require_size_or_0("displacement_m", point.displacement_m);
+    require_size("relative_friction", point.relative_friction);
+    require_size_or_0("sd of relative_friction", point.sd);
     require(mu.empty() || point.relative_friction < mu.back(), "relative_friction", point.relative_friction,
             "falling with displacement");
     a.push_back(point.displacement_m);
@@ -116,7 +118,7 @@ FrictionMap::FrictionMap(std::vector<FrictionPoint> table) {
 }
 
 double FrictionMap::relative_friction(double a) const {
-  require(a >= 0, "displacement_m", a, "0 or more");
+  require(a >= 0 && std::isfinite(a), "displacement_m", a, "0 or more, finite");
   const auto* sharing = std::get_if<Sharing>(&model_);
   if (sharing == nullptr) return std::get<Table>(model_).friction(std::min(a, highest_displacement_m()));
   const LoadSharing& m = sharing->model;
@@ -140,7 +142,12 @@ std::optional<double> FrictionMap::displacement_m(double friction) const {
 
 double FrictionMap::sd(double a) const {
   const auto* table = std::get_if<Table>(&model_);
-  return table == nullptr ? 0 : table->sd(std::clamp(a, 0.0, highest_displacement_m()));
+  require(a >= 0 && std::isfinite(a), "displacement_m", a, "0 or more, finite");
+  if (table != nullptr) return table->sd(std::clamp(a, 0.0, highest_displacement_m()));
+  // All lengths of the model are proportional to u_s, so a finger with another u_s feels another
+  // displacement.
+  const double step = 1e-3, slope = relative_friction(a * (1 - step)) - relative_friction(a * (1 + step));
+  return finger_length_sd * slope / (2 * step);
 }
 
 double FrictionMap::lowest_friction() const {
@@ -174,11 +181,15 @@ std::vector<double> fingertip_average(std::span<const double> x, std::span<const
   if (x.size() != values.size() || x.size() < 2) {
     throw std::invalid_argument("fingertip average: needs as many values as points, and at least two");
   }
-  require(fingertip_m >= 0, "fingertip_m", fingertip_m, "0 or more");
-  if (fingertip_m == 0) return {values.begin(), values.end()};
+  require_size_or_0("fingertip_m", fingertip_m);
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    require(std::abs(x[i]) <= largest_size, "x_m", x[i], "-1e18 to 1e18");
+    require(std::abs(values[i]) <= largest_size, "value", values[i], "-1e18 to 1e18");
+  }
+  if (fingertip_m <= 1e-9 * (x.back() - x.front())) return {values.begin(), values.end()};
   std::vector<double> running(x.size(), 0.0), mean(x.size());
   for (std::size_t i = 1; i < x.size(); ++i) {
-    require(x[i] > x[i - 1], "x_m", x[i], "ascending");
+    require(x[i] - x[i - 1] >= least_size, "x_m", x[i], "ascending, in steps of at least 1e-18");
     running[i] = running[i - 1] + 0.5 * (values[i] + values[i - 1]) * (x[i] - x[i - 1]);
   }
   for (std::size_t i = 0; i < x.size(); ++i) {

@@ -16,16 +16,17 @@ double squeeze_film_overpressure(double excursion);
 
 // A model in which skin contacts and an air film together carry the load of the fingertip (after Wiertlewski,
 // Friesen & Colgate, PNAS 2016). With amplitude a and gap u, the finger's pressure is p = P* exp(-u/u_s) + p0
-// overpressure(a/u), where P* exp(-u/u_s) is the part that the contacts carry. Relative friction is P*
-// exp(-u/u_s)/p, but never below `floor`. The curve is only an illustration: live sessions need a measured
-// table.
+// overpressure(a/u), where P* exp(-u/u_s) is the part that the contacts carry. Without vibration the gap is
+// u_s ln(P*/p): a finger that presses harder comes closer, and its skin stays the same. Relative friction is
+// P* exp(-u/u_s)/p, but never below `floor`. The curve is only an illustration: live sessions need a measured
+// table. P* and u_s have no source; they give a gap of 4 um at 5 kPa.
 struct LoadSharing {
-  double pressure_Pa = 5000;  // pressure of the finger on the surface
+  double pressure_Pa = 5000;  // pressure of the finger on the surface, below `contact_pressure_Pa`
   double floor = 0.1;         // friction that remains at any amplitude; for real skin 0.1 to 0.2
   // the length u_s: the contacts' part of the load falls by a factor e for each u_s of gap
   double decay_length_m = 2e-6;
-  double rest_gap_m = 4e-6;    // gap without vibration, under `pressure_Pa`
-  double ambient_Pa = 101325;  // the ambient pressure p0
+  double contact_pressure_Pa = 36945.28049465325;  // P*, which would close the gap
+  double ambient_Pa = 101325;          // the ambient pressure p0
 };
 
 // One measured point. A table begins at (0, 1), and its relative_friction falls strictly with displacement.
@@ -52,7 +53,8 @@ class FrictionMap {
   // The displacement that gives this relative friction. It is 0 for friction 1, and empty below the lowest
   // friction of the map.
   std::optional<double> displacement_m(double relative_friction) const;
-  // Standard deviation of relative_friction at a displacement; 0 for the load-sharing model, which has no
+  // Standard deviation of relative_friction at a displacement. For the load-sharing model it is what a length
+  // u_s that differs by 30 % between fingers would cause; this share is assumed, because the model has no
   // data.
   double sd(double displacement_m) const;
   // The lowest friction of the map, and the displacement at which it is reached.

@@ -42,7 +42,7 @@ double projection_on_itself(int n) { return 1.0 / 3 - 0.5 / std::pow(transverse_
 // the square of the slope.
 MarchEquation mode_equation(const Surface& surface, double f, int n) {
   const double k = wavenumber_per_m(surface, f), q = transverse_q(n);
-  const Complex lossy(1, -0.5 / surface.quality_factor);
+  const Complex lossy = Dispersion(surface).loss(f, surface.quality_factor);
   return {k * k * lossy * lossy, q * q, 2.0 / 3 * q * q - 0.25, 0.5};
 }
 
@@ -90,7 +90,7 @@ struct ModeWaves {
 ModeWaves::ModeWaves(const Surface& surface, double f, double near)
     : taper(std::holds_alternative<LinearTaper>(surface.taper) ? surface : moving_part(surface, f)),
       k(wavenumber_per_m(surface, f)),
-      lossy_k(k * Complex(1, -0.5 / surface.quality_factor)),
+      lossy_k(k * Dispersion(surface).loss(f, surface.quality_factor)),
       near_m(std::min(near, taper.length_m())),
       reach_m(taper.position_m(cut_off_half_width_m(surface, f)).value_or(taper.length_m())),
       curved(!std::holds_alternative<LinearTaper>(surface.taper)) {
@@ -189,7 +189,8 @@ void ModeWaves::add_propagating(const Surface& surface, double f, int n) {
     // Near a resonance, the amplitude of the standing wave at the drive edge depends on its phase, which is
     // known only to `phase_uncertainty`.
     const double standing = std::exp(value.ln_magnitude() - ln_most);
-    const double loss = std::tanh(0.5 * k * reach / surface.quality_factor);
+    const double loss =
+        std::tanh(0.5 * k * reach / Dispersion(surface).wave_quality(f, surface.quality_factor));
     resonance = std::max(resonance, 1 / std::max({standing - phase_uncertainty, loss, 1e-3}) / (n - 1));
   }
   modes.push_back(wave);

@@ -12,7 +12,10 @@
 namespace turnpoint::physics {
 namespace {
 
-constexpr double strong_loss_below = 30;  // quality factor below which loss counts as strong
+// whether loss counts as strong
+bool strong_loss(const Surface& surface, double f) {
+  return Dispersion(surface).wave_quality(f, surface.quality_factor) < 30;
+}
 
 std::optional<double> first_mode_edge(const Surface& surface, const MapOptions& options, double f) {
   try {
@@ -36,7 +39,7 @@ MapBounds map_bounds(const Surface& surface, const MapOptions& options, double f
   // On a wedge the best equation for the first mode is exact, so its error is 0. On every other taper, even
   // the best equation has an error.
   std::optional<double> drawn_peak_m;
-  if (surface.quality_factor < strong_loss_below) {
+  if (strong_loss(surface, f)) {
     MapOptions peak = options;
     peak.edge = Edge::peak();
     drawn_peak_m = first_mode_edge(surface, peak, f);
@@ -57,7 +60,7 @@ MapBounds map_bounds(const Surface& surface, const MapOptions& options, double f
 }
 
 bool peak_is_shallow(const Surface& surface, double f, double last_peak_m) {
-  if (surface.quality_factor >= strong_loss_below) return false;
+  if (!strong_loss(surface, f)) return false;
   Surface lossier = surface;
   lossier.quality_factor *= 0.75;
   const auto moved = make_centre_line(lossier, f, Model::mode)->last_peak_m();

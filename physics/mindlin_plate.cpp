@@ -1,4 +1,5 @@
 #include "physics/mindlin_plate.hpp"
+#include "physics/gate.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -30,6 +31,7 @@ double tangent_over_root(double s, double w) noexcept {
 }  // namespace
 
 double shear_factor(double nu) {
+  require(nu >= -0.9 && nu <= 0.5, "poisson", nu, "-0.9 to 0.5");
   const double held = nu / (1 - nu);
   return 5 / (6 - nu) + 0.12 * held * held;
 }

@@ -128,7 +128,7 @@ Strip thick_strip(const Surface& surface, double f, Parity parity) {
   auto elements = make_modal_elements(setup, {}, match_m);
   const int each = setup.across.count();
   const SectionBasis section = mindlin_polynomials(plate, each, parity);
-  const std::complex<double> loss = std::pow(std::complex<double>(1, -0.5 / plate.quality_factor), 4);
+  const std::complex<double> loss = std::pow(Dispersion(plate).loss(f, plate.quality_factor), 4);
   const std::complex<double> omega2 = std::pow(2 * std::numbers::pi * f, 2) * loss;
   std::vector<Matrix> matrices;
   for (ModalElement& e : elements) {

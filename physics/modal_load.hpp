@@ -24,8 +24,8 @@ struct DiscResponse {
 
 // Computes the averages over a disc at each of the positions x_m, which lie in [0, length_m]. The elements'
 // unknowns are eliminated only once, so that each position takes 0.1 ms. Loss makes the stiffness complex: it
-// is divided by (1 - i/2Q)^4 (plate) or (1 - i/2Q)^2 (membrane). PlateTheory::elastic is replaced by
-// Mindlin's theory.
+// is divided by the factor of Dispersion::loss to the power 4 (plate) or 2 (membrane). PlateTheory::elastic
+// is replaced by Mindlin's theory.
 std::vector<DiscResponse> disc_responses(const Surface& surface, double frequency_Hz, const Disc& disc,
                                          const std::vector<double>& x_m);
 

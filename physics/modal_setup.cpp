@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <stdexcept>
 
 #include "physics/dispersion.hpp"
 #include "physics/field.hpp"
@@ -16,6 +17,10 @@ using std::numbers::pi;
 constexpr double ln_domain_end = 70;
 constexpr double ln_match = 45;  // where the field has decayed by e^-45, the one-mode equation takes over
 constexpr double widths_per_element = 1.2;
+constexpr int most_functions = 60;  // across the strip
+// Largest work of a solution at the default resolution: the sum over its elements of the cube of their
+// unknowns. A second is enough for this solution and the finer one with which it is compared.
+constexpr double most_work = 1e9;
 
 // Returns the number of functions of eta that are needed to follow cos(kw eta). Legendre's series of this
 // function decays only beyond the degree kw, so there must be more functions than propagating modes, of which
@@ -47,7 +52,9 @@ TransverseBasis make_across(const Surface& surface, double f, const ModalResolut
   }
   const int functions = spare_functions(dispersion, f, resolution) + 2 +
                         functions_for(k * Taper(surface).half_width_m(0), plate);
-  return TransverseBasis::polynomials(std::min(functions, 60), plate ? 2 : 1);
+  if (functions > most_functions)
+    throw std::domain_error("the two-dimensional field would need more than 60 functions across the strip");
+  return TransverseBasis::polynomials(functions, plate ? 2 : 1);
 }
 
 // Shortens an element in which a membrane narrows by a large factor, as at a step in a tabulated taper.
@@ -59,14 +66,51 @@ double gently_narrowing(const Taper& taper, double x, double h) {
   return h;
 }
 
+// Throws std::domain_error if the two-dimensional field would take too long: if the cubes of the elements'
+// unknowns add up to too much.
+void require_work(const Surface& surface, double f) {
+  const Taper taper(surface);
+  const Dispersion dispersion(surface);
+  const double k = dispersion.wavenumber_per_m(f);
+  const bool plate = dispersion.clamped_bending();
+  const ModalResolution usual;
+  const int spare = spare_functions(dispersion, f, usual);
+  const int per_function = surface.theory == PlateTheory::kirchhoff ? 8 : 18;
+  constexpr int panels = 100;
+  double work = 0;
+  for (int i = 0; i < panels; ++i) {
+    const double w = taper.half_width_m(surface.length_m * (i + 0.5) / panels);
+    const double elements = surface.length_m / panels / std::min(usual.radians / k, widths_per_element * w);
+    work += elements * std::pow((functions_for(k * w, plate) + spare) * per_function, 3);
+  }
+  if (work > most_work)
+    throw std::domain_error(
+        "the two-dimensional field has too many waves across this surface to be solved; "
+        "allowed: the model mode");
+}
+
+// Elements end at the points of a table, where the curvature jumps. Where the points are closer together than
+// a quarter of an element, it ends at the last point within its length `h`.
+double element_end(const std::vector<Cubic>& pieces, double x, double h) {
+  const auto beyond = [&pieces](double at) {
+    return std::partition_point(pieces.begin(), pieces.end(), [at](const Cubic& p) { return p.x0 <= at; });
+  };
+  const auto next = beyond(x * (1 + 1e-12));
+  if (next == pieces.end()) return pieces.back().x1;
+  if (next->x0 >= x + 0.25 * h) return next->x0;
+  const auto last = beyond(x + h) - 1;
+  return last->x0 >= x + 0.25 * h ? last->x0 : next->x0;
+}
+
 }  // namespace
 
 ModalSetup make_modal_setup(const Surface& surface, double f, Losses losses,
                             const ModalResolution& resolution) {
   const Dispersion dispersion(surface);
   const double k = dispersion.wavenumber_per_m(f);
+  if (resolution.across == ModalResolution::Across::polynomials) require_work(surface, f);
   const std::complex<double> lossy =
-      k * std::complex<double>(1, losses == Losses::kept ? -0.5 / surface.quality_factor : 0);
+      losses == Losses::kept ? k * dispersion.loss(f, surface.quality_factor) : k;
   const bool plate = dispersion.clamped_bending();
   const bool thick = plate && surface.theory != PlateTheory::kirchhoff;
   ModalEquation equation;
@@ -118,14 +162,13 @@ std::vector<ModalElement> make_modal_elements(const ModalSetup& s, const ModalRe
   match_m = s.taper.length_m();
   const double w0 = s.taper.half_width_m(0);
   const bool single = s.across.count() == 1;
+  const std::vector<Cubic>& knots = s.taper.table().pieces();
   while (x < s.taper.length_m() && decay < ln_domain_end) {
     const double w = s.taper.half_width_m(x);
     double h = std::min(resolution.radians / s.k, widths_per_element * w);
     if (!single && elements.size() < 2) h = std::min(h, (elements.empty() ? 0.15 : 0.35) * w0);
     double end = s.taper.length_m();
-    for (const Cubic& piece : s.taper.table().pieces()) {
-      if (piece.x0 > x * (1 + 1e-12) && piece.x0 < end) end = piece.x0;
-    }
+    if (!knots.empty()) end = std::min(end, element_end(knots, x, h));
     if (!s.equation.plate()) h = gently_narrowing(s.taper, x, std::min(h, end - x));
     if (x + 1.5 * h > end) h = x + h >= end ? end - x : 0.5 * (end - x);
     if (!(h > 1e-9 * w0)) break;  // the apex is reached

@@ -37,8 +37,9 @@ constexpr double plate_shift = 1.2e-3;  // shift of an edge, which occurs on eve
 // uses, however, has at every W the layer that belongs to the cut-off half-width. This value is added to
 // plate_shift if the layer is a third of the half-width or thinner.
 constexpr double layer_shift = 4.8e-3;
-// shift of an edge on any taper, for the plate theories mindlin and elastic
-constexpr double thick_shift = 2.5e-3;
+// shift of an edge on any taper, for the plate theories mindlin and elastic (README.md compares it with
+// finite elements)
+constexpr double thick_shift = 2.5e-3, elastic_shift = 5e-3;
 constexpr double plate_slope_shift = 0.15;  // shift of an edge divided by W'^2
 // shift of an edge caused by a clamped end: just beyond the turning point, divided by W'^2; farther away,
 // divided by W'^2 and by the wave's decay on its way to the end and back; at the turning point, divided by W'
@@ -58,7 +59,9 @@ constexpr double largest = 2, largest_dB = 120;
 double plate_amplification(const Surface& surface, const Taper& taper, double f) {
   const auto turning = taper.position_continued_m(plate_second_mode * cut_off_half_width_m(surface, f));
   const double reach = std::clamp(turning.value_or(0), 0.0, taper.length_m());
-  return 1 / std::max(std::tanh(0.5 * wavenumber_per_m(surface, f) * reach / surface.quality_factor), 0.01);
+  const Dispersion dispersion(surface);
+  const double phase = dispersion.wavenumber_per_m(f) * reach;
+  return 1 / std::max(std::tanh(0.5 * phase / dispersion.wave_quality(f, surface.quality_factor)), 0.01);
 }
 
 // The factor by which the first mode decays on the way from the turning point to the clamped end and back.
@@ -113,7 +116,8 @@ Steepness steepness(const Taper& taper, double cut, double x0, double last_peak)
 // Shift of an edge relative to the cut-off half-width, caused by the fact that `mode` of a clamped plate has
 // only one transverse shape.
 double plate_shift_of(const Surface& surface, const Dispersion& dispersion, double cut) {
-  if (surface.theory != PlateTheory::kirchhoff) return thick_shift;
+  if (surface.theory == PlateTheory::elastic) return elastic_shift;
+  if (surface.theory == PlateTheory::mindlin) return thick_shift;
   const double layers = cut * std::sqrt(dispersion.tension_N_per_m / dispersion.stiffness_N_m);
   return plate_shift + layer_shift * std::min(1.0, layers / 3);
 }
@@ -160,6 +164,38 @@ double bound_plate(ModeBound& bound, const Surface& surface, double f, double ne
 
 }  // namespace
 
+SideError side_error(const Surface& surface, double f) {
+  const Dispersion dispersion(surface);
+  SideError error;
+  if (!dispersion.bending || dispersion.clamped || std::holds_alternative<LinearTaper>(surface.taper))
+    return error;
+  constexpr double margin = 2;
+  constexpr int panels = 64;
+  const Taper taper(surface);
+  const double k = dispersion.wavenumber_per_m(f), cut = dispersion.cut_off_half_width_m(f);
+  const double x0 = taper.position_m(cut).value_or(taper.length_m());
+  const double share =
+      dispersion.stiffness_N_m / (2 * dispersion.stiffness_N_m * k * k + dispersion.tension_N_per_m);
+  double bend = 0;
+  const auto changed_k2 = [&](double x) {  // change of k^2 at x
+    const double w = taper.half_width_m(x), slope = taper.slope(x), q = pi / (2 * w);
+    const double kappa = std::abs(taper.second_derivative(x)) / std::pow(1 + slope * slope, 1.5);
+    bend = std::max(bend, (1 - surface.poisson) * kappa / k);
+    return (1 - surface.poisson) * kappa * q * q * 2 / w * share;
+  };
+  // x = x0 (1 - u^2) removes the root of the wavenumber along x at the turning point.
+  for (int i = 0; i < panels; ++i) {
+    const double u = (i + 0.5) / panels, x = x0 * (1 - u * u), q = pi / (2 * taper.half_width_m(x));
+    const double along = std::sqrt(std::max(k * k - q * q, 1e-6 * k * k));
+    error.phase += margin * changed_k2(x) / (2 * along) * 2 * x0 * u / panels;
+  }
+  const double fall = std::max(1e-9, std::abs(taper.slope(x0)));
+  error.position_m = margin * changed_k2(x0) * cut * cut * cut / (2 * (pi / 2) * (pi / 2) * fall);
+  const double airy = airy_length_m(cut, fall);
+  error.shape = margin * bend + error.phase + error.position_m / airy;
+  return error;
+}
+
 ModeBound mode_bound(const Surface& surface, double f, double conditioning,
                      std::optional<double> last_peak_m) {
   ModeBound bound;
@@ -199,6 +235,11 @@ ModeBound mode_bound(const Surface& surface, double f, double conditioning,
   // the same error of the field moves them farther.
   const double stretched = (x0 - last_peak_m.value_or(x0)) / (1.5 * airy_length);
   bound.equation_m *= std::max(1.0, stretched * stretched);
+  const SideError sides = side_error(surface, f);
+  bound.equation_m += sides.position_m;
+  bound.shape += sides.shape;
+  bound.drive += sides.drive(conditioning);
+  bound.level_dB += sides.level_dB(conditioning);
   return bound;
 }
 

@@ -7,6 +7,21 @@
 
 namespace turnpoint::physics {
 
+// The error of every model on a plate with simply supported, curved sides: such a plate is solved as a
+// membrane. On a curved side, however, zero bending moment means lap v = (1 - nu) kappa dv/dn and not lap v =
+// 0, with the side's curvature kappa (Rayleigh, Theory of Sound, section 225). To first order in kappa this
+// changes k^2 by (1
+// - nu) kappa (pi/2W)^2 2 D / (W (2 D k^2 + N)), which shifts the turning point and turns the phase of the
+// standing wave. The bounds are twice these first-order effects. 0 for other surfaces and for straight sides.
+struct SideError {
+  double position_m = 0;  // shift of any edge
+  double shape = 0;       // error of |v|, relative to the last maximum
+  double phase = 0;       // of the wave at the drive edge
+  double drive(double conditioning) const { return shape + phase * conditioning; }
+  double level_dB(double conditioning) const { return 8.686 * drive(conditioning); }
+};
+SideError side_error(const Surface& surface, double frequency_Hz);
+
 // Bounds on the error of `mode` (or of the exact first mode) compared with `modes`. Their form follows from
 // the curvature of the wave front at the straight drive edge. Their constants were measured on random
 // surfaces (tests/physics/planner_test.cpp).

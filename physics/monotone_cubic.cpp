@@ -45,9 +45,15 @@ MonotoneCubic::MonotoneCubic(std::span<const double> x, std::span<const double> 
   for (std::size_t i = 1; i + 1 < n; ++i) m[i] = inner_slope(h[i - 1], h[i], d[i - 1], d[i]);
   m.front() = n == 2 ? d[0] : end_slope(h[0], h[1], d[0], d[1]);
   m.back() = n == 2 ? d[0] : end_slope(h[n - 2], h[n - 3], d[n - 2], d[n - 3]);
+  pieces_.reserve(n - 1);
   for (std::size_t i = 0; i + 1 < n; ++i) {
     pieces_.push_back({x[i], x[i + 1], y[i], m[i], (3 * d[i] - 2 * m[i] - m[i + 1]) / h[i],
                        (m[i] + m[i + 1] - 2 * d[i]) / (h[i] * h[i])});
+    const Cubic& p = pieces_.back();
+    if (!std::isfinite(p.x0 + p.x1 + p.y0 + p.c1 + p.c2 + p.c3))
+      throw std::invalid_argument(
+          "points of a table must be finite and not closer than a number can tell; point " +
+          std::to_string(i + 2) + " is not");
   }
 }
 

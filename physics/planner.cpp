@@ -10,6 +10,7 @@
 #include "physics/centre_line.hpp"
 #include "physics/dispersion.hpp"
 #include "physics/edge_feature.hpp"
+#include "physics/gate.hpp"
 #include "physics/map_bounds.hpp"
 #include "physics/mode_bound.hpp"
 #include "physics/modes_bound.hpp"
@@ -29,7 +30,7 @@ constexpr double membrane_accuracy = 2e-3, plate_accuracy = 1e-3, tense_plate_ac
 // how much a resonance of a higher mode adds to the assumed error of `modes`
 constexpr double membrane_resonance = 5e-4, plate_resonance = 6e-4;
 // shift of an edge relative to the cut-off half-width, divided by the error of `modes`; larger with a quality
-// factor below 30, because the field is then less steep at its edges
+// factor of the wave below 30, because the field is then less steep at its edges
 constexpr double edge_share = 0.8, lossy_edge_share = 1.2, lossy_below = 30;
 
 // The profile of one model: logarithms of |v| at the probe points, and the positions of its maximum and edge.
@@ -140,6 +141,7 @@ struct Reference {
   Probe mode;
   double conditioning;
   ModeBound bound;
+  SideError sides;
   bool shallow_peak;  // true if slightly more loss would remove the last maximum
 };
 
@@ -148,7 +150,7 @@ Reference reference(const Surface& surface, const Edge& edge, double f) {
   const double conditioning = mode.line->drive_conditioning(wavenumber_per_m(surface, f));
   const auto bound = mode_bound(surface, f, conditioning, mode.peak);
   const bool uncertain_peak = mode.peak && peak_is_shallow(surface, f, *mode.peak);
-  return {f, edge, std::move(mode), conditioning, bound, uncertain_peak};
+  return {f, edge, std::move(mode), conditioning, bound, side_error(surface, f), uncertain_peak};
 }
 
 RungEstimate edge_estimate(const Surface& surface, const PlanRequest& request, const Reference& reference) {
@@ -180,6 +182,15 @@ double modes_accuracy(const Surface& surface) {
   return surface.theory == PlateTheory::kirchhoff ? plate_accuracy : thick_plate_accuracy;
 }
 
+// Adds the error of curved, simply supported sides, which the two-dimensional field has too.
+void add_sides(RungEstimate& e, const PlanRequest& request, const Reference& reference) {
+  const SideError& sides = reference.sides;
+  e.amplitude_bound +=
+      request.normalise == Normalise::peak ? sides.shape : sides.drive(reference.conditioning);
+  e.level_bound_dB += sides.level_dB(reference.conditioning);
+  if (reference.edge.kind != Edge::Kind::turning) e.boundary_bound_m += sides.position_m;
+}
+
 // Estimates the error bounds of the model `modes` without solving it. They depend on how much the field is
 // larger than the motion of the drive edge. The first mode tells this, but not on a clamped plate on which
 // its error exceeds the field; there nothing can be assumed.
@@ -195,10 +206,12 @@ RungEstimate modes_estimate(const Surface& surface, const PlanRequest& request, 
     if (drive) e.amplitude_bound += unknown;
     e.level_bound_dB += unknown_dB;
   }
-  const double share = surface.quality_factor < lossy_below ? lossy_edge_share : edge_share;
+  const bool lossy = Dispersion(surface).wave_quality(reference.f, surface.quality_factor) < lossy_below;
+  const double share = lossy ? lossy_edge_share : edge_share;
   e.boundary_bound_m =
       accuracy * share * cut_off_half_width_m(surface, reference.f) + placed_elsewhere_m(request, reference);
   e.reason = "two-dimensional field at its default resolution";
+  add_sides(e, request, reference);
   return e;
 }
 
@@ -213,6 +226,7 @@ RungEstimate compared_modes_estimate(const Surface& surface, const PlanRequest& 
   e.level_bound_dB = bound ? bound->level_dB : unknown_dB;
   e.boundary_bound_m =
       (bound ? bound->position_m : surface.length_m) + placed_elsewhere_m(request, reference);
+  add_sides(e, request, reference);
   return e;
 }
 
@@ -304,6 +318,20 @@ bool inside(const RungEstimate& e, const Tolerance& tolerance) {
          (!tolerance.level_dB || e.level_bound_dB <= *tolerance.level_dB);
 }
 
+void check(const Surface& surface, const PlanRequest& request) {
+  if (request.tones.empty()) throw std::invalid_argument("a plan needs at least one tone");
+  validate(surface);
+  for (const Tone& tone : request.tones) validate(surface, tone.frequency_Hz);
+  validate(request.edge);
+  for (const Edge& edge : request.edges) validate(edge);
+  if (!request.edges.empty() && request.edges.size() != request.tones.size())
+    throw std::invalid_argument("a plan needs as many edges as tones, or none");
+  require(request.points >= 0 && request.points <= 1'000'000, "points", request.points, "0 to 1 000 000");
+  for (const auto& one :
+       {request.tolerance.boundary_m, request.tolerance.amplitude, request.tolerance.level_dB})
+    if (one) require_size("tolerance", *one);
+}
+
 std::string numbers(const RungEstimate& e, const Tolerance& tolerance) {
   std::ostringstream text;
   text.precision(3);
@@ -322,6 +350,7 @@ std::string numbers(const RungEstimate& e, const Tolerance& tolerance) {
 }  // namespace
 
 RungEstimate estimate(const Surface& surface, const PlanRequest& request, Model model) {
+  check(surface, request);
   const auto references = references_for(surface, request);
   if (model == Model::modes && modes_bound_applies(surface))
     return compared_modes(surface, request, references, Comparison::finer);
@@ -333,8 +362,7 @@ RungEstimate estimate(const Surface& surface, const PlanRequest& request, Model 
 }
 
 PlanChoice choose_model(const Surface& surface, const PlanRequest& request) {
-  validate(surface);
-  if (request.tones.empty()) throw std::invalid_argument("a plan needs at least one tone");
+  check(surface, request);
   PlanChoice choice;
   const auto references = references_for(surface, request);
   for (const Model model : all_models)

@@ -5,6 +5,7 @@
 #include <sstream>
 
 #include "physics/dispersion.hpp"
+#include "physics/gate.hpp"
 #include "physics/taper.hpp"
 
 namespace turnpoint::physics {
@@ -18,6 +19,7 @@ bool thick_theory_applies(const Surface& s) {
 }  // namespace
 
 std::optional<double> shear_shift_m(const Surface& surface, double f) {
+  validate(surface, f);
   if (!thick_theory_applies(surface)) return std::nullopt;
   Surface better = surface;
   better.theory = surface.theory == PlateTheory::kirchhoff ? PlateTheory::mindlin : PlateTheory::elastic;
@@ -30,6 +32,8 @@ std::optional<double> shear_shift_m(const Surface& surface, double f) {
 
 TheoryChoice choose_theory(const Surface& surface, std::span<const double> frequencies_Hz,
                            std::optional<double> tolerance_m) {
+  validate(surface);
+  if (tolerance_m) require_size_or_0("tolerance_m", *tolerance_m);
   TheoryChoice choice;
   if (!thick_theory_applies(surface)) {
     choice.reason = "kirchhoff: shear is modelled for clamped plates without tension only";

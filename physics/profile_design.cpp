@@ -6,6 +6,7 @@
 
 #include "physics/centre_line.hpp"
 #include "physics/crest.hpp"
+#include "physics/gate.hpp"
 #include "physics/nnls.hpp"
 #include "physics/statement.hpp"
 #include "physics/zone.hpp"
@@ -16,7 +17,7 @@ namespace {
 constexpr double reachable_residual = 0.25;
 // stop if another tone reduces the residual by less than this fraction
 constexpr double fit_tolerance = 1e-4;
-constexpr int most_candidates = 100000;
+constexpr int most_candidates = 1000;
 
 // Appends a tone's squared amplitudes at the target's points to `columns`. The amplitudes are relative to the
 // tone's last maximum; `drive_gain` becomes |v(0)| divided by that maximum.
@@ -42,16 +43,15 @@ ProfileDesign design_profile(const Surface& surface, std::span<const ProfilePoin
   std::vector<double> x, wanted;
   double norm = 0;
   for (const ProfilePoint& point : target) {
-    if (!(point.x_m >= 0 && point.x_m <= surface.length_m) ||
-        !(point.amplitude_m >= 0 && std::isfinite(point.amplitude_m))) {
-      throw std::invalid_argument(
-          "target profile: points on the surface and finite amplitudes of 0 or more are needed");
-    }
+    require_on_surface(surface, "x_m of a target profile", point.x_m);
     x.push_back(point.x_m);
+    require(point.amplitude_m >= 0 && point.amplitude_m <= largest_size, "amplitude_m", point.amplitude_m,
+            "0 to 1e18");
     wanted.push_back(point.amplitude_m * point.amplitude_m);
     norm += wanted.back() * wanted.back();
   }
   if (!(norm > 0)) throw std::invalid_argument("target profile: an amplitude above 0 is needed");
+  for (const double one : {band.low_Hz, band.high_Hz, band.spacing_Hz}) require_size("tone band", one);
   if (!(band.low_Hz > 0 && band.spacing_Hz > 0 && band.high_Hz >= band.low_Hz)) {
     throw std::invalid_argument("tone band: low_Hz up to high_Hz and spacing_Hz above 0 are needed");
   }
@@ -64,6 +64,7 @@ ProfileDesign design_profile(const Surface& surface, std::span<const ProfilePoin
   const int count = static_cast<int>(candidates);
   for (int i = 0; i <= count; ++i) {
     const double f = band.low_Hz + i * band.spacing_Hz;
+    validate(surface, f);
     double gain = 1;
     if (!shape(surface, f, x, columns, gain)) continue;
     frequencies.push_back(f);

@@ -6,6 +6,7 @@
 
 #include "physics/centre_line.hpp"
 #include "physics/dispersion.hpp"
+#include "physics/gate.hpp"
 #include "physics/root.hpp"
 
 namespace turnpoint::physics {
@@ -99,7 +100,8 @@ struct PlateWalk {
   std::optional<double> step(const Surface& surface, double by_Hz) {
     const double from = f;
     f += by_Hz;
-    const auto before = std::exchange(response, f > 0 ? plate_response(surface, f) : std::nullopt);
+    const bool allowed = f > 0 && f <= highest_frequency_Hz(surface);
+    const auto before = std::exchange(response, allowed ? plate_response(surface, f) : std::nullopt);
     if (!before || !response || (*before > 0) == (*response > 0)) return std::nullopt;
     return plate_zero(surface,
                       from < f ? Chord{from, *before, f, *response} : Chord{f, *response, from, *before});
@@ -133,6 +135,7 @@ std::vector<double> plate_resonances(const Surface& surface, double low_Hz, doub
 }  // namespace
 
 std::optional<double> nearest_resonance_Hz(const Surface& surface, double frequency_Hz) {
+  validate(surface, frequency_Hz);
   if (Dispersion(surface).clamped_bending()) return nearest_plate_resonance(surface, frequency_Hz);
   const Phase phase(surface);
   const double here = phase(frequency_Hz);
@@ -145,6 +148,12 @@ std::optional<double> nearest_resonance_Hz(const Surface& surface, double freque
 }
 
 std::vector<double> resonances_Hz(const Surface& surface, double low_Hz, double high_Hz) {
+  validate(surface, low_Hz);
+  validate(surface, high_Hz);
+  const double most =
+      (wavenumber_per_m(surface, high_Hz) - wavenumber_per_m(surface, low_Hz)) * surface.length_m / pi;
+  const double limit = surface.theory == PlateTheory::kirchhoff ? 500 : 50;
+  require(most <= limit, "number of resonances in the band", most, "at most 500, or 50 on a thick plate");
   if (Dispersion(surface).clamped_bending()) return plate_resonances(surface, low_Hz, high_Hz);
   std::vector<double> found;
   const Phase phase(surface);

@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "physics/condensed.hpp"
+#include "physics/dispersion.hpp"
 
 namespace turnpoint::physics {
 namespace {
@@ -83,7 +84,8 @@ void solve_section_elements(const Surface& surface, double f, Losses losses,
   if (resolution.drive)
     throw std::invalid_argument("drive shapes can be given for plate theory kirchhoff only");
   const SectionBasis section = make_section(surface, f, resolution, setup);
-  const std::complex<double> lossy(1, losses == Losses::kept ? -0.5 / surface.quality_factor : 0);
+  const std::complex<double> lossy =
+      losses == Losses::kept ? Dispersion(surface).loss(f, surface.quality_factor) : 1;
   const std::complex<double> omega2 = std::pow(2 * std::numbers::pi * f, 2) * lossy * lossy * lossy * lossy;
   const Eigen::Index n = section.count();
   struct Link {

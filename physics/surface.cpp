@@ -1,12 +1,13 @@
 #include "physics/surface.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
-#include <sstream>
 #include <stdexcept>
 
+#include "physics/gate.hpp"
 #include "physics/taper.hpp"
 
 namespace turnpoint::physics {
@@ -22,51 +23,70 @@ constexpr std::array materials{
     Material{"glass", 2500, 70e9, 0.22, 0.05e9},     Material{"polyimide", 1420, 2.5e9, 0.34, 0.069e9},
     Material{"rubber", 1100, 2e6, 0.49, 10e6}};
 
-void require(bool holds, const char* quantity, double value, const char* allowed) {
-  if (holds) return;
-  std::ostringstream text;
-  text << quantity << " is " << value << "; allowed: " << allowed;
-  throw std::invalid_argument(text.str());
+// Refuses a taper that narrows too slowly for a number, or faster than a surface can.
+void require_fall(const char* quantity, double half_width_per_length) {
+  require(half_width_per_length >= 1e-9 && half_width_per_length <= 1e3, quantity, half_width_per_length,
+          "1e-9 to 1000");
 }
 
-bool finite_positive(double value) { return std::isfinite(value) && value > 0; }
+void require_half_widths(double count) {
+  require(count <= most_half_widths, "length in half-widths", count, "at most 20 000");
+}
 
 void validate_linear(const LinearTaper& taper, double length_m) {
-  require(finite_positive(taper.half_width_m), "half_width_m", taper.half_width_m, "above 0");
+  require_size("half_width_m", taper.half_width_m);
   require(taper.slope >= 0 && taper.slope <= 1, "slope", taper.slope, "0 to 1");
+  if (taper.slope > 0) require_fall("slope", taper.slope);
   const double end = taper.half_width_m - taper.slope * length_m;
   require(end >= -1e-9 * taper.half_width_m, "length_m", length_m,
           "not beyond the apex, half_width_m / slope");
+  if (end > 0.5 * taper.half_width_m) require_half_widths(length_m / taper.half_width_m);
+}
+
+void validate_exponential(const ExponentialTaper& taper, double length_m) {
+  require_size("half_width_m", taper.half_width_m);
+  require_size("decay_length_m", taper.decay_length_m);
+  require_fall("half_width_m / decay_length_m", taper.half_width_m / taper.decay_length_m);
+  require(length_m <= 100 * taper.decay_length_m, "length_m", length_m, "at most 100 decay lengths");
 }
 
 void validate_table(const TabulatedTaper& taper, double length_m) {
   const auto& points = taper.points;
-  require(points.size() >= 2, "number of taper points", static_cast<double>(points.size()), "2 or more");
+  require(points.size() >= 2 && points.size() <= most_taper_points, "number of taper points",
+          static_cast<double>(points.size()), "2 to 2000");
   require(points.front().x_m == 0, "x_m of the first taper point", points.front().x_m, "0");
+  double half_widths = 0;
   for (std::size_t i = 0; i < points.size(); ++i) {
-    require(finite_positive(points[i].half_width_m), "half_width_m of a taper point", points[i].half_width_m,
-            "above 0");
+    require_size("half_width_m of a taper point", points[i].half_width_m);
     if (i == 0) continue;
-    require(points[i].x_m > points[i - 1].x_m, "x_m of a taper point", points[i].x_m, "ascending");
-    require(points[i].half_width_m < points[i - 1].half_width_m, "half_width_m of a taper point",
-            points[i].half_width_m, "falling from point to point");
+    const double step = points[i].x_m - points[i - 1].x_m;
+    require(step >= least_taper_step * length_m && points[i].x_m <= largest_size, "x_m of a taper point",
+            points[i].x_m, "ascending, in steps of at least 1e-7 of the length");
+    const double fall = points[i - 1].half_width_m - points[i].half_width_m;
+    require(fall > 0, "half_width_m of a taper point", points[i].half_width_m, "falling from point to point");
+    require_fall("slope of a taper", fall / step);
+    half_widths +=
+        std::min(step / points[i].half_width_m, step / fall * std::log1p(fall / points[i].half_width_m));
   }
   require(points.back().x_m >= length_m * (1 - 1e-12), "x_m of the last taper point", points.back().x_m,
           "at or beyond length_m");
+  require_half_widths(half_widths);
 }
 
-void validate_taper(const Surface& surface) {
-  if (const auto* linear = std::get_if<LinearTaper>(&surface.taper)) {
-    validate_linear(*linear, surface.length_m);
-  } else if (const auto* exponential = std::get_if<ExponentialTaper>(&surface.taper)) {
-    require(finite_positive(exponential->half_width_m), "half_width_m", exponential->half_width_m, "above 0");
-    require(finite_positive(exponential->decay_length_m), "decay_length_m", exponential->decay_length_m,
-            "above 0");
-    require(surface.length_m <= 100 * exponential->decay_length_m, "length_m", surface.length_m,
-            "at most 100 decay lengths");
+void validate_taper(const Surface& s) {
+  if (const auto* linear = std::get_if<LinearTaper>(&s.taper)) {
+    validate_linear(*linear, s.length_m);
+  } else if (const auto* exponential = std::get_if<ExponentialTaper>(&s.taper)) {
+    validate_exponential(*exponential, s.length_m);
   } else {
-    validate_table(std::get<TabulatedTaper>(surface.taper), surface.length_m);
+    validate_table(std::get<TabulatedTaper>(s.taper), s.length_m);
   }
+}
+
+double widest_m(const TabulatedTaper& taper) { return taper.points.front().half_width_m; }
+template <class Form>
+double widest_m(const Form& taper) {
+  return taper.half_width_m;
 }
 
 void validate_theory(const Surface& s) {
@@ -109,16 +129,22 @@ std::optional<Material> find_material(std::string_view wanted) {
 }
 
 void validate(const Surface& s) {
-  require(finite_positive(s.density_kg_m3), "density_kg_m3", s.density_kg_m3, "above 0");
-  require(std::isfinite(s.tension_Pa) && s.tension_Pa >= 0, "tension_Pa", s.tension_Pa, "0 or more");
-  require(finite_positive(s.thickness_m), "thickness_m", s.thickness_m, "above 0");
-  require(finite_positive(s.length_m), "length_m", s.length_m, "above 0");
+  require_size("density_kg_m3", s.density_kg_m3);
+  require_size_or_0("tension_Pa", s.tension_Pa);
+  require_size("thickness_m", s.thickness_m);
+  require_size("length_m", s.length_m);
   require(s.quality_factor >= 1, "quality_factor", s.quality_factor, "1 to infinity");
-  if (s.modulus_Pa) require(finite_positive(*s.modulus_Pa), "modulus_Pa", *s.modulus_Pa, "above 0");
-  require(s.poisson > -1 && s.poisson <= 0.5, "poisson", s.poisson, "above -1, at most 0.5");
-  if (s.yield_strength_Pa) {
-    require(finite_positive(*s.yield_strength_Pa), "yield_strength_Pa", *s.yield_strength_Pa, "above 0");
-  }
+  if (s.modulus_Pa) require_size("modulus_Pa", *s.modulus_Pa);
+  require(s.poisson >= -0.9 && s.poisson <= 0.5, "poisson", s.poisson, "-0.9 to 0.5");
+  if (s.yield_strength_Pa) require_size("yield_strength_Pa", *s.yield_strength_Pa);
+  require(std::abs(s.expansion_per_K) <= 1, "expansion_per_K", s.expansion_per_K, "-1 to 1");
+  require(std::abs(s.modulus_per_K) <= 1, "modulus_per_K", s.modulus_per_K, "-1 to 1");
+  const ParameterSd& sd = s.sd;
+  for (const double one : {sd.density_kg_m3, sd.tension_Pa, sd.thickness_m, sd.modulus_Pa, sd.half_width_m,
+                           sd.slope, sd.decay_length_m, sd.clamp_line_m, sd.temperature_K})
+    require_size_or_0("standard deviation of a parameter", one);
+  for (const Correlation& c : s.correlations)
+    require(std::abs(c.coefficient) <= 1, "correlation", c.coefficient, "-1 to 1");
   validate_taper(s);
   if (s.tension_Pa == 0 && s.bending == Bending::off) {
     throw std::invalid_argument("tension_Pa is 0 while bending is off; allowed: tension above 0, or bending");
@@ -128,18 +154,38 @@ void validate(const Surface& s) {
         "modulus_Pa is missing; it is required for a plate (tension_Pa = 0) and whenever bending is on");
   }
   validate_theory(s);
+  const double w0 = std::visit([](const auto& taper) { return widest_m(taper); }, s.taper);
+  if (bending_modelled(s))
+    require(s.thickness_m >= 1e-9 * w0 && s.thickness_m <= 2 * w0, "thickness_m", s.thickness_m,
+            "1e-9 to 2 half-widths of the drive edge where bending is modelled");
 }
 
-double half_width_m(const Surface& surface, double x_m) { return Taper(surface).half_width_m(x_m); }
+double half_width_m(const Surface& surface, double x_m) {
+  require_on_surface(surface, "x_m", x_m);
+  const double w = Taper(surface).half_width_m(x_m);
+  require(std::isfinite(w), "half_width_m", w, "finite");
+  return w;
+}
 
 std::optional<double> bending_stiffness_N_m(const Surface& s) {
   if (!s.modulus_Pa) return std::nullopt;
-  return *s.modulus_Pa * s.thickness_m * s.thickness_m * s.thickness_m / (12 * (1 - s.poisson * s.poisson));
+  const double stiffness =
+      *s.modulus_Pa * s.thickness_m * s.thickness_m * s.thickness_m / (12 * (1 - s.poisson * s.poisson));
+  require(std::isfinite(stiffness), "bending stiffness", stiffness, "finite");
+  return stiffness;
 }
 
-double line_tension_N_per_m(const Surface& s) { return s.tension_Pa * s.thickness_m; }
+double line_tension_N_per_m(const Surface& s) {
+  const double tension = s.tension_Pa * s.thickness_m;
+  require(std::isfinite(tension), "line tension", tension, "finite");
+  return tension;
+}
 
-double wave_speed_m_s(const Surface& s) { return std::sqrt(s.tension_Pa / s.density_kg_m3); }
+double wave_speed_m_s(const Surface& s) {
+  const double speed = std::sqrt(s.tension_Pa / s.density_kg_m3);
+  require(std::isfinite(speed), "wave speed", speed, "finite");
+  return speed;
+}
 
 bool bending_modelled(const Surface& s) {
   if (s.bending != Bending::automatic) return s.bending == Bending::on;
@@ -147,7 +193,7 @@ bool bending_modelled(const Surface& s) {
   const auto stiffness = bending_stiffness_N_m(s);
   if (!stiffness) return false;
   // Half-width at 90 % of the length. No boundary is expected farther out, where the surface is narrower.
-  const double w = half_width_m(s, 0.9 * s.length_m);
+  const double w = Taper(s).half_width_m(0.9 * s.length_m);
   const double k = std::numbers::pi / (2 * w);
   const double ratio = *stiffness * k * k / line_tension_N_per_m(s);
   // Bending shifts a cut-off. With simply supported sides, the frequency rises by the fraction ratio/2. With
@@ -174,7 +220,7 @@ Surface aluminium_plate() {
   s.yield_strength_Pa = 0.28e9;
   s.thickness_m = 2e-3;
   s.length_m = 0.3;
-  s.quality_factor = 60;
+  s.quality_factor = 30;
   s.taper = LinearTaper{0.014, 0.03};
   s.edges = Edges::clamped;
   return s;

@@ -111,8 +111,11 @@ struct Surface {
   double density_kg_m3 = 0;
   double tension_Pa = 0;  // tension as a stress; 0 means a plate
   double thickness_m = 0;
-  double length_m = 0;        // distance from the drive edge to the clamped end
-  double quality_factor = 0;  // infinity means no loss
+  double length_m = 0;  // distance from the drive edge to the clamped end
+  // The quality factor that a resonance curve shows: a resonance's frequency over its width at half of its
+  // power. Infinity means no loss. The wavenumber becomes k (1 - i/2Q) on a membrane and k (1 - i/4Q) in
+  // bending, where k^2 is proportional to the frequency (see Dispersion::loss).
+  double quality_factor = 0;
   TaperForm taper = LinearTaper{0, 0};
   Edges edges = Edges::supported;
   Bending bending = Bending::automatic;
@@ -159,7 +162,7 @@ double wave_speed_m_s(const Surface& surface);
 bool bending_modelled(const Surface& surface);
 
 // Reference surfaces for tests and examples: the 1998 paper's brass membrane (30 mm half-width, slope 0.1,
-// 5.12 GPa; no loss), and an aluminium plate (clamped, 14 mm, slope 0.03, 2 mm thick, Q = 60).
+// 5.12 GPa; no loss), and an aluminium plate (clamped, 14 mm, slope 0.03, 2 mm thick, Q = 30).
 Surface seed_brass();
 Surface aluminium_plate();
 

@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <stdexcept>
 #include <vector>
 
 #include "physics/field.hpp"
+#include "physics/gate.hpp"
 #include "physics/root.hpp"
 #include "physics/taylor_kernel.hpp"
 #include "physics/taylor_series.hpp"
@@ -181,6 +183,12 @@ std::optional<double> TaylorMarch::State::peak_in(const TaylorStep& step, double
 TaylorMarch::TaylorMarch(const Taper& taper, const MarchEquation& equation) {
   auto state = std::make_unique<State>(State{taper, equation, {}, {}, taper.length_m()});
   state->steps.reserve(64);
+  if (const auto* curved = std::get_if<ExponentialTaper>(&taper.form())) {
+    const double half_widths =
+        curved->decay_length_m / curved->half_width_m * std::expm1(taper.length_m() / curved->decay_length_m);
+    if (half_widths > most_half_widths)
+      throw std::domain_error("the taper is too long and narrow for a profile of all of it; allowed: maps");
+  }
   const auto apex = taper.apex_m();
   if (apex && *apex <= taper.length_m() * (1 + 1e-9)) {
     state->apex.emplace(taper, equation);

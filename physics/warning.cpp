@@ -3,9 +3,11 @@
 #include <cmath>
 #include <utility>
 
+#include "physics/airborne.hpp"
 #include "physics/centre_line.hpp"
 #include "physics/dispersion.hpp"
 #include "physics/field.hpp"
+#include "physics/gate.hpp"
 #include "physics/plate_theory.hpp"
 #include "physics/statement.hpp"
 
@@ -15,6 +17,7 @@ namespace {
 constexpr double finger_width_m = 14e-3;
 constexpr double high_gain = 10;
 constexpr double noticeable_shift_m = 1e-3;
+constexpr double noticeable_air = 0.1;
 
 // Adds the warning, unless the list has one with the same code.
 void add(std::vector<Warning>& list, Warning&& warning) {
@@ -42,6 +45,7 @@ std::vector<Warning> tone_warnings(const Surface& s, std::span<const Tone> tones
   };
   for (const Tone& tone : tones) {
     const double f = tone.frequency_Hz, kHz = f / 1e3;
+    validate(s, f);
     if (f < audible_limit_Hz)
       warn("audible",
            "%1 kHz: below 22.4 kHz, so it may be audible, and the stricter limit of airborne sound applies",
@@ -70,6 +74,15 @@ std::vector<Warning> tone_warnings(const Surface& s, std::span<const Tone> tones
            "%1 kHz: the strip is %2 mm wide at the turning point, narrower than a finger (14 mm)",
            {kHz, 2e3 * cut_off_half_width_m(s, f)});
     }
+    const AirLoad air = air_load(s, f);
+    if (std::isfinite(s.quality_factor) && air.quality_factor && *air.quality_factor < s.quality_factor)
+      warn("air-loss",
+           "%1 kHz: sound that the surface radiates limits its quality factor to %2, below the stated %3",
+           {{kHz, 3}, {*air.quality_factor, 3}, {s.quality_factor, 3}});
+    if (air.mass_share > noticeable_air)
+      warn("air-mass",
+           "%1 kHz: the air that moves with the surface adds %2 % to its mass, which the model leaves out",
+           {{kHz, 3}, {100 * air.mass_share, 3}});
     const bool linear = std::holds_alternative<LinearTaper>(s.taper);
     const auto line = make_centre_line(linear ? s : moving_part(s, f), f, Model::mode);
     const auto peak = line->last_peak_m();

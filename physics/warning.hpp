@@ -11,9 +11,9 @@
 namespace turnpoint::physics {
 
 // The codes of all warnings, for programs.
-inline constexpr std::array warning_codes{"yield",        "audible",        "bending-off",
-                                          "thick-plate",  "no-smooth-zone", "outside-surface",
-                                          "narrow-strip", "resonance-gain", "ill-conditioned"};
+inline constexpr std::array warning_codes{
+    "yield",        "audible",        "bending-off",     "thick-plate", "no-smooth-zone", "outside-surface",
+    "narrow-strip", "resonance-gain", "ill-conditioned", "air-loss",    "air-mass"};
 
 // A warning: one of these codes, and a sentence for people.
 using Warning = Statement;
@@ -26,8 +26,9 @@ std::vector<Warning> surface_warnings(const Surface& surface);
 inline constexpr double audible_limit_Hz = 22400;
 
 // Warns if a tone is below 22.4 kHz, if its turning point is outside the surface, if the strip is narrower
-// than a fingertip (14 mm) there, if the gain at the last maximum is above 10, or if plate theory kirchhoff
-// is used although shear moves the boundary by more than 1 mm. Each code appears once, not once per tone.
+// than a fingertip (14 mm) there, if the air alone damps it more than the stated quality factor says or adds
+// a tenth to its mass, if the gain at the last maximum is above 10, or if plate theory kirchhoff is used
+// although shear moves the boundary by more than 1 mm. Each code appears once, not once per tone.
 std::vector<Warning> tone_warnings(const Surface& surface, std::span<const Tone> tones);
 
 }  // namespace turnpoint::physics

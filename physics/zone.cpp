@@ -9,6 +9,7 @@
 #include "physics/crest.hpp"
 #include "physics/dispersion.hpp"
 #include "physics/field.hpp"
+#include "physics/gate.hpp"
 #include "physics/statement.hpp"
 #include "physics/zone_profile.hpp"
 
@@ -28,14 +29,16 @@ double first_guess(const Surface& surface, const ZoneRequest& request) {
 
 void check(const Surface& surface, const FrictionMap& friction, const ZoneRequest& r) {
   validate(surface);
+  validate(r.edge);
+  require_size_or_0("fingertip_m", r.fingertip_m);
+  for (const double one : {r.band.low_Hz, r.band.high_Hz, r.band.spacing_Hz}) require_size("zone band", one);
   if (!(r.from_m >= 0 && r.from_m < r.boundary_m && r.boundary_m <= surface.length_m))
     refuse("zone-place", "zone from %1 to %2 mm; allowed: inside 0 to %3 mm, ascending",
            {r.from_m * 1e3, r.boundary_m * 1e3, surface.length_m * 1e3});
   if (!(r.friction < 1) || r.friction <= friction.lowest_friction())
     refuse("zone-friction", "zone friction %1 is not reachable; allowed: above %2, below 1",
            {r.friction, friction.lowest_friction()});
-  if (r.tones < 1)
-    throw std::invalid_argument("zone tones is " + std::to_string(r.tones) + "; allowed: 1 or more");
+  require(r.tones >= 1 && r.tones <= 40, "zone tones", r.tones, "1 to 40");
   if (!(r.band.low_Hz > 0 && r.band.low_Hz < r.band.high_Hz && r.band.spacing_Hz > 0)) {
     throw std::invalid_argument("zone band: low_Hz below high_Hz and spacing_Hz above 0 are needed");
   }

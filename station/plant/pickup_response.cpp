@@ -91,8 +91,8 @@ SurfaceResponse surface_response(const physics::Surface& surface, std::span<cons
                                  double high_Hz) {
   SurfaceResponse response;
   response.at.resize(x_m.size());
-  // 200 Hz if Q is 60: a resonance at 30 kHz is then at least 500 Hz wide
-  const double spacing_Hz = std::clamp(12000 / surface.quality_factor, 20.0, 400.0);
+  // 200 Hz if Q is 30: a resonance at 30 kHz is then 1 kHz wide
+  const double spacing_Hz = std::clamp(6000 / surface.quality_factor, 20.0, 400.0);
   for (double f = low_Hz; f <= high_Hz; f += spacing_Hz) {
     const physics::Tone tone{f, 1, 0};
     const auto field =

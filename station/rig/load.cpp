@@ -161,7 +161,7 @@ void read_friction(TableReader& file, Rig& rig) {
   rig.friction.stated = table != nullptr;
   TableReader reader(table ? *table : empty, "friction", file.findings());
   auto& friction = rig.friction;
-  const Range pressure{0.01, 1000, Ends::closed, "kPa"}, floor{0, 1, Ends::open_high};
+  const Range pressure{0.01, 36, Ends::closed, "kPa"}, floor{0, 1, Ends::open_high};
   const Range fingertip{0.1, 100, Ends::closed, "mm"};
   const auto csv = reader.maybe_string("table_csv");
   if (reader.has("table_csv")) {

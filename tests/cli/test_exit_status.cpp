@@ -53,6 +53,10 @@ TEST_CASE("the exit status says whose mistake it was", "[cli]") {
 TEST_CASE("numbers that the physics library refuses count as the user's mistake", "[cli]") {
   CHECK(status_of({"map", "--rig", kRig, "--frequency", "30000", "--edge", "nowhere"}) == 2);
   CHECK(status_of({"map", "--rig", kRig, "--frequency", "30000", "--model", "fem"}) == 2);
+  for (const char* frequency_Hz : {"1e300", "1e9", "1e-300"}) {
+    CHECK(status_of({"map", "--rig", kRig, "--frequency", frequency_Hz}) == 2);
+    CHECK(status_of({"field", "--rig", kRig, "--tone", frequency_Hz, "--points", "11"}) == 2);
+  }
   CHECK(status_of({"field", "--rig", kRig, "--tone", "30000", "--points", "1"}) == 2);
   CHECK(status_of({"field", "--rig", kRig, "--tone", "-5", "--points", "10"}) == 2);
   CHECK(status_of({"field", "--rig", kRig, "--tone", "30000", "--at", "100", "--model", "edge"}) == 2);

@@ -4,8 +4,10 @@
 #include <cmath>
 #include <numbers>
 
+#include "physics/dispersion.hpp"
 #include "physics/field.hpp"
 #include "physics/taper.hpp"
+#include "physics/warning.hpp"
 #include "tests/support/catch.hpp"
 
 using namespace turnpoint::physics;
@@ -130,4 +132,79 @@ TEST_CASE(
              loud = loudest_sound(plate, {30000, 1e-6, 0}, Model::mode, 0.4);
   CHECK(loud.level_dB - soft.level_dB == Approx(20).margin(1e-9));
   CHECK_THROWS_AS(loudest_sound(plate, {30000, 1e-6, 0}, Model::mode, 0.011), std::invalid_argument);
+}
+
+TEST_CASE("the air damps a fast wave and loads a slow one as Rayleigh's integral over a large patch says",
+          "[physics]") {
+  // A square patch of an infinite plane on which a wave runs along x, its edges faded out. Sources are 1/8 of
+  // the shorter wavelength apart.
+  const auto patch = [](double k, double spacing_m, double half_m) {
+    std::vector<SoundSource> sources;
+    const auto fade = [half_m](double at) { return std::pow(std::cos(0.5 * pi * at / half_m), 2); };
+    for (double x = -half_m; x <= half_m; x += spacing_m)
+      for (double y = -half_m; y <= half_m; y += spacing_m)
+        sources.push_back({x, y, std::polar(1e-6 * fade(x) * fade(y) * spacing_m * spacing_m, -k * x)});
+    return sources;
+  };
+  const Air air;
+  {  // the 1998 paper's brass: radiated power against the energy of the motion
+    const Surface s = seed_brass();
+    const double f = 19600, omega = 2 * pi * f, k = omega / wave_speed_m_s(s), half_m = 0.12, far_m = 20;
+    double power = 0;
+    constexpr int rings = 60, around = 48;
+    const auto sources = patch(k, 2.5e-3, half_m);
+    for (int i = 0; i < rings; ++i) {
+      const double theta = 0.5 * pi * (i + 0.5) / rings;
+      std::vector<Place> places;
+      for (int j = 0; j < around; ++j) {
+        const double phi = 2 * pi * (j + 0.5) / around;
+        places.push_back({far_m * std::sin(theta) * std::cos(phi), far_m * std::sin(theta) * std::sin(phi),
+                          far_m * std::cos(theta)});
+      }
+      for (const auto& p : radiated_pressure_Pa(sources, f, places))
+        power += std::norm(p) / (2 * air.density_kg_m3 * air.speed_m_s) * far_m * far_m * std::sin(theta) *
+                 (0.5 * pi / rings) * (2 * pi / around);
+    }
+    // the mean of the fourth power of a cosine is 3/8, in both directions
+    const double area = std::pow(2 * half_m * 3 / 8, 2);
+    const double energy = 0.5 * s.density_kg_m3 * s.thickness_m * omega * omega * 1e-12 * area;
+    const double by_integral = omega * energy / (2 * power);  // both faces radiate
+    CHECK(air_load(s, f).quality_factor.value() == Approx(by_integral).epsilon(0.02));
+    CHECK(air_load(s, f).mass_share == 0);
+    CHECK(air_load(s, 8000).quality_factor.value() == Approx(22).margin(0.5));
+    CHECK(air_load(s, f).quality_factor.value() == Approx(54).margin(0.5));
+    CHECK(air_load(s, 45000).quality_factor.value() == Approx(125).margin(0.5));
+    CHECK(air_load(aluminium_plate(), 22400).quality_factor.value() > 750);
+  }
+  {  // a slow membrane: the pressure above it is that of a mass
+    Surface s = seed_brass();
+    s.density_kg_m3 = 1000, s.tension_Pa = 17640, s.thickness_m = 0.02e-3;
+    s.taper = LinearTaper{0.05, 0.1};
+    const double f = 3000, omega = 2 * pi * f, k = omega / wave_speed_m_s(s);
+    const double in_air = omega / air.speed_m_s, decay = std::sqrt(k * k - in_air * in_air);
+    const double wave_m = 2 * pi / k, above_m = 0.5 / decay;
+    const Place place{0, 0, above_m};
+    const auto p = radiated_pressure_Pa(patch(k, wave_m / 40, 6 * wave_m), f, {&place, 1}).front();
+    const double mass = std::abs(p) * std::exp(decay * above_m) / (omega * omega * 1e-6);
+    CHECK(2 * mass / (s.density_kg_m3 * s.thickness_m) == Approx(air_load(s, f).mass_share).epsilon(0.03));
+    CHECK_FALSE(air_load(s, f).quality_factor);
+    CHECK(air_load(s, 30).mass_share == Approx(2.7).margin(0.05));
+  }
+}
+
+TEST_CASE("a stated quality factor above what radiation leaves, and air heavier than a tenth, give warnings",
+          "[physics]") {
+  const auto warns = [](const Surface& s, double f, const char* code) {
+    const Tone tone{f, 1, 0};
+    const auto all = tone_warnings(s, {&tone, 1});
+    return std::ranges::any_of(all, [&](const Warning& w) { return w.code == code; });
+  };
+  Surface s = seed_brass();
+  s.quality_factor = 100;
+  CHECK(warns(s, 19600, "air-loss"));
+  CHECK_FALSE(warns(s, 45000, "air-loss"));
+  s.quality_factor = 50;
+  CHECK_FALSE(warns(s, 19600, "air-loss"));
+  s.tension_Pa = 17640, s.density_kg_m3 = 1000, s.thickness_m = 0.02e-3;
+  CHECK(warns(s, 30, "air-mass"));
 }

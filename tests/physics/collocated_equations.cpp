@@ -83,7 +83,13 @@ struct Strip {
   Eigen::VectorXd twice() const { return r * r * eta.square() + 1 / (w * w); }
 };
 
-std::complex<double> lossy(const Surface& s) { return {1, -0.5 / s.quality_factor}; }
+// k (1 - i g/2Q), g = (omega/k) dk/domega: Q is what a resonance curve shows.
+std::complex<double> lossy(const Surface& s, double k) {
+  if (s.theory == physics::PlateTheory::mindlin) return {1, -0.25 / s.quality_factor};
+  const double bent = physics::bending_modelled(s) ? *physics::bending_stiffness_N_m(s) * k * k : 0;
+  const double tension = physics::line_tension_N_per_m(s);
+  return {1, -0.5 * (bent + tension) / (2 * bent + tension) / s.quality_factor};
+}
 
 CollocatedEquations membrane(const Surface& s, double k, int points, const physics::PistonLift* lift) {
   const auto across = std::make_shared<Across>(points);
@@ -91,7 +97,7 @@ CollocatedEquations membrane(const Surface& s, double k, int points, const physi
   CollocatedEquations e;
   e.second = Eigen::VectorXd::Ones(points);
   e.mass = Real::Identity(points, points);
-  e.inertia = lossy(s) * lossy(s);
+  e.inertia = lossy(s, k) * lossy(s, k);
   e.centre = across->centre;
   e.drive = lift ? Eigen::VectorXd::Zero(points) : Eigen::VectorXd((pi / 2 * across->eta.array()).cos());
   e.at = [=](double x, Real& first, Real& here) {
@@ -128,7 +134,7 @@ CollocatedEquations thin_plate(const Surface& s, double k, int points) {
   e.second = Eigen::VectorXd::Ones(2 * m);
   e.mass = Real::Zero(2 * m, 2 * m);
   e.mass.bottomLeftCorner(m, m) = -Real::Identity(m, m);
-  e.inertia = lossy(s) * lossy(s) * (lossy(s) * lossy(s) + tau);
+  e.inertia = lossy(s, k) * lossy(s, k) * (lossy(s, k) * lossy(s, k) + tau);
   e.centre = Eigen::RowVectorXd::Zero(2 * m);
   // v = (1 - eta^2) q, and q is interpolated
   e.centre.head(m) = across->centre.cwiseQuotient((1 - across->eta.array().square()).matrix().transpose());
@@ -187,7 +193,7 @@ CollocatedEquations mindlin_plate(const Surface& s, double f, double k, int poin
   e.mass = Real::Identity(3 * m, 3 * m) * (plate.rotary_inertia_kg * omega * omega / d);
   e.mass.topLeftCorner(m, m) =
       Real::Identity(m, m) * (plate.mass_kg_per_m2 * omega * omega / (plate.shear_N_per_m * k * k));
-  e.inertia = std::pow(lossy(s), 4);
+  e.inertia = std::pow(lossy(s, k), 4);
   e.centre = Eigen::RowVectorXd::Zero(3 * m);
   e.centre.head(m) = across->centre;
   e.at = [=](double x, Real& first, Real& here) {

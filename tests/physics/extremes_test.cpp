@@ -71,12 +71,13 @@ Surface strip_of(const std::vector<std::string>& row) {
   s.taper = LinearTaper{plate ? 0.014 : 0.03, 0};
   s.drive = row[1] == "piston" ? DriveShape::piston : DriveShape::cosine;
   s.length_m = number(2);
-  s.quality_factor = quality(number(5));
+  turnpoint::physics_test::set_wave_loss(s, number(8), number(5));
   if (!plate) return s;
   s.edges = row[0] == "clamped" ? Edges::clamped : Edges::supported;
   s.thickness_m = number(3);
   s.tension_Pa = number(4);
   s.bending = Bending::on;
+  turnpoint::physics_test::set_wave_loss(s, number(8), number(5));
   return s;
 }
 
@@ -96,7 +97,7 @@ Surface curved_plate(const std::vector<std::string>& row) {
   s.thickness_m = number(3);
   s.tension_Pa = number(4);
   s.bending = Bending::on;
-  s.quality_factor = quality(number(6));
+  turnpoint::physics_test::set_wave_loss(s, number(5), number(6));
   return s;
 }
 

@@ -79,7 +79,7 @@ TEST_CASE("on a uniform strip with loss, the response to a finger is a sum of th
   }
   s.taper = LinearTaper{w, 0};
   const double k = wavenumber_per_m(s, f);
-  const std::complex<double> lossy(1, -0.5 / s.quality_factor);
+  const std::complex<double> lossy(1, (plate ? -0.25 : -0.5) / s.quality_factor);
   const auto waves = [&](std::complex<double> k2) {
     constexpr int steps = 400;
     std::complex<double> sum = 0;

@@ -69,3 +69,51 @@ TEST_CASE("averaging over a fingertip multiplies a sine by its sinc and leaves a
     CHECK(mean_wave[i] == Approx(wave[i] * std::sin(t) / t).margin(1e-5));
   }
 }
+
+TEST_CASE("a finger that presses harder comes closer to the surface, and its skin stays the same",
+          "[physics]") {
+  // Relative friction at 1 um from a solution of the two equations by hand: at 5, 15 and 30 kPa the gap at
+  // rest is u_s ln(P*/p) = 4.0, 1.80 and 0.416 um.
+  const auto friction = [](double pressure_Pa, double displacement_m) {
+    LoadSharing model;
+    model.pressure_Pa = pressure_Pa;
+    model.floor = 0;
+    return FrictionMap(model).relative_friction(displacement_m);
+  };
+  const auto by_bisection = [](double pressure_Pa, double a) {
+    const double contact_Pa = 36945, length = 2e-6, ambient_Pa = 101325;
+    double low = a, high = 1e-4;
+    for (int i = 0; i < 200; ++i) {
+      const double u = 0.5 * (low + high), e = a / u;
+      const double carried =
+          contact_Pa * std::exp(-u / length) + ambient_Pa * (std::sqrt((1 + 1.5 * e * e) / (1 - e * e)) - 1);
+      (carried > pressure_Pa ? low : high) = u;
+    }
+    return contact_Pa * std::exp(-low / length) / pressure_Pa;
+  };
+  for (const double pressure_Pa : {5e3, 15e3, 30e3})
+    for (const double a : {0.2e-6, 0.5e-6, 1e-6, 1.5e-6}) {
+      CAPTURE(pressure_Pa, a);
+      const double expected = by_bisection(pressure_Pa, a);
+      if (expected > 0.03) CHECK(friction(pressure_Pa, a) == Approx(expected).epsilon(1e-9));
+    }
+  CHECK(friction(15e3, 1e-6) == Approx(0.38).margin(0.005));
+  CHECK(friction(30e3, 1e-6) == Approx(0.335).margin(0.005));
+  LoadSharing crushing;
+  crushing.pressure_Pa = 4e4;
+  CHECK_THROWS_AS(FrictionMap(crushing), std::invalid_argument);
+}
+
+TEST_CASE("the illustrative curve states a standard deviation: that of fingers whose lengths differ by 30 %",
+          "[physics]") {
+  const FrictionMap map;
+  LoadSharing longer, shorter;
+  longer.decay_length_m *= 1.01, shorter.decay_length_m *= 0.99;
+  for (const double a : {0.3e-6, 0.7e-6, 1e-6, 2e-6}) {
+    const double by_length =
+        (FrictionMap(longer).relative_friction(a) - FrictionMap(shorter).relative_friction(a)) / 0.02;
+    CHECK(map.sd(a) == Approx(0.3 * by_length).epsilon(1e-2));
+    CHECK(map.sd(a) > 0);
+  }
+  CHECK(map.sd(0) == 0);
+}

@@ -16,10 +16,12 @@
 #include "physics/boundary_map.hpp"
 #include "physics/centre_line.hpp"
 #include "physics/dispersion.hpp"
+#include "physics/mode_bound.hpp"
 #include "physics/modes_bound.hpp"
 #include "physics/piston_lift.hpp"
 #include "physics/planner.hpp"
 #include "tests/physics/collocated_field.hpp"
+#include "tests/physics/csv_table.hpp"
 #include "tests/physics/random_scenes.hpp"
 #include "tests/physics/random_surfaces.hpp"
 #include "tests/support/catch.hpp"
@@ -394,4 +396,47 @@ TEST_CASE("the errors of models and map lie inside their bounds on random thin p
 TEST_CASE("the errors of models and map lie inside their bounds on random thick plates", "[physics]") {
   compare_scenes("thick", 4, 20260106, {14, 12, 20, 3, 0.75, 0.8, 30},
                  turnpoint::physics_test::random_thick_plate);
+}
+
+TEST_CASE("on simply supported plates with curved sides, the bounds include the bending moment on the sides",
+          "[physics][oracle]") {
+  const auto rows = turnpoint::physics_test::oracle("supported_taper.csv");
+  REQUIRE(rows.size() == 12);
+  int beyond = 0;  // errors that the bounds would not contain without the term for the sides
+  for (const auto& row : rows) {
+    const auto number = [&](std::size_t i) { return std::stod(row[i]); };
+    const double f = number(1);
+    Surface s = aluminium_plate();
+    s.edges = Edges::supported;
+    s.bending = Bending::on;
+    s.taper = ExponentialTaper{0.014, number(0)};
+    s.length_m = 0.3;
+    s.thickness_m = number(2);
+    s.tension_Pa = number(3);
+    turnpoint::physics_test::set_wave_loss(s, f, 0.5 / number(4));
+    PlanRequest request{{Tone{f, 1, 0}}, 31, Edge::percent(0.5), Normalise::drive, {}};
+    for (const Model model : {Model::mode, Model::modes}) {
+      const auto line = make_centre_line(s, f, model);
+      const double ln_unit = model == Model::modes ? 0 : line->value(0).ln_magnitude();
+      double worst = 0, most = 0;
+      for (std::size_t i = 0; i <= 30; ++i) {
+        const double exact = number(6 + i);
+        const double found =
+            std::exp(line->value(0.3 * static_cast<double>(i) / 30).ln_magnitude() - ln_unit);
+        worst = std::max(worst, std::abs(found - exact));
+        most = std::max(most, exact);
+      }
+      const double amplitude = worst / most, moved_m = std::abs(*line->level_m(0.5) - number(38));
+      const RungEstimate bound = estimate(s, request, model);
+      const SideError sides = side_error(s, f);
+      CAPTURE(row[0], row[1], row[2], row[3], name(model), amplitude, bound.amplitude_bound, moved_m,
+              bound.boundary_bound_m, sides.position_m, sides.phase);
+      CHECK(amplitude <= bound.amplitude_bound);
+      CHECK(moved_m <= bound.boundary_bound_m);
+      CHECK(std::abs(*line->last_peak_m() - number(37)) <= bound.boundary_bound_m);
+      if (model == Model::modes && moved_m > bound.boundary_bound_m - sides.position_m) ++beyond;
+      if (model == Model::modes && number(0) < 0.4) CHECK(sides.position_m < 4 * moved_m);
+    }
+  }
+  CHECK(beyond >= 8);
 }

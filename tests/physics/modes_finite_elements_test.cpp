@@ -61,10 +61,10 @@ Scene scene_of(const std::vector<std::string>& row) {
   auto next = n.begin();
   scene.frequency_Hz = *next++;
   const double q = *next++;
-  scene.surface.quality_factor = q > 0 ? q : std::numeric_limits<double>::infinity();
   scene.surface.length_m = *next++;
   const auto count = static_cast<std::ptrdiff_t>(*next++);
   scene.surface.taper = taper_of(row[2], {next, next + count});
+  turnpoint::physics_test::set_wave_loss(scene.surface, scene.frequency_Hz, q);
   next += count;
   scene.v.assign(next, next + points);
   next += points;

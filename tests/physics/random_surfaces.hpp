@@ -71,7 +71,8 @@ inline physics::Surface random_membrane(Draw& draw) {
 }
 
 // Returns a plate of 0.3 to 3 mm with any taper, driven with the shape of its first mode. One in four is
-// simply supported, one in four clamped under tension, and the others clamped without tension.
+// simply supported and has straight sides, one in four clamped under tension, and the others clamped without
+// tension.
 inline physics::Surface random_thin_plate(Draw& draw) {
   physics::Surface s = physics::aluminium_plate();
   s.thickness_m = draw.spread(0.3e-3, 3e-3);
@@ -87,7 +88,14 @@ inline physics::Surface random_thin_plate(Draw& draw) {
   }
   s.quality_factor = random_quality_factor(draw);
   const double ratio = draw.between(1.15, 5), slope = draw.spread(0.02, 0.5);
-  random_taper(draw, s, physics::cut_off_half_width_m(s, frequency_Hz), ratio, slope);
+  const double cut = physics::cut_off_half_width_m(s, frequency_Hz);
+  random_taper(draw, s, cut, ratio, slope);
+  // The reference solves simply supported plates as membranes, which is right for straight sides only.
+  if (kind == 0) {
+    s.taper = physics::LinearTaper{ratio * cut, slope};
+    s.length_m = 0.95 * ratio * cut / slope;
+  }
+  s.quality_factor /= physics::Dispersion(s).wave_quality(frequency_Hz, 1);
   return s;
 }
 
@@ -98,7 +106,7 @@ inline physics::Surface random_thick_plate(Draw& draw) {
   s.theory = physics::PlateTheory::mindlin;
   s.poisson = draw.between(0.1, 0.45);
   s.thickness_m = draw.spread(0.1e-3, 10e-3);
-  s.quality_factor = random_quality_factor(draw);
+  s.quality_factor = 0.5 * random_quality_factor(draw);
   const double ratio = draw.between(1.15, 4), slope = draw.spread(0.02, 0.3);
   random_taper(draw, s, physics::cut_off_half_width_m(s, frequency_Hz), ratio, slope);
   return s;

@@ -279,6 +279,11 @@ TEST_CASE("the physics library's warnings are said in each language, in English 
   plate.theory = PlateTheory::kirchhoff;
   gather(plate, 45e3);
   plate.quality_factor = 1e6;
+  gather(plate, 45e3);
+  auto rubber = seed_brass();
+  rubber.density_kg_m3 = 1000, rubber.tension_Pa = 17640, rubber.thickness_m = 0.02e-3;
+  rubber.taper = LinearTaper{0.05, 0.1};
+  gather(rubber, 30);
   for (double frequency_Hz = 23e3; frequency_Hz < 24e3; frequency_Hz += 10) gather(plate, frequency_Hz);
 
   for (const char* code : warning_codes) {
