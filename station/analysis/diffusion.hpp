@@ -1,7 +1,10 @@
 #pragma once
+#include <array>
+#include <cstdint>
 #include <optional>
 #include <vector>
 
+#include "station/analysis/estimate.hpp"
 #include "station/analysis/trial_record.hpp"
 
 namespace turnpoint::analysis {
@@ -9,52 +12,63 @@ namespace turnpoint::analysis {
 /// Scaling parameter of the diffusion: all drifts and boundaries in this header assume s = 0.1.
 constexpr double kDiffusionScale = 0.1;
 
-/// The input of EZ-diffusion for the trials of one difficulty under one instruction. Mean and variance are
-/// those of the response times of correct answers.
-struct EzMoments {
-  double proportion_correct = 0;
-  double variance_s2 = 0, mean_s = 0;
-  int trials = 0;  ///< number of answered trials
-};
-
 /// Drift rate v (per s), boundary separation a, and non-decision time Ter.
-struct EzDiffusion {
+struct DiffusionParameters {
   double drift = 0, boundary = 0, nondecision_s = 0;
 };
 
-struct EzResult {
-  /// empty if they cannot be determined; a statement then gives the reason
-  std::optional<EzDiffusion> parameters;
-  std::vector<Statement> statements;
+/// Solves the EZ-diffusion equations in closed form (Wagenmakers, van der Maas & Grasman 2007) for the
+/// proportion correct of `trials` answers and the mean and variance of the times of correct ones. A
+/// proportion of 1 is replaced by 1 - 1/(2n). Empty if the equations have no solution. These moments suffer
+/// from every time that is trimmed, late or not a decision, so fit_diffusion() uses the result as a start
+/// value only.
+std::optional<DiffusionParameters> ez_diffusion(double proportion_correct, int trials, double mean_s,
+                                                double variance_s2);
+
+/// What the fit knows of one presented trial.
+struct DiffusionTrial {
+  std::size_t difficulty = 0;  ///< index of the drift rate
+  enum class Outcome { answered, late, early } outcome = Outcome::answered;
+  bool correct = false;  ///< of an answer
+  /// time of the answer; of a trial without an answer in time the deadline, and of an answer that came too
+  /// early to be accepted the time from which answers are accepted
+  double time_s = 0;
+  std::optional<double> deadline_s;
 };
 
-/// Solves the EZ-diffusion equations in closed form (Wagenmakers, van der Maas & Grasman 2007). A proportion
-/// correct of 1 is replaced by 1 - 1/(2n). Within 1e-3 of chance the formula's limits are used. There is no
-/// solution if the proportion is outside (0, 1), the variance is 0, or Ter would be negative.
-EzResult ez_diffusion(const EzMoments& moments);
-
-/// The diffusion parameters of several difficulties under one instruction. Boundary and Ter are shared; each
-/// difficulty has its own drift.
-struct SharedEz {
+/// The parameters of one draw from the posterior distribution.
+struct DiffusionDraw {
   double boundary = 0, nondecision_s = 0;
-  /// Standard deviation of the estimate of ln(boundary), by the delta method. The kurtosis of the times is
-  /// taken from the model. The kurtosis of a sample is far too low, so intervals from a bootstrap over trials
-  /// would be too short.
-  double log_boundary_sd = 0;
-  std::vector<double> drift;  ///< one drift rate per difficulty, in the order of the moments passed in
-};
-struct SharedEzResult {
-  std::optional<SharedEz> parameters;
-  std::vector<Statement> statements;
+  double contaminants = 0;    ///< proportion of trials that were no decision
+  std::vector<double> drift;  ///< one for each difficulty
 };
 
-/// Solves EZ's equations with a shared boundary and Ter. With L = logit(Pc), EZ gives the variance of the
-/// decision time in one condition as (a / s)^4 h(L), where h is a known function. Each condition thus gives
-/// an estimate of (a / s)^4. The result is the mean of these estimates, each weighted by the inverse of its
-/// relative variance (delta method). The mean of their logarithms would be too low, by about half the
-/// relative variance of one estimate. Ter is the weighted mean, over the conditions, of the mean time minus
-/// the predicted decision time. Conditions with fewer than 10 correct answers are left out. With one
-/// condition the result equals ez_diffusion().
-SharedEzResult shared_ez_diffusion(const std::vector<EzMoments>& conditions);
+struct DiffusionEstimates {
+  Estimate boundary, nondecision_s, contaminants;  ///< posterior medians and central intervals
+  std::vector<Estimate> drift;                     ///< one for each difficulty
+  std::vector<DiffusionDraw> draws;                ///< draws of equal weight
+  double effective_draws = 0;                      ///< number of independent draws that they are worth
+};
+
+struct DiffusionFit {
+  std::optional<DiffusionEstimates> estimates;  ///< empty if they cannot be determined
+  std::vector<Statement> statements;            ///< the reason
+};
+
+/// Fits a diffusion between two boundaries, which starts half-way, to all trials of one condition: correct
+/// and wrong answers with their times, answers that came too late or too early as what they are (censored),
+/// and a mixture with trials that were no decision. Boundary and non-decision time are shared by all
+/// difficulties; each difficulty has a drift of its own. Times are never trimmed: the mixture takes the place
+/// of an exclusion rule, which would change the shape of the distribution that is fitted.
+///
+/// Contaminants answer at random, with a time that is uniform from 0 to twice the deadline; without a
+/// deadline, up to the longest time of the condition. Priors: uniform in the logarithm of the boundary and in
+/// the non-decision time above 0; normal with SD 1 per s (s = 0.1) for drifts; Beta(1, 19), mean 5 %, for the
+/// proportion of contaminants.
+///
+/// The posterior distribution is sampled by adaptive importance sampling from a multivariate t distribution
+/// around its mode. `seed` makes the result reproducible.
+DiffusionFit fit_diffusion(const std::vector<DiffusionTrial>& trials, std::size_t difficulties,
+                           std::uint64_t seed, int stream, double confidence = 0.95);
 
 }  // namespace turnpoint::analysis

@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <map>
 
+#include "station/analysis/diffusion.hpp"
 #include "station/analysis/proportion.hpp"
 #include "station/analysis/quantile.hpp"
 #include "station/random/draws.hpp"
@@ -20,13 +22,16 @@ struct Scored {
 };
 using Cell = std::vector<Scored>;
 
-/// The included trials of one condition, by difficulty.
+/// The trials of one condition, by difficulty.
 struct Group {
   std::vector<double> difficulty;
-  std::vector<Cell> cells;
+  std::vector<Cell> answered;  ///< all answers
+  std::vector<Cell> cells;     ///< those whose times the exclusion rule keeps
+  std::vector<DiffusionTrial> decisions;
+  std::optional<DiffusionEstimates> diffusion;
 };
 
-enum Measure { accuracy, median, boundary, nondecision, lisas_score, efficiency, balanced, measures };
+enum Measure { accuracy, median, lisas_score, efficiency, balanced, measures };
 using Measures = std::array<std::optional<double>, measures>;
 
 std::vector<double> correct_times(const Cell& cell) {
@@ -36,23 +41,17 @@ std::vector<double> correct_times(const Cell& cell) {
   return times;
 }
 
-EzMoments moments(const Cell& cell) {
-  const auto times = correct_times(cell);
-  EzMoments result;
-  result.trials = static_cast<int>(cell.size());
-  if (cell.empty()) return result;
-  result.proportion_correct = static_cast<double>(times.size()) / static_cast<double>(cell.size());
-  if (times.size() > 1) {
-    result.mean_s = mean(times);
-    result.variance_s2 = variance(times);
-  }
-  return result;
-}
-
-SharedEzResult diffusion(const Group& group) {
-  std::vector<EzMoments> conditions;
-  for (const auto& cell : group.cells) conditions.push_back(moments(cell));
-  return shared_ez_diffusion(conditions);
+/// Applies the exclusion rule to all answers of a condition together.
+void keep(Group& group, const TimeExclusion& rule) {
+  std::vector<double> times;
+  for (const auto& cell : group.answered)
+    for (const auto& answer : cell) times.push_back(answer.time_s);
+  const auto kept = keep_times(times, rule);
+  group.cells.assign(group.answered.size(), {});
+  std::size_t next = 0;
+  for (std::size_t i = 0; i < group.answered.size(); ++i)
+    for (const auto& answer : group.answered[i])
+      if (kept[next++]) group.cells[i].push_back(answer);
 }
 
 Cell pooled(const Group& group) {
@@ -68,8 +67,9 @@ void add_balanced(const std::vector<Group>& groups, std::vector<Measures>& resul
   std::vector<double> proportion, time;
   for (const auto& group : groups)
     for (const auto& cell : group.cells) {
+      if (cell.empty()) continue;
       const auto times = correct_times(cell);
-      if (times.empty()) return;
+      if (times.empty()) return;  // a cell without right answers has no score
       proportion.push_back(static_cast<double>(times.size()) / static_cast<double>(cell.size()));
       time.push_back(mean(times));
     }
@@ -78,8 +78,10 @@ void add_balanced(const std::vector<Group>& groups, std::vector<Measures>& resul
   std::size_t next = 0;
   for (std::size_t g = 0; g < groups.size(); ++g) {
     double sum = 0;
-    for (std::size_t i = 0; i < groups[g].cells.size(); ++i) sum += (*scores)[next++];
-    result[g][balanced] = sum / static_cast<double>(groups[g].cells.size());
+    int cells = 0;
+    for (const auto& cell : groups[g].cells)
+      if (!cell.empty()) sum += (*scores)[next++], ++cells;
+    if (cells > 0) result[g][balanced] = sum / cells;
   }
 }
 
@@ -106,22 +108,22 @@ std::vector<Measures> measure(const std::vector<Group>& groups) {
     if (right.empty()) continue;
     result[g][lisas_score] = lisas(mean(right), 1 - p, sd_time, sd_error);
     result[g][efficiency] = inverse_efficiency(mean(right), p);
-    if (const auto fitted = diffusion(groups[g]).parameters) {
-      result[g][boundary] = fitted->boundary;
-      result[g][nondecision] = fitted->nondecision_s;
-    }
   }
   add_balanced(groups, result);
   return result;
 }
 
-std::vector<Group> drawn(const std::vector<Group>& groups, const random::Key& key) {
+std::vector<Group> drawn(const std::vector<Group>& groups, const TimeExclusion& rule,
+                         const random::Key& key) {
   random::Draws draws(key);
-  auto result = groups;
-  for (std::size_t g = 0; g < groups.size(); ++g)
-    for (std::size_t c = 0; c < groups[g].cells.size(); ++c)
-      for (auto& trial : result[g].cells[c])
-        trial = groups[g].cells[c][draws.below(groups[g].cells[c].size())];
+  std::vector<Group> result(groups.size());
+  for (std::size_t g = 0; g < groups.size(); ++g) {
+    for (const auto& cell : groups[g].answered) {
+      auto& again = result[g].answered.emplace_back();
+      for (std::size_t i = 0; i < cell.size(); ++i) again.push_back(cell[draws.below(cell.size())]);
+    }
+    keep(result[g], rule);
+  }
   return result;
 }
 
@@ -135,65 +137,100 @@ std::optional<Estimate> estimate(const std::optional<double>& value, std::vector
 /// difficulty.
 Group collect(const std::vector<TrialRecord>& trials, const TradeOptions& options,
               InstructionResult& result) {
-  std::vector<const TrialRecord*> scored;
+  const auto difficulty_of = [](const TrialRecord& trial) {
+    return trial.difficulty.value_or(trial.level ? std::abs(*trial.level) : 0);
+  };
+  std::map<double, Cell> cells;
+  std::map<double, std::vector<DiffusionTrial>> decisions;
   std::vector<double> times;
+  std::vector<bool> correct;
   for (const auto& trial : trials) {
     if (trial.type != TrialType::experimental || trial.instruction != result.instruction) continue;
     ++result.presented;
     result.timeouts += trial.outcome == Outcome::timeout;
     result.anticipations += trial.outcome == Outcome::anticipation;
+    const double difficulty = difficulty_of(trial);
+    DiffusionTrial decision;
+    decision.deadline_s = trial.deadline_s;
+    if (trial.outcome == Outcome::timeout && trial.deadline_s) {
+      decision.outcome = DiffusionTrial::Outcome::late;
+      decision.time_s = *trial.deadline_s;
+      decisions[difficulty].push_back(decision);
+    } else if (trial.outcome == Outcome::anticipation && trial.anticipation_s > 0) {
+      decision.outcome = DiffusionTrial::Outcome::early;
+      decision.time_s = trial.anticipation_s;
+      decisions[difficulty].push_back(decision);
+    }
     if (trial.outcome != Outcome::answered || !trial.correct || !trial.response_time_s) continue;
     ++result.answered;
-    scored.push_back(&trial);
+    cells[difficulty].push_back({*trial.response_time_s, *trial.correct});
     times.push_back(*trial.response_time_s);
+    correct.push_back(*trial.correct);
+    decision.correct = *trial.correct;
+    decision.time_s = *trial.response_time_s;
+    decisions[difficulty].push_back(decision);
   }
+  Group group;
+  for (auto& [difficulty, cell] : cells) {
+    group.difficulty.push_back(difficulty);
+    for (auto& decision : decisions[difficulty]) {
+      decision.difficulty = group.answered.size();
+      group.decisions.push_back(decision);
+    }
+    group.answered.push_back(std::move(cell));
+  }
+  keep(group, options.exclusion);
   const auto kept = keep_times(times, options.exclusion);
-  std::map<double, Cell> cells;
-  std::vector<bool> correct;
   std::vector<double> right;
-  for (std::size_t i = 0; i < scored.size(); ++i) {
+  std::vector<bool> kept_correct;
+  for (std::size_t i = 0; i < times.size(); ++i) {
     if (!kept[i]) {
       ++result.excluded;
       continue;
     }
-    const Scored entry{times[i], *scored[i]->correct};
-    const double level = scored[i]->level ? std::abs(*scored[i]->level) : 0;
-    cells[scored[i]->difficulty.value_or(level)].push_back(entry);
-    result.times_s.push_back(entry.time_s);
-    correct.push_back(entry.correct);
-    if (entry.correct) right.push_back(entry.time_s);
+    result.times_s.push_back(times[i]);
+    kept_correct.push_back(correct[i]);
+    if (correct[i]) right.push_back(times[i]);
   }
   result.correct = static_cast<int>(right.size());
   result.times = describe_times(result.times_s);
   result.correct_times = describe_times(right);
-  result.caf = conditional_accuracy(result.times_s, correct, options.caf_bins);
-  Group group;
-  for (auto& [difficulty, cell] : cells) {
-    group.difficulty.push_back(difficulty);
-    group.cells.push_back(std::move(cell));
-  }
+  result.caf = conditional_accuracy(result.times_s, kept_correct, options.caf_bins);
   return group;
 }
 
-void fill_cells(const Group& group, InstructionResult& result, double confidence) {
-  const auto fitted = diffusion(group);
-  result.statements = fitted.statements;
+/// Fits the diffusion model, and describes the answers of each difficulty.
+void fill_cells(Group& group, InstructionResult& result, int stream, const TradeOptions& options) {
+  auto fitted =
+      fit_diffusion(group.decisions, group.difficulty.size(), options.seed, stream, options.confidence);
+  result.statements = std::move(fitted.statements);
+  group.diffusion = std::move(fitted.estimates);
+  if (group.diffusion) {
+    result.boundary = group.diffusion->boundary;
+    result.nondecision_s = group.diffusion->nondecision_s;
+    result.contaminants = group.diffusion->contaminants;
+    std::vector<double> drifts;
+    for (const auto& draw : group.diffusion->draws) drifts.push_back(mean(draw.drift));
+    const double middle = quantile(drifts, 0.5);
+    result.drift = Estimate{middle, percentile_interval(std::move(drifts), options.confidence)};
+  }
   for (std::size_t i = 0; i < group.cells.size(); ++i) {
+    if (group.cells[i].empty()) continue;
     DifficultyCell cell;
     cell.difficulty = group.difficulty[i];
     const auto times = correct_times(group.cells[i]);
     cell.answered = static_cast<int>(group.cells[i].size());
     cell.correct = static_cast<int>(times.size());
     cell.proportion_correct = static_cast<double>(cell.correct) / cell.answered;
-    cell.accuracy = wilson(cell.correct, cell.answered, confidence);
+    cell.accuracy = wilson(cell.correct, cell.answered, options.confidence);
     if (!times.empty()) cell.mean_correct_s = mean(times);
-    if (fitted.parameters && cell.correct > 0) cell.drift = fitted.parameters->drift[i];
+    if (group.diffusion) cell.drift = group.diffusion->drift[i];
     result.cells.push_back(cell);
   }
   const int n = static_cast<int>(result.times_s.size());
   if (n > 0)
     result.proportion_correct =
-        Estimate{static_cast<double>(result.correct) / n, wilson(result.correct, n, confidence)};
+        Estimate{static_cast<double>(result.correct) / n, wilson(result.correct, n, options.confidence)};
   if (result.timeouts > 0.05 * result.presented)
     result.statements.push_back(
         {"timeouts",
@@ -203,24 +240,13 @@ void fill_cells(const Group& group, InstructionResult& result, double confidence
     result.statements.push_back({"caf-too-few", texts::phrase("statement.caf_too_few")});
 }
 
-void set_estimates(InstructionResult& result, const Group& group, const Measures& values,
+void set_estimates(InstructionResult& result, const Measures& values,
                    const std::vector<std::vector<double>>& replicates, const TradeOptions& options) {
   const auto of = [&](Measure which) { return estimate(values[which], replicates[which], options); };
   result.median_s = of(median);
-  result.boundary = of(boundary);
-  if (result.boundary) {
-    const double reach = std::exp(normal_quantile(0.5 + options.confidence / 2) *
-                                  diffusion(group).parameters->log_boundary_sd);
-    result.boundary->interval = {*values[boundary] / reach, *values[boundary] * reach, options.confidence};
-  }
-  result.nondecision_s = of(nondecision);
   result.lisas_s = of(lisas_score);
   result.inverse_efficiency_s = of(efficiency);
   result.balanced = of(balanced);
-  if (values[boundary] && !result.boundary) {
-    for (auto& cell : result.cells) cell.drift.reset();
-    result.statements.push_back({"ez-unstable", texts::phrase("statement.ez_unstable")});
-  }
 }
 
 /// Returns the interval of `b - a` from the intervals of two independent estimates (MOVER; Donner & Zou
@@ -236,11 +262,48 @@ struct MeasureName {
 };
 constexpr MeasureName kNames[measures] = {{"proportion correct", "proportion"},
                                           {"median response time", "s"},
-                                          {"boundary", "(s = 0.1)"},
-                                          {"time outside the decision", "s"},
                                           {"LISAS", "s"},
                                           {"inverse efficiency", "s"},
                                           {"BIS", "SD"}};
+
+/// The difference of one parameter of two diffusion fits, second minus first: the median and a central
+/// interval of the differences between their draws.
+template <typename Of>
+std::optional<Estimate> diffusion_difference(const Group& first, const Group& second, double confidence,
+                                             const Of& of) {
+  if (!first.diffusion || !second.diffusion) return std::nullopt;
+  std::vector<double> gaps;
+  const auto &a = first.diffusion->draws, &b = second.diffusion->draws;
+  for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i)
+    gaps.push_back(of(second, b[i]) - of(first, a[i]));
+  const double middle = quantile(gaps, 0.5);
+  return Estimate{middle, percentile_interval(std::move(gaps), confidence)};
+}
+
+void add_diffusion_differences(const Group& first, const Group& second, const TradeOptions& options,
+                               const InstructionResult& a, const InstructionResult& b,
+                               std::vector<Difference>& differences) {
+  const auto add = [&](const char* measure, const char* unit, const auto& of) {
+    differences.push_back({a.instruction, b.instruction, measure, unit,
+                           diffusion_difference(first, second, options.confidence, of)});
+  };
+  add("boundary", "(s = 0.1)", [](const Group&, const DiffusionDraw& draw) { return draw.boundary; });
+  add("time outside the decision", "s",
+      [](const Group&, const DiffusionDraw& draw) { return draw.nondecision_s; });
+  std::vector<double> shared;
+  std::set_intersection(first.difficulty.begin(), first.difficulty.end(), second.difficulty.begin(),
+                        second.difficulty.end(), std::back_inserter(shared));
+  if (shared.empty()) {
+    differences.push_back({a.instruction, b.instruction, "drift", "(s = 0.1)", std::nullopt});
+    return;
+  }
+  add("drift", "(s = 0.1)", [&shared](const Group& group, const DiffusionDraw& draw) {
+    double sum = 0;
+    for (std::size_t i = 0; i < group.difficulty.size(); ++i)
+      if (std::binary_search(shared.begin(), shared.end(), group.difficulty[i])) sum += draw.drift[i];
+    return sum / static_cast<double>(shared.size());
+  });
+}
 
 /// The measures of each condition: for the session itself, and for each bootstrap replicate of the session.
 struct Sessions {
@@ -266,16 +329,19 @@ struct Sessions {
   }
 };
 
-void add_differences(const Sessions& sessions, const TradeOptions& options, Trade& trade) {
+void add_differences(const Sessions& sessions, const std::vector<Group>& groups, const TradeOptions& options,
+                     Trade& trade) {
   for (std::size_t a = 0; a < trade.instructions.size(); ++a)
     for (std::size_t b = a + 1; b < trade.instructions.size(); ++b) {
       const auto &first = trade.instructions[a], &second = trade.instructions[b];
       for (int which = 0; which < measures; ++which) {
         auto difference = sessions.difference(a, b, which, options);
-        if (which == boundary && difference && first.boundary && second.boundary)
-          difference->interval = difference_interval(*first.boundary, *second.boundary);
+        if (which == accuracy && difference && first.proportion_correct && second.proportion_correct)
+          difference->interval = difference_interval(*first.proportion_correct, *second.proportion_correct);
         trade.differences.push_back(
             {first.instruction, second.instruction, kNames[which].name, kNames[which].unit, difference});
+        if (which == median)
+          add_diffusion_differences(groups[a], groups[b], options, first, second, trade.differences);
       }
     }
 }
@@ -289,15 +355,15 @@ Trade trade(const std::vector<TrialRecord>& trials, const TradeOptions& options)
     auto& entry = result.instructions.emplace_back();
     entry.instruction = name;
     groups.push_back(collect(trials, options, entry));
-    fill_cells(groups.back(), entry, options.confidence);
+    fill_cells(groups.back(), entry, static_cast<int>(groups.size()), options);
   }
   Sessions sessions{measure(groups), {}};
   for (int i = 0; i < options.replicates; ++i)
     sessions.replicates.push_back(
-        measure(drawn(groups, {options.seed, random::Stream::bootstrap, 1000, 0, i})));
+        measure(drawn(groups, options.exclusion, {options.seed, random::Stream::bootstrap, 1000, 0, i})));
   for (std::size_t g = 0; g < groups.size(); ++g)
-    set_estimates(result.instructions[g], groups[g], sessions.values[g], sessions.of(g), options);
-  add_differences(sessions, options, result);
+    set_estimates(result.instructions[g], sessions.values[g], sessions.of(g), options);
+  add_differences(sessions, groups, options, result);
   return result;
 }
 

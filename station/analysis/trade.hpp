@@ -17,7 +17,7 @@ struct DifficultyCell {
   double proportion_correct = 0;
   Interval accuracy;                     ///< Wilson interval of `proportion_correct`
   std::optional<double> mean_correct_s;  ///< mean time of correct answers; empty if there were none
-  std::optional<double> drift;           ///< drift rate from the diffusion fit of all difficulties together
+  std::optional<Estimate> drift;         ///< drift rate from the diffusion fit of all difficulties together
 };
 
 /// The results of one condition: an instruction, or whatever else TrialRecord::instruction contains. Accuracy
@@ -31,7 +31,11 @@ struct InstructionResult {
   std::vector<double> times_s;  ///< times of the included trials, in order of presentation
   std::vector<CafBin> caf;
   std::vector<DifficultyCell> cells;  ///< one cell per difficulty, ascending by DifficultyCell::difficulty
-  std::optional<Estimate> median_s, boundary, nondecision_s, lisas_s, inverse_efficiency_s, balanced;
+  std::optional<Estimate> median_s, lisas_s, inverse_efficiency_s, balanced;
+  /// of the diffusion model (fit_diffusion()), from all answers and those that came too late; no time is
+  /// excluded
+  std::optional<Estimate> boundary, nondecision_s, contaminants;
+  std::optional<Estimate> drift;  ///< mean of the drifts over the condition's difficulties
   std::vector<Statement> statements;
 };
 
@@ -39,8 +43,8 @@ struct InstructionResult {
 struct Difference {
   std::string first, second;
   std::string measure;  ///< "proportion correct", "median response time", ...
-  /// the unit of the measure: "s", "proportion", "s = 0.1" for EZ-diffusion (its scaling parameter), or "SD"
-  /// for BIS (the standard deviation over cells)
+  /// the unit of the measure: "s", "proportion", "(s = 0.1)" for the diffusion's boundary and drift (its
+  /// scaling parameter), or "SD" for BIS (the standard deviation over cells)
   std::string unit;
   std::optional<Estimate> estimate;
 };
@@ -64,12 +68,14 @@ struct TradeOptions {
 };
 
 /// Analyses speed and accuracy by condition. The diffusion model is fitted to all difficulties of a condition
-/// together, with one boundary and one Ter. Intervals are percentiles of a bootstrap that resamples trials
-/// within condition and difficulty. Only the boundary's interval is different: it assumes that the logarithm
-/// of the boundary is normal, with the standard deviation of shared_ez_diffusion(). If more than 5 % of the
-/// replicates cannot be fitted, both the number and its interval are empty. LISAS uses the standard
-/// deviations over all trials of the session, BIS those over the session's cells. A single condition has no
-/// BIS, because the scores of its cells always average 0.
+/// together, with one boundary and one Ter (diffusion.hpp); intervals of its parameters and of their
+/// differences come from its posterior distribution. The difference of drifts is the mean over the
+/// difficulties that both conditions have. Differences of proportions have Newcombe's hybrid interval (1998).
+/// Other intervals are percentiles of a bootstrap that resamples answers within condition and difficulty, and
+/// excludes times from each replicate as from the session. If more than 5 % of the replicates have no number,
+/// both the number and its interval are empty. LISAS uses the standard deviations over all trials of the
+/// session, BIS those over the session's cells. A single condition has no BIS, because the scores of its
+/// cells always average 0.
 Trade trade(const std::vector<TrialRecord>& trials, const TradeOptions& options);
 
 }  // namespace turnpoint::analysis

@@ -36,6 +36,9 @@ struct TrialRecord {
   std::optional<int> confidence;  ///< from 1 for the least sure; empty if the task does not ask
   Outcome outcome = Outcome::answered;
   std::optional<double> response_time_s;
+  std::optional<double>
+      deadline_s;             ///< longest response time that the trial accepted; empty if it had no limit
+  double anticipation_s = 0;  ///< an answer before this time is an anticipation
   /// time of the response signal, counted from the zero of response times (response_zero); empty if there is
   /// none
   std::optional<double> signal_s;

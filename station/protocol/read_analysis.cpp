@@ -14,7 +14,7 @@ using text::TableReader;
 
 namespace {
 
-const std::vector<std::string> kShown{"psychometric",    "ez",   "bis", "lisas", "ies", "caf", "dprime",
+const std::vector<std::string> kShown{"psychometric",    "diffusion",   "bis", "lisas", "ies", "caf", "dprime",
                                       "response-signal", "trace"};
 
 void read_by(TableReader& reader, Reading& reading) {
@@ -57,8 +57,8 @@ texts::Phrase without_effect(const std::string& word, const Protocol& protocol) 
   if ((word == "psychometric" || word == "dprime") &&
       answer_rule(protocol, level).kind == AnswerKind::category)
     return phrase("problem.level_decides");
-  if (word == "ez" && task.choices.size() > 2 && task.kind != TaskKind::oddity)
-    return phrase("problem.ez_two");
+  if (word == "diffusion" && task.choices.size() > 2 && task.kind != TaskKind::oddity)
+    return phrase("problem.diffusion_two");
   const auto& by = protocol.analysis.by;
   for (const auto& spec : protocol.procedures)
     if (word == "psychometric" && spec.second &&

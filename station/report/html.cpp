@@ -145,8 +145,10 @@ using Result = analysis::InstructionResult;
 constexpr MeasureRow kRows[] = {
     {"Proportion correct (0 to 1)", "proportion correct", "", &Result::proportion_correct},
     {"Median response time (s)", "median response time", "", &Result::median_s},
-    {"EZ boundary a (for s = 0.1)", "boundary", "ez", &Result::boundary},
-    {"EZ time outside the decision Ter (s)", "time outside the decision", "ez", &Result::nondecision_s},
+    {"Boundary a (diffusion, s = 0.1)", "boundary", "diffusion", &Result::boundary},
+    {"Time outside the decision Ter (s)", "time outside the decision", "diffusion", &Result::nondecision_s},
+    {"Drift v, mean over difficulties (1/s, s = 0.1)", "drift", "diffusion", &Result::drift},
+    {"Share of trials that were no decision (0 to 1)", "", "diffusion", &Result::contaminants},
     {"LISAS (s)", "LISAS", "lisas", &Result::lisas_s},
     {"Inverse efficiency (s)", "inverse efficiency", "ies", &Result::inverse_efficiency_s},
     {"BIS (standard deviations over cells)", "BIS", "bis", &Result::balanced}};
@@ -190,7 +192,7 @@ std::string difference_table(const Summary& summary) {
   for (const auto& pair : pairs) html += "<th>" + escaped(pair) + "</th>";
   html += "</tr>";
   for (const auto& row : kRows) {
-    if (!has(row, summary)) continue;
+    if (!has(row, summary) || *row.measure == '\0') continue;
     html += std::string("<tr><th>") + row.title + "</th>";
     for (const auto& pair : pairs)
       for (const auto& difference : differences)
@@ -202,11 +204,11 @@ std::string difference_table(const Summary& summary) {
 }
 
 std::string difficulty_table(const Summary& summary) {
-  const bool drift = shows(summary.data, "ez");
+  const bool drift = shows(summary.data, "diffusion");
   std::string html =
       "<table><tr><th>Condition</th><th>Difficulty (as <code>difficulty</code> or the size of the "
       "level)</th><th>Correct (trials, proportion)</th><th>Mean correct (s)</th>";
-  html += std::string(drift ? "<th>Drift v (1/s, for s = 0.1)</th>" : "") + "</tr>";
+  html += std::string(drift ? "<th>Drift v (1/s, s = 0.1)</th>" : "") + "</tr>";
   for (const auto& entry : summary.trade.instructions)
     for (const auto& part : entry.cells) {
       html += "<tr><td>" + escaped(name_of(entry.instruction)) + "</td><td class=\"n\">" +
@@ -214,7 +216,7 @@ std::string difficulty_table(const Summary& summary) {
               std::to_string(part.answered) + ", " + estimated(part.proportion_correct, part.accuracy) +
               "</td><td class=\"n\">" + (part.mean_correct_s ? number(*part.mean_correct_s) : "none") +
               "</td>";
-      if (drift) html += "<td class=\"n\">" + (part.drift ? number(*part.drift) : "not estimated") + "</td>";
+      if (drift) html += cell(part.drift);
       html += "</tr>";
     }
   return html + "</table>\n";

@@ -65,8 +65,10 @@ Json instruction_json(const analysis::InstructionResult& entry) {
             {"anticipations", entry.anticipations}, {"excluded", entry.excluded}};
   json["proportion_correct"] = value(entry.proportion_correct);
   json["median_response_time_s"] = value(entry.median_s);
-  json["ez_boundary"] = value(entry.boundary);
-  json["ez_nondecision_s"] = value(entry.nondecision_s);
+  json["boundary"] = value(entry.boundary);
+  json["nondecision_s"] = value(entry.nondecision_s);
+  json["contaminants"] = value(entry.contaminants);
+  json["drift"] = value(entry.drift);
   json["lisas_s"] = value(entry.lisas_s);
   json["inverse_efficiency_s"] = value(entry.inverse_efficiency_s);
   json["bis"] = value(entry.balanced);

@@ -134,9 +134,9 @@ struct SessionData {
   int replicates = 1000;
 };
 
-/// True if the report contains this part: "psychometric", "ez", "bis", "lisas", "ies", "caf", "dprime",
+/// True if the report contains this part: "psychometric", "diffusion", "bis", "lisas", "ies", "caf", "dprime",
 /// "response-signal" or "trace". If the protocol does not choose the parts, the report contains all of them,
-/// with two exceptions: d' only for yes/no tasks and where `deciding` has a model, and EZ-diffusion only for
+/// with two exceptions: d' only for yes/no tasks and where `deciding` has a model, and the diffusion model only for
 /// two answers.
 bool shows(const SessionData& data, const std::string& part);
 

@@ -67,7 +67,9 @@ analysis::TrialRecord record_of(const records::TrialRow& row, const records::Blo
   record.confidence = row.confidence;
   record.outcome = row.outcome;
   record.response_time_s = row.response_time_s;
+  record.deadline_s = row.deadline_s;
   const auto factors = factors_of(row);
+  record.anticipation_s = protocol::evaluate(protocol.timing.anticipation_s, factors);
   if (protocol.timing.signal) record.signal_s = protocol::evaluate(protocol.timing.signal->after_s, factors);
   record.instruction = protocol::condition_of(protocol, factors, block.instruction);
   if (protocol.analysis.difficulty)

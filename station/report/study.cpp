@@ -123,8 +123,9 @@ void add_measures(const Summary& summary, StudyPerson& person) {
   for (const auto& entry : summary.trade.instructions) {
     if (data.scored) measures.add(entry.instruction, "proportion correct", "", entry.proportion_correct);
     measures.add(entry.instruction, "median response time", "s", entry.median_s);
-    measures.add(entry.instruction, "EZ boundary", "s = 0.1", entry.boundary);
-    measures.add(entry.instruction, "EZ time outside the decision", "s", entry.nondecision_s);
+    measures.add(entry.instruction, "boundary", "s = 0.1", entry.boundary);
+    measures.add(entry.instruction, "time outside the decision", "s", entry.nondecision_s);
+    measures.add(entry.instruction, "drift", "s = 0.1", entry.drift);
     measures.add(entry.instruction, "LISAS", "s", entry.lisas_s);
     measures.add(entry.instruction, "inverse efficiency", "s", entry.inverse_efficiency_s);
     measures.add(entry.instruction, "BIS", "SD", entry.balanced);

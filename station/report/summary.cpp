@@ -93,10 +93,10 @@ NamedFit fit_of(const SessionData& data, const std::string& name, const std::vec
 /// Removes the measures that belong to parts of the report which the protocol does not show.
 void hide(const SessionData& data, analysis::Trade& trade) {
   for (auto& entry : trade.instructions) {
-    if (!shows(data, "ez")) {
-      entry.boundary.reset(), entry.nondecision_s.reset();
+    if (!shows(data, "diffusion")) {
+      entry.boundary.reset(), entry.nondecision_s.reset(), entry.contaminants.reset(), entry.drift.reset();
       for (auto& cell : entry.cells) cell.drift.reset();
-      std::erase_if(entry.statements, [](const auto& said) { return said.code.starts_with("ez-"); });
+      std::erase_if(entry.statements, [](const auto& said) { return said.code.starts_with("diffusion-"); });
     }
     if (!shows(data, "lisas")) entry.lisas_s.reset();
     if (!shows(data, "ies")) entry.inverse_efficiency_s.reset();
@@ -108,7 +108,8 @@ void hide(const SessionData& data, analysis::Trade& trade) {
   }
   std::erase_if(trade.differences, [&data](const auto& difference) {
     const auto& name = difference.measure;
-    return ((name == "boundary" || name == "time outside the decision") && !shows(data, "ez")) ||
+    return ((name == "boundary" || name == "time outside the decision" || name == "drift") &&
+            !shows(data, "diffusion")) ||
            (name == "LISAS" && !shows(data, "lisas")) ||
            (name == "inverse efficiency" && !shows(data, "ies")) || (name == "BIS" && !shows(data, "bis"));
   });
@@ -200,7 +201,7 @@ texts::Phrase describe_intervals(const NamedFit& named, const SessionData& data)
 bool shows(const SessionData& data, const std::string& part) {
   if (data.show) return std::find(data.show->begin(), data.show->end(), part) != data.show->end();
   if (part == "response-signal") return true;
-  if (part == "ez") return data.choices.size() <= 2;
+  if (part == "diffusion") return data.choices.size() <= 2;
   return part != "dprime" || data.design == Design::yes_no || data.design == Design::ratings ||
          !data.deciding.empty();
 }

@@ -122,6 +122,8 @@ class Truths {
         // the time that a simulated observer needs outside the decision is the same in all conditions, so the
         // true difference is 0
         add(source, "time outside the decision", 0);
+        // its drift depends on the stimulus only
+        add(source, "drift", 0);
       }
   }
 

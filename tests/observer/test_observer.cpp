@@ -63,12 +63,12 @@ TEST_CASE("EZ-diffusion finds the drift, boundary and residual time of the obser
         const auto reply = observer.answer(question);
         if (reply.choice == 0) times.push_back(reply.response_time_s);
       }
-      const auto ez = analysis::ez_diffusion({static_cast<double>(times.size()) / trials,
-                                              analysis::variance(times), analysis::mean(times), trials});
-      REQUIRE(ez.parameters);
-      drift.push_back(ez.parameters->drift);
-      boundary.push_back(ez.parameters->boundary);
-      nondecision.push_back(ez.parameters->nondecision_s);
+      const auto ez = analysis::ez_diffusion(static_cast<double>(times.size()) / trials, trials,
+                                             analysis::mean(times), analysis::variance(times));
+      REQUIRE(ez);
+      drift.push_back(ez->drift);
+      boundary.push_back(ez->boundary);
+      nondecision.push_back(ez->nondecision_s);
     }
     INFO("proportion correct " << proportion);
     const double v = 0.1 * std::log(proportion / (1 - proportion)) / (2 * 0.85);

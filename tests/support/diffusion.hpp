@@ -10,7 +10,7 @@ struct Decision {
 };
 
 /// Simulates one decision of a diffusion with these parameters and noise of s = 0.1 (SD after 1 s).
-inline Decision sample_decision(const analysis::EzDiffusion& parameters, random::Draws& draws) {
+inline Decision sample_decision(const analysis::DiffusionParameters& parameters, random::Draws& draws) {
   const double s = analysis::kDiffusionScale;
   const auto passage = observer::first_passage(parameters.drift / s, parameters.boundary / (2 * s), 0, draws);
   return {passage.upper, passage.time_s + parameters.nondecision_s};

@@ -1,0 +1,34 @@
+#pragma once
+
+namespace turnpoint::analysis {
+
+/// A diffusion between two boundaries, in the scaling s = 1: noise with a standard deviation of 1 after 1 s.
+/// It starts at `start` x `boundary` above the lower boundary (0), drifts towards the upper one (`boundary`)
+/// at `drift` per s, and is absorbed at the boundary that it meets first.
+struct Diffusion {
+  double drift = 0;     ///< per s, any finite number
+  double boundary = 1;  ///< separation of the boundaries, above 0
+  double start = 0.5;   ///< relative start point, above 0 and below 1
+};
+
+/// Logarithm of the density (1/s) of being absorbed at the upper or lower boundary at `time_s`; -infinity for
+/// times of 0 or less. Uses the series for short or for long times, whichever needs fewer terms (Navarro &
+/// Fuss 2009). The relative error of the density is below 1e-8 where it exceeds 1e-30, that of its logarithm
+/// below 1e-6 elsewhere.
+double log_density(const Diffusion& diffusion, bool upper, double time_s);
+
+/// Logarithm of the probability of having been absorbed at this boundary by `time_s` (Blurton, Kesselmeier &
+/// Gondan 2012 for short times, the series of sines for long ones). The same accuracy.
+double log_distribution(const Diffusion& diffusion, bool upper, double time_s);
+
+/// Logarithm of the probability of being absorbed at this boundary after `time_s`. The same accuracy.
+double log_tail(const Diffusion& diffusion, bool upper, double time_s);
+
+/// Logarithm of the probability of not having been absorbed by `time_s`: what an answer that came too late
+/// tells.
+double log_survival(const Diffusion& diffusion, double time_s);
+
+/// Probability of being absorbed at the upper boundary at any time.
+double upper_probability(const Diffusion& diffusion);
+
+}  // namespace turnpoint::analysis

@@ -1,0 +1,104 @@
+#!/usr/bin/env python3
+"""first_passage_table.py [SETS [SEED]]: prints densities, distributions, tails and survival of the diffusion between two
+boundaries at random parameters, computed with mpmath in 60 to 400 digits (package python3-mpmath), as C++ rows. The test
+test_first_passage.cpp has 500 of them. One row in 25 is also compared with the integral of the density.
+
+The columns: drift, boundary, start, time, then the natural logarithms of the density at the lower boundary, of its
+distribution, of its tail, and of the survival; below -1e5 a logarithm is written as -1e9.
+"""
+import random
+import sys
+
+from mpmath import mp, mpf, erfc, exp, inf, log, pi, quad, sin, sqrt
+
+
+def density(v, a, w, t):
+    u = t / a**2
+    if u > mpf("0.3"):
+        total, k = mpf(0), 1
+        while True:
+            term = k * sin(k * pi * w) * exp(-k * k * pi**2 * u / 2)
+            total += term
+            if k * k * exp(-(k * k - 1) * pi**2 * u / 2) < mpf(10) ** (-mp.dps):
+                break
+            k += 1
+        f = pi * total
+    else:
+        f = sum((w + 2 * k) * exp(-((w + 2 * k) ** 2) / (2 * u)) for k in range(-60, 61)) / sqrt(2 * pi * u**3)
+    return exp(-v * a * w - v * v * t / 2) * f / a**2
+
+
+def ever(v, a, w):
+    if v == 0:
+        return 1 - w
+    return (exp(-2 * v * a) - exp(-2 * v * a * w)) / (exp(-2 * v * a) - 1)
+
+
+def tail_by_sines(v, a, w, t):
+    u, total, k = t / a**2, mpf(0), 1
+    while True:
+        rate = v * v / 2 + (k * pi / a) ** 2 / 2
+        total += k * sin(k * pi * w) / rate * exp(-rate * t)
+        if (k * k - 1) * pi**2 * u / 2 > mp.dps * 2.4:
+            break
+        k += 1
+    return pi / a**2 * exp(-v * a * w) * total
+
+
+def distribution_by_images(v, a, w, t):
+    upper = lambda x: erfc(x / sqrt(mpf(2))) / 2  # noqa: E731
+    total = mpf(0)
+    for k in range(0, 400):
+        r = k * a + (a * w if k % 2 == 0 else a * (1 - w))
+        term = exp(-v * r) * upper((r - v * t) / sqrt(t)) + exp(v * r) * upper((r + v * t) / sqrt(t))
+        total += -term if k % 2 else term
+        if k > 2 and abs(term) < abs(total) * mpf(10) ** (-mp.dps + 10):
+            break
+    return exp(-v * a * w) * total
+
+
+def both(v, a, w, t):
+    """Distribution and tail at the lower boundary."""
+    if t / a**2 > mpf("0.02"):
+        tail = tail_by_sines(v, a, w, t)
+        below = ever(v, a, w) - tail
+        if t / a**2 < 1:
+            below = distribution_by_images(v, a, w, t)
+        return below, tail
+    below = distribution_by_images(v, a, w, t)
+    return below, ever(v, a, w) - below
+
+
+def written(x):
+    value = log(x) if x > 0 else mpf(-inf)
+    if abs(value) < mpf(10) ** -300:
+        return "-0.0"
+    return "-1e9" if value < -1e5 else mp.nstr(value, 17)
+
+
+def main(sets=500, seed=20):
+    draw = random.Random(seed)
+    for i in range(int(sets)):
+        hard = i % 5 == 0
+        v = draw.choice([0.0, draw.uniform(-6, 6), draw.uniform(-6, 6), draw.uniform(-30, 30) if hard else draw.gauss(0, 2)])
+        a = 10 ** draw.uniform(-0.7, 0.9)
+        w = draw.choice([0.5, draw.uniform(0.05, 0.95), 10 ** draw.uniform(-4, -1) if hard else 0.5])
+        if hard and draw.random() < 0.3:
+            w = 1 - w
+        t = 10 ** draw.uniform(-4, 2) if hard else a * a * 10 ** draw.uniform(-1.7, 0.9)
+        mp.dps = 60
+        v, a, w, t = (mpf(float(repr(float(x)))) for x in (v, a, w, t))
+        need = 60 + int(abs(v) * a + v * v * t / 2 + a * a / t)
+        mp.dps = min(need, 1200)
+        f = density(v, a, w, t)
+        below, tail = both(v, a, w, t)
+        _, other = both(-v, a, 1 - w, t)
+        if i % 25 == 0 and below > mpf(10) ** -30:
+            mp.dps = 30
+            integral = quad(lambda s: density(v, a, w, s), [0, t / 8, t / 4, t / 2, t])
+            assert abs(integral / below - 1) < mpf(10) ** -9, (v, a, w, t, integral, below)
+        print("    {" + ", ".join([repr(float(x)) for x in (v, a, w, t)] + [written(x) for x in (f, below, tail, tail + other)]) + "},")
+
+
+if __name__ == "__main__":
+    main(*sys.argv[1:])
