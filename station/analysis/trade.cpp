@@ -287,17 +287,17 @@ void add_diffusion_differences(const Group& first, const Group& second, const Tr
     differences.push_back({a.instruction, b.instruction, measure, unit,
                            diffusion_difference(first, second, options.confidence, of)});
   };
-  add("boundary", "(s = 0.1)", [](const Group&, const DiffusionDraw& draw) { return draw.boundary; });
+  add("boundary", "s = 0.1", [](const Group&, const DiffusionDraw& draw) { return draw.boundary; });
   add("time outside the decision", "s",
       [](const Group&, const DiffusionDraw& draw) { return draw.nondecision_s; });
   std::vector<double> shared;
   std::set_intersection(first.difficulty.begin(), first.difficulty.end(), second.difficulty.begin(),
                         second.difficulty.end(), std::back_inserter(shared));
   if (shared.empty()) {
-    differences.push_back({a.instruction, b.instruction, "drift", "(s = 0.1)", std::nullopt});
+    differences.push_back({a.instruction, b.instruction, "drift", "s = 0.1", std::nullopt});
     return;
   }
-  add("drift", "(s = 0.1)", [&shared](const Group& group, const DiffusionDraw& draw) {
+  add("drift", "s = 0.1", [&shared](const Group& group, const DiffusionDraw& draw) {
     double sum = 0;
     for (std::size_t i = 0; i < group.difficulty.size(); ++i)
       if (std::binary_search(shared.begin(), shared.end(), group.difficulty[i])) sum += draw.drift[i];

@@ -43,7 +43,7 @@ struct InstructionResult {
 struct Difference {
   std::string first, second;
   std::string measure;  ///< "proportion correct", "median response time", ...
-  /// the unit of the measure: "s", "proportion", "(s = 0.1)" for the diffusion's boundary and drift (its
+  /// the unit of the measure: "s", "proportion", "s = 0.1" for the diffusion's boundary and drift (its
   /// scaling parameter), or "SD" for BIS (the standard deviation over cells)
   std::string unit;
   std::optional<Estimate> estimate;

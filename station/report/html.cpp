@@ -229,6 +229,15 @@ std::string trade_section(const Summary& summary) {
   html += instruction_table(summary) + difference_table(summary) + picture(trade_figure(summary)) +
           picture(response_time_figure(summary));
   if (summary.data.design != Design::categories) html += difficulty_table(summary);
+  if (shows(summary.data, "diffusion"))
+    html +=
+        "<p class=\"soft\">Boundary, time outside the decision and drift come from the diffusion model, "
+        "fitted to all "
+        "answers, with those that came too late as decisions not made by the deadline. Times that the "
+        "exclusion rule "
+        "leaves out elsewhere are part of this fit: trimming would change the distribution that is fitted. "
+        "The numbers "
+        "are medians of the posterior distribution, with 95 % intervals.</p>\n";
   for (const auto& entry : summary.trade.instructions) {
     for (auto statement : entry.statements) {
       if (!entry.instruction.empty())
