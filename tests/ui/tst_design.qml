@@ -352,34 +352,6 @@ Item {
             verify(designPage().design.feeling.tones > 0 && designPage().design.feeling.peakPercent > 0)
         }
 
-        function test_the_text_is_completed_at_the_cursor() {
-            begin("contrast", "c")
-            tap("side-text")
-            const edit = appears("designText")
-            edit.forceActiveFocus()
-            const line = edit.text.indexOf("deadline_s = 3.0")
-            edit.cursorPosition = line
-            for (const key of [Qt.Key_E, Qt.Key_X]) {
-                room.pressKey(key)
-                room.releaseKey(key)
-            }
-            tap("completion-explore_s")
-            verify(edit.text.includes("explore_s = deadline_s"))
-            edit.insert(edit.cursorPosition, "9.5\n")
-            tryVerify(() => designPage().design.text.includes("explore_s = 9.5\ndeadline_s = 3.0"), 5000)
-            edit.cursorPosition = edit.text.indexOf("\n", edit.text.indexOf("response_zero"))
-            edit.remove(edit.text.indexOf("response_zero"), edit.cursorPosition)
-            for (const key of [Qt.Key_R, Qt.Key_E]) {
-                room.pressKey(key)
-                room.releaseKey(key)
-            }
-            tryVerify(() => shown("completion-response_zero"))
-            room.pressKey(Qt.Key_Tab)
-            room.releaseKey(Qt.Key_Tab)
-            tap("completion-go_cue")
-            tryVerify(() => designPage().design.text.includes("response_zero = \"go_cue\""), 5000)
-        }
-
         function test_a_screen_reader_finds_every_control_with_a_name() {
             begin("contrast", "a")
             for (const section of ["study", "question", "scenes", "levels", "blocks", "timing", "other"]) {

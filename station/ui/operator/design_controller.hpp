@@ -137,9 +137,6 @@ class DesignController : public QObject {
   Q_INVOKABLE bool save(const QString& name);
   Q_INVOKABLE bool overwrite();
   Q_INVOKABLE bool reload();
-  /// What can be written at a place of the text, as {from, words: [{word, insert, help}]}. Places count in
-  /// characters as QML does.
-  Q_INVOKABLE QVariantMap complete(const QString& text, int at) const;
 
   /// Returns the label for a key of the file, such as "Zone · from (mm)".
   Q_INVOKABLE static QString label(const QStringList& path, const QString& language);

@@ -4,7 +4,6 @@
 #include <exception>
 #include <utility>
 
-#include "station/design/completion.hpp"
 #include "station/system/read_file.hpp"
 #include "station/system/write_file.hpp"
 #include "station/text/toml.hpp"
@@ -77,20 +76,6 @@ bool DesignController::reload() try {
   return true;
 } catch (const std::exception& error) {
   return refuse(phrases_of(error).front());
-}
-
-QVariantMap DesignController::complete(const QString& text, int at) const {
-  if (!schema_) return {};
-  const auto source = text.toStdString();
-  const auto bytes = static_cast<std::size_t>(text.left(at).toUtf8().size());
-  const auto found = design::complete(*schema_, source, bytes);
-  QVariantList words;
-  for (const auto& one : found.suggestions)
-    words += QVariantMap{{"word", QString::fromStdString(one.word)},
-                         {"insert", QString::fromStdString(one.insert)},
-                         {"help", QString::fromStdString(one.help)}};
-  const auto from = QString::fromStdString(source.substr(0, std::min(found.from, bytes))).size();
-  return {{"from", static_cast<int>(from)}, {"words", words}};
 }
 
 }  // namespace turnpoint::ui
