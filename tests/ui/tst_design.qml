@@ -172,6 +172,10 @@ Item {
             tap("side-check")
             tryVerify(() => designPage().design.verdict === "bad", 5000)
             verify(says(room.screen, "not valid TOML"))
+            tryVerify(() => shown("designRemark0"), 5000)
+            tap("designRemark0")  // the form has no such field, so the text opens at the line
+            const broken = appears("designText")
+            compare(broken.cursorPosition, broken.text.lastIndexOf("\n", broken.text.indexOf("3.05a")) + 1)
             tap("undo")
             tryVerify(() => designPage().design.verdict !== "bad", 5000)
         }

@@ -190,11 +190,17 @@ Rectangle {
                 texts: texts
                 design: root.design
                 onRemarkChosen: index => {
-                    if (!root.wide) root.beside = ""
-                    root.design.goTo(index)
+                    const line = root.design.remarks[index].line
+                    if (root.design.goTo(index)) {
+                        if (!root.wide) root.beside = ""
+                    } else if (line > 0) {  // nothing in the form: the text, at this line
+                        root.beside = "text"
+                        text.item.goTo(line)
+                    }
                 }
             }
             Loader {
+                id: text
                 anchors { fill: parent; topMargin: sides.visible ? sides.height + 0.5 * look.unit : 0 }
                 active: root.other === "text"
                 sourceComponent: DesignText { theme: look; texts: root.phrases; design: root.design }

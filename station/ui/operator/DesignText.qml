@@ -18,6 +18,13 @@ Rectangle {
         edit.text = design.text
         edit.cursorPosition = Math.min(at, edit.length)
     }
+    /// Puts the cursor at the beginning of a line, counted from 1.
+    function goTo(line: int) {
+        let at = 0
+        for (let i = 1; i < line && edit.text.indexOf("\n", at) >= 0; ++i) at = edit.text.indexOf("\n", at) + 1
+        edit.forceActiveFocus()
+        edit.cursorPosition = at
+    }
     Component.onCompleted: follow()
     Component.onDestruction: if (typed.running) root.design.setText(edit.text)
     Connections {

@@ -234,7 +234,7 @@ void DesignController::show(int section) {
   Q_EMIT changed();
 }
 
-void DesignController::goTo(int remark) {
+bool DesignController::goTo(int remark) {
   const auto has = [remark](const std::vector<std::size_t>& remarks) {
     return std::find(remarks.begin(), remarks.end(), static_cast<std::size_t>(remark)) != remarks.end();
   };
@@ -246,10 +246,11 @@ void DesignController::goTo(int remark) {
                                       [&](const design::Field& f) { return has(f.remarks); });
       if (field == group.fields.end() && !has(group.remarks)) continue;
       show(s);
-      return Q_EMIT reached(
-          g, field == group.fields.end() ? -1 : static_cast<int>(field - group.fields.begin()));
+      Q_EMIT reached(g, field == group.fields.end() ? -1 : static_cast<int>(field - group.fields.begin()));
+      return true;
     }
   }
+  return false;
 }
 
 bool DesignController::change(int index, int field, const QString& typed) try {

@@ -122,8 +122,9 @@ class DesignController : public QObject {
   Q_INVOKABLE void close();
 
   Q_INVOKABLE void show(int section);
-  /// Shows the page with the field that a remark is about, and then emits reached().
-  Q_INVOKABLE void goTo(int remark);
+  /// Shows the page with the field that a remark is about, and then emits reached(). Returns false if the form has no
+  /// such field, as when the text is no TOML.
+  Q_INVOKABLE bool goTo(int remark);
   /// Sets a field of the chosen page to what a person typed. An empty text removes the key from the file.
   Q_INVOKABLE bool change(int group, int field, const QString& typed);
   Q_INVOKABLE bool copy(int group, const QString& name);
