@@ -222,12 +222,54 @@ std::string difficulty_table(const Summary& summary) {
   return html + "</table>\n";
 }
 
+/// What the trade was, in one sentence for each pair of conditions: how much later answers came, how much
+/// more often they were right, and what of it the diffusion model ascribes to caution and to the quality of
+/// the evidence.
+std::string trade_sentences(const Summary& summary) {
+  const auto& differences = summary.trade.differences;
+  const auto find = [&](const analysis::Difference& pair, const char* measure) -> const Estimate* {
+    for (const auto& one : differences)
+      if (one.first == pair.first && one.second == pair.second && one.measure == measure && one.estimate)
+        return &*one.estimate;
+    return nullptr;
+  };
+  const auto detected = [](const Estimate& gap) { return gap.interval.low > 0 || gap.interval.high < 0; };
+  const auto size = [](Estimate gap, double scale, const char* unit) {
+    if (gap.value < 0) gap = {-gap.value, {-gap.interval.high, -gap.interval.low, gap.interval.confidence}};
+    const Interval scaled{scale * gap.interval.low, scale * gap.interval.high, gap.interval.confidence};
+    return estimated(scale * gap.value, scaled) + unit;
+  };
+  std::string html;
+  for (const auto& pair : differences) {
+    if (pair.measure != "proportion correct") continue;
+    const auto *right = find(pair, "proportion correct"), *time = find(pair, "median response time");
+    if (right == nullptr || time == nullptr) continue;
+    html += "<p>Compared with <b>" + escaped(name_of(pair.first)) + "</b>, answers under <b>" +
+            escaped(name_of(pair.second)) + "</b> came " + size(*time, 1, " s ") +
+            (time->value < 0 ? "sooner" : "later") + " (median) and were right " +
+            size(*right, 100, " % of the trials ") + (right->value < 0 ? "less" : "more") + " often.";
+    const auto *boundary = find(pair, "boundary"), *drift = find(pair, "drift");
+    if (boundary != nullptr && drift != nullptr)
+      html += std::string(" The boundary ") +
+              (!detected(*boundary)  ? "did not change detectably"
+               : boundary->value < 0 ? "was lower (less caution)"
+                                     : "was higher (more caution)") +
+              "; the drift " +
+              (!detected(*drift)  ? "did not change detectably"
+               : drift->value < 0 ? "was lower (weaker evidence)"
+                                  : "was higher (stronger evidence)") +
+              ".";
+    html += "</p>\n";
+  }
+  return html;
+}
+
 std::string trade_section(const Summary& summary) {
   if (summary.trade.instructions.empty() || !summary.data.scored) return "";
   const bool several = summary.trade.instructions.size() > 1;
   std::string html = several ? "<h2>Speed-accuracy trade-off</h2>\n" : "<h2>Speed and accuracy</h2>\n";
-  html += instruction_table(summary) + difference_table(summary) + picture(trade_figure(summary)) +
-          picture(response_time_figure(summary));
+  html += trade_sentences(summary) + picture(trade_figure(summary)) + instruction_table(summary) +
+          difference_table(summary) + picture(response_time_figure(summary));
   if (summary.data.design != Design::categories) html += difficulty_table(summary);
   if (shows(summary.data, "diffusion"))
     html +=

@@ -108,6 +108,10 @@ TEST_CASE("A speed-accuracy session gives fits, the trade with intervals, and al
   CHECK(html.find("&lt;under&gt;") != std::string::npos);
   CHECK(html.find("<script") == std::string::npos);
   CHECK(html.find("accuracy \u2212 speed") != std::string::npos);
+  CHECK(html.find("answers under <b>accuracy</b> came ") != std::string::npos);
+  CHECK(html.find(" later (median) and were right ") != std::string::npos);
+  CHECK(html.find("The boundary was higher (more caution); the drift did not change detectably.") !=
+        std::string::npos);
   CHECK(html.find("class=\"mode\">simulated") != std::string::npos);
   const auto json = nlohmann::json::parse(to_json(summary));
   CHECK(json["instructions"].size() == 2);
