@@ -11,7 +11,7 @@ namespace turnpoint::report {
 class Words {
  public:
   explicit Words(std::string language) : language_(std::move(language)) {}
-  const std::string& operator()(const char* key) const { return texts::text(key, language_); }
+  std::string operator()(const char* key) const { return texts::text(key, language_); }
   std::string operator()(const texts::Phrase& phrase) const { return texts::say(phrase, language_); }
   /// The text with `value` in its place %1.
   std::string operator()(const char* key, const std::string& value) const {

@@ -103,10 +103,12 @@ Translation translation(const std::string& language) {
   return spoken == nullptr ? Translation::none : spoken->translation;
 }
 
-const std::string& text(std::string_view key, std::string_view language) {
-  const auto* found = find_text(key, language);
-  if (found == nullptr) throw std::logic_error("no text has the key \"" + std::string(key) + "\"");
-  return *found;
+std::string text(std::string_view key, std::string_view language) {
+  if (const auto* found = find_text(key, language)) return *found;
+  // A sentence is not a key: keys have no spaces and no places.
+  if (key.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789_.-") != std::string_view::npos)
+    return std::string(key);
+  throw std::logic_error("no text has the key \"" + std::string(key) + "\"");
 }
 
 std::string say(const Phrase& phrase, std::string_view language) {
@@ -115,10 +117,7 @@ std::string say(const Phrase& phrase, std::string_view language) {
     for (const auto& value : phrase.values) said += say(value, language);
     return said;
   }
-  // A sentence is not a key: keys have no spaces and no places.
-  const bool is_key =
-      phrase.key.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789_.-") == std::string::npos;
-  const auto& pattern = is_key ? text(phrase.key, language) : phrase.key;
+  const auto pattern = text(phrase.key, language);
   // In Arabic, which is written from right to left, invisible characters around a value keep its parts in
   // their order ("-30" would be drawn as "30-"). Texts.qml does the same.
   const bool mirrored = language.starts_with("ar");

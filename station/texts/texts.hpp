@@ -25,8 +25,9 @@ enum class Translation { none, unread, participant_read, read };
 Translation translation(const std::string& language);
 
 /// Returns one text in the given language ("de", "de-CH"), or in English if the station does not speak that
-/// language or its catalogue lacks the text. Throws std::logic_error for a key that no catalogue has.
-const std::string& text(std::string_view key, std::string_view language);
+/// language or its catalogue lacks the text. A key with a space or a place (%1) is itself the text, in
+/// English. Throws std::logic_error for any other key that no catalogue has.
+std::string text(std::string_view key, std::string_view language);
 
 /// What somebody is to be told, in a language that is chosen later: the text with this key, with `values` in
 /// its places %1, %2 and so on. A key with a space or a place is itself the text, in English: what is wrong
