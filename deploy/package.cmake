@@ -39,6 +39,7 @@ install(FILES deploy/system/turnpoint.bash-completion DESTINATION share/bash-com
 install(FILES deploy/system/turnpoint.zsh-completion DESTINATION share/zsh/vendor-completions RENAME _turnpoint COMPONENT station)
 install(FILES deploy/system/watchdog.conf deploy/system/iio.conf DESTINATION share/turnpoint/system COMPONENT station)
 install(FILES deploy/system/turnpoint.udev DESTINATION lib/udev/rules.d RENAME 60-turnpoint.rules COMPONENT station)
+install(FILES deploy/system/turnpoint.polkit DESTINATION share/polkit-1/rules.d RENAME 60-turnpoint.rules COMPONENT station)
 install(FILES deploy/system/turnpoint.sysusers DESTINATION lib/sysusers.d RENAME turnpoint.conf COMPONENT station)
 install(FILES deploy/system/turnpoint.tmpfiles DESTINATION lib/tmpfiles.d RENAME turnpoint.conf COMPONENT station)
 

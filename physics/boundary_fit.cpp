@@ -28,7 +28,18 @@ struct Problem {
       s = changed(std::move(s), unknown[j],
                   u(static_cast<Eigen::Index>(j)) * standard_deviation(surface, unknown[j]));
     }
+    try {
+      validate(s);
+    } catch (const std::invalid_argument&) {
+      throw impossible();
+    }
     return s;
+  }
+
+  static Refused impossible() {
+    return Refused(make_statement("boundary-fit",
+                                  "the measured boundaries lead to a surface that cannot exist; measure them again, "
+                                  "or correct the rig file"));
   }
 
   double boundary_m(const Surface& s, double f) const {
@@ -63,15 +74,21 @@ struct Problem {
   }
 };
 
+// Values that may be measured. The fit divides by the precision, and a far smaller one would leave no digits.
+constexpr double highest_Hz = 1e9, furthest_m = 1000, least_sd_m = 1e-9, largest_sd_m = 1;
+
 void check(const MapOptions& options, std::span<const MeasuredBoundary> measured, const Problem& problem) {
   if (options.edge.kind == Edge::Kind::friction && !options.friction)
     throw std::invalid_argument("a friction edge needs a friction map and a displacement");
   if (measured.empty()) throw std::invalid_argument("there are no measured boundaries");
   for (const MeasuredBoundary& m : measured) {
-    if (m.frequency_Hz > 0 && std::isfinite(m.boundary_m) && m.sd_m > 0 && std::isfinite(m.sd_m)) continue;
+    if (m.frequency_Hz > 0 && m.frequency_Hz <= highest_Hz && std::abs(m.boundary_m) <= furthest_m &&
+        m.sd_m >= least_sd_m && m.sd_m <= largest_sd_m)
+      continue;
     throw Refused(make_statement("measured-boundary",
-                                 "boundary at %1 m for %2 Hz, precise to %3 m; the position must be finite, "
-                                 "the frequency and the precision above 0",
+                                 "boundary at %1 m for %2 Hz, precise to %3 m; the position must be within "
+                                 "1000 m, the frequency above 0 and at most 1e9 Hz, the precision from 1e-9 to "
+                                 "1 m",
                                  {m.boundary_m, m.frequency_Hz, m.sd_m}));
   }
   if (problem.unknown.empty())
@@ -97,6 +114,7 @@ Solution solve(const Problem& problem) {
     const Eigen::LLT<Eigen::MatrixXd> factors(information);
     s.covariance = factors.solve(Eigen::MatrixXd::Identity(n, n));
     Eigen::VectorXd step = factors.solve(s.jacobian.transpose() * s.misses - s.u);
+    if (!step.allFinite() || !s.covariance.allFinite()) throw Problem::impossible();
     const double size = step.cwiseAbs().maxCoeff();
     if (size > largest_step) step *= largest_step / size;
     s.u += step;

@@ -7,7 +7,7 @@
 
 namespace turnpoint::physics {
 
-// The measured position of an edge at one frequency. `sd_m` is the precision of the measurement, above 0.
+// The measured position of an edge at one frequency. `sd_m` is the precision of the measurement, 1 nm to 1 m.
 struct MeasuredBoundary {
   double frequency_Hz = 0;
   double boundary_m = 0;

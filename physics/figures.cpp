@@ -1,8 +1,8 @@
 #include "physics/figures.hpp"
 
 #include <array>
+#include <charconv>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 
 #include "physics/centre_line.hpp"
@@ -36,11 +36,13 @@ std::vector<double> in_mm(const std::vector<double>& x) {
   return mm;
 }
 
-std::string hertz(double f) {
-  char text[32];
-  std::snprintf(text, sizeof text, f < 1000 ? "%g Hz" : "%g kHz", f < 1000 ? f : f / 1000);
-  return text;
+// As printf's %g does, but in every locale with a decimal point.
+std::string rounded(double value, int digits) {
+  char text[40];
+  return {text, std::to_chars(text, text + sizeof text, value, std::chars_format::general, digits).ptr};
 }
+
+std::string hertz(double f) { return f < 1000 ? rounded(f, 6) + " Hz" : rounded(f / 1000, 6) + " kHz"; }
 
 constexpr std::array kModels{Model::mode, Model::seed, Model::airy};
 constexpr std::array kLabels{"corrected mode", "paper's eq. 11, exact", "paper's Airy profile, eqs. 20-22"};
@@ -112,13 +114,8 @@ std::string to_csv(const Figure& figure) {
   text += '\n';
   if (curves.empty()) return text;
   for (std::size_t i = 0; i < curves[0]->x_mm.size(); ++i) {
-    char cell[40];
-    std::snprintf(cell, sizeof cell, "%.6g", curves[0]->x_mm[i]);
-    text += cell;
-    for (const Curve* curve : curves) {
-      std::snprintf(cell, sizeof cell, ",%.9g", curve->value[i]);
-      text += cell;
-    }
+    text += rounded(curves[0]->x_mm[i], 6);
+    for (const Curve* curve : curves) text += "," + rounded(curve->value[i], 9);
     text += '\n';
   }
   return text;

@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <stdexcept>
 
 #include "physics/boundary_budget.hpp"
@@ -5,6 +7,7 @@
 #include "station/calibration/fits.hpp"
 #include "station/scene/planner.hpp"
 #include "station/terms/usage_error.hpp"
+#include "station/text/number.hpp"
 #include "station/texts/refusal.hpp"
 
 namespace turnpoint::calibration {
@@ -22,6 +25,17 @@ rig::SurfaceFit surface_fit(const physics::BoundaryFit& fit) {
   return surface;
 }
 
+/// Throws if boundaries contradict each other or the rig, and the fit could not leave out the wrong ones.
+void require_agreement(const physics::BoundaryFit& fit, const std::vector<BoundaryPoint>& points) {
+  if (fit.left_out) return;
+  std::string named;
+  for (std::size_t i = 0; i < points.size(); ++i)
+    if (fit.outliers[i])
+      named += fmt::format("{}{} mm at {} Hz", named.empty() ? "" : ", ", text::number(1e3 * points[i].boundary_m),
+                           text::number(points[i].frequency_Hz));
+  if (!named.empty()) throw texts::Refusal(texts::phrase("series.contradict", {texts::plain(named)}));
+}
+
 }  // namespace
 
 BoundaryFit fit_boundaries(const rig::Rig& rig, const std::string& edge, std::vector<BoundaryPoint> points) {
@@ -33,6 +47,7 @@ BoundaryFit fit_boundaries(const rig::Rig& rig, const std::string& edge, std::ve
     std::vector<physics::MeasuredBoundary> measured;
     for (const auto& point : points) measured.push_back({point.frequency_Hz, point.boundary_m, point.sd_m});
     const auto fit = physics::fit_boundaries(scene::surface_of(rig), options, measured);
+    require_agreement(fit, points);
     for (std::size_t i = 0; i < points.size(); ++i) {
       points[i].residual_m = fit.residuals_m[i];
       points[i].deviation = fit.deviations[i];

@@ -167,6 +167,9 @@ void read_tables(text::TableReader& reader, Calibration& calibration) {
     fit.residual = inner.number("residual", {0, 10}, 0);
     if (same_length(inner, "relative_friction", mu.size(), u.size()))
       for (std::size_t k = 0; k < u.size(); ++k) fit.points.push_back({u[k] * 1e-6, mu[k]});
+    rig::FrictionTable points;
+    for (const auto& point : fit.points) points.emplace_back(point.displacement_m, point.relative_friction);
+    if (rig::falling(points).empty()) inner.problem("relative_friction", phrase("problem.friction_rows"));
     inner.finish();
     calibration.friction = fit;
   }

@@ -32,7 +32,8 @@ struct BoundaryFit {
 };
 
 /// Fits all parameters of the surface for which the rig file states a standard deviation (see
-/// physics::fit_boundaries()). Throws terms::UsageError for points that cannot be used.
+/// physics::fit_boundaries()). Throws terms::UsageError for points that cannot be used, and for points that
+/// contradict the others or the rig so that no fit can say which of them are wrong; it names them.
 BoundaryFit fit_boundaries(const rig::Rig& rig, const std::string& edge, std::vector<BoundaryPoint> points);
 
 /// One frequency of a sweep: the drive edge's displacement at full scale and its phase.
@@ -74,8 +75,8 @@ std::vector<Resonance> find_resonances(const std::vector<ResponsePoint>& sweep);
 /// Median quality factor; empty without resonances.
 std::optional<double> quality_of(const std::vector<Resonance>& resonances);
 
-/// One point of a curve of relative friction over displacement. The fitted curve falls monotonically, which
-/// is achieved by pooling adjacent violators.
+/// One point of a curve of relative friction over displacement. The fitted curve begins at (0, 1) and falls
+/// strictly: where the measured friction does not fall, neighbours are pooled into one point.
 struct FrictionPoint {
   double displacement_m = 0;
   double relative_friction = 0;
@@ -85,8 +86,12 @@ struct FrictionFit {
   double residual = 0;  ///< rms of measured minus fitted relative friction
 };
 
-/// Fits friction that never rises with displacement. Throws terms::UsageError for fewer than two
-/// displacements, or values outside 0 to 1.5.
+/// A measured point that is further from the fitted curve contradicts it: friction does not rise with
+/// displacement, and it is 1 at displacement 0.
+inline constexpr double largest_friction_miss = 0.15;
+
+/// Fits friction that falls with displacement. Throws terms::UsageError for fewer than two displacements, for
+/// values outside rig::kLeastFriction to 1.5, and for points that contradict the curve, which it names.
 FrictionFit fit_friction(std::vector<FrictionPoint> measured);
 
 }  // namespace turnpoint::calibration

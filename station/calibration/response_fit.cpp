@@ -6,6 +6,7 @@
 
 #include "station/analysis/least_squares.hpp"
 #include "station/calibration/fits.hpp"
+#include "station/text/number.hpp"
 #include "station/texts/refusal.hpp"
 
 namespace turnpoint::calibration {
@@ -130,40 +131,79 @@ std::optional<double> quality_of(const std::vector<Resonance>& resonances) {
   return values.size() % 2 == 1 ? values[middle] : 0.5 * (values[middle - 1] + values[middle]);
 }
 
+namespace {
+
+/// Measured friction at one displacement, or at neighbouring ones that are pooled, with its weight.
+struct Pool {
+  double displacement_m, friction, weight;
+  std::size_t points;  ///< number of measured points
+
+  void add(const Pool& other) {
+    const double both = weight + other.weight;
+    displacement_m = (weight * displacement_m + other.weight * other.displacement_m) / both;
+    friction = (weight * friction + other.weight * other.friction) / both;
+    weight = both, points += other.points;
+  }
+};
+
+/// Pools neighbours until friction falls from pool to pool. `measured` is in ascending order of displacement.
+std::vector<Pool> falling_pools(const std::vector<FrictionPoint>& measured) {
+  constexpr double equal = 1e-6, step_m = 2 * rig::kLeastStep_m;
+  std::vector<Pool> pools;
+  for (const auto& point : measured) {
+    const Pool next{point.displacement_m, point.relative_friction, 1, 1};
+    // Friction is relative to friction without vibration, so that it is 1 at displacement 0.
+    if (point.displacement_m < step_m)
+      pools.empty() ? pools.push_back({0, 1, 1, 1}) : pools.back().add({0, 1, 1, 1});
+    else if (!pools.empty() && point.displacement_m - pools.back().displacement_m < step_m)
+      pools.back().add(next);
+    else
+      pools.push_back(next);
+  }
+  std::vector<Pool> falling;
+  for (const auto& pool : pools) {
+    falling.push_back(pool);
+    while (falling.size() > 1 && falling.back().friction > falling[falling.size() - 2].friction - equal) {
+      const auto last = falling.back();
+      falling.pop_back();
+      falling.back().add(last);
+    }
+    // a rise above 1 at the beginning
+    if (falling.size() == 1 && falling.front().friction > 1 - equal) falling.front().friction = 1;
+  }
+  return falling;
+}
+
+}  // namespace
+
 FrictionFit fit_friction(std::vector<FrictionPoint> measured) {
-  std::sort(measured.begin(), measured.end(), [](const FrictionPoint& a, const FrictionPoint& b) {
+  std::stable_sort(measured.begin(), measured.end(), [](const FrictionPoint& a, const FrictionPoint& b) {
     return a.displacement_m < b.displacement_m;
   });
-  struct Pool {
-    double sum, count;
-  };
-  std::vector<Pool> pools;
-  std::vector<std::size_t> pool_size;
-  for (const FrictionPoint& point : measured) {
-    if (!(point.displacement_m >= 0 && point.relative_friction > 0 && point.relative_friction <= 1.5))
+  for (const FrictionPoint& point : measured)
+    if (!(point.displacement_m >= 0 && point.displacement_m <= 1 &&
+          point.relative_friction >= rig::kLeastFriction && point.relative_friction <= 1.5))
       throw texts::Refusal(
           texts::phrase("series.friction_point", {plain(fmt::format("{}", point.relative_friction)),
                                                   plain(fmt::format("{}", point.displacement_m))}));
-    pools.push_back({point.relative_friction, 1});
-    while (pools.size() > 1) {
-      const Pool last = pools.back(), before = pools[pools.size() - 2];
-      if (before.sum / before.count >= last.sum / last.count) break;
-      pools.pop_back();
-      pools.back() = {before.sum + last.sum, before.count + last.count};
+  FrictionFit fit{{{0, 1}}, 0};
+  std::string contradicting;
+  std::size_t k = 0;
+  for (const auto& pool : falling_pools(measured)) {
+    if (pool.friction < 1) fit.points.push_back({pool.displacement_m, std::max(pool.friction, rig::kLeastFriction)});
+    for (std::size_t i = 0; i < pool.points; ++i, ++k) {
+      const double miss = measured[k].relative_friction - pool.friction;
+      fit.residual += miss * miss / static_cast<double>(measured.size());
+      if (std::abs(miss) > largest_friction_miss)
+        contradicting += fmt::format("{}{} at {} um", contradicting.empty() ? "" : ", ",
+                                     text::number(measured[k].relative_friction),
+                                     text::number(1e6 * measured[k].displacement_m));
     }
   }
-  FrictionFit fit;
-  std::size_t k = 0;
-  for (const Pool& pool : pools)
-    for (double i = 0; i < pool.count; i += 1, ++k) {
-      const double value = pool.sum / pool.count;
-      fit.residual +=
-          std::pow(measured[k].relative_friction - value, 2) / static_cast<double>(measured.size());
-      if (!fit.points.empty() && fit.points.back().displacement_m == measured[k].displacement_m) continue;
-      fit.points.push_back({measured[k].displacement_m, value});
-    }
+  if (!contradicting.empty()) throw texts::Refusal(texts::phrase("series.contradict", {plain(contradicting)}));
   fit.residual = std::sqrt(fit.residual);
-  if (fit.points.size() < 2) throw texts::Refusal(texts::phrase("series.few_displacements"));
+  if (measured.size() < 2 || fit.points.size() < 2)
+    throw texts::Refusal(texts::phrase("series.few_displacements"));
   return fit;
 }
 

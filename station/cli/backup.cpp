@@ -30,7 +30,7 @@ void back_up(const Options& options, Context& context) {
                         {"sha256", report.sha256},     {"bytes", report.bytes},
                         {"sessions", report.sessions}, {"trials", report.trials},
                         {"removed", report.removed},   {"unrecorded", report.unrecorded}}
-                       .dump(2)
+                       .dump(2, ' ', false, kInvalidBytes)
                 << "\n";
     return;
   }
@@ -54,7 +54,7 @@ void drill(const Options& options, Context& context) {
                         {"live_sessions", drill.live_sessions},
                         {"live_trials", drill.live_trials},
                         {"problems", drill.problems}}
-                       .dump(2)
+                       .dump(2, ' ', false, kInvalidBytes)
                 << "\n";
     return;
   }
@@ -84,7 +84,7 @@ void restore(const Options& options, Context& context) {
                         {"rejected", restored.rejected},
                         {"changed", restored.changed},
                         {"problems", restored.problems}}
-                       .dump(2)
+                       .dump(2, ' ', false, kInvalidBytes)
                 << "\n";
     return;
   }

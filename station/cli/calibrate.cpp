@@ -156,13 +156,13 @@ void calibrate_panel(const Options& options, const rig::Rig& rig, Context& conte
   const auto made = maintenance::with_panel(rig, *measured, options.out);
   const auto out =
       options.out.empty() ? calibration::file_for(options.rig, calibration::today()) : options.out;
-  system::write_file(out, calibration::to_toml(made));
+  maintenance::write_calibration(made, rig, out);
   if (context.json) {
     const Json json{{"file", out},
                     {"quality", measured->quality},
                     {"response_offset", delay_json(made.panel->touch)},
                     {"flash", delay_json(made.panel->flash)}};
-    context.out << json.dump(2) << "\n";
+    context.out << json.dump(2, ' ', false, kInvalidBytes) << "\n";
     return;
   }
   const auto say = [&](const char* what, const std::optional<calibration::Delay>& delay) {
@@ -196,10 +196,12 @@ void calibrate(const Options& options, Context& context) {
   maintenance::keep_devices(rig, made, options.out);
   const auto out = options.out.empty() ? calibration::file_for(options.rig, made.made_on) : options.out;
   const auto plots = options.plots.empty() ? out + ".svg" : options.plots;
+  if (plots == out) throw UsageError("calibrate: --plots and the calibration file must be two files: " + out);
+  static_cast<void>(maintenance::usable_toml(made, rig));  // nothing is written if this throws
   system::write_file(plots, plot::render(maintenance::calibration_figure(made, measurements)));
-  system::write_file(out, calibration::to_toml(made));
+  maintenance::write_calibration(made, rig, out);
   if (context.json) {
-    context.out << to_json(made, out, plots).dump(2) << "\n";
+    context.out << to_json(made, out, plots).dump(2, ' ', false, kInvalidBytes) << "\n";
     return;
   }
   print(context.out, made);

@@ -108,7 +108,7 @@ void calibrate_forces(const SensorOptions& options, const rig::Rig& rig, Context
       [&](const auto& why) { return again(std::cin, context.err, texts::say(why, "en")); });
   const auto out = maintenance::write_forces(rig, result.cells, options.out);
   if (context.json) {
-    context.out << to_json(result, out).dump(2) << "\n";
+    context.out << to_json(result, out).dump(2, ' ', false, kInvalidBytes) << "\n";
     return;
   }
   print(context.out, result);

@@ -6,10 +6,10 @@
 #include "station/calibration/apply.hpp"
 #include "station/cli/json.hpp"
 #include "station/cli/shared_options.hpp"
+#include "station/maintenance/calibrate.hpp"
 #include "station/maintenance/pick_up_sweep.hpp"
 #include "station/session/session.hpp"
 #include "station/session/stage.hpp"
-#include "station/system/write_file.hpp"
 #include "station/text/number.hpp"
 
 namespace turnpoint::cli {
@@ -102,11 +102,11 @@ void calibrate_pick_ups(const SensorOptions& options, const rig::Rig& rig, Conte
   const auto made = maintenance::with_pick_ups(rig, maintenance::calibrate_pick_ups(rig, plan), options.out);
   const auto out =
       options.out.empty() ? calibration::file_for(options.rig_path, calibration::today()) : options.out;
-  system::write_file(out, calibration::to_toml(made));
+  maintenance::write_calibration(made, rig, out);
   if (context.json) {
     Json json{{"file", out}, {"pick_ups", Json::array()}};
     for (const auto& pick_up : made.pick_ups) json["pick_ups"].push_back(to_json(pick_up));
-    context.out << json.dump(2) << "\n";
+    context.out << json.dump(2, ' ', false, kInvalidBytes) << "\n";
     return;
   }
   for (const auto& pick_up : made.pick_ups) print(context.out, pick_up);

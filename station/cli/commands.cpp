@@ -1,5 +1,7 @@
 #include <fmt/format.h>
 
+#include <cerrno>
+#include <cstring>
 #include <iostream>
 #include <system_error>
 
@@ -7,6 +9,7 @@
 #include "station/cli/completion.hpp"
 #include "station/cli/escaped_output.hpp"
 #include "station/cli/manual.hpp"
+#include "station/system/write_file.hpp"
 #include "station/text/problem.hpp"
 
 namespace turnpoint::cli {
@@ -52,6 +55,18 @@ int report(std::ostream& err, const std::exception& error, int code) {
   return code;
 }
 
+/// Returns the exit status after the output has been written out: `status`, or 1 if a command succeeded but its
+/// output did not arrive (full disk, closed pipe).
+int status_of_output(std::ostream& out, std::ostream& err, int status) {
+  errno = 0;
+  out.flush();
+  if (out) return status;
+  err << "turnpoint: standard output failed"
+      << (errno != 0 ? std::string(": ") + std::strerror(errno) : std::string())
+      << "; what was printed is incomplete\n";
+  return status == 0 ? 1 : status;
+}
+
 }  // namespace
 
 void add_json(Command& command, Context& context) {
@@ -59,14 +74,16 @@ void add_json(Command& command, Context& context) {
 }
 
 int run(int argc, char** argv, std::ostream& raw_out, std::ostream& raw_err, const Screens* screens) {
+  system::let_writes_fail();
   EscapedOutput out(raw_out), err(raw_err);
   Context context{out, err, false, 0, {argv, argv + argc + 1}, screens};
   CommandLine app(kDescription, "turnpoint", TURNPOINT_VERSION);
   for (const auto add : kCommands) add(app, context);
-  return exit_status(err, [&] {
+  const int status = exit_status(err, [&] {
     if (help_for_tools(app, {argv + 1, argv + argc}, out)) return 0;
     return app.parse(argc, argv, out) ? context.exit_code : 0;
   });
+  return status_of_output(out, err, status);
 }
 
 int exit_status(std::ostream& err, const std::function<int()>& work) {
@@ -76,6 +93,8 @@ int exit_status(std::ostream& err, const std::function<int()>& work) {
     err << error.what() << "\n";
     return 2;
   } catch (const UsageError& error) {
+    return report(err, error, 2);
+  } catch (const system::RefusedDestination& error) {
     return report(err, error, 2);
   } catch (const std::logic_error& error) {
     report(err, error, kSoftwareFault);

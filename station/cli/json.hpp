@@ -12,6 +12,10 @@ namespace turnpoint::cli {
 /// JSON whose keys keep the order in which they were written.
 using Json = nlohmann::ordered_json;
 
+/// How dump() writes bytes that are not UTF-8, as a path may have: as U+FFFD. A document with them would be
+/// refused otherwise, after the work has been done.
+inline constexpr auto kInvalidBytes = Json::error_handler_t::replace;
+
 /// JSON has no NaN and no infinity; they become null.
 inline Json json_number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 

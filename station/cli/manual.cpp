@@ -6,6 +6,7 @@
 #include <filesystem>
 
 #include "station/system/write_file.hpp"
+#include "station/terms/letters.hpp"
 
 namespace turnpoint::cli {
 
@@ -29,10 +30,10 @@ std::string roff(const std::string& text) {
 
 std::string head(const std::string& page, const std::string& summary) {
   std::string upper;
-  for (const char c : page) upper += static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
+  for (const char c : page) upper += terms::upper(c);
   auto first = summary;
   if (first.size() > 1 && std::islower(static_cast<unsigned char>(first[1])))
-    first[0] = static_cast<char>(std::tolower(static_cast<unsigned char>(first[0])));
+    first[0] = terms::lower(first[0]);
   return fmt::format(".TH {} 1 \"\" \"Turnpoint {}\" \"Turnpoint manual\"\n.ad l\n.nh\n.SH NAME\n{} \\- {}\n",
                      roff(upper), TURNPOINT_VERSION, roff(page), roff(first));
 }
@@ -48,7 +49,7 @@ std::string tail(const std::string& see_also) {
 
 std::string item(const OptionText& option) {
   auto kind = option.kind;
-  for (auto& c : kind) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  kind = terms::lower(kind);
   const std::string shown = option.positional ? option.name : kind;
   std::string text = ".TP\n";
   if (option.positional)

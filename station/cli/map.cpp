@@ -213,7 +213,7 @@ void map(const Options& options, Context& context) {
     list.back()["budget"] = to_json(budget_of(answer));
     list.back()["finger"] = to_json(scene::finger_shift(rig, *answer.frequency_Hz, wanted.edge));
   }
-  context.out << list.dump(2) << "\n";
+  context.out << list.dump(2, ' ', false, kInvalidBytes) << "\n";
 }
 
 }  // namespace map_command

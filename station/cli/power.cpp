@@ -164,11 +164,11 @@ void show(const Found& found, const Options& options, Context& context) {
     files.push_back((std::filesystem::path(options.out) / (found.id + "-power.svg")).string());
     system::write_file(files.back(), plot::render(simulation::figure_of(found.power, found.title)));
     const auto path = (std::filesystem::path(options.out) / (found.id + "-power.json")).string();
-    system::write_file(path, to_json(found, files).dump(2) + "\n");
+    system::write_file(path, to_json(found, files).dump(2, ' ', false, kInvalidBytes) + "\n");
     files.push_back(path);
   }
   if (context.json)
-    context.out << to_json(found, files).dump(2) << "\n";
+    context.out << to_json(found, files).dump(2, ' ', false, kInvalidBytes) << "\n";
   else
     print(context.out, found.power), print(context.out, found.cues);
   for (const auto& file : files)
@@ -223,7 +223,7 @@ void power(const Options& options, Context& context) {
     fmt::print(context.err, "turnpoint: stopped by {} after {} of {} simulated sessions\n", signal,
                part.sessions.size(), simulation::sessions_of(wanted.part, wanted.observers));
   if (!options.part.empty())
-    context.out << to_json(part).dump() << "\n";
+    context.out << to_json(part).dump(-1, ' ', false, kInvalidBytes) << "\n";
   else if (!part.sessions.empty())
     show({simulation::power_of(protocol, wanted, part.sessions), part.cues, protocol.id, protocol.title,
           signal},

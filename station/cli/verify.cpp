@@ -46,7 +46,7 @@ void verify(const Options& options, Context& context) {
   const auto result = store::verify(options.database, options.verify);
   if (!result.good()) context.exit_code = 1;
   if (context.json)
-    context.out << to_json(result).dump(2) << "\n";
+    context.out << to_json(result).dump(2, ' ', false, kInvalidBytes) << "\n";
   else
     print(context.out, result);
 }

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <stdexcept>
 
 #include "physics/edge.hpp"
@@ -167,12 +166,11 @@ protocol::Factors factors_for(const protocol::Protocol& protocol, const std::vec
           fmt::format("--set {}: write factor=value, with one of the factors {}", text, known));
     }
     const auto value = text.substr(equals + 1);
-    char* end = nullptr;
-    const double number = std::strtod(value.c_str(), &end);
     if (std::holds_alternative<double>(found->second)) {
-      if (value.empty() || *end != '\0' || !std::isfinite(number))
+      const auto number = text::read_number(value);
+      if (!number || !std::isfinite(*number))
         throw terms::UsageError(fmt::format("--set {}: the value of {} must be a number", text, name));
-      found->second = number;
+      found->second = *number;
     } else {
       found->second = value;
     }

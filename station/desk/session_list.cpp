@@ -7,15 +7,13 @@
 
 #include "station/store/read.hpp"
 #include "station/terms/fault.hpp"
+#include "station/terms/letters.hpp"
 
 namespace turnpoint::desk {
 
 namespace {
 
-std::string lower(std::string text) {
-  for (auto& letter : text) letter = static_cast<char>(std::tolower(static_cast<unsigned char>(letter)));
-  return text;
-}
+using terms::lower;
 
 }  // namespace
 

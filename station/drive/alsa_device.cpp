@@ -8,6 +8,8 @@
 #include <fstream>
 #include <system_error>
 
+#include "station/terms/letters.hpp"
+
 namespace turnpoint::drive {
 namespace {
 
@@ -25,11 +27,7 @@ void check(int result, const std::string& name, const char* what) {
   if (result < 0) throw std::system_error(-result, std::generic_category(), "alsa:" + name + ": " + what);
 }
 
-std::string lower(std::string text) {
-  std::transform(text.begin(), text.end(), text.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return text;
-}
+using terms::lower;
 
 void check_type(snd_pcm_t* pcm, const OutputConfig& config, const std::string& name) {
   const snd_pcm_type_t type = snd_pcm_type(pcm);

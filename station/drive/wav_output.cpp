@@ -1,15 +1,14 @@
 #include "station/drive/wav_output.hpp"
 
-#include <fcntl.h>
-#include <unistd.h>
-
 #include <array>
 #include <bit>
 #include <cerrno>
 #include <cstring>
+#include <exception>
+#include <optional>
 #include <system_error>
 
-#include "station/system/file_descriptor.hpp"
+#include "station/system/write_file.hpp"
 
 namespace turnpoint::drive {
 namespace {
@@ -49,31 +48,20 @@ std::array<char, header_bytes> header_of(const OutputConfig& config, std::uint32
   return h;
 }
 
-// Writes all of `bytes`, and continues after an interruption by a signal. Returns 0 or the errno.
-int write_all(int descriptor, const void* bytes, std::size_t size) noexcept {
-  const char* at = static_cast<const char*>(bytes);
-  while (size > 0) {
-    const ssize_t written = ::write(descriptor, at, size);
-    if (written < 0 && errno == EINTR) continue;
-    if (written < 0) return errno;
-    at += written;
-    size -= static_cast<std::size_t>(written);
-  }
-  return 0;
-}
-
 class WavOutput final : public Output {
  public:
-  WavOutput(OutputConfig config, const std::string& path) : config_(std::move(config)), path_(path) {
-    file_ = system::FileDescriptor(::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666));
-    if (!file_.is_open()) throw std::system_error(errno, std::generic_category(), "wav:" + path);
+  WavOutput(OutputConfig config, const std::string& path) : config_(std::move(config)), path_(path), file_(path) {
     const auto header = header_of(config_, 0);
-    if (const int error = write_all(file_.get(), header.data(), header.size()))
-      throw std::system_error(error, std::generic_category(), "wav:" + path);
+    file_->write({header.data(), header.size()});
   }
 
+  // A session that was interrupted keeps what it has played so far.
   ~WavOutput() override {
-    if (file_.is_open()) complete();
+    try {
+      finish();
+    } catch (const std::exception&) {
+      // whoever wants to know calls finish()
+    }
   }
 
   const OutputConfig& config() const noexcept override { return config_; }
@@ -82,7 +70,7 @@ class WavOutput final : public Output {
 
   WriteResult write(std::span<const std::int32_t> interleaved) noexcept override {
     if (error_ == 0 && data_bytes_ + interleaved.size_bytes() > most_bytes) error_ = EFBIG;
-    if (error_ == 0) error_ = write_all(file_.get(), interleaved.data(), interleaved.size_bytes());
+    if (error_ == 0) error_ = written(interleaved);
     if (error_ != 0)
       return {WriteStatus::lost, -error_, 0,
               static_cast<std::int64_t>(interleaved.size()) / config_.channels};
@@ -91,22 +79,27 @@ class WavOutput final : public Output {
   }
 
   void finish() override {
-    if (!file_.is_open()) return;
-    if (const int error = complete()) throw std::system_error(error, std::generic_category(), "wav:" + path_);
+    if (!file_) return;
+    auto file = std::move(*file_);
+    file_.reset();
+    if (error_ != 0) throw std::system_error(error_, std::generic_category(), "wav:" + path_);
+    const auto header = header_of(config_, static_cast<std::uint32_t>(data_bytes_));
+    file.write_start({header.data(), header.size()});
+    file.commit();
   }
 
  private:
-  int complete() noexcept {
-    const auto header = header_of(config_, static_cast<std::uint32_t>(data_bytes_));
-    if (::lseek(file_.get(), 0, SEEK_SET) != 0 && error_ == 0) error_ = errno;
-    const int late = write_all(file_.get(), header.data(), header.size());
-    const int closed = ::close(file_.release()) != 0 ? errno : 0;
-    return error_ != 0 ? error_ : late != 0 ? late : closed;
+  /// Returns 0 or the errno.
+  int written(std::span<const std::int32_t> interleaved) noexcept try {
+    file_->write({reinterpret_cast<const char*>(interleaved.data()), interleaved.size_bytes()});
+    return 0;
+  } catch (const std::system_error& error) {
+    return error.code().value();
   }
 
   OutputConfig config_;
   std::string path_;
-  system::FileDescriptor file_;
+  std::optional<system::FileWriter> file_;  ///< empty after finish()
   int error_ = 0;
   std::uint64_t data_bytes_ = 0;
 };

@@ -1,9 +1,11 @@
 #include "station/limits/finger_account.hpp"
 
 #include <algorithm>
-#include <cstdlib>
+#include <charconv>
 #include <filesystem>
+#include <optional>
 #include <set>
+#include <string>
 
 #include "station/trial/timing.hpp"
 
@@ -27,6 +29,14 @@ struct Active {
   double start_s = 0, end_s = 0;
 };
 
+/// The length of a stimulus as the session log has written it.
+std::optional<double> length_s(const std::string& text) {
+  double value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  const bool read = error == std::errc() && end == text.data() + text.size() && value >= 0;
+  return read ? std::optional(value) : std::nullopt;
+}
+
 void gather(const store::StoredSession& session, const records::SegmentStart& now, double longest_s,
             std::vector<Exposed>& stimuli, std::vector<Active>& active) {
   std::set<int> ended;
@@ -43,7 +53,8 @@ void gather(const store::StoredSession& session, const records::SegmentStart& no
     segments[index].end_s = std::max(segments[index].end_s, at_s);
     const bool open = event.kind == "presented" && event.trial_index && !ended.count(*event.trial_index);
     if (event.kind == "stimulus")
-      stimuli.push_back({at_s, at_s + std::strtod(event.value.c_str(), nullptr)});
+      // if the length cannot be read, the longest one counts
+      stimuli.push_back({at_s, at_s + length_s(event.value).value_or(longest_s)});
     else if (open)
       stimuli.push_back({at_s, at_s + longest_s});
   }

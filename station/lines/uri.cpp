@@ -1,7 +1,7 @@
 #include "station/lines/uri.hpp"
 
 #include <algorithm>
-#include <cstdlib>
+#include <charconv>
 #include <sstream>
 
 #include "station/terms/usage_error.hpp"
@@ -54,9 +54,9 @@ bool take_low(Uri& uri) {
 std::int64_t take_ms(Uri& uri, const std::string& key, std::int64_t otherwise_ns, double highest_ms) {
   const std::string text = uri.take(key, "");
   if (text.empty()) return otherwise_ns;
-  char* end = nullptr;
-  const double ms = std::strtod(text.c_str(), &end);
-  if (*end != '\0' || !(ms >= 0 && ms <= highest_ms))
+  double ms = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), ms);
+  if (error != std::errc() || end != text.data() + text.size() || !(ms >= 0 && ms <= highest_ms))
     throw terms::UsageError("'" + uri.text + "': " + key + "=" + text + "; allowed 0 to " +
                             std::to_string(static_cast<int>(highest_ms)));
   return static_cast<std::int64_t>(ms * 1e6);

@@ -3,9 +3,14 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <stdexcept>
 
 #include "station/calibration/apply.hpp"
 #include "station/rig/csv.hpp"
+#include "station/scene/planner.hpp"
+#include "station/system/write_file.hpp"
+#include "station/text/problem.hpp"
+#include "station/texts/refusal.hpp"
 
 namespace turnpoint::maintenance {
 
@@ -134,19 +139,60 @@ void add_sound(plot::Figure& figure, const std::vector<calibration::SoundPoint>&
   figure.charts.push_back(std::move(panel));
 }
 
+/// Calls `work`. If something in it says that numbers cannot be used, throws a UsageError that says so.
+template <class Work>
+auto as_unusable(Work work) {
+  const auto refuse = [](const std::string& why) -> texts::Refusal {
+    return texts::Refusal(texts::phrase("series.unusable", {texts::plain(why)}));
+  };
+  try {
+    return work();
+  } catch (const text::BadInput& error) {
+    if (error.problems().front().place.file != "calibration") throw;
+    throw refuse(error.what());
+  } catch (const std::invalid_argument& error) {
+    throw refuse(error.what());
+  } catch (const std::domain_error& error) {
+    throw refuse(error.what());
+  } catch (const std::out_of_range& error) {
+    throw refuse(error.what());
+  }
+}
+
+bool can_plan(const rig::Rig& rig) try {
+  scene::Planner planner(rig);
+  return true;
+} catch (const std::exception&) {
+  return false;
+}
+
 }  // namespace
 
 Calibration calibrate(const rig::Rig& rig, const Measurements& measurements, int valid_days,
                       const std::string& note) {
-  Calibration calibration = calibration::fit_measurements(measurements, rig);
+  auto calibration =
+      as_unusable([&] { return calibration::fit_measurements(measurements, rig); });
   calibration.rig_name = rig.name;
   calibration.rig_sha256 = rig.sha256;
   calibration.made_on = calibration::today();
   calibration.valid_days = valid_days;
   calibration.note = note;
-  // throws if the rig cannot use this calibration
-  static_cast<void>(calibration::applied(calibration, rig));
+  static_cast<void>(usable_toml(calibration, rig));
   return calibration;
+}
+
+std::string usable_toml(const Calibration& calibration, const rig::Rig& rig) {
+  return as_unusable([&] {
+    auto toml = calibration::to_toml(calibration);
+    const auto used = calibration::applied(calibration::parse(toml, "calibration"), rig);
+    // A rig with which nothing can be planned is not the calibration's fault.
+    if (can_plan(rig)) scene::Planner planner(used);
+    return toml;
+  });
+}
+
+void write_calibration(const Calibration& calibration, const rig::Rig& rig, const std::string& path) {
+  system::write_file(path, usable_toml(calibration, rig), 0666, system::Replaces::input);
 }
 
 plot::Figure calibration_figure(const Calibration& calibration, const Measurements& measurements) {

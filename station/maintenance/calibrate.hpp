@@ -14,6 +14,15 @@ namespace turnpoint::maintenance {
 calibration::Calibration calibrate(const rig::Rig& rig, const calibration::Measurements& measurements,
                                    int valid_days, const std::string& note);
 
+/// Returns the text of the calibration file. Reads it back first, applies it to the rig, and plans with it as
+/// sessions do. Throws terms::UsageError if any of this fails, so that no command writes a calibration that
+/// another one cannot use.
+std::string usable_toml(const calibration::Calibration& calibration, const rig::Rig& rig);
+
+/// Writes the file with usable_toml(). It may replace the calibration from which this one was continued.
+void write_calibration(const calibration::Calibration& calibration, const rig::Rig& rig,
+                       const std::string& path);
+
 /// Plots the measured points with their fit, and the residuals below. There is a chart for each quantity that
 /// was measured: response (amplitude and phase), boundary, friction, sound level.
 plot::Figure calibration_figure(const calibration::Calibration& calibration,

@@ -69,12 +69,13 @@ bool can_be_taken_out(const fs::path& block) {
 
 double size_GB(const fs::path& block) {
   const auto sectors = first_line(block / "size");
-  return sectors.empty() ? 0 : 512e-9 * std::stod(sectors);  // the kernel counts sectors of 512 bytes
+  return sectors.empty() ? 0 : 512e-9 * static_cast<double>(std::stoll(sectors));  // the kernel counts sectors of 512 bytes
 }
 
-bool is_of_the_system(const std::string& folder) {
+bool is_of_the_system(const std::string& folder, const std::string& data) {
   static const std::array parts{"/", "/boot", "/boot/firmware", "/boot/efi", "/usr", "/var", "/home"};
-  return std::find(parts.begin(), parts.end(), folder) != parts.end();
+  return std::find(parts.begin(), parts.end(), folder) != parts.end() || folder.starts_with("/var/") ||
+         data == folder || data.starts_with(folder + "/");
 }
 
 struct Ended {
@@ -120,17 +121,21 @@ Ended ask_udisks(const DiskSources& sources, const std::string& verb, const std:
   return run({sources.tool, verb, "--no-user-interaction", "--block-device", device});
 }
 
-void add(const fs::path& block, const std::string& name,
-         const std::multimap<std::string, std::string>& points, std::vector<Disk>& disks) {
-  Disk disk{"/dev/" + block.filename().string(), name, ""};
-  for (const auto& key : {first_line(block / "dev"), disk.device}) {
+/// The folders at which a partition, or a disk without partitions, is mounted.
+std::vector<std::string> folders_of(const fs::path& block,
+                                    const std::multimap<std::string, std::string>& points) {
+  std::vector<std::string> folders;
+  for (const auto& key : {first_line(block / "dev"), "/dev/" + block.filename().string()}) {
     const auto [begin, end] = points.equal_range(key);
-    for (auto point = begin; point != end; ++point) {
-      if (is_of_the_system(point->second)) return;
-      if (disk.folder.empty()) disk.folder = point->second;
-    }
+    for (auto point = begin; point != end; ++point) folders.push_back(point->second);
   }
-  disks.push_back(std::move(disk));
+  return folders;
+}
+
+/// True if the partition is in use by something other than a mount, such as an encrypted or a logical volume.
+bool has_holders(const fs::path& block) {
+  std::error_code none;
+  return fs::directory_iterator(block / "holders", none) != fs::directory_iterator();
 }
 
 }  // namespace
@@ -148,13 +153,21 @@ std::vector<Disk> removable_disks(const DiskSources& sources) {
     const auto name = fmt::format(
         "{}, {} GB", model.empty() ? block.filename().string() : model,
         gigabytes < 10 ? fmt::format("{:.1f}", gigabytes) : fmt::format("{}", std::lround(gigabytes)));
-    bool divided = false;
-    for (const auto& part : fs::directory_iterator(block)) {
-      if (!fs::exists(part.path() / "partition")) continue;
-      divided = true;
-      add(part.path(), name, points, disks);
+    std::vector<fs::path> parts;
+    for (const auto& part : fs::directory_iterator(block))
+      if (fs::exists(part.path() / "partition")) parts.push_back(part.path());
+    if (parts.empty()) parts.push_back(block);
+    std::vector<Disk> found;
+    bool of_the_system = false;
+    for (const auto& part : parts) {
+      const auto folders = folders_of(part, points);
+      of_the_system = of_the_system || has_holders(part) ||
+                      std::any_of(folders.begin(), folders.end(), [&](const auto& folder) {
+                        return is_of_the_system(folder, sources.data);
+                      });
+      found.push_back({"/dev/" + part.filename().string(), name, folders.empty() ? "" : folders.front()});
     }
-    if (!divided) add(block, name, points, disks);
+    if (!of_the_system) disks.insert(disks.end(), found.begin(), found.end());
   }
   std::sort(disks.begin(), disks.end(), [](const Disk& a, const Disk& b) { return a.device < b.device; });
   return disks;

@@ -17,10 +17,12 @@ struct DiskSources {
   std::string blocks = "/sys/block";
   std::string mounts = "/proc/self/mountinfo";
   std::string tool = "udisksctl";  ///< Debian package udisks2
+  std::string data = "/var/lib/turnpoint";  ///< the station's data; their disk is part of the system
 };
 
 /// Returns the disks that can be taken out, sorted by device: each partition of one, or the whole disk if it
-/// has no partitions. Leaves out disks that hold a part of the running system (/, /boot, /usr, /var).
+/// has no partitions. Leaves out disks that hold a part of the running system (/, /boot, /usr, /var) or the
+/// station's data, with all of their partitions, because ejecting one switches off the whole disk.
 std::vector<Disk> removable_disks(const DiskSources& sources = {});
 
 /// Mounts a disk through udisks and returns its folder. Throws std::runtime_error with what udisks said.

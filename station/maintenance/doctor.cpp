@@ -10,6 +10,8 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <initializer_list>
+#include <regex>
 #include <string_view>
 #include <utility>
 
@@ -71,6 +73,12 @@ void converter_mute(const rig::Rig& rig, std::vector<lines::Finding>& checks) {
                     *on ? phrase("doctor.mute_mend", {plain(card_of(rig.output.uri))}) : Phrase()});
 }
 
+/// True for alsa:hw:0 or alsa:plughw:CARD=0: the numbers of cards change between boots.
+bool has_card_number(const std::string& uri) {
+  static const std::regex numbered("alsa:(plug)?hw:(CARD=)?[0-9]+(,.*)?");
+  return std::regex_match(uri, numbered);
+}
+
 void converter(const rig::Rig& rig, std::vector<lines::Finding>& checks) {
   const auto uri = plain(rig.output.uri), name = phrase("doctor.converter");
   if (!rig.output.uri.starts_with("alsa:")) {
@@ -84,6 +92,8 @@ void converter(const rig::Rig& rig, std::vector<lines::Finding>& checks) {
          Status::ok,
          phrase("doctor.converter_good", {uri, number(rig.output.rate_Hz), number(rig.output.bits)}),
          {}});
+    if (has_card_number(rig.output.uri))
+      checks.push_back({name, Status::warning, uri, phrase("doctor.card_number_mend")});
     checks.push_back(measured_clock(*stream));
     const auto underruns = stream->counters().underruns;
     checks.push_back({phrase("doctor.converter_stream"), underruns == 0 ? Status::ok : Status::failed,
@@ -230,6 +240,20 @@ lines::Finding disk(const std::string& path) {
                                       : phrase("doctor.disk_rights_mend"));
 }
 
+}  // namespace
+
+lines::Finding check_file_system(const std::string& file_system) {
+  const auto is = [&](std::initializer_list<const char*> names) {
+    return std::any_of(names.begin(), names.end(), [&](const char* name) { return file_system == name; });
+  };
+  const auto name = phrase("doctor.file_system"), what = plain(file_system);
+  if (is({"tmpfs", "ramfs", "overlay"})) return {name, Status::failed, what, phrase("doctor.volatile_mend")};
+  if (is({"nfs", "cifs", "fuse", "9p"})) return {name, Status::warning, what, phrase("doctor.network_mend")};
+  return {name, Status::ok, what, {}};
+}
+
+namespace {
+
 lines::Finding clock() {
   const session::ClockReading reading{system::read_wall_clock(), std::nullopt};
   auto found = finding(session::judged(reading), phrase("doctor.date_mend"));
@@ -301,6 +325,8 @@ std::vector<lines::Finding> examine(const rig::Rig& rig, const std::string& data
   checks.push_back(check_watchdog());
   checks.push_back(temperature());
   checks.push_back(disk(data_path));
+  if (const auto state = system::read_disk(data_path); state.error.empty())
+    checks.push_back(check_file_system(state.file_system));
   checks.push_back(clock());
   return checks;
 }

@@ -10,7 +10,7 @@
 #include "station/calibration/apply.hpp"
 #include "station/maintenance/panel_latency.hpp"
 #include "station/sensing/tap.hpp"
-#include "station/system/write_file.hpp"
+#include "station/maintenance/calibrate.hpp"
 #include "station/terms/force_carrier.hpp"
 #include "station/terms/usage_error.hpp"
 #include "station/text/number.hpp"
@@ -345,7 +345,7 @@ std::string write_forces(const rig::Rig& rig, const rig::ForceCells& cells, cons
   auto made = known_calibration(rig, path);
   made.forces = cells;
   const auto out = path.empty() ? calibration::file_for(rig.path, calibration::today()) : path;
-  system::write_file(out, calibration::to_toml(made));
+  write_calibration(made, rig, out);
   return out;
 }
 

@@ -199,7 +199,7 @@ SeriesResult finish_series(const rig::Rig& rig, Series series, const std::vector
   result.figure = calibration_figure(made, measurements);
   result.made = merged(rig, series, made);
   result.file = calibration::file_for(rig.path, made.made_on);
-  system::write_file(result.file, calibration::to_toml(result.made));
+  write_calibration(result.made, rig, result.file);
   return result;
 }
 

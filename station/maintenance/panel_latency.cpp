@@ -6,7 +6,7 @@
 #include "station/calibration/apply.hpp"
 #include "station/lines/buttons.hpp"
 #include "station/setup/open_touch.hpp"
-#include "station/system/write_file.hpp"
+#include "station/maintenance/calibrate.hpp"
 #include "station/texts/refusal.hpp"
 #include "station/touch/touch_reader.hpp"
 
@@ -73,7 +73,7 @@ calibration::Calibration with_panel(const rig::Rig& rig, const calibration::Pane
 
 std::string keep_panel(const rig::Rig& rig, const calibration::PanelLatency& measured) {
   const auto file = calibration::file_for(rig.path, calibration::today());
-  system::write_file(file, calibration::to_toml(with_panel(rig, measured)));
+  write_calibration(with_panel(rig, measured), rig, file);
   return file;
 }
 

@@ -1,7 +1,7 @@
 #include "station/plot/svg.hpp"
 
 #include <cmath>
-#include <cstdio>
+#include <charconv>
 #include <stdexcept>
 
 #include "station/text/number.hpp"
@@ -12,9 +12,9 @@ namespace {
 
 std::string px(double value) {
   if (!std::isfinite(value)) throw std::invalid_argument("plot: a coordinate is not finite");
-  char buffer[48];
-  std::snprintf(buffer, sizeof buffer, "%.2f", value);
-  std::string text = buffer;
+  char buffer[400];  // the largest number has 309 digits before the point
+  const auto written = std::to_chars(buffer, buffer + sizeof buffer, value, std::chars_format::fixed, 2);
+  std::string text(buffer, written.ptr);
   text.erase(text.find_last_not_of('0') + 1);
   if (text.back() == '.') text.pop_back();
   return text == "-0" ? "0" : text;

@@ -4,6 +4,8 @@
 
 #include "station/protocol/advice_list.hpp"
 
+#include "station/terms/letters.hpp"
+
 namespace turnpoint::protocol {
 
 using texts::phrase, texts::plain;
@@ -54,10 +56,7 @@ const std::vector<std::string>& identifying_ids() {
   return ids;
 }
 
-std::string lower(std::string text) {
-  for (auto& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return text;
-}
+using terms::lower;
 
 bool has_word(const std::string& text, const std::string& word, bool alone) {
   const auto letter = [&](std::size_t at) {

@@ -337,7 +337,7 @@ std::string to_json(const Summary& summary) {
   json["trend_response_time_s"] = trend_json(summary.fatigue.response_time_s);
   json["trend_proportion_correct"] = trend_json(summary.fatigue.proportion_correct);
   json["statements"] = value(summary.fatigue.statements);
-  return json.dump(2);
+  return json.dump(2, ' ', false, Json::error_handler_t::replace);
 }
 
 }  // namespace turnpoint::report

@@ -106,7 +106,7 @@ std::string to_json(const Study& study) {
                                {"standardised", value(effect.standardised)},
                                {"between_groups", effect.between_groups}});
   json["statements"] = value(study.statements);
-  return json.dump(2);
+  return json.dump(2, ' ', false, Json::error_handler_t::replace);
 }
 
 }  // namespace turnpoint::report

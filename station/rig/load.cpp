@@ -17,6 +17,33 @@ using texts::phrase, texts::plain;
 
 namespace {
 
+/// True if a point may be the next of a friction table.
+bool may_follow(const FrictionTable& table, double displacement_m, double friction) {
+  const bool first = table.empty();
+  const bool ascends = first ? displacement_m >= 0 : displacement_m >= table.back().first + kLeastStep_m;
+  const double most = first ? 1 : table.back().second;
+  return ascends && friction >= kLeastFriction && friction <= most && (displacement_m > 0 || friction == 1);
+}
+
+}  // namespace
+
+FrictionTable falling(const FrictionTable& table) {
+  constexpr double equal = 1e-9;
+  FrictionTable checked, curve{{0, 1}};
+  for (const auto& [displacement_m, friction] : table) {
+    if (!may_follow(checked, displacement_m, friction)) return {};
+    checked.emplace_back(displacement_m, friction);
+  }
+  for (std::size_t i = 0, end = 0; i < table.size(); i = end) {
+    while (end < table.size() && table[end].second >= table[i].second - equal) ++end;
+    if (table[i].second < 1 - equal)
+      curve.emplace_back((table[i].first + table[end - 1].first) / 2, table[i].second);
+  }
+  return curve.size() < 2 ? FrictionTable{} : curve;
+}
+
+namespace {
+
 using text::Findings;
 using text::Range;
 using text::TableReader;
@@ -144,14 +171,16 @@ void read_friction_table(TableReader& reader, const std::string& file, Rig& rig)
   auto& table = rig.friction.table;
   for (const auto& row :
        read_table(csv, {"displacement_um", "relative_friction"}, place, reader.findings())) {
-    const double displacement_m = 1e-6 * row[0];
-    const bool rises = table.empty() ? row[0] >= 0 : displacement_m > table.back().first;
-    if (!rises || row[1] <= 0 || row[1] > 1 || (!table.empty() && row[1] > table.back().second))
+    if (!may_follow(table, 1e-6 * row[0], row[1]))
       return reader.findings().add(
           place, phrase("problem.bad_friction_row", {plain(csv), plain(text::number(row[0]))}),
           phrase("problem.friction_rows"));
-    table.emplace_back(displacement_m, row[1]);
+    table.emplace_back(1e-6 * row[0], row[1]);
   }
+  if (!table.empty() && falling(table).empty())
+    reader.findings().add(
+        place, phrase("problem.bad_friction_row", {plain(csv), plain(text::number(1e6 * table.back().first))}),
+        phrase("problem.friction_rows"));
   rig.friction.measured = true;
 }
 

@@ -200,6 +200,17 @@ struct MaskingNoise {
   std::optional<Signal> signal = {};
 };
 
+/// The friction curve of a measured table, in pairs of (displacement_m, relative_friction): begins at (0, 1), and
+/// falls strictly. Neighbours of equal friction become one point in their middle. Empty if the table is not
+/// usable: displacements must be 0 or more and ascend by at least 1 pm, friction must be at least 0.001, never
+/// rise, be at most 1 (exactly 1 at displacement 0), and end below 1.
+using FrictionTable = std::vector<std::pair<double, double>>;
+FrictionTable falling(const FrictionTable& table);
+
+/// The least relative friction of a measured table, and the least distance of its displacements.
+inline constexpr double kLeastFriction = 1e-3;
+inline constexpr double kLeastStep_m = 1e-12;
+
 /// The relation between amplitude and relative friction: the illustrative load-sharing curve or a measured
 /// table.
 struct Friction {
@@ -208,7 +219,7 @@ struct Friction {
   double pressure_Pa = 5000;
   double floor = 0.1;
   double fingertip_m = 0.010;
-  std::vector<std::pair<double, double>> table;  ///< measured pairs of (displacement_m, relative_friction)
+  FrictionTable table;  ///< measured; see falling()
 };
 
 /// A fingertip on the surface as a mechanical impedance at ultrasonic frequencies, with its standard

@@ -102,7 +102,7 @@ physics::FrictionMap friction_of(const rig::Rig& rig) {
     return physics::FrictionMap(model);
   }
   std::vector<physics::FrictionPoint> points;
-  for (const auto& [displacement_m, relative] : rig.friction.table)
+  for (const auto& [displacement_m, relative] : rig::falling(rig.friction.table))
     points.push_back({displacement_m, relative, 0});
   return physics::FrictionMap(points);
 }

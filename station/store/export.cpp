@@ -4,7 +4,11 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <map>
+#include <regex>
+#include <set>
 
 #include "station/store/export_files.hpp"
 #include "station/store/export_tables.hpp"
@@ -158,6 +162,24 @@ void export_csv(Database& database, const ProtocolSelection& selection, const Ta
   estimates.finish(files);
 }
 
+void check_csv_folder(const ProtocolSelection& selection, bool whole) {
+  const auto list = selection.folder + "/sessions.csv";
+  if (whole || !file_exists(list)) return;
+  std::ifstream file(list, std::ios::binary);
+  const std::string text{std::istreambuf_iterator<char>(file), {}};
+  // The columns may be separated by any character; session ids are UUIDs, which are found anywhere.
+  static const std::regex uuid("[0-9a-f]{8}(-[0-9a-f]{4}){3}-[0-9a-f]{12}");
+  std::set<std::string> lost;
+  for (std::sregex_iterator found(text.begin(), text.end(), uuid), end; found != end; ++found)
+    lost.insert(found->str());
+  for (const auto& session : selection.sessions) lost.erase(session.session_id);
+  if (!lost.empty())
+    throw StoreError(ErrorKind::conflict,
+                     fmt::format("export: {} has {} sessions that are not part of this export, such as {}; export "
+                                 "all sessions of the protocol, or name an empty folder",
+                                 selection.folder, lost.size(), *lost.begin()));
+}
+
 SelectedSessions select_for_export(const std::string& path, const std::string& directory,
                                    const ExportOptions& options) {
   SelectedSessions selected{open_reader(path), {}};
@@ -179,6 +201,15 @@ std::vector<ExportedFile> export_data(const std::string& path, const std::string
   auto [database, selections] = select_for_export(path, directory, options);
   std::vector<ExportedFile> files;
   if (options.format == ExportFormat::signals) keep_with_signals(database, selections);
+  std::vector<FolderLock> locks;
+  for (const auto& selection : selections) locks.emplace_back(selection.folder);
+  // Before anything is written, check all folders.
+  for (const auto& selection : selections) {
+    if (options.format == ExportFormat::csv)
+      check_csv_folder(selection, options.session_id.empty() && options.participant.empty());
+    if (options.format == ExportFormat::bids) check_bids_folder(selection);
+    if (options.format == ExportFormat::signals) check_signals_folder(database, selection);
+  }
   for (const auto& selection : selections) {
     // Mark the folder as incomplete. Until the last file is written, old and new files may be mixed in it.
     const auto mark = selection.folder + "/EXPORT-INCOMPLETE.txt";

@@ -11,6 +11,7 @@
 #include "station/store/export_files.hpp"
 #include "station/store/export_tables.hpp"
 #include "station/store/sqlite.hpp"
+#include "station/terms/letters.hpp"
 #include "station/text/number.hpp"
 
 namespace turnpoint::store {
@@ -37,14 +38,10 @@ struct Labels {
 /// which is the same in every export.
 std::map<std::string, std::string> labels_for(const std::set<std::string>& names) {
   std::map<std::string, int> users;
-  const auto folded = [](std::string text) {
-    for (auto& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-    return text;
-  };
-  for (const auto& name : names) ++users[folded(bids_label(name))];
+  for (const auto& name : names) ++users[terms::lower(bids_label(name))];
   std::map<std::string, std::string> labels;
   for (const auto& name : names) {
-    const bool shared = users[folded(bids_label(name))] > 1 || bids_label(name).empty();
+    const bool shared = users[terms::lower(bids_label(name))] > 1 || bids_label(name).empty();
     labels[name] = bids_label(name) + (shared ? "x" + text::sha256(name).substr(0, 8) : "");
   }
   return labels;
@@ -74,21 +71,6 @@ Labels label_all(const ProtocolSelection& selection) {
   return labels;
 }
 
-/// Throws if the folder has files of participants who are not part of this export, because readers would take
-/// them for part of it.
-void refuse_leftovers(const std::string& folder, const Labels& labels) {
-  std::error_code ignored;
-  std::set<std::string> expected;
-  for (const auto& [code, name] : labels.participants) expected.insert("sub-" + name);
-  for (const auto& entry : fs::directory_iterator(folder, ignored)) {
-    const auto name = entry.path().filename().string();
-    if (name.rfind("sub-", 0) == 0 && expected.count(name) == 0)
-      throw StoreError(ErrorKind::conflict, fmt::format("export bids: {} contains {}, which is not part of "
-                                                        "this export; remove it, or name an empty folder",
-                                                        folder, name));
-  }
-}
-
 class BidsWriter {
  public:
   BidsWriter(const ProtocolSelection& selection, std::vector<ExportedFile>& files)
@@ -98,7 +80,6 @@ class BidsWriter {
         task_(bids_label(selection.protocol_id)) {}
 
   void write(Database& database) {
-    refuse_leftovers(selection_.folder, labels_);
     plain("dataset_description.json", bids_description(selection_));
     plain("README", bids_readme(selection_));
     const auto newest = session_record(database, selection_.sessions.back().session_id);
@@ -212,6 +193,30 @@ class BidsWriter {
 };
 
 }  // namespace
+
+void check_bids_folder(const ProtocolSelection& selection) {
+  const auto labels = label_all(selection);
+  std::set<std::string> expected;
+  for (const auto& session : selection.sessions) {
+    const auto person = "sub-" + labels.participants.at(session.person);
+    expected.insert(person);
+    expected.insert(person + "/ses-" + labels.sessions.at(session.session_id));
+  }
+  const auto require = [&](const std::string& name, const char* kind) {
+    if (fs::path(name).filename().string().starts_with(kind) && expected.count(name) == 0)
+      throw StoreError(ErrorKind::conflict, fmt::format("export bids: {} contains {}, which is not part of "
+                                                        "this export; remove it, or name an empty folder",
+                                                        selection.folder, name));
+  };
+  std::error_code ignored;
+  for (const auto& person : fs::directory_iterator(selection.folder, ignored)) {
+    const auto name = person.path().filename().string();
+    require(name, "sub-");
+    if (!name.starts_with("sub-")) continue;
+    for (const auto& session : fs::directory_iterator(person.path(), ignored))
+      require(name + "/" + session.path().filename().string(), "ses-");
+  }
+}
 
 void export_bids(Database& database, const ProtocolSelection& selection, std::vector<ExportedFile>& files) {
   BidsWriter(selection, files).write(database);

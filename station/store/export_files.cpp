@@ -1,8 +1,11 @@
 #include "station/store/export_files.hpp"
 
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/file.h>
 
 #include <cctype>
+#include <cerrno>
 #include <filesystem>
 
 #include "station/system/write_file.hpp"
@@ -46,6 +49,13 @@ void write_file(const std::string& path, const std::string& bytes) {
     system::make_folder(fs::path(path).parent_path().string());
     system::write_file(path, bytes);
   });
+}
+
+FolderLock::FolderLock(const std::string& folder) {
+  writing(folder, [&] { system::make_folder(folder); });
+  folder_ = system::FileDescriptor(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+  while (folder_.is_open() && ::flock(folder_.get(), LOCK_EX) != 0 && errno == EINTR) {
+  }
 }
 
 TableFile::TableFile(const std::string& path, const TableStyle& style,

@@ -126,13 +126,16 @@ void keep_with_signals(Database& database, std::vector<ProtocolSelection>& selec
                      "records them, and a rig with [capture] keeps what was captured in void trials");
 }
 
-void export_signals(Database& database, const ProtocolSelection& selection, const TableStyle& style,
-                    std::vector<ExportedFile>& files) {
+void check_signals_folder(Database& database, const ProtocolSelection& selection) {
   std::set<std::string> expected;
   for (const auto& session : selection.sessions)
     for (const auto& stream : signal_streams(database, session.session_id))
       expected.insert(table_name(session.session_id, stream));
   refuse_leftovers(selection.folder, expected);
+}
+
+void export_signals(Database& database, const ProtocolSelection& selection, const TableStyle& style,
+                    std::vector<ExportedFile>& files) {
   TableFile list(selection.folder + "/signals.csv", style, names_of(list_columns()));
   std::map<std::string, std::vector<Column>> found;
   for (const auto& session : selection.sessions) {

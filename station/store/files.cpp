@@ -14,6 +14,7 @@
 #include <system_error>
 
 #include "station/system/read_file.hpp"
+#include "station/system/write_file.hpp"
 #include "station/text/sha256.hpp"
 
 namespace turnpoint::store {
@@ -156,16 +157,18 @@ void permit_as(const std::string& original, const std::string& path) {
   struct stat status {};
   status.st_mode = 0640;  // the station's group may read a new database
   if (!original.empty() && ::stat(original.c_str(), &status) != 0) return;
-  // Ignore EPERM: a disk without Unix permissions gives all files the same permissions.
-  if (::chmod(path.c_str(), (status.st_mode & 0666) | 0600) != 0 && errno != EPERM)
+  // A disk without Unix permissions gives all files the same permissions.
+  if (::chmod(path.c_str(), (status.st_mode & 0666) | 0600) != 0 && !system::not_offered(errno))
     fail_system(kind_of_errno(errno), "permissions of " + path, errno, "check the disk");
 }
 
 void sync_path(const std::string& path) {
   const auto name = path.empty() ? std::string(".") : path;
   const FileDescriptor file(::open(name.c_str(), O_RDONLY | O_CLOEXEC));
-  if (!file.is_open() || ::fsync(file.get()) != 0)
-    fail_system(kind_of_errno(errno), "sync " + name, errno, "check the disk");
+  struct stat status {};
+  const bool folder = file.is_open() && ::fstat(file.get(), &status) == 0 && S_ISDIR(status.st_mode);
+  if (file.is_open() && (::fsync(file.get()) == 0 || (folder && system::not_offered(errno)))) return;
+  fail_system(kind_of_errno(errno), "sync " + name, errno, "check the disk");
 }
 
 void rename_file(const std::string& from, const std::string& to) {

@@ -5,6 +5,7 @@
 #include <map>
 
 #include "station/store/fields.hpp"
+#include "station/terms/letters.hpp"
 
 namespace turnpoint::store {
 
@@ -87,7 +88,7 @@ Column signal_column(const SignalChannel& channel) {
   std::string name;
   for (const char c : channel.unit.empty() ? channel.name : channel.name + "_" + channel.unit) {
     const auto letter = static_cast<unsigned char>(c);
-    name += std::isalnum(letter) != 0 ? static_cast<char>(std::tolower(letter)) : '_';
+    name += std::isalnum(letter) != 0 ? terms::lower(c) : '_';
   }
   return {name, meaning_of(channel.name), channel.unit, ""};
 }

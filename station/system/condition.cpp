@@ -1,5 +1,7 @@
 #include "station/system/condition.hpp"
 
+#include <fmt/format.h>
+#include <sys/statfs.h>
 #include <sys/statvfs.h>
 #include <sys/timex.h>
 #include <unistd.h>
@@ -7,18 +9,38 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
+#include <cstdint>
+#include <map>
 #include <ctime>
 #include <filesystem>
 #include <fstream>
 
 namespace turnpoint::system {
 
+namespace {
+
+/// The name of a file system by its number in statfs(2).
+std::string file_system_of(const std::string& folder) {
+  struct statfs state {};
+  if (::statfs(folder.c_str(), &state) != 0) return "";
+  const auto number = static_cast<std::uint32_t>(state.f_type);
+  static const std::map<std::uint32_t, const char*> names{
+      {0xef53, "ext4"},      {0x9123683e, "btrfs"}, {0x58465342, "xfs"},     {0xf2f52010, "f2fs"},
+      {0x01021994, "tmpfs"}, {0x858458f6, "ramfs"}, {0x794c7630, "overlay"}, {0x6969, "nfs"},
+      {0xff534d42, "cifs"},  {0xfe534d42, "cifs"},  {0x517b, "cifs"},        {0x65735546, "fuse"},
+      {0x01021997, "9p"},    {0x4d44, "vfat"},      {0x2011bab0, "exfat"}};
+  const auto found = names.find(number);
+  return found == names.end() ? fmt::format("{:#x}", number) : found->second;
+}
+
+}  // namespace
+
 Disk read_disk(const std::string& folder) {
   std::filesystem::path existing = std::filesystem::absolute(folder);
   std::error_code ignored;
   while (!std::filesystem::exists(existing, ignored) && existing.has_relative_path())
     existing = existing.parent_path();
-  Disk disk{existing.string(), 0, false, ""};
+  Disk disk{existing.string(), 0, false, "", file_system_of(existing.string())};
   struct statvfs state {};
   if (::statvfs(existing.c_str(), &state) != 0) {
     disk.error = std::strerror(errno);

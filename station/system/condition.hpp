@@ -10,6 +10,8 @@ struct Disk {
   double free_MiB = 0;  ///< space in which this user may still write
   bool writable = false;
   std::string error;  ///< why the disk cannot be examined; "" if it can
+  /// such as "ext4"; a number in hexadecimal if it is not among those that this program knows
+  std::string file_system;
 };
 Disk read_disk(const std::string& folder);
 

@@ -5,10 +5,14 @@
 #include <time.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <filesystem>
 #include <system_error>
 #include <utility>
+#include <vector>
+
+#include "station/terms/usage_error.hpp"
 
 namespace turnpoint::touch {
 
@@ -38,6 +42,7 @@ std::optional<EvdevDevice> EvdevDevice::find(const std::string& path_or_name) {
   }
   int error = ENOENT;
   std::error_code none;
+  std::vector<std::pair<std::string, EvdevDevice>> named;
   for (const auto& entry : std::filesystem::directory_iterator("/dev/input", none)) {
     if (!entry.path().filename().string().starts_with("event")) continue;
     const int descriptor = open_for_reading(entry.path());
@@ -47,12 +52,25 @@ std::optional<EvdevDevice> EvdevDevice::find(const std::string& path_or_name) {
     }
     try {
       EvdevDevice device(descriptor, path_or_name);
-      if (libevdev_get_name(device.device_.get()) == path_or_name) return device;
+      if (libevdev_get_name(device.device_.get()) == path_or_name)
+        named.emplace_back(entry.path().string(), std::move(device));
       // this device may just have been unplugged; try the next one
     } catch (const std::system_error& going) {
       error = going.code().value();
     }
   }
+  // A touch controller often has another node of the same name, such as that of a mouse.
+  if (std::any_of(named.begin(), named.end(), [](const auto& one) { return one.second.is_touched(); }))
+    std::erase_if(named, [](const auto& one) { return !one.second.is_touched(); });
+  if (named.size() > 1) {
+    std::string paths;
+    for (const auto& one : named) paths += (paths.empty() ? "" : ", ") + one.first;
+    throw terms::UsageError("input device '" + path_or_name + "': " + std::to_string(named.size()) +
+                            " devices have this name: " + paths +
+                            "; write the path of one of them, best a link below /dev/input/by-path, which "
+                            "stays the same after a restart");
+  }
+  if (named.size() == 1) return std::move(named.front().second);
   errno = error;
   return std::nullopt;
 }
@@ -68,6 +86,11 @@ EvdevDevice::EvdevDevice(int descriptor, std::string name) : file_(descriptor), 
 
 bool EvdevDevice::has_axis(int axis) const noexcept {
   return libevdev_has_event_code(device_.get(), EV_ABS, static_cast<unsigned>(axis)) != 0;
+}
+
+bool EvdevDevice::is_touched() const noexcept {
+  return has_axis(ABS_X) || has_axis(ABS_Y) || has_axis(ABS_MT_POSITION_X) || has_axis(ABS_MT_POSITION_Y) ||
+         libevdev_has_event_code(device_.get(), EV_KEY, BTN_TOUCH) != 0;
 }
 
 AxisRange EvdevDevice::range(int axis) const {

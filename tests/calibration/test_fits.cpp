@@ -1,8 +1,11 @@
 #include <cmath>
 #include <complex>
+#include <cstdlib>
 #include <random>
+#include <string>
 
 #include "station/calibration/fits.hpp"
+#include "station/scene/planner.hpp"
 #include "station/terms/usage_error.hpp"
 #include "tests/support/catch.hpp"
 
@@ -64,13 +67,63 @@ TEST_CASE("a response is smoothed without bias, and its band ends where equalisa
   CHECK(clean.high_Hz < 60000);
 }
 
-TEST_CASE("where measured friction rises with displacement, neighbouring points are pooled",
-          "[calibration]") {
+TEST_CASE("where measured friction rises with displacement, neighbouring points become one", "[calibration]") {
   const FrictionFit fit = fit_friction({{0, 1.0}, {2e-6, 0.5}, {1e-6, 0.7}, {1.5e-6, 0.74}, {3e-6, 0.2}});
-  REQUIRE(fit.points.size() == 5);
+  REQUIRE(fit.points.size() == 4);
+  CHECK(fit.points[1].displacement_m == Approx(1.25e-6));
   CHECK(fit.points[1].relative_friction == Approx(0.72));
-  CHECK(fit.points[2].relative_friction == Approx(0.72));
-  for (std::size_t k = 1; k < fit.points.size(); ++k)
-    CHECK(fit.points[k].relative_friction <= fit.points[k - 1].relative_friction);
   CHECK(fit.residual == Approx(std::sqrt(2 * 0.02 * 0.02 / 5)));
+}
+
+TEST_CASE("friction that contradicts the curve is named and makes no fit", "[calibration]") {
+  const auto said = [](const std::vector<FrictionPoint>& points) -> std::string {
+    try {
+      static_cast<void>(fit_friction(points));
+      return "";
+    } catch (const turnpoint::terms::UsageError& error) {
+      return error.what();
+    }
+  };
+  CHECK(said({{0, 1.0}, {1e-6, 0.2}, {2e-6, 0.9}}).find("0.9 at 2 um") != std::string::npos);
+  CHECK(said({{0, 0.5}, {1e-6, 0.2}}).find("0.5 at 0 um") != std::string::npos);
+  CHECK(said({{0, 1.0}, {1e-6, 1.0}}).find("fewer than two") != std::string::npos);
+  CHECK(said({{0.5e-6, 0.8}, {1e-6, 0.82}}).empty());
+}
+
+// TURNPOINT_TABLES: number of tables; 200 by default.
+TEST_CASE("whatever friction was measured, the fit is refused or gives a curve for planning", "[calibration]") {
+  const char* wanted = std::getenv("TURNPOINT_TABLES");
+  const int tables = wanted != nullptr ? std::atoi(wanted) : 200;
+  std::mt19937_64 random(11);
+  const std::vector<double> hostile{0,   -0.0, 1,    1,    0.8,    0.8,  1.5,   1e-300, 1e-12, 1e-13, 1e300,
+                                    -1,  0.5,  1e-3, 9e-4, 1 - 1e-16, 0.5 + 1e-10, 2e-6,  1e-6,  3e-6};
+  const auto any = [&](double scale) {
+    if (random() % 4 == 0) return hostile[random() % hostile.size()];
+    return scale * std::uniform_real_distribution<double>(0, 1)(random);
+  };
+  int fitted = 0;
+  for (int table = 0; table < tables; ++table) {
+    std::vector<FrictionPoint> points{{0, 1}};
+    const auto rows = random() % 8;
+    for (std::size_t k = 0; k < rows; ++k)
+      points.push_back(table % 2 == 0
+                           ? FrictionPoint{any(4e-6), any(1.1)}
+                           : FrictionPoint{1e-6 * static_cast<double>(k), 1 / (1 + 0.5 * static_cast<double>(k)) +
+                                                                              0.1 * any(1)});
+    turnpoint::rig::Rig rig;
+    try {
+      for (const auto& point : fit_friction(points).points)
+        rig.friction.table.emplace_back(point.displacement_m, point.relative_friction);
+    } catch (const turnpoint::terms::UsageError&) {
+      continue;
+    }
+    ++fitted;
+    rig.friction.measured = true;
+    const auto curve = turnpoint::scene::friction_of(rig);
+    for (const double share : {0.0, 0.3, 1.0}) {
+      const double friction = curve.relative_friction(share * curve.highest_displacement_m());
+      CHECK((std::isfinite(friction) && friction > 0 && friction <= 1));
+    }
+  }
+  CHECK(fitted > tables / 10);
 }

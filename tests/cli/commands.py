@@ -246,6 +246,139 @@ class Documents(HelpExamples):
                 self.assertEqual(is_like(json.loads(out), SHAPES[name]), "")
 
 
+class Outputs(HelpExamples):
+    """No output of any command destroys what the command was given, and no output fails without a word."""
+    # A command line for each option that names a file to write; the name goes to the place of @.
+    WRITERS = [
+        ["report", "--db", "lab.sqlite", "--participant", "P01", "--out", "@"],
+        ["report", "--db", "lab.sqlite", "--study", "--protocol", "friction-2ifc", "--out", "@"],
+        ["synth", "--tone", "30000", "--seconds", "0.1", "--out", "wav:@"],
+        ["calibrate", "--rig", "simulated", "--friction", "friction.csv", "--out", "made.toml", "--plots", "@"],
+        ["calibrate", "--rig", "simulated", "--friction", "friction.csv", "--out", "@"],
+        ["calibrate", "--rig", "simulated", "--sweep", "--points", "5", "--sweep-out", "wav:@"],
+        ["map", "--boundary", "150", "--budget", "--plot", "@"],
+    ]
+
+    def setUp(self):
+        super().setUp()
+        self.add_sessions()
+        self.write("friction.csv", b"displacement_um,relative_friction\n0,1\n0.5,0.8\n1,0.82\n2,0.4\n4,0.3\n")
+
+    def bytes_of(self, *names):
+        return {name: open(os.path.join(self.folder, name), "rb").read() for name in names}
+
+    def test_every_option_that_names_an_output_is_tried(self):
+        known = {(words[0], words[words.index(word) - 1] if word in ("@", "wav:@") else "")
+                 for words in self.WRITERS for word in words if "@" in word}
+        tried_elsewhere = {("export", "--out"), ("figures", "--out"), ("preview", "--out"), ("power", "--out")}   # folders
+        for name in self.names:
+            for option in re.findall(r"^  (--(?:[a-z]+-)?(?:out|plot|plots)) ", self.helps[name], re.MULTILINE):
+                self.assertIn((name, option), known | tried_elsewhere, "add it to WRITERS")
+
+    def test_no_output_replaces_a_database_or_an_input(self):
+        os.mkdir(os.path.join(self.folder, "folder"))
+        os.mkfifo(os.path.join(self.folder, "pipe"))
+        victims = self.bytes_of("lab.sqlite", "friction.csv")
+        for words in self.WRITERS:
+            for target in ("lab.sqlite", "lab.sqlite-wal", "folder", "pipe") + (("friction.csv",) if "friction.csv" in words else ()):
+                with self.subTest(words=words, target=target):
+                    status, out, err = run([word.replace("@", target) for word in words], self.folder)
+                    self.assertIn(status, (1, 2), out + err)
+                    self.assertIn(target, err)
+                    self.assertNotRegex(err, NOT_FOR_PEOPLE)
+                    self.assertEqual(self.bytes_of("lab.sqlite", "friction.csv"), victims)
+
+    def test_a_full_disk_and_a_limit_on_file_size(self):
+        for words in self.WRITERS:
+            with self.subTest(words=words):
+                status, out, err = run([word.replace("@", "/dev/full") for word in words], self.folder)
+                self.assertIn(status, (1, 2), out + err)
+                self.write("kept", b"kept")
+                line = f"ulimit -f 0; exec {PROGRAM} " + " ".join(word.replace("@", "kept") for word in words)
+                status, out, err = run(line, self.folder)
+                self.assertIn(status, (1, 2), out + err)
+                self.assertNotEqual(err, "")
+                self.assertEqual(self.bytes_of("kept"), {"kept": b"kept"})
+
+    def test_a_failed_standard_output_is_a_failure(self):
+        for name in self.names:
+            for words in ([name, "--help"], ["help", name]):
+                self.assertEqual(run(f"{PROGRAM} {' '.join(words)} >/dev/full", self.folder)[0], 1, words)
+                self.assertEqual(run(f"{PROGRAM} {' '.join(words)} >&-", self.folder)[0], 1, words)
+            reading, writing = os.pipe()
+            os.close(reading)
+            ended = subprocess.run([PROGRAM, name, "--help"], stdout=writing, stderr=subprocess.PIPE, check=False)
+            os.close(writing)
+            self.assertEqual(ended.returncode, 1, name)
+        for name in self.names:
+            if COMMANDS.get(name, {}).get("needs") in ("screen", "server", "code") or name in ("power", "check", "figures"):
+                continue
+            with self.subTest(name):
+                self.fresh(name)
+                status, _, err = run(f"{{ {self.example(name)}; }} >/dev/full", self.folder)
+                self.assertEqual(status, 1, err)
+                self.assertIn("standard output failed", err)
+
+    def test_a_path_that_is_not_utf8(self):
+        for words in (f"{PROGRAM} report --db lab.sqlite --participant P01 --json --out $'r\\xff.html'",
+                      f"{PROGRAM} calibrate --rig simulated --friction friction.csv --json --out $'c\\xff.toml'",
+                      f"{PROGRAM} export --db lab.sqlite --json --out $'e\\xff'"):
+            status, out, err = run(words, self.folder)
+            self.assertEqual(status, 0, err)
+            json.loads(out)
+        self.assertTrue(os.path.exists(os.path.join(os.fsencode(self.folder), b"r\xff.html")))
+
+    def test_exports_into_one_folder(self):
+        run(["export", "--db", "lab.sqlite", "--out", "one"], self.folder)
+        many = [subprocess.Popen([PROGRAM, "export", "--db", "lab.sqlite", "--out", "many"], cwd=self.folder,
+                                 stdout=subprocess.DEVNULL) for _ in range(6)]
+        self.assertEqual([one.wait() for one in many], [0] * 6)
+        self.assertEqual(run("diff -r one many", self.folder)[0:2], (0, ""))
+
+    def test_a_part_of_the_sessions_does_not_replace_all_of_them(self):
+        for person in ("P03", "P04"):
+            self.assertEqual(run(["run", "demo", "--participant", person, "--db", "lab.sqlite", "--observer", "sim"], self.folder)[0], 0)
+        for style in ("csv", "bids"):
+            words = ["export", "--db", "lab.sqlite", "--format", style, "--out", style]
+            self.assertEqual(run(words, self.folder)[0], 0)
+            run(f"cp -r {style} before", self.folder)
+            self.refused([*words, "--participant", "P03"], "not part of", status=1)
+            self.assertEqual(run(f"diff -r {style} before && rm -r before", self.folder)[0:2], (0, ""))
+            self.assertEqual(run(words, self.folder)[0], 0)
+
+    def test_what_calibrate_writes_can_be_used(self):
+        self.write("falling.csv", b"frequency_Hz,boundary_mm,sd_mm\n26000,175,1\n30000,147,1\n36000,124,1\n")
+        self.write("precise.csv", b"frequency_Hz,boundary_mm,sd_mm\n27000,180,1\n31000,160,1e-200\n36000,140,1\n")
+        self.write("vague.csv", b"frequency_Hz,boundary_mm,sd_mm\n27000,180,1e9\n31000,160,1\n")
+        self.write("sound.csv", b"frequency_Hz,level_dB\n0,60\n30000,60\n")
+        for option, name, says in (("--boundaries", "falling.csv", "contradict"), ("--boundaries", "precise.csv", "1e-9"),
+                                   ("--boundaries", "vague.csv", "1e-9"), ("--sound", "sound.csv", "sound level")):
+            self.refused(["calibrate", "--rig", "simulated", option, name, "--out", "refused.toml"], says)
+            self.assertFalse(os.path.exists(os.path.join(self.folder, "refused.toml")))
+        rig = os.path.join(SOURCE, "deploy/rigs/simulated.toml")
+        shutil.copy(rig, os.path.join(self.folder, "plate.toml"))
+        self.assertEqual(run(["calibrate", "--rig", "plate.toml", "--friction", "friction.csv"], self.folder)[0], 0)
+        status, out, err = run(["plan", "demo", "--rig", "plate.toml", "--scene", "edge"], self.folder)
+        self.assertEqual(status, 0, out + err)
+
+
+class Locales(Folder):
+    """A comma in the numbers of the locale, and the Turkish I, change nothing."""
+    def test_commands_print_the_same_under_every_locale(self):
+        for name in ("de_DE", "tr_TR"):
+            made = run(f"localedef -i {name} -f UTF-8 {self.folder}/{name}.UTF-8", self.folder)
+            self.assertTrue(os.path.isdir(os.path.join(self.folder, f"{name}.UTF-8")), made)
+        self.add_sessions()
+        for words in (["plan", "demo", "--scene", "edge", "--json"], ["map", "--boundary", "150"],
+                      ["field", "--tone", "30000.5", "--points", "3"], ["trace", "demo", "--procedure", "levels", "--answers", "1"],
+                      ["calibrate", "--rig", "simulated", "--sweep"], ["report", "--db", "lab.sqlite", "--participant", "P01", "--json"],
+                      ["sessions", "--db", "lab.sqlite"]):
+            plain = run(words, self.folder, LC_ALL="C.UTF-8")
+            for name in ("de_DE", "tr_TR"):
+                other = run(words, self.folder, LC_ALL=f"{name}.UTF-8", LOCPATH=self.folder)
+                self.assertEqual(other, plain, words)
+
+
 class Mistakes(Folder):
     def test_a_misspelt_command(self):
         for name in [*self.names, "help"]:

@@ -85,6 +85,28 @@ TEST_CASE("a USB stick is listed with its model, size and folder, and nothing th
   CHECK(after[0].folder == "/media/lab/MY STICK");
 }
 
+TEST_CASE("the disk with the station's data is never offered, nor another partition of it", "[disks]") {
+  Machine machine;
+  machine.disk("sdc", "0", "2000000", "8:32", "Portable");
+  fs::create_directories(machine.folder / "usb");
+  const auto block = fs::path(machine.sources.blocks) / "sdc";
+  machine.write(block / "removable", "1\n");
+  machine.partition("sdc", "sdc1", "8:33");
+  machine.partition("sdc", "sdc2", "8:34");
+  const auto offered = [&](const std::string& folder) {
+    machine.mounts("40 25 8:33 / " + folder + " rw shared:9 - ext4 /dev/sdc1 rw\n");
+    std::string devices;
+    for (const auto& disk : maintenance::removable_disks(machine.sources)) devices += disk.device + " ";
+    return devices;
+  };
+  CHECK(offered("/media/lab/portable") == "/dev/sda1 /dev/sdc1 /dev/sdc2 ");
+  CHECK(offered("/var/lib/turnpoint") == "/dev/sda1 ");
+  machine.sources.data = "/srv/lab/lab.sqlite";
+  CHECK(offered("/srv/lab") == "/dev/sda1 ");
+  CHECK(offered("/srv") == "/dev/sda1 ");
+  CHECK(offered("/srv/la") == "/dev/sda1 /dev/sdc1 /dev/sdc2 ");
+}
+
 TEST_CASE("a disk is mounted through udisks, and its folder is the one that the kernel reports", "[disks]") {
   const Machine machine;
   const auto disk = maintenance::removable_disks(machine.sources).at(0);

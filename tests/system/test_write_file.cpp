@@ -3,8 +3,11 @@
 
 #include <filesystem>
 #include <fstream>
+#include <iterator>
+#include <string>
 #include <system_error>
 
+#include "station/system/read_file.hpp"
 #include "station/system/write_file.hpp"
 #include "tests/support/catch.hpp"
 #include "tests/support/temporary_folder.hpp"
@@ -75,4 +78,41 @@ TEST_CASE("the user's own link is followed, and one that another user has made i
 TEST_CASE("bytes are written directly to a pipe or a device", "[write]") {
   CHECK_NOTHROW(system::write_file("/dev/null", "bytes"));
   CHECK(fs::is_character_file("/dev/null"));
+}
+
+TEST_CASE("a database, its logs, an input, a folder and a pipe without a reader are refused and unchanged", "[write]") {
+  const TemporaryFolder folder;
+  const auto database = folder / "lab.sqlite", input = folder / "table.csv", pipe = folder / "pipe";
+  const auto start = std::string("SQLite format 3\0", 16) + "pages";
+  std::ofstream(database, std::ios::binary) << start;
+  std::ofstream(input) << "rows";
+  REQUIRE(::mkfifo(pipe.c_str(), 0600) == 0);
+  fs::create_symlink(database, folder / "link");
+  CHECK(system::read_file(input) == "rows");
+  for (const auto& path : {database, database + "-wal", folder / "link", input, folder.path + "", pipe})
+    CHECK_THROWS_AS(system::write_file(path, "report"), system::RefusedDestination);
+  CHECK(content(database) == start);
+  CHECK(content(input) == "rows");
+  CHECK_FALSE(fs::exists(database + "-wal"));
+  system::write_file(input, "changed", 0666, system::Replaces::input);
+  CHECK(content(input) == "changed");
+  CHECK(system::read_file(input) == "changed");  // an output is not protected by being read
+  system::write_file(input, "again");
+  CHECK(content(input) == "again");
+}
+
+TEST_CASE("writers of one file do not share a draft, and a draft that was left behind is removed", "[write]") {
+  const TemporaryFolder folder;
+  const auto path = folder / "a.csv";
+  std::ofstream(path + ".new") << "left by a process that was killed";
+  {
+    system::FileWriter first(path), second(path);
+    first.write("first");
+    second.write("second");
+    second.commit();
+    CHECK(content(path) == "second");
+    first.commit();
+  }
+  CHECK(content(path) == "first");
+  CHECK(std::distance(fs::directory_iterator(folder.path), fs::directory_iterator()) == 1);
 }

@@ -30,7 +30,7 @@ void DesignController::raise_version() {
 
 bool DesignController::write_to(const std::string& path) {
   if (!place_.folder.empty()) system::make_folder(place_.folder);
-  system::write_file(path, draft_->text());
+  system::write_file(path, draft_->text(), 0666, system::Replaces::input);
   path_ = path;
   name_ = QFileInfo(QString::fromStdString(path)).completeBaseName().toStdString();
   saved_ = draft_->text();

@@ -71,6 +71,7 @@ SessionsController::SessionsController(const setup::StationRequest& request, mai
       database_(fs::absolute(request.database).string()),
       sources_(std::move(disks)),
       worker_(*this) {
+  sources_.data = database_;
   report_.save_in((fs::path(database_).parent_path() / "figures").string());
 }
 
