@@ -39,7 +39,8 @@ void print(std::ostream& out, const store::Verification& result) {
     for (const auto& problem : s.problems) fmt::print(out, "    {}\n", problem);
   }
   for (const auto& problem : result.problems) fmt::print(out, "{}\n", problem);
-  fmt::print(out, "{} sessions, {} changed\n", result.sessions.size(), changed);
+  fmt::print(out, "{} sessions, {} changed{}\n", result.sessions.size(), changed,
+             result.problems.empty() ? "" : fmt::format(", {} other problems", result.problems.size()));
 }
 
 void verify(const Options& options, Context& context) {
