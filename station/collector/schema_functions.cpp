@@ -282,8 +282,11 @@ CREATE OR REPLACE FUNCTION turnpoint.lease_places(protocol text, more bigint) RE
 LANGUAGE plpgsql SECURITY DEFINER SET search_path = pg_catalog, pg_temp AS $fn$
 DECLARE mine text := turnpoint.own_station();
 BEGIN
-  IF more NOT BETWEEN 0 AND 10000 THEN
-    RAISE EXCEPTION 'a station cannot lease % places; allowed are 0 to 10000', more USING ERRCODE = 'TP003';
+  IF more < 0 OR more + (SELECT count(*) FROM turnpoint.lease t WHERE t.protocol_id = protocol AND t.station_id = mine
+      AND NOT EXISTS (SELECT FROM turnpoint.enrolment e WHERE e.protocol_id = protocol
+                        AND e.sequence_index = t.sequence_index)) > 10000 THEN
+    RAISE EXCEPTION 'a station cannot lease % more places; it may hold up to 10000 that nobody has', more
+      USING ERRCODE = 'TP003';
   END IF;
   LOCK TABLE turnpoint.lease IN SHARE ROW EXCLUSIVE MODE;  -- the database's lock_timeout limits how long this waits
   INSERT INTO turnpoint.lease (protocol_id, sequence_index, station_id)

@@ -266,6 +266,9 @@ TEST_CASE("no station can hold a lock for which another waits", "[collector]") {
     INFO(forbidden);
     CHECK(state_of(b, forbidden) == "42501");
   }
+  // No station can lease all places of a study.
+  CHECK(state_of(b, "SELECT turnpoint.lease_places('other', 10000)") == "allowed");
+  CHECK(state_of(b, "SELECT turnpoint.lease_places('other', 1)") == "TP003");
   // bench-b leases a place and leaves its transaction open. bench-a is told so, and what else it sends
   // arrives.
   b.query("SET idle_in_transaction_session_timeout = 0");
