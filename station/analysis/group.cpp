@@ -57,13 +57,13 @@ Effect effect_of_groups(const Column& first, const Column& second) {
   return effect;
 }
 
-Effect effect_of(const Column& first, const Column& second) {
+Effect effect_of(const Column& first, const Column& second, const Between& between) {
+  if (between(first.condition, second.condition)) return effect_of_groups(first, second);
   const std::map<std::string, double> before(first.values.begin(), first.values.end());
   std::vector<double> differences;
   for (const auto& [person, value] : second.values)
     if (const auto found = before.find(person); found != before.end())
       differences.push_back(value - found->second);
-  if (differences.empty()) return effect_of_groups(first, second);
   Effect effect{first.measure, first.unit, first.condition, second.condition, 0, {}, {}};
   effect.persons = static_cast<int>(differences.size());
   effect.difference = student_mean(differences);
@@ -87,12 +87,12 @@ std::vector<GroupMean> group_means(const std::vector<PersonMeasure>& measures) {
   return means;
 }
 
-std::vector<Effect> effects(const std::vector<PersonMeasure>& measures) {
+std::vector<Effect> effects(const std::vector<PersonMeasure>& measures, const Between& between) {
   std::vector<Effect> all;
   const auto samples = samples_of(measures);
   for (std::size_t i = 0; i < samples.size(); ++i)
     for (std::size_t j = i + 1; j < samples.size() && samples[j].measure == samples[i].measure; ++j)
-      all.push_back(effect_of(samples[i], samples[j]));
+      all.push_back(effect_of(samples[i], samples[j], between));
   return all;
 }
 

@@ -1,4 +1,5 @@
 #pragma once
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -23,8 +24,8 @@ struct GroupMean {
 };
 
 /// The effect of a condition on a measure: the mean of the participants' own differences, second minus first.
-/// If no participant has both conditions, each condition is that of one group, and the effect is the
-/// difference of the groups' means.
+/// If the conditions are those of different groups of participants, the effect is the difference of the
+/// groups' means.
 struct Effect {
   std::string measure, unit, first, second;
   int persons = 0;  ///< participants with the measure in both conditions (between groups: in either one)
@@ -37,9 +38,12 @@ struct Effect {
   bool between_groups = false;
 };
 
+/// True if two conditions are those of different groups of participants.
+using Between = std::function<bool(const std::string& first, const std::string& second)>;
+
 /// Both functions return their entries in the order in which measures and conditions first occur. A person
 /// must not have the same measure twice in one condition.
 std::vector<GroupMean> group_means(const std::vector<PersonMeasure>& measures);
-std::vector<Effect> effects(const std::vector<PersonMeasure>& measures);
+std::vector<Effect> effects(const std::vector<PersonMeasure>& measures, const Between& between);
 
 }  // namespace turnpoint::analysis

@@ -242,4 +242,14 @@ std::vector<LevelCount> count_choice(const std::vector<TrialRecord>& trials, int
   });
 }
 
+bool falls(const std::vector<LevelCount>& counts) {
+  double n = 0, k = 0, level = 0;
+  for (const auto& point : counts)
+    n += point.trials, k += point.positive, level += point.trials * point.level;
+  double covariance = 0;
+  for (const auto& point : counts)
+    if (n > 0) covariance += (point.positive - point.trials * k / n) * (point.level - level / n);
+  return covariance < 0;
+}
+
 }  // namespace turnpoint::analysis

@@ -121,6 +121,9 @@ struct BootstrapOptions {
 /// result holds only a statement.
 PsychometricIntervals bootstrap(const PsychometricFit& fit, const BootstrapOptions& options);
 
+/// True if the positive answers become rarer as the level rises.
+bool falls(const std::vector<LevelCount>& counts);
+
 /// Counts answers by level. count_correct() uses the answered trials that have a level and a score
 /// (`correct`). count_choice() uses those that have a level and a response, and counts `positive_choice`.
 /// Both leave out practice, catch and warm-up trials.

@@ -146,6 +146,7 @@ Group collect(const std::vector<TrialRecord>& trials, const TradeOptions& option
   std::vector<bool> correct;
   for (const auto& trial : trials) {
     if (trial.type != TrialType::experimental || trial.instruction != result.instruction) continue;
+    if (trial.outcome == Outcome::fault || trial.outcome == Outcome::aborted) continue;  // void
     ++result.presented;
     result.timeouts += trial.outcome == Outcome::timeout;
     result.anticipations += trial.outcome == Outcome::anticipation;

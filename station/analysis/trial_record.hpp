@@ -47,6 +47,10 @@ struct TrialRecord {
   /// a number that is the same for trials of equal difficulty; usually the absolute value of the level
   std::optional<double> difficulty;
   StartSide start_side = StartSide::none;
+  /// For two intervals of which the level decides which one is right: the number of the chosen and of the
+  /// right scene; empty if no interval was right, or without an answer.
+  std::optional<int> chosen_scene, right_scene;
+  std::size_t part = 0;  ///< number of the analysis to which the trial belongs; 0 if there is only one
 };
 
 /// Returns the conditions of the experimental trials: first those in `order`, then the others in the order in

@@ -115,6 +115,7 @@ Json to_json(const simulation::Check& check, const std::string& signal) {
       {"warnings", problems_json(check.warnings)},
       {"notes", problems_json(check.notes)},
       {"id", check.id},
+      {"measures", check.measures},
       {"rig", check.rig_name},
       {"trials", json_number(check.trials.median)},
       {"trials_range", {json_number(check.trials.low), json_number(check.trials.high)}},
@@ -190,6 +191,7 @@ void print_cues(std::ostream& out, const simulation::CueGuard& cues) {
 void print(std::ostream& out, const simulation::Check& check, const std::string& path) {
   const bool known = check.cues.not_compared.empty() && !check.cues.stopped;
   fmt::print(out, "{} {} on \"{}\": {}\n", path, known ? "is good" : "can run", check.rig_name, check.title);
+  for (const auto& line : check.measures) fmt::print(out, "Measures in {}\n", line);
   for (const auto& block : check.blocks)
     fmt::print(out, "  {}{}{}{}: {} trials\n", block.visit.empty() ? "" : block.visit + ": ",
                block.practice ? "practice block " : "block ", block.name,

@@ -51,8 +51,7 @@ LiveView::LiveView(const protocol::Protocol& protocol, const rig::Rig& rig, OnSt
     : on_state_(std::move(on_state)),
       on_gauges_(std::move(on_gauges)),
       language_(std::move(language)),
-      level_(protocol.procedures.empty() ? Words(language_)("figure.level")
-                                         : protocol.procedures.front().level),
+      level_(protocol::common_level(protocol).value_or(Words(language_)("figure.level"))),
       asked_(protocol.sensing),
       adjusted_(protocol.task.adjusts),
       rig_(rig),

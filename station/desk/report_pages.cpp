@@ -72,12 +72,13 @@ void add_outcomes(const report::Summary& summary, const Words& words, ReportPage
 }
 
 void add_fits(const report::Summary& summary, const Words& words, ReportPages& pages) {
-  const bool two_sided = summary.data.design == report::Design::two_sided;
   for (const auto& named : summary.fits) {
     if (!named.fit.parameters) continue;
     const auto prefix = named.name.empty() ? "" : named.name + ": ";
     const auto& p = *named.fit.parameters;
-    const auto& unit = summary.data.level_unit;
+    const auto& part = report::analysis_of(named, summary.data);
+    const bool two_sided = part.design == report::Design::two_sided;
+    const auto& unit = part.level_unit;
     const auto in_unit = [&unit](const std::string& what) {
       return unit.empty() ? what : what + " (" + unit + ")";
     };

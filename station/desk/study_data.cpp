@@ -8,6 +8,8 @@
 #include <set>
 
 #include "station/desk/report_data.hpp"
+#include "station/protocol/answers.hpp"
+#include "station/protocol/conditions.hpp"
 #include "station/protocol/protocol.hpp"
 #include "station/report/stored_trials.hpp"
 #include "station/store/read.hpp"
@@ -122,6 +124,7 @@ protocol::Protocol by_group(protocol::Protocol protocol) {
       std::find(groups.begin(), groups.end(), "instruction") == groups.end())
     by.push_back("instruction");
   by.insert(by.begin(), groups.begin(), groups.end());
+  protocol.meanings = protocol::meanings_of(protocol);
   return protocol;
 }
 
@@ -165,6 +168,38 @@ PersonData data_of(const std::string& person, const std::vector<Found>& sessions
   return data;
 }
 
+bool completed(const Found& found) { return found.session.status == records::SessionStatus::completed; }
+
+/// True if the participant began the same session again: the same planned session or, if none are planned,
+/// any later one. `sessions` are in the order in which they were begun.
+bool superseded(const std::vector<Found>& sessions, std::size_t place) {
+  if (completed(sessions[place])) return false;
+  const auto& number = sessions[place].session.start.planned_session;
+  return std::any_of(sessions.begin() + static_cast<std::ptrdiff_t>(place) + 1, sessions.end(),
+                     [&](const Found& later) { return later.session.start.planned_session == number; });
+}
+
+/// The sessions of one participant that count.
+struct Counted {
+  std::vector<Found> sessions;
+  bool incomplete = false;  ///< true if a session was neither completed nor begun again
+};
+
+Counted counted(const std::vector<Found>& sessions, report::SessionCounts& counts) {
+  Counted result;
+  for (std::size_t i = 0; i < sessions.size(); ++i) {
+    ++counts.found;
+    if (superseded(sessions, i)) {
+      ++counts.superseded;
+      continue;
+    }
+    const bool whole = completed(sessions[i]);
+    if (!whole) ++counts.incomplete, result.incomplete = true;
+    if (whole || counts.incomplete_count) result.sessions.push_back(sessions[i]);
+  }
+  return result;
+}
+
 report::Study head_of(const StudyChoice& choice, const std::vector<Found>& all, int copies) {
   report::Study study;
   const auto& start = all.front().session.start;
@@ -200,6 +235,11 @@ report::Study study_data(const StudyChoice& choice, const StudySink& sink, const
   study.rules = report::rules_in_words(rules);
   const auto people = by_person(std::move(all));
   int done = 0;
+  for (const auto& factor : protocol.factors)
+    if (factor.draw == protocol::FactorDraw::per_participant)
+      for (const auto& level : factor.levels)
+        study.groups_in_words.push_back(protocol::level_in_words(factor.name, level));
+  study.sessions.incomplete_count = protocol.analysis.count_incomplete;
   for (const auto& [person, sessions] : people) {
     if (!progress(done, static_cast<int>(people.size()))) {
       study.statements.push_back(
@@ -207,12 +247,12 @@ report::Study study_data(const StudyChoice& choice, const StudySink& sink, const
       break;
     }
     ++done;
-    auto [data, estimates] = data_of(person, sessions, protocol);
-    const bool incomplete = std::any_of(sessions.begin(), sessions.end(), [](const Found& found) {
-      return found.session.status != records::SessionStatus::completed;
-    });
-    auto result = report::study_person(data, rules, incomplete);
-    for (const auto& found : sessions) result.sessions.push_back(found.session.session_id);
+    const auto used = counted(sessions, study.sessions);
+    auto [data, estimates] = data_of(person, used.sessions, protocol);
+    data.run_mode = store::name(sessions.front().session.start.run_mode);
+    auto result = report::study_person(data, rules, used.incomplete);
+    if (used.sessions.empty()) result.excluded.push_back("no session that counts");
+    for (const auto& found : used.sessions) result.sessions.push_back(found.session.session_id);
     result.estimates = std::move(estimates);
     result.group = sessions.front().session.start.group;
     sink(result, data);
@@ -220,6 +260,10 @@ report::Study study_data(const StudyChoice& choice, const StudySink& sink, const
     data.trials.clear();
     study.settings = std::move(data);
   }
+  for (auto& [name, text] : study.facts)
+    if (const auto& n = study.sessions; name == "Sessions" && n.counted() != n.found)
+      text = fmt::format("{} of {} count; {} were begun again later, {} were not completed", n.counted(),
+                         n.found, n.superseded, n.incomplete);
   report::finish_study(study);
   return study;
 }

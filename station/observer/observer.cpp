@@ -139,14 +139,15 @@ double Observer::threshold(const Question& q) const {
 
 /// The bias at the trial's value of the second dimension.
 double Observer::bias(const Question& q) const {
-  const double at = parameters_.bias + parameters_.gradient * q.second;
+  const double at = q.cut + parameters_.bias + parameters_.gradient * q.second;
   return parameters_.floor ? std::max(at, *parameters_.floor) : at;
 }
 
 double Observer::strength(const Question& q, double from) const {
   const double threshold = this->threshold(q);
   const auto capped = [](double exponent) { return random::exp(std::min(exponent, kLogStrongest)); };
-  if (q.decibel) return capped((q.level - threshold) * 0.11512925464970228 * parameters_.slope);
+  if (q.decibel && q.decides != Decides::side)
+    return capped((q.level - threshold) * 0.11512925464970228 * parameters_.slope);
   const double ratio = std::fabs(q.level - from) / std::fabs(threshold);
   return ratio > 0 ? capped(parameters_.slope * random::log(ratio)) : 0;
 }

@@ -100,8 +100,9 @@ struct Question {
   /// exp(log_step * gradient * second)
   double log_step = 0;
   Decides decides = Decides::right_answer;
-  /// for `side`: the answer that is right for levels above zero; for `presence` with two answers: "yes"
+  /// for `side`: the answer that belongs to levels above the cut; for `presence` with two answers: "yes"
   int positive = 1;
+  double cut = 0;              ///< for `side`: the level from which the observer's bias counts
   bool absent = false;         ///< for `presence`: true if the trial has no signal, whatever its level
   std::optional<int> correct;  ///< for `right_answer`: the right answer; empty if no answer is right
   Finding finding = Finding::weibull;   ///< for `right_answer`: how the observer finds the right answer

@@ -68,7 +68,7 @@ Estimated estimated_by(const std::string& estimator, const protocol::Protocol& p
   Conversation with(choice.path, choice.limit_s,
                     {{"role", "estimator"},
                      {"protocol", protocol.id},
-                     {"level", protocol.procedures.empty() ? "" : protocol.procedures.front().level},
+                     {"level", protocol::common_level(protocol).value_or("")},
                      {"choices", choices},
                      {"settings", choice.settings}});
   for (const auto& block : blocks) {

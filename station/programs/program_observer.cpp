@@ -67,6 +67,7 @@ Json message_of(const observer::Question& question) {
                {"decibel", question.decibel},
                {"decides", name(question.decides)},
                {"positive", question.positive},
+               {"cut", question.cut},
                {"absent", question.absent},
                {"correct", or_null(question.correct)},
                {"finding", name(question.finding)},

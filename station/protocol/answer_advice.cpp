@@ -184,12 +184,16 @@ void check_catch(AdviceList& advice, const std::variant<Block, Sequence>& part) 
   // The larger a level, the easier the trial. For levels in dB the value itself counts, for all others the
   // magnitude.
   const bool decibel = trials->factor.ends_with("_dB");
+  const auto rule = answer_rule(protocol, trials->factor);
+  const bool sides = rule.kind == AnswerKind::side;
   const auto sources = sources_of(protocol);
   const auto sets = [&](const Source& source) { return source.spec && source.level == trials->factor; };
   if (std::none_of(sources.begin(), sources.end(), sets)) return;
   const double middle = middle_level(protocol, trials->factor);
   for (const double level : trials->levels)
-    if ((decibel ? level : std::fabs(level)) < middle)
+    if ((sides     ? std::fabs((rule.size ? std::fabs(level) : level) - rule.cut)
+         : decibel ? level
+                   : std::fabs(level)) < middle)
       return advice.add(key_of(part, "catch"), phrase("problem.catch_hard", {plain(number(level))}),
                         phrase("problem.well_above", {plain(number(middle))}));
 }

@@ -8,11 +8,23 @@
 
 namespace turnpoint::protocol {
 
+std::string scene_of(const Task& task, int number) {
+  const auto& own = task.intervals.at(static_cast<std::size_t>(number));
+  const auto& other = task.intervals.at(1 - static_cast<std::size_t>(number));
+  for (const auto& name : own)
+    if (std::find(other.begin(), other.end(), name) == other.end()) return name;
+  return own.empty() ? "" : own.front();
+}
+
 namespace {
 
 int index_of(const Task& task, const std::string& id) {
   for (std::size_t i = 0; i < task.choices.size(); ++i)
     if (task.choices[i].id == id) return static_cast<int>(i);
+  // the comparisons of 2ifc are about scenes
+  for (std::size_t i = 0; i < task.intervals.size(); ++i)
+    if (task.kind == TaskKind::two_interval && scene_of(task, static_cast<int>(i)) == id)
+      return static_cast<int>(i);
   return -1;
 }
 
@@ -63,17 +75,104 @@ std::vector<double> categories(const Protocol& protocol, const std::string& leve
   return sums;
 }
 
-/// Returns the rule for a task with two answers; empty if the sign of the level does not decide which answer
-/// is right.
+/// Number of steps in which a factor's range is searched for the levels at which the right answer changes.
+constexpr int kSteps = 64;
+
+/// The answers that are right along a range of levels: each differs from the one before it. Levels at which
+/// no answer is right, and single levels at which another answer is right, belong to none of them.
+struct Stretches {
+  std::vector<int> right;    ///< indices of choices
+  std::vector<double> cuts;  ///< the levels between them
+};
+
+Stretches stretches(const Protocol& protocol, const std::string& level, double low, double high) {
+  Stretches found;
+  double last = low;
+  for (int i = 0; i <= kSteps; ++i) {
+    // off the round levels, at which a comparison such as `level == 0` may hold
+    const double at = low + (high - low) * (i + (i == 0 ? 1e-4 : i == kSteps ? -1e-4 : 1e-5)) / kSteps;
+    const int right = right_at(protocol, level, at);
+    if (right < 0) continue;
+    if (!found.right.empty() && found.right.back() != right) {
+      // the last level at which the one answer is right, and the first at which the other is
+      const auto edge = [&](double from, double to, int answer) {
+        for (int step = 0; step < 60; ++step) {
+          const double middle = 0.5 * (from + to);
+          (right_at(protocol, level, middle) == answer ? from : to) = middle;
+        }
+        return 0.5 * (from + to);
+      };
+      const double cut = 0.5 * (edge(last, at, found.right.back()) + edge(at, last, right));
+      // a level that people write has few digits
+      const double unit = 1e-9 * std::max(std::fabs(low), std::fabs(high));
+      found.cuts.push_back(std::round(cut / unit) * unit + 0.0);
+    }
+    if (found.right.empty() || found.right.back() != right) found.right.push_back(right);
+    last = at;
+  }
+  return found;
+}
+
+/// True if the trials of one of the answers all have the level 0: then there was no signal.
+bool only_zero(const Protocol& protocol, const std::string& level, int answer) {
+  bool any = false;
+  for (const auto& source : sources_of(protocol)) {
+    if (source.level != level || source.block->practice) continue;
+    for (const double value : levels_of(source))
+      if (right_at(protocol, level, value) == answer) {
+        if (value != 0) return false;
+        any = true;
+      }
+  }
+  return any;
+}
+
+/// Returns the rule for a task with two answers; empty if the level does not decide which answer is right.
 std::optional<AnswerRule> two_answers(const Protocol& protocol, const std::string& level, double low,
                                       double high) {
-  const int below = low < 0 ? right_at(protocol, level, low) : -1;
-  const int above = high > 0 ? right_at(protocol, level, high) : -1;
-  const int at_zero = low <= 0 && high >= 0 ? right_at(protocol, level, 0) : -1;
-  if (below >= 0 && above >= 0 && below != above) return AnswerRule{AnswerKind::side, above};
-  const int off = std::max(below, above);
-  if (at_zero >= 0 && off >= 0 && off != at_zero) return AnswerRule{AnswerKind::presence, off};
+  const auto found = stretches(protocol, level, low, high);
+  const auto& right = found.right;
+  AnswerRule rule;
+  if (right.size() == 1) {
+    const int at_zero = low <= 0 && high >= 0 ? right_at(protocol, level, 0) : -1;
+    if (at_zero < 0 || at_zero == right.front()) return std::nullopt;
+    rule.kind = AnswerKind::presence, rule.positive = right.front();
+    return rule;
+  }
+  if (right.size() == 2) {
+    for (const int answer : right)
+      if (only_zero(protocol, level, answer)) {
+        rule.kind = AnswerKind::presence, rule.positive = right[0] + right[1] - answer;
+        return rule;
+      }
+    rule.kind = AnswerKind::side, rule.positive = right.back(), rule.cut = found.cuts.front();
+    return rule;
+  }
+  // one answer is right near zero, the other one far from it on both sides
+  const auto& cuts = found.cuts;
+  if (right.size() == 3 && std::fabs(cuts[0] + cuts[1]) < 1e-6 * (cuts[1] - cuts[0])) {
+    rule.size = true;
+    rule.kind = only_zero(protocol, level, right[1]) ? AnswerKind::presence : AnswerKind::side;
+    rule.positive = right[2], rule.cut = rule.kind == AnswerKind::side ? cuts[1] : 0;
+    return rule;
+  }
   return std::nullopt;
+}
+
+/// The rule for two answers of which none is right or wrong: how often one of them is given has a PSE. It is
+/// the answer that a procedure tracks, or the second one.
+std::optional<AnswerRule> choice_rule(const Protocol& protocol, const std::string& level, double low,
+                                      double high) {
+  AnswerRule rule;
+  rule.kind = AnswerKind::side;
+  rule.cut = low < 0 && high > 0 ? 0 : 0.5 * (low + high);
+  for (const auto& spec : protocol.procedures) {
+    if (spec.level != level) continue;
+    if (spec.signal_detection)
+      return std::nullopt;  // an answer that means "yes", and trials without a signal
+    if (!spec.tracks.empty()) rule.positive = index_of(protocol.task, spec.tracks);
+  }
+  return rule;
 }
 
 }  // namespace
@@ -82,14 +181,25 @@ AnswerRule answer_rule(const Protocol& protocol, const std::string& level) {
   const auto& task = protocol.task;
   if (task.kind == TaskKind::same_different) return {AnswerKind::presence, index_of(task, "different")};
   const auto* factor = find_factor(protocol.factors, level);
-  if (task.kind != TaskKind::single_interval || task.correct_answer.size() < 2 || !factor) return {};
+  const bool scenes = task.kind == TaskKind::two_interval && !task.correct_answer.empty();
+  if ((task.kind != TaskKind::single_interval && !scenes) || judges(task) || !factor) return {};
   const auto ends = span(*factor);
   if (!ends) return {};
+  if (task.correct_answer.empty() && task.choices.size() == 2)
+    return choice_rule(protocol, level, ends->first, ends->second).value_or(AnswerRule{});
+  if (task.correct_answer.size() < 2) return {};
   if (task.correct_answer.size() == 2)
     if (const auto rule = two_answers(protocol, level, ends->first, ends->second)) return *rule;
+  if (scenes) return {};
   auto found = categories(protocol, level);
   if (found.empty()) return {};
-  return {AnswerKind::category, 1, std::move(found)};
+  return {AnswerKind::category, 1, std::move(found), 0, false};
+}
+
+AnswerRule answer_rule_of(const Protocol& protocol, const std::string& level) {
+  for (const auto& meaning : protocol.meanings)
+    if (meaning.level == level) return meaning.rule;
+  return answer_rule(protocol, level);
 }
 
 bool two_sided(const Protocol& protocol, const std::string& level) {
@@ -126,13 +236,17 @@ std::optional<double> accepted(const ValueAnswer& answer, double given) {
 }
 
 double middle_level(const Protocol& protocol, const std::string& level) {
-  const bool decibel = level.ends_with("_dB");
+  const auto rule = answer_rule_of(protocol, level);
+  const bool sides = rule.kind == AnswerKind::side, decibel = !sides && level.ends_with("_dB");
+  const auto distance = [&](double value) {
+    return std::fabs((rule.size ? std::fabs(value) : value) - rule.cut);
+  };
   std::vector<double> by_procedures, by_blocks;
   for (const auto& source : sources_of(protocol)) {
     if (source.level != level) continue;
     for (const double value : levels_of(source))
-      if (decibel || value != 0)
-        (source.spec ? by_procedures : by_blocks).push_back(decibel ? value : std::fabs(value));
+      if (decibel || distance(value) != 0)
+        (source.spec ? by_procedures : by_blocks).push_back(decibel ? value : distance(value));
   }
   auto& all = by_procedures.empty() ? by_blocks : by_procedures;
   if (all.empty()) return 1;

@@ -7,28 +7,23 @@
 
 namespace turnpoint::protocol {
 
-/// How the answers of a task relate to the level.
-enum class AnswerKind {
-  right_answer,  ///< one of the choices is right; the level determines how easy it is to find
-  side,          ///< two answers: one is right for levels below zero, the other for levels above
-  /// two answers: one is right if the level is zero, the other if it is not (for same-different: zero means
-  /// that both scenes are the same)
-  presence,
-  category,  ///< the level decides which of the answers is right (identification)
-};
-
-struct AnswerRule {
-  AnswerKind kind = AnswerKind::right_answer;
-  /// index of a choice. For `side`: the answer that is right for levels above zero. For `presence`: the
-  /// answer that is right for every level except zero
-  int positive = 1;
-  /// for `category`: for each choice, the mean of the presented levels at which it is right
-  std::vector<double> categories = {};
-};
-
-/// Finds out how the answers relate to this factor by evaluating the comparisons of `correct` at zero, at the
-/// ends of the factor's range, and at the levels that are presented.
+/// Finds out how the answers relate to this factor by evaluating the comparisons of `correct` over the whole
+/// range of the factor and at the levels that are presented.
 AnswerRule answer_rule(const Protocol& protocol, const std::string& level);
+
+/// The same rule; taken from the meanings of a protocol that has been read, without computing it again.
+AnswerRule answer_rule_of(const Protocol& protocol, const std::string& level);
+
+/// Decides what the trials of each level factor measure; see Meaning. The decision looks at the protocol
+/// only.
+std::vector<Meaning> meanings_of(const Protocol& protocol);
+
+/// In 2ifc, the scene of the interval with this number (0 or 1) as the protocol lists them, by which
+/// `correct` names it.
+std::string scene_of(const Task& task, int number);
+
+/// True if the answers can be right or wrong.
+bool scored(const Task& task);
 
 /// True if the participant may answer while the surface moves.
 bool explored(const Task& task);
@@ -51,9 +46,10 @@ std::optional<double> accepted(const ValueAnswer& answer, double given);
 bool two_sided(const Protocol& protocol, const std::string& level);
 
 /// A typical level of the factor `level` in the protocol's procedures, or in its blocks if it has no
-/// procedures. For a factor in dB it is the median of all levels, otherwise the median magnitude of all
-/// nonzero levels. For a staircase, evenly spaced levels between its limits are used. Returns 1 if there are
-/// no levels.
+/// procedures. If the right answer changes at a cut, it is the median distance from the cut. Otherwise, for a
+/// factor in dB, it is the median of all levels, and for any other the median magnitude of all nonzero
+/// levels. For a staircase, evenly spaced levels between its limits are used. Returns 1 if there are no
+/// levels.
 double middle_level(const Protocol& protocol, const std::string& level);
 
 }  // namespace turnpoint::protocol

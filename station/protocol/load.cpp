@@ -1,5 +1,6 @@
 #include <fstream>
 
+#include "station/protocol/answers.hpp"
 #include "station/protocol/expression.hpp"
 #include "station/protocol/interludes.hpp"
 #include "station/protocol/reading.hpp"
@@ -49,6 +50,7 @@ Protocol parse(const std::string& source, const std::string& path) {
   file.finish();
   findings.throw_if_any();
   protocol.defaults_used = findings.defaults_used;
+  protocol.meanings = meanings_of(protocol);
   return protocol;
 }
 

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "station/procedure/spec.hpp"
+#include "station/protocol/meaning.hpp"
 #include "station/protocol/scene.hpp"
 #include "station/protocol/session_plan.hpp"
 #include "station/terms/trial.hpp"
@@ -91,7 +92,8 @@ struct Task {
   std::optional<double> modulus;
   std::optional<Confidence> confidence;
   std::string correct_scene;  ///< 2ifc: the interval that contains this scene is the correct answer
-  /// id of each choice, with the condition under which the choice is right
+  /// Id of each choice, with the condition under which the choice is right. For 2ifc without `correct_scene`,
+  /// the name of each scene, with the condition under which its interval is right
   std::vector<std::pair<std::string, Comparison>> correct_answer;
   /// For adjustment only: the factor that the slider moves, its range and step.
   std::string adjusts;
@@ -282,6 +284,9 @@ struct Analysis {
   std::optional<Linear> difficulty;
   /// parts of the report to show; if empty, all parts that suit the task are shown
   std::optional<std::vector<std::string>> show;
+  /// Whether the report of a study counts sessions that were not completed. A session that was superseded
+  /// (the participant began the same session again later) never counts.
+  bool count_incomplete = false;
   double exclude_below_s = 0;
   std::optional<double> exclude_mad;
 };
@@ -366,6 +371,8 @@ struct Protocol {
   std::optional<Sensing> sensing;
   Resume resume;
   std::vector<std::string> defaults_used;
+  /// what the trials measure, one entry for each analysis; follows from everything above (meanings_of())
+  std::vector<Meaning> meanings;
 };
 
 /// Reads and checks a protocol file (format "friction-protocol/1"): syntax, keys, types, ranges, references.

@@ -48,14 +48,16 @@ void read_by(TableReader& reader, Reading& reading) {
 /// Why a value of `show` would add nothing to the report of this protocol; empty if it would add something.
 texts::Phrase without_effect(const std::string& word, const Protocol& protocol) {
   const auto& task = protocol.task;
-  const auto level = protocol.procedures.empty() ? std::string() : protocol.procedures.front().level;
   // do not add a second message: the reader of [task] has reported a task without choices
   if (word == "trace" || task.choices.empty()) return {};
   if (task.kind == TaskKind::adjustment) return phrase("problem.adjustment_settings");
   if (word == "dprime" && task.present) return {};
   if (judges(task)) return phrase("problem.judgements_unscored");
-  if ((word == "psychometric" || word == "dprime") &&
-      answer_rule(protocol, level).kind == AnswerKind::category)
+  const auto& procedures = protocol.procedures;
+  if ((word == "psychometric" || word == "dprime") && !procedures.empty() &&
+      std::all_of(procedures.begin(), procedures.end(), [&](const auto& spec) {
+        return answer_rule(protocol, spec.level).kind == AnswerKind::category;
+      }))
     return phrase("problem.level_decides");
   if (word == "diffusion" && task.choices.size() > 2 && task.kind != TaskKind::oddity)
     return phrase("problem.diffusion_two");
@@ -101,6 +103,8 @@ void read_show(TableReader& reader, Reading& reading) {
 }  // namespace
 
 void read_analysis(TableReader& file, Reading& reading) {
+  if (const auto& sessions = reading.protocol.sessions)
+    reading.protocol.analysis.count_incomplete = sessions->incomplete == Unfinished::count;
   const auto* table = file.maybe_table("analysis");
   if (!table) return;
   TableReader reader(*table, "analysis", reading.findings);
@@ -110,6 +114,12 @@ void read_analysis(TableReader& file, Reading& reading) {
   if (const auto* difficulty = reader.take("difficulty"))
     analysis.difficulty = linear_from(*difficulty, "difficulty", {-1e9, 1e9}, factors, reading.findings);
   read_show(reader, reading);
+  const auto& sessions = reading.protocol.sessions;
+  const auto incomplete = reader.maybe_word("incomplete_sessions", {"leave_out", "count"});
+  if (incomplete) analysis.count_incomplete = *incomplete == "count";
+  if (incomplete == "leave_out" && sessions && sessions->incomplete == Unfinished::count)
+    reader.problem("incomplete_sessions", phrase("problem.sessions_count"),
+                   plain("incomplete_sessions = \"count\""));
   if (const auto* exclude = reader.maybe_table("response_time_exclude")) {
     TableReader inner(*exclude, "analysis.response_time_exclude", reading.findings);
     analysis.exclude_below_s = inner.number("below_s", {0, 10, Range::Ends::closed, "s"}, 0);

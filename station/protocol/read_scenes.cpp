@@ -260,6 +260,11 @@ class Resolver {
   void read(const std::string& name, const Value& table, const Value& own) {
     Findings found;
     auto scene = read_scene(table, name, own, found, reading_);
+    if (scene.zone) {
+      const auto base = reading_.protocol.scenes.find(scene.base);
+      const bool below = base != reading_.protocol.scenes.end() && base->second.zone;
+      scene.zone->design_friction = below ? base->second.zone->friction : scene.zone->friction;
+    }
     for (auto& problem : found.problems)
       if (places_.insert({problem.place.line, problem.place.column}).second)
         reading_.findings.problems.push_back(std::move(problem));

@@ -290,7 +290,38 @@ void read_choices(TableReader& reader, Task& task, const TaskForm& kind, const R
     reader.problem("choices", phrase("problem.same_different_ids"), phrase("problem.use_same"));
 }
 
+/// Reads for each of the two scenes when its interval is the right answer, such as the one that is rougher.
+void read_correct_scenes(TableReader& reader, Task& task, const Reading& reading) {
+  const auto* table = reader.maybe_table("correct");
+  std::vector<std::string> scenes;
+  for (const auto& interval : task.intervals)
+    for (const auto& name : interval)
+      if (std::find(scenes.begin(), scenes.end(), name) == scenes.end()) scenes.push_back(name);
+  for (const auto& entry : table->entries) {
+    if (std::find(scenes.begin(), scenes.end(), entry.key) == scenes.end()) {
+      reading.findings.add(entry.place, phrase("problem.unknown_scene", {plain(entry.key)}),
+                           text::suggestion(entry.key, scenes));
+      continue;
+    }
+    if (entry.value.kind != Value::Kind::string) {
+      reading.findings.add(entry.value.place,
+                           phrase("problem.has", {plain("correct"), describe(entry.value)}),
+                           phrase("problem.comparison", {plain("\"change > 0\"")}));
+      continue;
+    }
+    const auto comparison =
+        parse_comparison(entry.value.string, entry.value.place, reading.protocol.factors, reading.findings);
+    if (comparison) task.correct_answer.emplace_back(entry.key, *comparison);
+  }
+  for (const auto& name : scenes)
+    if (!table->find(name))
+      reading.findings.add(table->place, phrase("problem.correct_lacks", {plain(name)}),
+                           phrase("problem.comparison_each"));
+}
+
 void read_correct_scene(TableReader& reader, Task& task, const Reading& reading) {
+  if (const auto* value = reader.take("correct"); value && value->kind == Value::Kind::table)
+    return read_correct_scenes(reader, task, reading);
   task.correct_scene = reader.string("correct", phrase("problem.name_right_scene"));
   if (task.correct_scene.empty()) return;
   check_scene(task.correct_scene, reader.place("correct"), reading);

@@ -23,15 +23,6 @@ scene::ToneTarget tone_of(const SceneTone& tone, const Factors& factors) {
   return target;
 }
 
-/// The friction for which the zone's tones are designed: that of the base scene's zone if it has one,
-/// otherwise that of the scene's own zone.
-double design_friction(const Protocol& protocol, const Scene& scene, const Factors& factors) {
-  const Scene* design = &scene;
-  if (!scene.base.empty()) design = &protocol.scenes.at(scene.base);
-  if (!design->zone || !design->zone->friction) design = &scene;
-  return evaluate(*design->zone->friction, factors);
-}
-
 }  // namespace
 
 double friction_at_contrast(double reference, double contrast_dB) {
@@ -58,7 +49,7 @@ scene::Scene resolve(const Protocol& protocol, const std::string& name, const Fa
     zone.from_m = 1e-3 * from.zone->from_mm.value_or(0);
     zone.friction = evaluate(*from.zone->friction, factors);
     zone.tones = from.zone->tones.value_or(1);
-    zone.design_friction = design_friction(protocol, from, factors);
+    zone.design_friction = evaluate(*from.zone->design_friction, factors);
     scene.zone = zone;
   }
   if (from.friction_contrast_dB) {

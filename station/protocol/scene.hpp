@@ -44,6 +44,9 @@ struct SceneTone {
 struct Zone {
   std::optional<double> from_mm;
   std::optional<Linear> friction;
+  /// the friction for which the zone's tones are designed: that of the base scene's zone if it has one,
+  /// otherwise that of the scene's own zone
+  std::optional<Linear> design_friction;
   std::optional<int> tones;
 };
 

@@ -74,7 +74,11 @@ std::vector<const Linear*> expressions_of(const Scene& scene) {
        {&scene.boundary_mm, &scene.displacement_um, &scene.friction, &scene.displacement_under_finger_um,
         &scene.finger_mm, &scene.friction_contrast_dB})
     add(*expression);
-  if (scene.zone) add(scene.zone->friction);
+  if (scene.zone) {
+    add(scene.zone->friction);
+    const auto& design = scene.zone->design_friction;
+    if (design && scene.zone->friction && design->source != scene.zone->friction->source) add(design);
+  }
   for (const auto& tone : scene.tones) {
     add(tone.boundary_mm), add(tone.frequency_Hz);
     all.push_back(&tone.displacement_um);

@@ -60,16 +60,16 @@ std::optional<double> false_alarms(const NamedFit& named) {
 
 /// Marks the threshold (or PSE) on the curve: a thin line labelled with its value and, at the curve, its
 /// interval.
-void mark_threshold(const NamedFit& named, const SessionData& data, int series, const std::string& name,
-                    plot::Chart& panel) {
+void mark_threshold(const NamedFit& named, const LevelAnalysis& data, const Words& words, int series,
+                    const std::string& name, plot::Chart& panel) {
   const auto& fit = named.fit;
   const double at = fit.parameters->threshold;
   if (at < panel.x.low || at > panel.x.high) return;
   const auto unit = data.level_unit.empty() ? "" : " " + data.level_unit;
   panel.layers.push_back(
       plot::Rule{plot::Rule::Direction::vertical, at,
-                 Words(data.language)(data.design == Design::two_sided ? "figure.pse" : "figure.threshold",
-                                      (name.empty() ? "" : name + " ") + text::number(at, 3) + unit)});
+                 words(data.design == Design::two_sided ? "figure.pse" : "figure.threshold",
+                       (name.empty() ? "" : name + " ") + text::number(at, 3) + unit)});
   if (!named.intervals.threshold) return;
   const auto& interval = named.intervals.threshold->interval;
   const double height = analysis::probability(fit.options.function, fit.options.scale, *fit.parameters, at);
@@ -86,51 +86,73 @@ std::string or_default(const std::string& name, const std::string& fallback) {
 
 }  // namespace
 
-std::optional<plot::Figure> psychometric_figure(const Summary& summary) {
+namespace {
+
+/// The chart of the functions of one analysis; empty if there are no levels.
+std::optional<plot::Chart> psychometric_chart(const std::vector<const NamedFit*>& fits,
+                                              const LevelAnalysis& data, int alternatives,
+                                              const Words& words) {
   std::vector<double> levels;
-  for (const auto& named : summary.fits)
-    for (const auto& point : named.fit.data)
+  for (const auto* named : fits)
+    for (const auto& point : named->fit.data)
       if (point.level != analysis::kNoise) levels.push_back(point.level);
   if (levels.empty()) return std::nullopt;
-  const Words words(summary.data.language);
-  const bool logarithmic = summary.data.scale == analysis::Scale::log10;
+  const bool logarithmic = data.scale == analysis::Scale::log10;
   plot::Chart panel;
-  panel.x = plot::fitted(summary.data.level_label, levels, 0.05,
+  panel.x = plot::fitted(data.level_label, levels, 0.05,
                          logarithmic ? plot::AxisScale::log10 : plot::AxisScale::linear);
-  const bool forced = summary.data.design == Design::forced_choice;
-  const auto& positive = summary.fits.front().positive;
+  const bool forced = data.design == Design::forced_choice;
+  const auto& positive = fits.front()->positive;
   panel.y = {words("figure.proportion", positive == "correct" ? words("figure.correct") : positive),
              forced ? 0.3 : -0.03, 1.03};
   if (forced)
-    for (const auto& named : summary.fits)
-      for (const auto& point : named.fit.data)
+    for (const auto* named : fits)
+      for (const auto& point : named->fit.data)
         panel.y.low = std::min(panel.y.low, analysis::wilson(point.positive, point.trials).low - 0.03);
-  for (std::size_t i = 0; i < summary.fits.size(); ++i)
-    if (!summary.fits[i].intervals.band_level.empty())
-      panel.layers.push_back(plot::Band{summary.fits[i].intervals.band_level,
-                                        summary.fits[i].intervals.band_low,
-                                        summary.fits[i].intervals.band_high, static_cast<int>(i), ""});
+  for (std::size_t i = 0; i < fits.size(); ++i)
+    if (const auto& band = fits[i]->intervals; !band.band_level.empty())
+      panel.layers.push_back(
+          plot::Band{band.band_level, band.band_low, band.band_high, static_cast<int>(i), ""});
   if (forced)
-    panel.layers.push_back(plot::Rule{plot::Rule::Direction::horizontal, 1.0 / summary.data.alternatives,
-                                      words("figure.chance")});
-  for (const auto& named : summary.fits)
-    if (const auto noise = false_alarms(named))
-      panel.layers.push_back(plot::Rule{
-          plot::Rule::Direction::horizontal, *noise,
-          named.name.empty() ? words("figure.false_alarms") : words("figure.false_alarms_of", named.name)});
-  for (std::size_t i = 0; i < summary.fits.size(); ++i) {
-    const auto& named = summary.fits[i];
+    panel.layers.push_back(
+        plot::Rule{plot::Rule::Direction::horizontal, 1.0 / alternatives, words("figure.chance")});
+  if (has_noise(data.design))
+    for (const auto* named : fits)
+      if (const auto noise = false_alarms(*named))
+        panel.layers.push_back(plot::Rule{plot::Rule::Direction::horizontal, *noise,
+                                          named->name.empty()
+                                              ? words("figure.false_alarms")
+                                              : words("figure.false_alarms_of", named->name)});
+  for (std::size_t i = 0; i < fits.size(); ++i) {
+    const auto& named = *fits[i];
     const int series = static_cast<int>(i);
-    const auto name = summary.fits.size() > 1 ? named.name : std::string();
+    const auto name = fits.size() > 1 ? named.name : std::string();
     if (named.fit.parameters) panel.layers.push_back(curve(named, series, panel.x, name));
     panel.layers.push_back(observed(named, series, name));
-    if (named.fit.parameters) mark_threshold(named, summary.data, series, name, panel);
+    if (named.fit.parameters) mark_threshold(named, data, words, series, name, panel);
   }
+  panel.title = data.name;
+  return panel;
+}
+
+}  // namespace
+
+std::optional<plot::Figure> psychometric_figure(const Summary& summary) {
   plot::Figure figure;
   figure.title = "Psychometric function";
   figure.chart_width_px = 620;
   figure.chart_height_px = 380;
-  figure.charts.push_back(std::move(panel));
+  const Words words(summary.data.language);
+  for (std::size_t part = 0; part < std::max<std::size_t>(1, summary.data.parts.size()); ++part) {
+    std::vector<const NamedFit*> fits;
+    for (const auto& named : summary.fits)
+      if (named.part == part) fits.push_back(&named);
+    if (fits.empty()) continue;
+    auto chart =
+        psychometric_chart(fits, analysis_of(*fits.front(), summary.data), summary.data.alternatives, words);
+    if (chart) figure.charts.push_back(std::move(*chart));
+  }
+  if (figure.charts.empty()) return std::nullopt;
   return figure;
 }
 

@@ -33,11 +33,11 @@ std::string row(const std::string& name, double value,
   return html + "</td></tr>";
 }
 
-std::string in_unit(const std::string& name, const SessionData& data) {
+std::string in_unit(const std::string& name, const LevelAnalysis& data) {
   return name + " (" + (data.level_unit.empty() ? "no unit" : data.level_unit) + ")";
 }
 
-std::string slope_name(const NamedFit& named, const SessionData& data) {
+std::string slope_name(const NamedFit& named, const LevelAnalysis& data) {
   switch (named.fit.options.function) {
     case terms::Function::normal:
       return in_unit("Spread, standard deviation", data);
@@ -49,7 +49,8 @@ std::string slope_name(const NamedFit& named, const SessionData& data) {
   return "Slope (exponent, no unit)";
 }
 
-std::string fit_table(const NamedFit& named, const SessionData& data) {
+std::string fit_table(const NamedFit& named, const SessionData& session) {
+  const auto& data = analysis_of(named, session);
   std::string html;
   if (!named.name.empty()) html += "<h3>" + escaped(named.name) + "</h3>\n";
   if (named.fit.parameters) {
@@ -71,7 +72,7 @@ std::string fit_table(const NamedFit& named, const SessionData& data) {
           row("Share of bootstrap replicates with a worse fit (proportion)", *found.deviance_p, std::nullopt);
     html += "</table>\n";
   }
-  if (const auto text = texts::say(describe_intervals(named, data), "en"); !text.empty())
+  if (const auto text = texts::say(describe_intervals(named, session), "en"); !text.empty())
     html += "<p class=\"soft\">" + escaped(text) + "</p>\n";
   return html + notes(named.fit.statements) + notes(named.intervals.statements);
 }
@@ -205,6 +206,10 @@ std::string difference_table(const Summary& summary) {
 
 std::string difficulty_table(const Summary& summary) {
   const bool drift = shows(summary.data, "diffusion");
+  if (std::all_of(summary.trade.instructions.begin(), summary.trade.instructions.end(),
+                  [](const auto& entry) { return entry.cells.empty(); }))
+    return "<p class=\"note\">No answered trial has a right answer, so there is no table by "
+           "difficulty.</p>\n";
   std::string html =
       "<table><tr><th>Condition</th><th>Difficulty (as <code>difficulty</code> or the size of the "
       "level)</th><th>Correct (trials, proportion)</th><th>Mean correct (s)</th>";
@@ -293,10 +298,11 @@ std::string trade_section(const Summary& summary) {
 std::string detection_section(const Summary& summary) {
   if (summary.detections.empty()) return "";
   const auto& data = summary.data;
-  std::string html = "<h2>Sensitivity and criterion</h2>\n<table><tr><th>Condition</th><th>" +
-                     escaped(data.level_label) +
-                     "</th><th>Hits</th><th>False alarms</th><th>d\u2032 (standard deviations)</th>"
-                     "<th>Criterion c (standard deviations)</th></tr>";
+  std::string html =
+      "<h2>Sensitivity and criterion</h2>\n<table><tr><th>Condition</th><th>" +
+      escaped(data.cut != 0 ? "Distance from " + text::number(data.cut, 6) : data.level_label) +
+      "</th><th>Hits</th><th>False alarms</th><th>d\u2032 (standard deviations)</th>"
+      "<th>Criterion c (standard deviations)</th></tr>";
   for (const auto& entry : summary.detections) {
     const auto& n = entry.counts;
     html += "<tr><td>" + escaped(name_of(entry.condition)) + "</td><td class=\"n\">" +
@@ -359,7 +365,7 @@ std::string to_html(const Summary& summary) {
                      "</h1>\n<p>Participant <b>" + escaped(data.participant) + "</b>, session " +
                      escaped(data.session_id) + ", " + escaped(data.status);
   if (data.run_mode != "live") html += " <span class=\"mode\">" + escaped(data.run_mode) + "</span>";
-  html += "</p>\n" + facts_table(data.facts);
+  html += "</p>\n" + facts_table(data.facts) + meanings_list(data);
   if (judges(data.design)) {
     html += judgement_section(summary) + roc_section(summary);
   } else if (data.design != Design::adjustment) {

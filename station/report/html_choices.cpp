@@ -42,6 +42,10 @@ std::string confusion_section(const Summary& summary) {
   std::string html = "<h2>Answers to each stimulus</h2>\n";
   for (const auto& confusion : summary.confusions) {
     if (!confusion.condition.empty()) html += "<h3>" + escaped(confusion.condition) + "</h3>\n";
+    if (confusion.rows.empty()) {
+      html += "<p class=\"note\">No trial was answered.</p>\n";
+      continue;
+    }
     html += "<table><tr><th>" + (data.scored ? "Right answer" : escaped(data.level_label)) + "</th>";
     for (const auto& choice : data.choices) html += "<th>" + quoted(choice) + "</th>";
     html += "<th>Proportion correct</th></tr>";

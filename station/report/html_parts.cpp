@@ -71,4 +71,15 @@ std::string picture(const std::optional<plot::Figure>& figure) {
 
 std::string name_of(const std::string& condition) { return condition.empty() ? "all trials" : condition; }
 
+std::string meanings_list(const SessionData& data) {
+  std::string html;
+  const auto add = [&html](const LevelAnalysis& part) {
+    if (part.meaning.empty()) return;
+    html += "<li>" + plot::escaped((part.name.empty() ? "" : part.name + ": ") + part.meaning) + "</li>";
+  };
+  for (const auto& part : data.parts) add(part);
+  if (data.parts.empty()) add(data);
+  return html.empty() ? "" : "<p>What the protocol measures:</p>\n<ul>" + html + "</ul>\n";
+}
+
 }  // namespace turnpoint::report

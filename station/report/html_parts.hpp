@@ -47,4 +47,7 @@ std::string signal_section(const Summary& summary);
 /// The section on the finger's force, speed and friction; "" if no force cells recorded data.
 std::string finger_section(const Summary& summary);
 
+/// What each analysis measures, as the protocol decides it.
+std::string meanings_list(const SessionData& data);
+
 }  // namespace turnpoint::report

@@ -31,9 +31,12 @@ Json prior_json(const NamedFit& named) {
 }
 
 Json fit_json(const NamedFit& named, const SessionData& data) {
+  const auto& part = analysis_of(named, data);
   const auto& p = named.fit.parameters;
   const bool posterior = named.intervals.method == analysis::IntervalMethod::posterior;
-  Json json{{"name", named.name}, {"positive", named.positive}};
+  Json json{{"name", named.name}, {"positive", named.positive}, {"measures", part.meaning}};
+  json["level"] = part.level_label;
+  json["level_unit"] = part.level_unit;
   json["threshold"] = p ? value(p->threshold) : Json(nullptr);
   json["threshold_interval"] = value(named.intervals.threshold);
   json["slope"] = p && slope_estimated(named) ? value(p->slope) : Json(nullptr);
@@ -246,6 +249,7 @@ std::string to_json(const Summary& summary) {
   Json json{{"session_id", data.session_id}, {"participant", data.participant}, {"title", data.title},
             {"run_mode", data.run_mode},     {"status", data.status},           {"level", data.level_label},
             {"level_unit", data.level_unit}, {"choices", data.choices}};
+  json["measures"] = meanings_json(data);
   json["facts"] = facts_json(data.facts);
   json["station"] = facts_json(in_english(data.health));
   const auto& n = summary.outcomes;

@@ -49,4 +49,16 @@ inline Json value(const std::vector<analysis::Statement>& statements) {
   return list;
 }
 
+/// What each analysis measures, as the protocol decides it.
+inline Json meanings_json(const SessionData& data) {
+  Json list = Json::array();
+  const auto add = [&list](const LevelAnalysis& part) {
+    list.push_back(
+        {{"analysis", part.name.empty() ? Json(nullptr) : Json(part.name)}, {"measures", part.meaning}});
+  };
+  for (const auto& part : data.parts) add(part);
+  if (data.parts.empty()) add(data);
+  return list;
+}
+
 }  // namespace turnpoint::report

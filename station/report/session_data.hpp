@@ -12,26 +12,13 @@
 #include "station/analysis/trial_record.hpp"
 #include "station/procedure/continuation.hpp"
 #include "station/procedure/description.hpp"
+#include "station/protocol/meaning.hpp"
 #include "station/texts/texts.hpp"
 
 namespace turnpoint::report {
 
-/// How the answers depend on the level. The report fits a different function for each design.
-enum class Design {
-  forced_choice,  ///< accuracy rises with the level; the guess rate is 1 / alternatives
-  /// two answers on a signed level, such as left and right: the fit gives the PSE and the spread
-  two_sided,
-  yes_no,  ///< "yes" becomes more frequent as |level| rises; trials at level 0 have no signal
-  /// like yes_no: "different" counts as "yes", and pairs of identical stimuli have no signal
-  same_different,
-  categories,  ///< the level decides which of several answers is right, or no answer is right
-  ratings,     ///< ratings on points or on a line; the report has their mean at each level
-  numbers,     ///< magnitude estimation: geometric means, and the exponent of Stevens' law
-  adjustment,  ///< the participant sets a slider; no psychometric function is fitted
-};
-
-/// True if some trials have no signal, so that "yes" is a false alarm in them.
-inline bool has_noise(Design design) { return design == Design::yes_no || design == Design::same_different; }
+using protocol::Design;
+using protocol::has_noise;
 
 /// True if the answers are ratings or numbers.
 inline bool judges(Design design) { return design == Design::ratings || design == Design::numbers; }
@@ -86,36 +73,52 @@ struct MeasuredTrial {
   bool counts = true;   ///< false: the vibration was too far from the plan, so the trial is void
 };
 
+/// What one analysis of the trials measures, as the protocol decides it (protocol::Meaning).
+struct LevelAnalysis {
+  std::string name;     ///< "" if the protocol has only one analysis
+  std::string meaning;  ///< in words, as `turnpoint check` prints it
+  Design design = Design::forced_choice;
+  terms::Function function = terms::Function::weibull;
+  analysis::Scale scale = analysis::Scale::linear;
+  std::string level_label;  ///< name and unit, for an axis: "Contrast (dB)"
+  std::string level_unit;   ///< unit of the level; "" if it has none
+  /// If has_noise(): the choice that means "yes". For two sides: the choice that belongs to high levels.
+  int positive = 1;
+  /// for two sides in 2ifc: the two scenes, of which a trial's interval with one of them is chosen
+  std::vector<std::string> scenes;
+  double cut = 0;  ///< for two sides: the level at which the right answer changes
+  /// True if the threshold differs between the trials of one condition, because a procedure has a second
+  /// dimension. No psychometric function is fitted then.
+  bool thresholds_differ = false;
+  /// Set if the answers determined the levels: the intervals then come from the posterior under this prior.
+  /// Empty if the levels were fixed before the session: the intervals then come from bootstraps.
+  std::optional<analysis::Prior> prior;
+  /// conditions in the order of the report; each TrialRecord::instruction is one of them
+  std::vector<std::string> conditions;
+};
+
 /// All data for a report. They come from a database (desk/report_data.cpp) or from a simulated session.
-struct SessionData {
+struct SessionData : LevelAnalysis {
+  /// The analyses, if the protocol has several; TrialRecord::part is a place in this list. What SessionData
+  /// itself inherits is then that of the first one, with all conditions.
+  std::vector<LevelAnalysis> parts;
   std::string title;  ///< title of the protocol
   std::string participant, session_id, run_mode, status;
   std::string language = "en";  ///< the language of the figures, such as "de"
   std::vector<Fact> facts;      ///< rows for the head of the report: protocol, date, rig, ...
   /// rows for the table "The station": xruns, calibration age, restarts, ...
   std::vector<SpokenFact> health;
-  Design design = Design::forced_choice;
   int alternatives = 2;
   /// for 3ifc, 4ifc, ABX and match-to-sample: the models by which the report computes d'
   std::vector<analysis::Deciding> deciding;
-  terms::Function function = terms::Function::weibull;
-  analysis::Scale scale = analysis::Scale::linear;
-  std::string level_label;           ///< name and unit, for an axis: "Contrast (dB)"
-  std::string level_unit;            ///< unit of the level; "" if it has none
   std::vector<std::string> choices;  ///< ids of the choices, in the order of their indices
-  int positive = 1;                  ///< if has_noise(): the choice that means "yes"
   /// false for a single-interval task without right answers, such as ratings; the report then leaves out
   /// accuracy
   bool scored = true;
-  /// conditions in the order of the report; each TrialRecord::instruction is one of them
-  std::vector<std::string> conditions;
   /// parts of the report that the protocol chooses; if empty, the report has all parts that suit the design
   std::optional<std::vector<std::string>> show;
   std::vector<ProcedureEstimate> estimates;
   std::vector<ThresholdCurve> threshold_curves;  ///< empty if no procedure has a second dimension
-  /// True if the threshold differs between the trials of one condition, because a procedure has a second
-  /// dimension. No psychometric function is fitted then.
-  bool thresholds_differ = false;
   std::vector<analysis::TrialRecord> trials;
   /// answered trials, without practice, in which force cells recorded data; empty if the rig has no force
   /// cells
@@ -126,13 +129,14 @@ struct SessionData {
   std::vector<analysis::RepeatedTrials> repeats;
   /// measured vibration of each trial; empty if no pick-up measured the surface
   std::vector<MeasuredTrial> measured;
-  /// Set if the answers determined the levels: the intervals then come from the posterior under this prior.
-  /// Empty if the levels were fixed before the session: the intervals then come from bootstraps.
-  std::optional<analysis::Prior> prior;
   analysis::TimeExclusion exclusion;
   std::uint64_t seed = 1;  ///< seed of the bootstraps' random numbers
   int replicates = 1000;
 };
+
+/// The data of one analysis: its trials and conditions only. `part` is a place in data.parts; 0 if there are
+/// none.
+SessionData part_of(const SessionData& data, std::size_t part);
 
 /// True if the report contains this part: "psychometric", "diffusion", "bis", "lisas", "ies", "caf", "dprime",
 /// "response-signal" or "trace". If the protocol does not choose the parts, the report contains all of them,

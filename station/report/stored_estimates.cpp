@@ -78,9 +78,9 @@ void add_curve(const std::string& block, const procedure::Spec& spec, const proc
 }
 
 /// Unit of a parameter that a separate program estimated: that of the level for thresholds.
-std::string unit_of_program(const std::string& parameter, const protocol::Protocol& protocol) {
-  if (protocol.procedures.empty() || (!parameter.starts_with("threshold") && parameter != "pse")) return "";
-  return protocol::words_of(protocol.procedures.front().level).unit;
+std::string unit_of_program(const std::string& parameter, const std::string& level) {
+  if (level.empty() || (!parameter.starts_with("threshold") && parameter != "pse")) return "";
+  return protocol::words_of(level).unit;
 }
 
 }  // namespace
@@ -128,13 +128,14 @@ void add_program_estimates(const std::vector<records::BlockRecord>& blocks,
           block.start.practice)
         continue;
       const auto& row = found.second;
+      const auto* spec = protocol::find_procedure(protocol, row.procedure);
       data.estimates.push_back({block.start.name,
                                 row.procedure,
                                 row.parameter,
                                 row.mean,
                                 row.sd,
                                 row.basis,
-                                unit_of_program(row.parameter, protocol),
+                                unit_of_program(row.parameter, spec ? spec->level : ""),
                                 std::nullopt,
                                 procedure::Choice::program,
                                 {}});
@@ -150,7 +151,7 @@ void add_estimator(const std::string& program, const std::map<std::string, proce
                               estimate.mean,
                               estimate.sd,
                               estimate.basis,
-                              unit_of_program(parameter, protocol),
+                              unit_of_program(parameter, protocol::common_level(protocol).value_or("")),
                               std::nullopt,
                               procedure::Choice::program,
                               {}});

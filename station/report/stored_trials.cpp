@@ -70,6 +70,12 @@ analysis::TrialRecord record_of(const records::TrialRow& row, const records::Blo
   record.deadline_s = row.deadline_s;
   const auto factors = factors_of(row);
   record.anticipation_s = protocol::evaluate(protocol.timing.anticipation_s, factors);
+  if (protocol.task.kind == protocol::TaskKind::two_interval && row.correct &&
+      !protocol.task.correct_answer.empty())
+    for (int scene = 0; scene < 2; ++scene)
+      for (const auto& [name, comparison] : protocol.task.correct_answer)
+        if (name == protocol::scene_of(protocol.task, scene) && protocol::holds(comparison, factors))
+          record.right_scene = scene, record.chosen_scene = *row.correct ? scene : 1 - scene;
   if (protocol.timing.signal) record.signal_s = protocol::evaluate(protocol.timing.signal->after_s, factors);
   record.instruction = protocol::condition_of(protocol, factors, block.instruction);
   if (protocol.analysis.difficulty)
@@ -115,48 +121,6 @@ bool moved_otherwise(const records::TrialRow& row) {
           sensing == "fast");
 }
 
-report::Design design_of(const protocol::Protocol& protocol, const protocol::AnswerRule& rule,
-                         const std::vector<analysis::TrialRecord>& trials) {
-  if (protocol.task.kind == protocol::TaskKind::adjustment) return report::Design::adjustment;
-  if (protocol.task.value && protocol.task.value->typed) return report::Design::numbers;
-  if (protocol::judges(protocol.task)) return report::Design::ratings;
-  if (protocol.task.kind == protocol::TaskKind::same_different) return report::Design::same_different;
-  if (rule.kind == protocol::AnswerKind::presence) return report::Design::yes_no;
-  if (rule.kind == protocol::AnswerKind::category ||
-      (protocol.task.choices.size() > 2 && protocol.task.kind == protocol::TaskKind::single_interval &&
-       protocol.task.correct_answer.empty()))
-    return report::Design::categories;
-  bool below = false, above = false;
-  for (const auto& trial : trials) {
-    below = below || trial.level.value_or(0) < 0;
-    above = above || trial.level.value_or(0) > 0;
-  }
-  const bool sides =
-      protocol.task.kind == protocol::TaskKind::single_interval && protocol.task.choices.size() == 2;
-  return sides && below && above ? report::Design::two_sided : report::Design::forced_choice;
-}
-
-/// Chooses the function to fit: the one that the protocol's procedure assumes. If no procedure assumes one,
-/// chooses a function that suits the levels.
-void choose_function(const protocol::Protocol& protocol, report::SessionData& data) {
-  const bool decibel = data.level_unit == "dB";
-  const bool detection = report::has_noise(data.design);
-  const bool positive = std::all_of(data.trials.begin(), data.trials.end(), [&](const auto& trial) {
-    return !trial.level || *trial.level > 0 || (detection && trial.right_choice != data.positive);
-  });
-  const bool rises = data.design == report::Design::forced_choice || detection;
-  data.function = terms::Function::normal;
-  if (rises && (decibel || positive)) data.function = terms::Function::weibull;
-  data.scale = rises && positive && !decibel ? analysis::Scale::log10 : analysis::Scale::linear;
-  for (const auto& spec : protocol.procedures) {
-    if (procedure::description(spec.kind).choice != procedure::Choice::posterior) continue;
-    if (spec.signal_detection) continue;  // the fit has no criterion, but a rate of false alarms
-    // A Weibull function needs levels above 0, or levels in dB.
-    if (spec.function != terms::Function::weibull || decibel || positive) data.function = spec.function;
-    return;
-  }
-}
-
 using analysis::Range;
 
 /// Returns the range of the levels that an adaptive procedure can present. The range also includes the
@@ -183,47 +147,82 @@ Range levels_of(const procedure::Spec& spec, const protocol::Protocol& protocol)
 constexpr double kLowestRatio = 1e-3;
 
 /// True if the slopes of a procedure's grid have the same meaning as the slope of the fit.
-bool same_function(const procedure::Spec& spec, const report::SessionData& data) {
+bool same_function(const procedure::Spec& spec, const protocol::Meaning& meaning) {
   const bool linear = spec.scale == procedure::Scale::linear;
-  return linear == (data.scale == analysis::Scale::linear) && spec.function == data.function;
+  return linear != meaning.log_axis && spec.function == meaning.function;
 }
 
 /// Returns the prior for the intervals that are computed from a posterior. It depends only on the levels that
 /// the protocol can present, never on the answers. Empty if no procedure is adaptive.
-std::optional<analysis::Prior> prior_of(const protocol::Protocol& protocol, const report::SessionData& data) {
+std::optional<analysis::Prior> prior_of(const protocol::Protocol& protocol,
+                                        const protocol::Meaning& meaning) {
   std::optional<Range> levels, slopes;
   const auto widen = [](std::optional<Range>& range, const Range& by) {
     range = range ? Range{std::min(range->first, by.first), std::max(range->second, by.second)} : by;
   };
-  for (const auto& spec : protocol.procedures) {
+  for (const auto& name : meaning.procedures) {
+    const auto& spec = *protocol::find_procedure(protocol, name);
     if (!procedure::follows_answers(spec)) continue;
     widen(levels, levels_of(spec, protocol));
-    if (same_function(spec, data) && !spec.signal_detection)
+    if (same_function(spec, meaning) && !spec.signal_detection)
       for (const double slope : spec.slope.values) widen(slopes, {slope, slope});
   }
   if (!levels) return std::nullopt;
   // In a yes/no task only the magnitude of the level matters.
-  if (data.design == report::Design::yes_no)
+  if (meaning.size || meaning.design == report::Design::yes_no)
     levels = Range{0, std::max(std::fabs(levels->first), std::fabs(levels->second))};
-  if (data.scale == analysis::Scale::log10)
-    levels->first = std::max(levels->first, levels->second * kLowestRatio);
-  return analysis::prior_around(data.function, data.scale, *levels, slopes);
+  if (meaning.log_axis) levels->first = std::max(levels->first, levels->second * kLowestRatio);
+  const auto scale = meaning.log_axis ? analysis::Scale::log10 : analysis::Scale::linear;
+  return analysis::prior_around(meaning.function, scale, *levels, slopes);
 }
 
-/// Derives the axis label from the factor's name: `contrast_dB` gives `Contrast` and `dB`. In a yes/no task
-/// the levels have no sign.
-void set_level_words(const std::string& level, report::SessionData& data) {
-  const auto words = protocol::words_of(level);
-  auto name = level.empty() ? std::string("level") : words.name;
-  if (data.design == report::Design::yes_no &&
-      std::any_of(data.trials.begin(), data.trials.end(),
-                  [](const auto& trial) { return trial.level.value_or(0) < 0; })) {
-    name = "size of " + name;
-    for (auto& trial : data.trials)
-      if (trial.level) trial.level = std::fabs(*trial.level);
+/// Fills in one analysis. The label of its axis follows from the factor's name: `contrast_dB` gives
+/// `Contrast` and `dB`.
+report::LevelAnalysis analysis_of(const protocol::Protocol& protocol, const protocol::Meaning& meaning) {
+  report::LevelAnalysis part;
+  part.name = meaning.name;
+  part.meaning = protocol::in_words(meaning, protocol);
+  part.design = meaning.design;
+  part.function = meaning.function;
+  part.scale = meaning.log_axis ? analysis::Scale::log10 : analysis::Scale::linear;
+  part.positive = meaning.rule.positive;
+  part.cut = meaning.rule.cut;
+  if (protocol.task.kind == protocol::TaskKind::two_interval && meaning.design == report::Design::two_sided)
+    part.scenes = {protocol::scene_of(protocol.task, 0), protocol::scene_of(protocol.task, 1)};
+  part.thresholds_differ = !meaning.along.empty();
+  const auto words = protocol::words_of(meaning.level);
+  auto name = meaning.level.empty() ? std::string("level") : words.name;
+  if (meaning.size) name = "size of " + name;
+  part.level_unit = words.unit;
+  part.level_label = axis_label(name, words.unit);
+  part.prior = prior_of(protocol, meaning);
+  part.conditions = protocol::conditions(protocol);
+  for (auto& condition : part.conditions) condition = protocol::condition_in(meaning, condition);
+  if (part.conditions.empty() && !meaning.name.empty()) part.conditions.push_back(meaning.name);
+  return part;
+}
+
+/// Fills in all analyses, and what they have in common.
+void set_analyses(const protocol::Protocol& protocol, report::SessionData& data) {
+  std::vector<report::LevelAnalysis> parts;
+  for (const auto& meaning : protocol.meanings) parts.push_back(analysis_of(protocol, meaning));
+  static_cast<report::LevelAnalysis&>(data) = parts.front();
+  if (parts.size() < 2) return;
+  data.name.clear(), data.meaning.clear(), data.conditions.clear();
+  for (const auto& part : parts) {
+    data.conditions.insert(data.conditions.end(), part.conditions.begin(), part.conditions.end());
+    if (part.level_label != data.level_label) data.level_label = axis_label("level", "");
+    if (part.level_unit != parts.front().level_unit) data.level_unit.clear();
   }
-  data.level_unit = words.unit;
-  data.level_label = axis_label(name, words.unit);
+  data.parts = std::move(parts);
+}
+
+/// Assigns a trial to its analysis.
+void assign(const protocol::Protocol& protocol, analysis::TrialRecord& trial) {
+  trial.part = protocol::meaning_of(protocol, trial.procedure, trial.block);
+  const auto& meaning = protocol.meanings.at(trial.part);
+  if (meaning.size && trial.level) trial.level = std::fabs(*trial.level);
+  trial.instruction = protocol::condition_in(meaning, trial.instruction);
 }
 
 }  // namespace
@@ -261,30 +260,18 @@ void add_trials(const std::vector<records::BlockRecord>& blocks, const protocol:
         at.repeated += moved_otherwise(row) ? 1 : 0;
       }
       data.trials.push_back(record_of(row, block->start, protocol));
+      assign(protocol, data.trials.back());
       add_finger(row, data.trials.back(), data);
     }
   }
   for (const auto& [level, at] : repeats) data.repeats.push_back(at);
-  const auto level = protocol.procedures.empty() ? std::string() : protocol.procedures.front().level;
-  const auto rule = protocol::answer_rule(protocol, level);
-  data.positive = rule.positive;
-  data.design = design_of(protocol, rule, data.trials);
-  data.scored =
-      protocol.task.kind != protocol::TaskKind::single_interval || !protocol.task.correct_answer.empty();
-  set_level_words(level, data);
+  set_analyses(protocol, data);
+  data.scored = protocol::scored(protocol.task);
   data.alternatives = std::max(2, static_cast<int>(protocol.task.choices.size()));
   data.deciding = deciding_in(protocol.task.kind);
-  choose_function(protocol, data);
-  data.prior = prior_of(protocol, data);
   for (const auto& choice : protocol.task.choices) data.choices.push_back(choice.id);
-  data.conditions = protocol::conditions(protocol);
   data.show = protocol.analysis.show;
   data.exclusion = {protocol.analysis.exclude_below_s, protocol.analysis.exclude_mad};
-  data.thresholds_differ =
-      std::any_of(protocol.procedures.begin(), protocol.procedures.end(), [&](const procedure::Spec& spec) {
-        const auto& by = protocol.analysis.by;
-        return spec.second && std::find(by.begin(), by.end(), spec.second->level) == by.end();
-      });
 }
 
 }  // namespace turnpoint::report

@@ -113,11 +113,14 @@ void add_measures(const Summary& summary, StudyPerson& person) {
   const auto& data = summary.data;
   for (const auto& named : summary.fits) {
     if (!named.fit.parameters) continue;
-    measures.add(named.name, data.design == Design::two_sided ? "PSE" : "threshold", data.level_unit,
+    const auto& part = analysis_of(named, data);
+    // only numbers that mean the same are compared: those of one analysis
+    const auto of = part.name.empty() ? "" : " of " + part.name;
+    const bool normal = named.fit.options.function == terms::Function::normal;
+    measures.add(named.name, (part.design == Design::two_sided ? "PSE" : "threshold") + of, part.level_unit,
                  std::optional<double>(named.fit.parameters->threshold));
     if (slope_estimated(named))
-      measures.add(named.name, named.fit.options.function == terms::Function::normal ? "spread" : "slope",
-                   named.fit.options.function == terms::Function::normal ? data.level_unit : "",
+      measures.add(named.name, (normal ? "spread" : "slope") + of, normal ? part.level_unit : "",
                    std::optional<double>(named.fit.parameters->slope));
   }
   for (const auto& entry : summary.trade.instructions) {
@@ -184,18 +187,29 @@ double known_guess(const NamedFit& named) {
   return named.fit.parameters ? named.fit.parameters->guess : 0;
 }
 
+/// The same answers, counted by the other of two choices.
+std::vector<analysis::LevelCount> turned(std::vector<analysis::LevelCount> counts) {
+  for (auto& point : counts) point.positive = point.trials - point.positive;
+  return counts;
+}
+
 GroupFit group_fit(const Study& study, const std::string& condition) {
-  GroupFit group{condition, "", {}};
+  GroupFit group{condition, "", 0, {}};
   std::vector<analysis::PersonCounts> people;
   analysis::MixedOptions options;
   for (const auto& person : study.persons)
     for (const auto& named : person.fits) {
       if (!person.excluded.empty() || named.name != condition) continue;
       const auto& fitted = named.fit.options;
-      options = {fitted.function, fitted.scale, fitted.lapse_low, fitted.lapse_high,
-                 fitted.guess == analysis::Guess::tied_to_lapse};
-      group.positive = named.positive;
-      people.push_back({person.person, named.fit.data, known_guess(named)});
+      // the protocol decides the options, so they are the same for every participant
+      if (people.empty()) {
+        options = {fitted.function, fitted.scale, fitted.lapse_low, fitted.lapse_high,
+                   fitted.guess == analysis::Guess::tied_to_lapse};
+        group.positive = named.positive, group.part = named.part;
+      }
+      people.push_back({person.person,
+                        named.positive == group.positive ? named.fit.data : turned(named.fit.data),
+                        known_guess(named)});
     }
   group.result = analysis::fit_mixed(people, options);
   return group;
@@ -227,6 +241,23 @@ std::vector<std::string> rules_in_words(const protocol::Exclusion& rules) {
   return words;
 }
 
+namespace {
+
+/// The words of a condition's name that say to which group of participants it belongs.
+std::vector<std::string> group_of(const std::string& condition, const std::vector<std::string>& groups) {
+  std::vector<std::string> found;
+  std::size_t from = 0;
+  while (from <= condition.size()) {
+    const auto to = std::min(condition.find(", ", from), condition.size());
+    const auto word = condition.substr(from, to - from);
+    if (std::find(groups.begin(), groups.end(), word) != groups.end()) found.push_back(word);
+    from = to + 2;
+  }
+  return found;
+}
+
+}  // namespace
+
 void finish_study(Study& study) {
   std::vector<PersonMeasure> measures;
   std::vector<std::string> conditions;
@@ -245,7 +276,10 @@ void finish_study(Study& study) {
   std::stable_sort(measures.begin(), measures.end(),
                    [&place](const PersonMeasure& a, const PersonMeasure& b) { return place(a) < place(b); });
   study.means = analysis::group_means(measures);
-  study.effects = analysis::effects(measures);
+  const auto& groups = study.groups_in_words;
+  study.effects = analysis::effects(measures, [&groups](const std::string& first, const std::string& second) {
+    return group_of(first, groups) != group_of(second, groups);
+  });
   for (const auto& condition : conditions) {
     const bool fitted = std::any_of(study.persons.begin(), study.persons.end(), [&](const auto& person) {
       return person.excluded.empty() &&

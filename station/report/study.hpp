@@ -39,12 +39,25 @@ struct StudyPerson {
 struct GroupFit {
   std::string condition;  ///< name of the condition; "" if there is only one
   std::string positive;   ///< the answer whose probability the curve shows
+  std::size_t part = 0;   ///< number of its analysis in SessionData::parts
   analysis::MixedResult result;
 };
 
+/// Which sessions of a study count. The protocol decides it ([analysis] incomplete_sessions).
+struct SessionCounts {
+  int found = 0;                  ///< all sessions with trials
+  int superseded = 0;             ///< not completed, and begun again later by the same participant: left out
+  int incomplete = 0;             ///< not completed and not begun again
+  bool incomplete_count = false;  ///< whether the latter count
+  int counted() const { return found - superseded - (incomplete_count ? 0 : incomplete); }
+};
+
 struct Study {
-  SessionData settings;            ///< how the trials are analysed; its list of trials is empty
-  std::vector<Fact> facts;         ///< rows for the head of the report
+  SessionData settings;     ///< how the trials are analysed; its list of trials is empty
+  std::vector<Fact> facts;  ///< rows for the head of the report
+  SessionCounts sessions;
+  /// for each group of participants, the words that the names of its conditions contain; empty without groups
+  std::vector<std::string> groups_in_words;
   std::vector<std::string> rules;  ///< the rules of exclusion, as the protocol states them
   std::vector<StudyPerson> persons;
   std::vector<GroupFit> groups;
@@ -55,6 +68,11 @@ struct Study {
 
 /// Number of bootstrap replicates for the intervals of single participants.
 constexpr int kStudyReplicates = 400;
+
+/// The analysis to which a group's fit belongs.
+inline const LevelAnalysis& analysis_of(const GroupFit& group, const SessionData& data) {
+  return data.parts.empty() ? data : data.parts.at(group.part);
+}
 
 /// Analyses the trials of one participant, from all sessions together, and applies the rules.
 StudyPerson study_person(const SessionData& data, const protocol::Exclusion& rules, bool incomplete);

@@ -30,19 +30,19 @@ analysis::Psychometric group_parameters(const analysis::MixedFit& fit) {
   return {fit.threshold->value, fit.slope->value, guess, fit.lapse};
 }
 
-std::vector<double> levels_of(const Study& study) {
+std::vector<double> levels_of(const Study& study, std::size_t part) {
   std::vector<double> levels;
   for (const auto& person : study.persons)
     for (const auto& named : person.fits)
       for (const auto& point : named.fit.data)
-        if (person.excluded.empty() && point.level != analysis::kNoise) levels.push_back(point.level);
+        if (named.part == part && person.excluded.empty() && point.level != analysis::kNoise)
+          levels.push_back(point.level);
   return levels;
 }
 
 }  // namespace
 
 std::optional<plot::Figure> group_curve_figure(const Study& study) {
-  const auto levels = levels_of(study);
   plot::Figure figure;
   figure.title = "Psychometric functions of the participants and of the group";
   figure.columns = study.groups.size() > 1 ? 2 : 1;
@@ -55,11 +55,12 @@ std::optional<plot::Figure> group_curve_figure(const Study& study) {
     const auto& fit = *group.result.fit;
     plot::Chart chart;
     chart.title = group.condition.empty() ? "all trials" : group.condition;
+    const auto& part = analysis_of(group, study.settings);
     chart.x = plot::fitted(
-        study.settings.level_label, levels, 0.05,
+        part.level_label, levels_of(study, group.part), 0.05,
         fit.options.scale == analysis::Scale::log10 ? plot::AxisScale::log10 : plot::AxisScale::linear);
     chart.y = {"Proportion " + group.positive + " (0 to 1)", -0.03, 1.03};
-    if (study.settings.design == Design::forced_choice) chart.y.low = 0.3;
+    if (part.design == Design::forced_choice) chart.y.low = 0.3;
     for (const auto& person : fit.persons)
       if (person.threshold)
         chart.layers.push_back(curve_of(fit.options, person.parameters, chart.x, plot::kNeutral));
@@ -105,7 +106,7 @@ std::optional<plot::Figure> shrinkage_figure(const Study& study) {
     plot::Chart chart;
     chart.title = group.condition.empty() ? "all trials" : group.condition;
     chart.x = {"Participant (number in the table below)", 0.4, number + 0.6, plot::AxisScale::linear, true};
-    chart.y = plot::fitted(study.settings.level_label, all, 0.08);
+    chart.y = plot::fitted(analysis_of(group, study.settings).level_label, all, 0.08);
     chart.layers.push_back(
         plot::Rule{plot::Rule::Direction::horizontal, group.result.fit->threshold->value, "group"});
     chart.layers.push_back(alone);

@@ -27,8 +27,21 @@ std::string rules_section(const Study& study) {
   return html + "</ul>\n";
 }
 
+/// Says which sessions count, by which rule, and how many there are of each.
+std::string sessions_note(const Study& study) {
+  const auto& n = study.sessions;
+  std::string html =
+      "<p>Completed sessions count. A session that was not completed and was begun again later "
+      "does not count. A session that was not completed and not begun again ";
+  html += n.incomplete_count ? "counts" : "does not count";
+  html += ", as the protocol decides (incomplete_sessions). Counted: " + std::to_string(n.counted()) +
+          " of " + std::to_string(n.found) + " sessions; begun again later: " + std::to_string(n.superseded) +
+          "; not completed: " + std::to_string(n.incomplete) + ".</p>\n";
+  return html;
+}
+
 std::string people_section(const Study& study) {
-  std::string html = "<h2>Participants</h2>\n" + rules_section(study) +
+  std::string html = "<h2>Participants</h2>\n" + sessions_note(study) + rules_section(study) +
                      "<table><tr><th>Participant</th><th>Group</th><th>Sessions</th><th>Trials answered</th>"
                      "<th>Correct</th><th>Catch trials right</th><th>Timeouts</th><th>Median time (s)</th>"
                      "<th>Excluded</th></tr>";
@@ -50,9 +63,9 @@ std::string group_row(const std::string& name, const std::optional<analysis::Est
   return "<tr><td>" + name + "</td>" + cell(estimate) + "</tr>";
 }
 
-std::string pooled_table(const analysis::MixedFit& fit, const Study& study) {
+std::string pooled_table(const analysis::MixedFit& fit, const LevelAnalysis& part) {
   std::string html = "<table><tr><th>Number</th><th>Participant</th><th>Trials</th><th>" +
-                     with_unit("Threshold", study.settings.level_unit) +
+                     with_unit(part.design == Design::two_sided ? "PSE" : "Threshold", part.level_unit) +
                      "</th><th>Drawn to the group</th></tr>";
   int place = 0;
   for (const auto& person : fit.persons)
@@ -66,12 +79,13 @@ std::string group_section(const Study& study) {
   if (study.groups.empty()) return "";
   std::string html = "<h2>Psychometric function of the group</h2>\n" + picture(group_curve_figure(study)) +
                      picture(shrinkage_figure(study));
-  const bool two_sided = study.settings.design == Design::two_sided;
   for (const auto& group : study.groups) {
     html += "<h3>" + escaped(name_of(group.condition)) + "</h3>\n";
     if (group.result.fit) {
       const auto& fit = *group.result.fit;
-      const auto& unit = study.settings.level_unit;
+      const auto& part = analysis_of(group, study.settings);
+      const auto& unit = part.level_unit;
+      const bool two_sided = part.design == Design::two_sided;
       html += "<table>" + group_row(with_unit(two_sided ? "PSE" : "Threshold", unit), fit.threshold);
       html += group_row(fit.options.function == terms::Function::normal
                             ? with_unit("Spread, standard deviation", unit)
@@ -81,8 +95,7 @@ std::string group_section(const Study& study) {
         html += "<tr><td>" + with_unit("Standard deviation between participants", unit) +
                 "</td><td class=\"n\">" + number(*fit.threshold_sd) + "</td></tr>";
       html += "<tr><td>Lapse rate (proportion), the same for all</td><td class=\"n\">" +
-              number(fit.lapse, 2) + "</td></tr></table>\n" + notes(fit.statements) +
-              pooled_table(fit, study);
+              number(fit.lapse, 2) + "</td></tr></table>\n" + notes(fit.statements) + pooled_table(fit, part);
     }
     html += notes(group.result.statements);
   }
@@ -148,8 +161,8 @@ std::string to_html(const Study& study) {
                      "</h1>\n<p>Study of " + std::to_string(study.persons.size()) + " participants";
   if (study.settings.run_mode != "live")
     html += " <span class=\"mode\">" + escaped(study.settings.run_mode) + "</span>";
-  html += "</p>\n" + facts_table(study.facts) + notes(study.statements) + people_section(study) +
-          group_section(study) + means_section(study) + own_section(study);
+  html += "</p>\n" + facts_table(study.facts) + meanings_list(study.settings) + notes(study.statements) +
+          people_section(study) + group_section(study) + means_section(study) + own_section(study);
   return html + "</body></html>\n";
 }
 

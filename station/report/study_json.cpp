@@ -82,6 +82,13 @@ Json group_json(const GroupFit& group) {
 std::string to_json(const Study& study) {
   Json json{{"title", study.settings.title}, {"run_mode", study.settings.run_mode}};
   for (const auto& [name, text] : study.facts) json["facts"][name] = text;
+  json["measures"] = meanings_json(study.settings);
+  const auto& sessions = study.sessions;
+  json["sessions"] = {{"found", sessions.found},
+                      {"counted", sessions.counted()},
+                      {"superseded", sessions.superseded},
+                      {"incomplete", sessions.incomplete},
+                      {"incomplete_count", sessions.incomplete_count}};
   json["rules"] = study.rules;
   json["participants"] = Json::array();
   for (const auto& person : study.persons) json["participants"].push_back(person_json(person));

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 
 #include "station/report/study.hpp"
@@ -47,13 +48,25 @@ std::string answers_table(const Study& study) {
   return csv;
 }
 
+/// The rows are in the order of the conditions, so that a reader of the table can subtract them in the same
+/// direction as the report.
 std::string measures_table(const Study& study) {
-  std::string csv = "participant,excluded,condition,measure,unit,value\n";
+  struct Row {
+    const StudyPerson* person;
+    const analysis::PersonMeasure* measure;
+  };
+  std::vector<Row> rows;
   for (const auto& person : study.persons)
-    for (const auto& measure : person.measures)
-      csv += csv_field(person.person) + "," + yes_or_no(!person.excluded.empty()) + "," +
-             csv_field(measure.condition) + "," + csv_field(measure.measure) + "," + csv_field(measure.unit) +
-             "," + csv_number(measure.value) + "\n";
+    for (const auto& measure : person.measures) rows.push_back({&person, &measure});
+  const auto place = [&order = study.settings.conditions](const Row& row) {
+    return std::find(order.begin(), order.end(), row.measure->condition) - order.begin();
+  };
+  std::stable_sort(rows.begin(), rows.end(), [&](const Row& a, const Row& b) { return place(a) < place(b); });
+  std::string csv = "participant,excluded,condition,measure,unit,value\n";
+  for (const auto& [person, measure] : rows)
+    csv += csv_field(person->person) + "," + yes_or_no(!person->excluded.empty()) + "," +
+           csv_field(measure->condition) + "," + csv_field(measure->measure) + "," +
+           csv_field(measure->unit) + "," + csv_number(measure->value) + "\n";
   return csv;
 }
 

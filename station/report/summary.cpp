@@ -16,28 +16,6 @@ using analysis::TrialRecord;
 
 constexpr int kBandPoints = 61;
 
-/// Returns the choice that is right at levels above 0. If no trial shows which one that is, returns the
-/// second choice.
-int rising_choice(const std::vector<TrialRecord>& trials) {
-  std::map<int, std::pair<double, int>> sums;
-  for (const auto& trial : trials) {
-    if (!trial.right_choice || !trial.level) continue;
-    sums[*trial.right_choice].first += *trial.level;
-    ++sums[*trial.right_choice].second;
-  }
-  int best = 1;
-  double highest = 0;
-  bool any = false;
-  for (const auto& [choice, sum] : sums) {
-    const double mean = sum.first / sum.second;
-    if (any && mean <= highest) continue;
-    best = choice;
-    highest = mean;
-    any = true;
-  }
-  return best;
-}
-
 /// Counts the "yes" answers at each level. Trials without a signal are counted at kNoise, a level below all
 /// others.
 std::vector<analysis::LevelCount> count_yes(const std::vector<TrialRecord>& trials, int positive) {
@@ -60,6 +38,21 @@ analysis::FitOptions options_for(const SessionData& data) {
   return options;
 }
 
+/// A level of 0 lies below every level of a logarithmic axis: such a trial had no signal, so its answers tell
+/// the guess rate.
+void mark_zero(const SessionData& data, std::vector<analysis::LevelCount>& counts) {
+  if (data.scale != analysis::Scale::log10) return;
+  for (auto& point : counts)
+    if (!(point.level > 0)) point.level = analysis::kNoise;
+}
+
+/// In 2ifc with two sides, the answers as choices of a scene instead of an interval.
+std::vector<TrialRecord> by_scene(const SessionData& data, std::vector<TrialRecord> trials) {
+  if (!data.scenes.empty())
+    for (auto& trial : trials) trial.response = trial.chosen_scene, trial.right_choice = trial.right_scene;
+  return trials;
+}
+
 NamedFit fit_of(const SessionData& data, const std::string& name, const std::vector<TrialRecord>& trials,
                 int stream) {
   NamedFit result;
@@ -70,11 +63,14 @@ NamedFit fit_of(const SessionData& data, const std::string& name, const std::vec
     result.positive = "correct";
   } else {
     const bool noise = has_noise(data.design);
-    const int choice = noise ? data.positive : rising_choice(data.trials);
-    counts = noise ? count_yes(trials, choice) : analysis::count_choice(trials, choice);
+    int choice = data.positive;
+    if (!data.scored && analysis::falls(analysis::count_choice(trials, choice))) choice = 1 - choice;
+    counts = noise ? count_yes(trials, choice) : analysis::count_choice(by_scene(data, trials), choice);
     const auto index = static_cast<std::size_t>(choice);
-    result.positive = "\u201c" + (index < data.choices.size() ? data.choices[index] : "second") + "\u201d";
+    const auto& answers = data.scenes.empty() ? data.choices : data.scenes;
+    result.positive = "\u201c" + (index < answers.size() ? answers[index] : "second") + "\u201d";
   }
+  mark_zero(data, counts);
   const auto options = options_for(data);
   const int band_points = data.replicates > 0 ? kBandPoints : 0;
   if (data.prior) {
@@ -122,22 +118,53 @@ analysis::Detecting detecting(const SessionData& data) {
 
 /// The choice that counts as "yes".
 int positive(const SessionData& data) {
-  if (data.design == Design::yes_no) return data.positive;
-  return data.design == Design::two_sided ? rising_choice(data.trials) : 1;
+  return data.design == Design::yes_no || data.design == Design::two_sided ? data.positive : 1;
+}
+
+/// The trials with levels that count from the cut, so that levels on its two sides are mirror images.
+std::vector<TrialRecord> around_cut(const SessionData& data) {
+  auto trials = by_scene(data, data.trials);
+  if (data.design == Design::two_sided)
+    for (auto& trial : trials)
+      if (trial.level) *trial.level -= data.cut;
+  return trials;
 }
 
 std::vector<analysis::Detection> detections_of(const SessionData& data) {
   if (!data.scored || data.choices.size() > 2 || !data.deciding.empty() || !shows(data, "dprime")) return {};
-  return analysis::detect(data.trials, data.conditions, detecting(data), positive(data));
+  return analysis::detect(around_cut(data), data.conditions, detecting(data), positive(data));
 }
 
 }  // namespace
 
+const LevelAnalysis& analysis_of(const NamedFit& named, const SessionData& data) {
+  return data.parts.empty() ? data : data.parts.at(named.part);
+}
+
+SessionData part_of(const SessionData& data, std::size_t part) {
+  if (data.parts.empty()) return data;
+  SessionData one = data;
+  static_cast<LevelAnalysis&>(one) = data.parts.at(part);
+  one.parts.clear();
+  std::erase_if(one.trials, [part](const auto& trial) { return trial.part != part; });
+  return one;
+}
+
 std::vector<NamedFit> fits_of(const SessionData& data) {
-  if (data.thresholds_differ) return {};
-  const auto instructions = analysis::conditions_of(data.trials, data.conditions);
-  if (instructions.size() < 2) return {fit_of(data, "", data.trials, 0)};
   std::vector<NamedFit> fits;
+  for (std::size_t part = 0; part < data.parts.size(); ++part)
+    for (auto& named : fits_of(part_of(data, part))) {
+      named.part = part;
+      if (named.name.empty()) named.name = data.parts[part].name;
+      fits.push_back(std::move(named));
+    }
+  const bool fitted =
+      data.design == Design::forced_choice || data.design == Design::two_sided || has_noise(data.design);
+  if (!data.parts.empty() || !fitted || data.thresholds_differ) return fits;
+  const auto instructions = analysis::conditions_of(data.trials, data.conditions);
+  if (instructions.size() < 2)
+    return {
+        fit_of(data, instructions.empty() || data.name.empty() ? "" : instructions.front(), data.trials, 0)};
   for (const auto& instruction : instructions) {
     std::vector<TrialRecord> part;
     std::copy_if(data.trials.begin(), data.trials.end(), std::back_inserter(part),
@@ -184,10 +211,11 @@ texts::Phrase describe_intervals(const NamedFit& named, const SessionData& data)
       parts.values.push_back(phrase("statement.falling", {number(low), number(high)}));
   };
   constexpr const char *kUniform = "statement.uniform", *kLogarithm = "statement.uniform_logarithm";
-  add(data.design == Design::two_sided ? "report.pse" : "report.threshold",
+  const auto& part = analysis_of(named, data);
+  add(part.design == Design::two_sided ? "report.pse" : "report.threshold",
       options.scale == analysis::Scale::log10 ? kLogarithm : kUniform, flat.threshold_low,
       flat.threshold_high);
-  if (!data.level_unit.empty()) parts.values.push_back(plain(" " + data.level_unit));
+  if (!part.level_unit.empty()) parts.values.push_back(plain(" " + part.level_unit));
   falling(prior.threshold_low, prior.threshold_high);
   add(options.function == terms::Function::normal ? "report.spread" : "report.slope", kLogarithm,
       flat.slope_low, flat.slope_high);
@@ -215,6 +243,43 @@ analysis::TradeOptions trade_options(const SessionData& data) {
   return options;
 }
 
+namespace {
+
+template <class Entry>
+void append(std::vector<Entry> more, std::vector<Entry>& all) {
+  all.insert(all.end(), std::make_move_iterator(more.begin()), std::make_move_iterator(more.end()));
+}
+
+/// Adds what the answers at the levels of one analysis say, except for the psychometric functions.
+void add_levels(const SessionData& data, Summary& summary) {
+  if (data.design == Design::adjustment) {
+    append(analysis::settings(data.trials, data.conditions), summary.settings);
+    return;
+  }
+  if (judges(data.design)) {
+    append(judgements_of(data), summary.judgements);
+    if (data.design == Design::ratings && shows(data, "dprime"))
+      append(analysis::rating_rocs(data.trials, data.conditions, static_cast<int>(data.choices.size())),
+             summary.rocs);
+    return;
+  }
+  if (has_confusions(data))
+    append(analysis::confusions(data.trials, data.conditions, static_cast<int>(data.choices.size())),
+           summary.confusions);
+  const auto detections = detections_of(data);
+  if (data.design == Design::yes_no && !detections.empty())
+    append(analysis::rocs(data.trials, data.conditions, data.positive), summary.rocs);
+  append(detections, summary.detections);
+  if (data.scored && data.choices.size() == 2 && shows(data, "response-signal"))
+    append(analysis::response_signal(around_cut(data), data.conditions, detecting(data), positive(data)),
+           summary.curves);
+  if (!data.deciding.empty() && shows(data, "dprime"))
+    append(analysis::discriminate(data.trials, data.conditions, data.deciding, data.alternatives),
+           summary.discriminations);
+}
+
+}  // namespace
+
 Summary summarise(const SessionData& data) {
   Summary summary;
   summary.data = data;
@@ -224,32 +289,13 @@ Summary summarise(const SessionData& data) {
   summary.confidence = analysis::accuracy_by_confidence(data.trials);
   summary.fatigue = analysis::fatigue(data.trials);
   summary.finger = analysis::finger(data.finger, data.conditions);
-  if (data.design == Design::adjustment) {
-    summary.settings = analysis::settings(data.trials, data.conditions);
-    return summary;
-  }
-  if (judges(data.design)) {
-    summary.judgements = judgements_of(data);
-    if (data.design == Design::ratings && shows(data, "dprime"))
-      summary.rocs =
-          analysis::rating_rocs(data.trials, data.conditions, static_cast<int>(data.choices.size()));
-    return summary;
-  }
+  const auto count = std::max<std::size_t>(1, data.parts.size());
+  for (std::size_t part = 0; part < count; ++part) add_levels(part_of(data, part), summary);
+  if (data.design == Design::adjustment || judges(data.design)) return summary;
   if (data.choices.size() <= 2) summary.bias = analysis::choice_bias(data.trials);
-  if (has_confusions(data))
-    summary.confusions =
-        analysis::confusions(data.trials, data.conditions, static_cast<int>(data.choices.size()));
   summary.trade = analysis::trade(data.trials, trade_options(data));
   hide(data, summary.trade);
-  summary.detections = detections_of(data);
-  if (data.design == Design::yes_no && !summary.detections.empty())
-    summary.rocs = analysis::rocs(data.trials, data.conditions, data.positive);
-  if (data.choices.size() == 2 && shows(data, "response-signal"))
-    summary.curves = analysis::response_signal(data.trials, data.conditions, detecting(data), positive(data));
-  if (!data.deciding.empty() && shows(data, "dprime"))
-    summary.discriminations =
-        analysis::discriminate(data.trials, data.conditions, data.deciding, data.alternatives);
-  if (data.design != Design::categories && shows(data, "psychometric")) summary.fits = fits_of(data);
+  if (shows(data, "psychometric")) summary.fits = fits_of(data);
   return summary;
 }
 

@@ -19,6 +19,7 @@ namespace turnpoint::report {
 struct NamedFit {
   std::string name;      ///< name of the condition; "" for all trials
   std::string positive;  ///< the answer whose probability the curve shows
+  std::size_t part = 0;  ///< number of its analysis in SessionData::parts
   analysis::PsychometricFit fit;
   analysis::PsychometricIntervals intervals;
 };
@@ -53,6 +54,9 @@ struct Summary {
 /// Returns only the psychometric fits: one to all trials, or one per instruction if there are several
 /// instructions. If data.replicates is 0, there are no bootstraps and no bands.
 std::vector<NamedFit> fits_of(const SessionData& data);
+
+/// The analysis to which a fit belongs.
+const LevelAnalysis& analysis_of(const NamedFit& named, const SessionData& data);
 
 /// True if the report has confusion matrices.
 bool has_confusions(const SessionData& data);

@@ -52,10 +52,14 @@ std::uint64_t fresh_seed() {
 }
 
 std::string level_unit(const protocol::Protocol& protocol) {
-  if (protocol.procedures.empty()) return "";
-  const auto& level = protocol.procedures.front().level;
-  const auto underscore = level.rfind('_');
-  return underscore == std::string::npos ? "1" : level.substr(underscore + 1);
+  std::optional<std::string> unit;
+  for (const auto& spec : protocol.procedures) {
+    const auto underscore = spec.level.rfind('_');
+    const auto own = underscore == std::string::npos ? "1" : spec.level.substr(underscore + 1);
+    if (unit && *unit != own) return "";  // procedures with levels in different units
+    unit = own;
+  }
+  return unit.value_or("");
 }
 
 records::SessionStart start_of(const Setup& setup, std::uint64_t seed, const std::string& rights,

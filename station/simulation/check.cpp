@@ -247,6 +247,8 @@ Check check(const std::string& protocol_path, const std::string& rig_path, const
   }
   if (check.problems.empty() && options.try_programs) check.problems = options.try_programs(*protocol);
   if (!check.problems.empty()) return check;
+  for (const auto& meaning : protocol->meanings)
+    check.measures.push_back(protocol::line_of(meaning, *protocol));
   check.id = protocol->id, check.title = protocol->title, check.rig_name = rig->name;
   check.protocol_defaults = protocol->defaults_used;
   check.rig_defaults = rig->defaults_used;

@@ -50,6 +50,8 @@ struct Check {
   std::vector<text::Problem> warnings;
   std::vector<text::Problem> notes;  ///< remarks of little importance, which do not count as warnings
   std::string id, title, rig_name;
+  /// what the trials measure, one line for each analysis: "main: threshold of `contrast_dB` at 82 % correct"
+  std::vector<std::string> measures;
   std::vector<CheckedBlock> blocks;
   /// values of one session; if sessions or groups differ in length, values of the longest
   Spread trials, duration_s;

@@ -41,19 +41,19 @@ class Truths {
           add("procedure " + spec.name + session_suffix(protocol, number), parameter, value);
     for (const auto& spec : protocol.procedures)
       if (spec.kind == procedure::Kind::adjustment)
-        for (const auto& condition : with_none(protocol::conditions(protocol)))
+        for (const auto& condition : with_none(protocol::analysed_conditions(protocol)))
           add(source_of(source_of("settings", spec.name), condition), "PSE", options.observer.bias);
     if (protocol.task.value && protocol.task.value->typed)
-      for (const auto& condition : with_none(protocol::conditions(protocol)))
+      for (const auto& condition : with_none(protocol::analysed_conditions(protocol)))
         add(source_of("numbers", condition), "exponent", options.observer.slope);
     GeneratingValues generating;
     for (const auto& outcome : outcomes) generating.add(outcome.generating);
     if (outcomes.front().design == report::Design::categories)
-      for (const auto& condition : with_none(protocol::conditions(protocol)))
+      for (const auto& condition : with_none(protocol::analysed_conditions(protocol)))
         add(source_of("answers", condition), "proportion correct", generating.share_correct(condition));
     add_d_primes(protocol, generating, observer);
     add_fits(generating, observer, outcomes);
-    add_differences(generating, observer, protocol::conditions(protocol));
+    add_differences(generating, observer, protocol::analysed_conditions(protocol));
   }
 
   std::optional<double> find(const Recovery& recovery) const {
@@ -78,9 +78,7 @@ class Truths {
                     const observer::Observer& observer) {
     std::set<double> levels;
     for (const auto& spec : protocol.procedures) levels.insert(spec.values.begin(), spec.values.end());
-    const auto unit = protocol.procedures.empty()
-                          ? std::string()
-                          : protocol::words_of(protocol.procedures.front().level).unit;
+    const auto unit = protocol::words_of(protocol::common_level(protocol).value_or("")).unit;
     const auto intervals = static_cast<int>(protocol.task.choices.size());
     const auto add_at = [&](const std::string& condition, const std::optional<double>& level,
                             const std::optional<double>& share) {
@@ -89,7 +87,7 @@ class Truths {
           add(source_of("answers", condition), d_prime_name(model, level, unit),
               analysis::d_prime(model, *share, intervals));
     };
-    for (const auto& condition : with_none(protocol::conditions(protocol))) {
+    for (const auto& condition : with_none(protocol::analysed_conditions(protocol))) {
       add_at(condition, std::nullopt, generating.share_correct(condition));
       for (const double level : levels)
         add_at(condition, level, generating.share_correct_at(condition, level, observer));
@@ -98,10 +96,10 @@ class Truths {
 
   void add_fits(const GeneratingValues& generating, const observer::Observer& observer,
                 const std::vector<SessionOutcome>& outcomes) {
-    const bool two_sided = outcomes.front().design == report::Design::two_sided;
     for (const auto& [condition, options] : outcomes.front().fits) {
       const auto truth = generating.fit(condition, options, observer);
       const auto source = source_of("fit", condition);
+      const bool two_sided = options.guess == analysis::Guess::tied_to_lapse;
       add(source, two_sided ? "PSE" : "threshold", truth.threshold);
       add(source, spread_name(options), truth.slope);
       add(source, "75 % point", truth.level_75);

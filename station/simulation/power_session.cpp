@@ -98,19 +98,21 @@ void add_fits(const report::SessionData& data, const std::string& unit, SessionO
     if (!named.fit.parameters) continue;
     const auto& p = *named.fit.parameters;
     const auto source = source_of("fit", named.name);
-    const bool two_sided = data.design == report::Design::two_sided;
+    const auto& part = report::analysis_of(named, data);
+    const auto& own = part.level_unit;
+    const bool two_sided = part.design == report::Design::two_sided;
     auto& findings = outcome.findings;
     findings.push_back(
-        {source, two_sided ? "PSE" : "threshold", unit, p.threshold, interval_of(named.intervals.threshold)});
+        {source, two_sided ? "PSE" : "threshold", own, p.threshold, interval_of(named.intervals.threshold)});
     const bool posterior = named.intervals.method == analysis::IntervalMethod::posterior;
     if (!posterior || report::slope_estimated(named))
-      findings.push_back({source, spread_name(named.fit.options), slope_unit(named.fit.options, unit),
-                          p.slope, interval_of(named.intervals.slope)});
+      findings.push_back({source, spread_name(named.fit.options), slope_unit(named.fit.options, own), p.slope,
+                          interval_of(named.intervals.slope)});
     const auto level_75 =
         posterior ? named.intervals.level_75
                   : analysis::level_at(named.fit.options.function, named.fit.options.scale, p, 0.75);
     if (level_75)
-      findings.push_back({source, "75 % point", unit, *level_75, interval_of(named.intervals.interval_75)});
+      findings.push_back({source, "75 % point", own, *level_75, interval_of(named.intervals.interval_75)});
   }
 }
 

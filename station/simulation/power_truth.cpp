@@ -130,7 +130,9 @@ void GeneratingValues::add(const protocol::Protocol& protocol, const trial::Tria
   std::string instruction;
   if (const auto found = trial.factors.find("instruction"); found != trial.factors.end())
     if (const auto* text = std::get_if<std::string>(&found->second)) instruction = *text;
-  const auto condition = protocol::condition_of(protocol, trial.factors, instruction);
+  const auto& meaning = protocol.meanings.at(protocol::meaning_of(protocol, trial.procedure, ""));
+  const auto condition =
+      protocol::condition_in(meaning, protocol::condition_of(protocol, trial.factors, instruction));
   auto [entry, is_new] = conditions_.try_emplace(condition);
   auto& made = entry->second;
   if (is_new) made.question = question;
@@ -229,8 +231,9 @@ FitTruth GeneratingValues::fit(const std::string& condition, const analysis::Fit
   };
   FitTruth truth;
   const double way = analysis::core(options.function, 0);
-  truth.threshold =
-      decides == observer::Decides::side ? p.bias : crosses(share(low) + way * (share(high) - share(low)));
+  truth.threshold = decides == observer::Decides::side
+                        ? question.cut + p.bias
+                        : crosses(share(low) + way * (share(high) - share(low)));
   truth.level_75 = crosses(0.75);
   const bool own_function =
       observer.bound(question.deadline_s) == p.bound && p.drift_sd == 0 && p.start_range == 0;

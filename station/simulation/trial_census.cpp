@@ -148,9 +148,9 @@ bool levels_follow_answers(const Protocol& protocol) {
 bool needs_own_sessions(const Protocol& protocol) {
   const auto sources = protocol::sources_of(protocol);
   return std::any_of(sources.begin(), sources.end(), [&](const protocol::Source& source) {
-    return sets_levels(source) &&
-           (source.spec->tracks.empty() ||
-            protocol::answer_rule(protocol, source.level).kind == protocol::AnswerKind::presence);
+    if (!sets_levels(source) || source.spec->tracks.empty()) return sets_levels(source);
+    const auto rule = protocol::answer_rule(protocol, source.level);
+    return rule.kind == protocol::AnswerKind::presence || rule.size;
   });
 }
 

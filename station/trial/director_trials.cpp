@@ -121,7 +121,7 @@ void Director::State::complete(TrialSpec& spec) const {
   const auto order = order_for(protocol.task, seed, static_cast<int>(block), attempt,
                                spec.type == terms::TrialType::warmup ? warmups_given : trial);
   spec.intervals = order.intervals;
-  spec.correct = order.correct ? order.correct : correct_choice(protocol.task, spec.factors);
+  spec.correct = order.correct ? order.correct : correct_choice(protocol.task, spec.factors, order.intervals);
   spec.slider = slider(key);
   auto rove = draws(Stream::roving, key);
   for (const auto& interval : spec.intervals) {

@@ -125,9 +125,15 @@ std::vector<double> friction_table_order(std::span<const double> levels, int rep
   return order;
 }
 
-std::optional<int> correct_choice(const protocol::Task& task, const protocol::Factors& factors) {
+std::optional<int> correct_choice(const protocol::Task& task, const protocol::Factors& factors,
+                                  const std::vector<std::vector<std::string>>& intervals) {
   for (const auto& [id, comparison] : task.correct_answer)
-    if (protocol::holds(comparison, factors)) return choice_index(task, id);
+    if (protocol::holds(comparison, factors)) {
+      if (task.kind != TaskKind::two_interval) return choice_index(task, id);
+      for (std::size_t i = 0; i < intervals.size(); ++i)
+        if (std::find(intervals[i].begin(), intervals[i].end(), id) != intervals[i].end())
+          return static_cast<int>(i);
+    }
   return std::nullopt;
 }
 

@@ -30,8 +30,9 @@ IntervalOrder order_for(const protocol::Task& task, std::uint64_t seed, int bloc
 /// with the surface at rest (0) before, between and after them.
 std::vector<double> friction_table_order(std::span<const double> levels, int repeats, const random::Key& key);
 
-/// Returns the right choice of a single-interval task for these factors; empty if none of the task's
-/// comparisons is true.
-std::optional<int> correct_choice(const protocol::Task& task, const protocol::Factors& factors);
+/// Returns the right choice for these factors; empty if none of the task's comparisons is true. If the
+/// comparisons are about scenes (2ifc), it is the place of the right scene in `intervals`.
+std::optional<int> correct_choice(const protocol::Task& task, const protocol::Factors& factors,
+                                  const std::vector<std::vector<std::string>>& intervals = {});
 
 }  // namespace turnpoint::trial

@@ -89,8 +89,17 @@ observer::Question question_of(const TrialSpec& spec, const protocol::Protocol& 
                         task.modulus.value_or(std::sqrt(std::max(value->low, 1e-3) * value->high))};
     return question;
   }
-  const auto rule = protocol::answer_rule(protocol, level);
-  question.positive = rule.positive;
+  const auto rule = protocol::answer_rule_of(protocol, level);
+  question.positive = rule.positive, question.cut = rule.cut;
+  // in 2ifc the answer is the interval that holds the scene
+  if (task.kind == protocol::TaskKind::two_interval && rule.kind == protocol::AnswerKind::side)
+    for (std::size_t i = 0; i < spec.intervals.size() && i < 2; ++i) {
+      const auto scene = protocol::scene_of(task, rule.positive);
+      const auto& interval = spec.intervals[i];
+      if (std::find(interval.begin(), interval.end(), scene) != interval.end())
+        question.positive = static_cast<int>(i);
+    }
+  if (rule.size) question.level = std::fabs(question.level);
   switch (rule.kind) {
     case protocol::AnswerKind::right_answer:
       question.finding = finding_of(task.kind);

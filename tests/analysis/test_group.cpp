@@ -18,12 +18,15 @@ std::vector<PersonMeasure> sleep() {
   return all;
 }
 
+bool within(const std::string&, const std::string&) { return false; }
+bool between(const std::string& first, const std::string& second) { return first != second; }
+
 }  // namespace
 
 TEST_CASE("The effect of a condition is that of R's paired t test", "[group]") {
   // R's t.test(extra ~ group, sleep, paired = TRUE) gives 1.58, interval 0.7001142 to 2.4598858. The
   // differences have an SD of 1.229995, so d_z = 1.58 / 1.229995.
-  const auto found = effects(sleep());
+  const auto found = effects(sleep(), within);
   REQUIRE(found.size() == 1);
   CHECK(found[0].first == "one");
   CHECK(found[0].second == "two");
@@ -45,7 +48,7 @@ TEST_CASE("Means count each participant once, and effects only those with both c
   CHECK(means[0].mean->value == Approx(2.33));
   CHECK(means[0].sd == Approx(2.002249).epsilon(1e-6));
   CHECK(means[1].persons == 9);
-  CHECK(effects(measures)[0].persons == 9);
+  CHECK(effects(measures, within)[0].persons == 9);
 }
 
 TEST_CASE("The effect between groups is that of R's Welch test", "[group]") {
@@ -54,7 +57,7 @@ TEST_CASE("The effect between groups is that of R's Welch test", "[group]") {
   auto measures = sleep();
   for (auto& entry : measures)
     if (entry.condition == "two") entry.person += "b";
-  const auto found = effects(measures);
+  const auto found = effects(measures, between);
   REQUIRE(found.size() == 1);
   CHECK(found[0].between_groups);
   CHECK(found[0].persons == 20);
@@ -64,13 +67,18 @@ TEST_CASE("The effect between groups is that of R's Welch test", "[group]") {
   CHECK(found[0].difference->interval.low == Approx(-0.2054832).margin(0.015));
   CHECK(found[0].difference->interval.high == Approx(3.3654832).margin(0.015));
   CHECK(*found[0].standardised == Approx(1.58 / 1.898625).epsilon(1e-5));
-  CHECK_FALSE(effects(sleep())[0].between_groups);
+  CHECK_FALSE(effects(sleep(), within)[0].between_groups);
+  // nobody has both conditions, but everybody could have: an effect within participants, without an estimate
+  const auto none = effects(measures, within);
+  CHECK_FALSE(none[0].between_groups);
+  CHECK(none[0].persons == 0);
+  CHECK_FALSE(none[0].difference);
 }
 
 TEST_CASE("Two participants have no interval", "[group]") {
   const std::vector<PersonMeasure> two{
       {"A", "x", "m", "", 1}, {"B", "x", "m", "", 2}, {"A", "y", "m", "", 3}};
   CHECK_FALSE(group_means(two)[0].mean);
-  CHECK_FALSE(effects(two)[0].difference);
-  CHECK(effects(two)[0].persons == 1);
+  CHECK_FALSE(effects(two, within)[0].difference);
+  CHECK(effects(two, within)[0].persons == 1);
 }

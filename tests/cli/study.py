@@ -4,6 +4,7 @@ import json
 import math
 import os
 import shutil
+import sqlite3
 import statistics
 import subprocess
 import sys
@@ -105,10 +106,8 @@ class Study(unittest.TestCase):
         found = {tuple(line[:3]): line[3:] for line in csv.reader(out.splitlines())}
         for effect in self.study["effects"]:
             key = (effect["measure"], effect["first"], effect["second"])
-            # pandas sorts the conditions, so the difference may have the opposite sign
-            sign = 1 if key in found else -1
-            value, _, persons = found[key if sign == 1 else (key[0], key[2], key[1])]
-            self.assertAlmostEqual(sign * float(value), effect["difference"]["value"], delta=1e-5 * max(1, abs(float(value))))
+            value, _, persons = found[key]  # in the same direction as the report
+            self.assertAlmostEqual(float(value), effect["difference"]["value"], delta=1e-5 * max(1, abs(float(value))))
             self.assertEqual(int(persons), effect["participants"])
 
     def test_lme4_finds_the_same_groups(self):
@@ -183,6 +182,56 @@ class Groups(unittest.TestCase):
         half = (found["interval"]["high"] - found["interval"]["low"]) / 2
         self.assertGreater(half / error, 2.4)
         self.assertLess(half / error, 3.3)
+
+
+class Sessions(unittest.TestCase):
+    """Which sessions count: completed ones, and others only if the protocol says so."""
+
+    def setUp(self):
+        self.folder = tempfile.mkdtemp()
+        self.addCleanup(shutil.rmtree, self.folder)
+
+    def call(self, *words):
+        done = subprocess.run([PROGRAM, *words], cwd=self.folder, check=False, capture_output=True, text=True)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        return done.stdout
+
+    def study(self, protocol, statuses):
+        """The study of sessions of P01, P02, ... with these statuses, each written over that of a completed session."""
+        number = 0
+        for person, list_of in statuses.items():
+            for _ in list_of:
+                number += 1
+                self.call("run", protocol, "--participant", person, "--db", "lab.sqlite", "--observer", "sim", "--seed", str(number))
+        with sqlite3.connect(os.path.join(self.folder, "lab.sqlite")) as database:
+            ids = [row[0] for row in database.execute("SELECT session_id FROM session ORDER BY rowid")]
+            for session, status in zip(ids, [status for list_of in statuses.values() for status in list_of]):
+                database.execute("UPDATE session SET status = ? WHERE session_id = ?", (status, session))
+        self.call("report", "--study", "--db", "lab.sqlite", "--out", "study.html")
+        with open(os.path.join(self.folder, "study.html"), encoding="utf-8") as page:
+            self.page = page.read()
+        study = json.loads(self.call("report", "--study", "--db", "lab.sqlite", "--json"))
+        return study, {p["participant"]: p for p in study["participants"]}
+
+    STATUSES = {"P01": ["interrupted", "completed"], "P02": ["completed"], "P03": ["stopped"], "P04": ["completed", "completed"]}
+
+    def test_superseded_and_unfinished_sessions_do_not_count(self):
+        study, people = self.study("demo", self.STATUSES)
+        self.assertEqual(study["sessions"], {"found": 6, "counted": 4, "superseded": 1, "incomplete": 1, "incomplete_count": False})
+        self.assertEqual([people[p]["presented"] for p in ("P01", "P02", "P03", "P04")], [10, 10, 0, 20])
+        self.assertFalse(people["P01"]["incomplete"])  # the session was begun again and completed
+        self.assertEqual(people["P03"]["excluded"], ["no session that counts"])
+        self.assertIn("Counted: 4 of 6 sessions; begun again later: 1; not completed: 1.", self.page)
+
+    def test_unfinished_sessions_count_if_the_protocol_says_so(self):
+        with open(os.path.join(SOURCE, "protocols/demo.toml"), encoding="utf-8") as file:
+            text = file.read() + '\n[analysis]\nincomplete_sessions = "count"\n'
+        with open(os.path.join(self.folder, "all.toml"), "w", encoding="utf-8") as file:
+            file.write(text)
+        study, people = self.study("all.toml", self.STATUSES)
+        self.assertEqual(study["sessions"]["counted"], 5)
+        self.assertEqual([people[p]["presented"] for p in ("P01", "P03")], [10, 10])
+        self.assertTrue(people["P03"]["incomplete"])
 
 
 class OwnEstimates(unittest.TestCase):

@@ -1,5 +1,7 @@
 #include "station/report/stored_trials.hpp"
 
+#include <cmath>
+#include <functional>
 #include <nlohmann/json.hpp>
 
 #include "station/protocol/conditions.hpp"
@@ -325,4 +327,137 @@ TEST_CASE("settings are reported by the side from which the slider started", "[r
   CHECK(sides(replaced(one, "start_above", "# start_above"))["from_below"]["settings"] == 0);
   const auto html = report::to_html(report::summarise(data_of(shipped_file)));
   CHECK(html.find("from below (9 settings)") != std::string::npos);
+}
+
+namespace {
+
+/// Answers every trial by a rule, as a person does who is always right, always wrong, presses one key or
+/// none.
+report::SessionData answered_by(const std::string& source,
+                                const std::function<std::optional<int>(const observer::Question&)>& choice) {
+  const auto protocol = protocol::parse(source, "p.toml");
+  auto sits = simulation::rehearser(observer::Observer(observer::parse("sim:lapse=0")));
+  sits.answer = [&](const trial::TrialSpec&, const observer::Question& question) {
+    observer::Reply reply;
+    reply.choice = choice(question);
+    reply.response_time_s = reply.choice ? 0.6 : 100;
+    return reply;
+  };
+  const auto rehearsal = simulation::rehearse(protocol, 0, 5, sits);
+  report::SessionData data;
+  report::add_trials(rehearsal.blocks, protocol, data);
+  report::add_estimates(rehearsal.blocks, protocol, 5, {}, data);
+  data.replicates = 40;
+  return data;
+}
+
+}  // namespace
+
+TEST_CASE("the function does not depend on the trials that a participant got", "[report]") {
+  // practice at level 0 turned the Weibull function on a log axis into a normal one for those who drew it
+  const auto source =
+      replaced(shipped("speed-accuracy"), "correct = { smoother = \"change < 0\", rougher = \"change > 0\" }",
+               "correct = { smoother = \"change < 0\", rougher = \"change >= 0\" }");
+  const auto data = data_of(source);
+  auto other = data;
+  const auto before = report::fits_of(data).front().fit.options;
+  other.trials.resize(other.trials.size() / 2);
+  for (auto& trial : other.trials)
+    if (trial.level) trial.level = std::fabs(*trial.level) + 0.1;
+  const auto after = report::fits_of(other).front().fit.options;
+  CHECK(before.function == after.function);
+  CHECK(before.scale == after.scale);
+  CHECK(before.guess == after.guess);
+}
+
+TEST_CASE("levels of 0 on a log axis tell the guess rate and do not stop the report", "[report]") {
+  report::SessionData data = data_of(shipped("friction-2ifc"), "sim:lapse=0");
+  data.scale = analysis::Scale::log10;
+  data.function = terms::Function::weibull;
+  data.prior.reset();
+  int number = 0;
+  for (auto& trial : data.trials)
+    if (trial.level) trial.level = 0.1 * (number++ % 5);
+  const auto fits = report::fits_of(data);
+  REQUIRE(fits.size() == 1);
+  CHECK(fits[0].fit.data.front().level == analysis::kNoise);
+  CHECK_NOTHROW(report::to_html(report::summarise(data)));
+  for (auto& trial : data.trials) trial.level = 0;  // a staircase that never left the floor
+  CHECK_NOTHROW(report::to_html(report::summarise(data)));
+}
+
+TEST_CASE("a bisection has the PSE at the cut and the spread of the observer", "[report]") {
+  auto source = shipped("demo");
+  source = replaced(source, "range = [-24.0, 24.0]", "range = [0.0, 40.0]");
+  source = replaced(source, "left = \"offset_mm < 0\"", "left = \"offset_mm < 20\"");
+  source = replaced(source, "right = \"offset_mm > 0\"", "right = \"offset_mm > 20\"");
+  source = replaced(source, "values = [-24.0, -12.0, 0.0, 12.0, 24.0]",
+                    "values = [5.0, 12.0, 17.0, 20.0, 23.0, 28.0, 35.0]");
+  source = replaced(source, "repeats = 2", "repeats = 60");
+  const auto data = data_of(source, "sim:threshold=4,bias=1,lapse=0");
+  CHECK(data.design == report::Design::two_sided);
+  const auto report = report_of(data);
+  CHECK(report["fits"][0]["threshold"].get<double>() == Approx(21).margin(0.9));
+  CHECK(report["fits"][0]["slope"].get<double>() == Approx(4 / 0.6745).margin(1.2));
+  CHECK(report["measures"][0]["measures"] == "PSE and spread of `offset_mm` around 20, cumulative normal");
+  CHECK(report::to_html(report::summarise(data)).find("around 20") != std::string::npos);
+}
+
+TEST_CASE("two answers of which none is right are fitted", "[report]") {
+  auto source = replaced(shipped("demo"), "[task.correct]\nleft = \"offset_mm < 0\"", "");
+  source = replaced(source, "right = \"offset_mm > 0\"", "");
+  source = replaced(source, "feedback = \"trial\"", "");
+  source = replaced(source, "repeats = 2", "repeats = 40");
+  const auto report = report_of(data_of(source, "sim:threshold=8,bias=3,lapse=0"));
+  REQUIRE(report["fits"].size() == 1);
+  CHECK(report["fits"][0]["threshold"].get<double>() == Approx(3).margin(1.8));
+  CHECK(report["fits"][0]["positive"] == "\u201cright\u201d");
+  // a person for whom the first answer is the one that becomes more frequent
+  const auto turned = report_of(answered_by(source, [](const auto& q) { return q.level > 3 ? 0 : 1; }));
+  CHECK(turned["fits"][0]["positive"] == "\u201cleft\u201d");
+}
+
+TEST_CASE("each level factor has its own fit, with its own unit", "[report]") {
+  auto source =
+      replaced(shipped("demo"), "[[block]]",
+               "[[procedure]]\nname = \"pushes\"\nkind = \"constant-stimuli\"\nlevel = \"push_um\"\n"
+               "values = [-4.0, -2.0, 2.0, 4.0]\nrepeats = 30\nwith = { offset_mm = 0.0 }\n\n[[block]]");
+  source = replaced(source, "procedures = [\"levels\"]",
+                    "procedures = [\"levels\", \"pushes\"]\ninterleave = \"random\"");
+  source =
+      replaced(source, "[[factor]]", "[[factor]]\nname = \"push_um\"\nrange = [-5.0, 5.0]\n\n[[factor]]");
+  source = replaced(source, "left = \"offset_mm < 0\"", "left = \"offset_mm + push_um < 0\"");
+  source = replaced(source, "right = \"offset_mm > 0\"", "right = \"offset_mm + push_um > 0\"");
+  source = replaced(source, "order = {", "with = { push_um = 0.0 }\norder = {");
+  source = replaced(source, "repeats = 2", "repeats = 20");
+  const auto data = data_of(source, "sim:threshold=3,lapse=0");
+  REQUIRE(data.parts.size() == 2);
+  const auto report = report_of(data);
+  REQUIRE(report["fits"].size() == 2);
+  CHECK(report["fits"][0]["name"] == "offset_mm");
+  CHECK(report["fits"][0]["level_unit"] == "mm");
+  CHECK(report["fits"][1]["name"] == "push_um");
+  CHECK(report["fits"][1]["level_unit"] == "\u00b5m");
+  CHECK(report["fits"][0]["levels"].size() == 5);
+  CHECK(report["fits"][1]["levels"].size() == 4);
+  CHECK(report["measures"].size() == 2);
+  const auto html = report::to_html(report::summarise(data));
+  CHECK(html.find("PSE (\u00b5m)") != std::string::npos);
+}
+
+TEST_CASE("one key, always right and always wrong: there is a report with reasons", "[report]") {
+  using Choice = std::function<std::optional<int>(const observer::Question&)>;
+  // a rehearsal ends only if trials are answered; sweep.py has a person who never answers
+  const Choice choices[] = {[](const auto&) { return 0; },
+                            [](const auto& q) { return q.correct.value_or(0); },
+                            [](const auto& q) { return 1 - q.correct.value_or(0); }};
+  for (const auto* name : {"friction-2ifc", "demo", "speed-accuracy", "friction-staircase"})
+    for (const auto& choice : choices) {
+      INFO(name);
+      const auto data = answered_by(shipped(name), choice);
+      const auto report = report_of(data);
+      CHECK_NOTHROW(report::to_html(report::summarise(data)));
+      for (const auto& fit : report["fits"])
+        if (fit["threshold"].is_null()) CHECK_FALSE(fit["statements"].empty());
+    }
 }

@@ -7,10 +7,13 @@ suppressMessages(library(lme4))
 folder <- commandArgs(trailingOnly = TRUE)[1]
 if (is.na(folder)) stop("name the folder of the tables: Rscript study.R tables")
 table_of <- function(name) {
-  read.csv(file.path(folder, name), na.strings = "", colClasses = c(participant = "character"))
+  # a participant or a condition may be called NA, 007 or TRUE
+  header <- names(read.csv(file.path(folder, name), nrows = 0, check.names = FALSE))
+  texts <- intersect(header, c("participant", "condition", "procedure", "block", "measure", "response"))
+  read.csv(file.path(folder, name), na.strings = "", colClasses = setNames(rep("character", length(texts)), texts))
 }
 answers <- subset(table_of("answers.csv"), excluded == "no")
-groups <- read.csv(file.path(folder, "groups.csv"))
+groups <- table_of("groups.csv")
 label <- function(condition) ifelse(is.na(condition) | condition == "", "all trials", condition)
 answers$condition <- label(answers$condition)
 groups$condition <- label(groups$condition)
@@ -52,7 +55,10 @@ for (i in seq_len(nrow(groups))) {
 
 # Response times of right answers: log time by condition, with participants as random effects.
 trials <- subset(table_of("trials.csv"), excluded == "no" & outcome == "answered" & correct == 1)
+# the conditions in the order of the protocol, so that the signs are those of the report
+order <- unique(label(table_of("measures.csv")$condition))
 trials$condition <- label(trials$condition)
+trials$condition <- factor(trials$condition, levels = order[order %in% trials$condition])
 if (length(unique(trials$condition)) > 1) {
   model <- suppressMessages(lmer(log(response_time_s) ~ condition + (1 | participant), trials))
   for (name in names(fixef(model))[-1])

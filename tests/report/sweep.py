@@ -1,0 +1,140 @@
+#!/usr/bin/env python3
+"""Reports of extreme observers: each protocol with people who are always right, always wrong, press one key or never
+answer, in studies of one, two and more people. No command may end with status 70, and no table may be empty without
+a reason.
+
+    tests/report/sweep.py TURNPOINT [--all] [PROTOCOL...]
+
+Without --all, a few protocols and studies of one person; with it, every shipped protocol and every protocol of
+tests/report/extreme, with studies of one, two and three people.
+"""
+import html.parser
+import json
+import pathlib
+import subprocess
+import sys
+import tempfile
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+HERE = pathlib.Path(__file__).resolve().parent
+RIG = ROOT / "deploy/rigs/simulated.toml"
+KINDS = ["right", "wrong", "key", "silent"]
+FEW = ["friction-2ifc", "staircase-to-zero", "two-factors"]
+
+
+class Tables(html.parser.HTMLParser):
+    """Counts the cells with text in the rows of each table, headings apart."""
+
+    def __init__(self):
+        super().__init__()
+        self.tables, self.open, self.cell = [], [], False
+
+    def handle_starttag(self, tag, attrs):
+        if tag == "table":
+            self.open.append(0)
+        self.cell = tag in ("td", "th") and (tag == "td" or self.cell)
+
+    def handle_endtag(self, tag):
+        if tag == "table":
+            self.tables.append(self.open.pop())
+        if tag == "td":
+            self.cell = False
+
+    def handle_data(self, data):
+        if self.cell and self.open and data.strip():
+            self.open[-1] += 1
+
+
+class Sweep:
+    def __init__(self, turnpoint):
+        self.turnpoint, self.failures, self.commands = turnpoint, [], 0
+
+    def call(self, *arguments, stop_after_s=None):
+        """Calls the program. With stop_after_s it is asked to end after that time: a session in which nobody answers
+        presents its trials again and again."""
+        self.commands += 1
+        program = subprocess.Popen([self.turnpoint, *map(str, arguments)], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        try:
+            out, error = program.communicate(timeout=stop_after_s or 300)
+        except subprocess.TimeoutExpired:
+            program.terminate()
+            out, error = program.communicate(timeout=30)
+            if stop_after_s is None:
+                self.failures.append(f"{' '.join(map(str, arguments))}: takes more than 300 s")
+        if program.returncode not in (0, 1, 2) and not (stop_after_s and program.returncode in (130, 143)):
+            self.failures.append(f"{' '.join(map(str, arguments))}: status {program.returncode}: {error.strip()[-300:]}")
+        return subprocess.CompletedProcess(arguments, program.returncode, out, error)
+
+    def expect(self, holds, what):
+        if not holds:
+            self.failures.append(what)
+
+    def page(self, path, what):
+        tables = Tables()
+        tables.feed(path.read_text())
+        self.expect(all(tables.tables), f"{what}: a table without any entry")
+        self.expect("nan" not in path.read_text().lower().replace("nanometre", ""), f"{what}: nan in the page")
+
+    def fits(self, document, what):
+        for fit in document["fits"]:
+            self.expect(fit["threshold"] is not None or fit["statements"], f"{what}: neither a threshold nor a reason")
+
+    def people(self, folder, protocol, kinds):
+        what = f"{protocol.stem}, {'+'.join(kinds)}"
+        database = folder / "lab.sqlite"
+        for number, kind in enumerate(kinds):
+            observer = "sim" if kind == "sim" else f"program:{HERE}/one_way.py,kind={kind}"
+            run = self.call("run", protocol, "--rig", RIG, "--participant", f"P{number + 1:02}", "--db", database,
+                            "--headless", "--observer", observer, stop_after_s=3 if kind == "silent" else None)
+            if "Traceback" in run.stderr or (run.returncode == 2):
+                self.failures.append(f"{what}: run: {run.stderr.strip()[-300:]}")
+                return
+        page, study = folder / "report.html", folder / "study.html"
+        report = self.call("report", "--db", database, "--out", page)
+        if report.returncode == 0:
+            self.page(page, what)
+            self.fits(json.loads(self.call("report", "--db", database, "--json").stdout), what)
+        else:
+            self.expect("no session with trials" in report.stderr, f"{what}: report: {report.stderr.strip()[-300:]}")
+        done = self.call("report", "--study", "--db", database, "--out", study, "--tables", folder / "tables")
+        if done.returncode == 0:
+            self.page(study, what + ", study")
+            document = json.loads(self.call("report", "--study", "--db", database, "--json").stdout)
+            for group in document["groups"]:
+                self.expect(group["fit"] or group["statements"], f"{what}: a group with neither a fit nor a reason")
+            counts = document["sessions"]
+            self.expect(sum(len(p["sessions"]) for p in document["participants"]) == counts["counted"],
+                        f"{what}: the number of counted sessions is wrong")
+        self.call("export", "--db", database, "--out", folder / "csv")
+        self.call("export", "--db", database, "--out", folder / "bids", "--format", "bids")
+
+
+def studies(everything):
+    for kind in KINDS:
+        yield [kind]
+    if everything:
+        yield ["right", "sim"]
+        yield ["right", "sim", "sim"]
+        yield ["silent", "key"]
+
+
+def main():
+    arguments = sys.argv[1:]
+    everything = "--all" in arguments
+    turnpoint, *names = [word for word in arguments if word != "--all"]
+    protocols = sorted((ROOT / "protocols").glob("*.toml")) + sorted((HERE / "extreme").glob("*.toml"))
+    wanted = names or (None if everything else FEW)
+    sweep = Sweep(turnpoint)
+    for protocol in protocols:
+        if wanted is not None and protocol.stem not in wanted:
+            continue
+        for kinds in studies(everything):
+            with tempfile.TemporaryDirectory() as folder:
+                sweep.people(pathlib.Path(folder), protocol, kinds)
+    for failure in sweep.failures:
+        print(failure)
+    print(f"{sweep.commands} commands, {len(sweep.failures)} failures")
+    sys.exit(1 if sweep.failures or sweep.commands == 0 else 0)
+
+
+main()
