@@ -65,7 +65,7 @@ class GeneratingValues {
   /// easy the right answer is to find.
   std::optional<double> share_correct_at(const std::string& condition, double level,
                                          const observer::Observer& observer) const;
-  /// The true boundary separation of the EZ diffusion model (with the scaling parameter s = 0.1).
+  /// The true boundary separation of the diffusion model (with the scaling parameter s = 0.1).
   std::optional<double> boundary(const std::string& condition, const observer::Observer& observer) const;
 
  private:

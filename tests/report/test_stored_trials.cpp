@@ -242,7 +242,7 @@ TEST_CASE("identification is reported as a confusion matrix, without a curve and
   CHECK(report["detection"].empty());
   const auto html = report::to_html(report::summarise(data));
   CHECK(html.find("Answers to each stimulus") != std::string::npos);
-  CHECK(html.find("EZ boundary") == std::string::npos);
+  CHECK(html.find("Boundary a (diffusion") == std::string::npos);
   CHECK(report_of(data_of(shipped("friction-2ifc")))["confusion"].empty());
   CHECK(report_of(data_of(shipped("two-spots-oddity")))["confusion"][0]["rows"].size() == 3);
 }
