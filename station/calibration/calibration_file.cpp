@@ -74,7 +74,7 @@ std::optional<Delay> read_delay(text::TableReader& reader, const std::string& na
 PanelLatency read_panel(const text::Value& table, text::Findings& findings) {
   text::TableReader reader(table, "panel", findings);
   PanelLatency panel;
-  panel.made_on = reader.string("made_on", phrase("problem.write_date"));
+  panel.made_on = reader.string("made_on", phrase("write the date as YYYY-MM-DD"));
   panel.quality = reader.word("quality", {"kernel", "toolkit"});
   panel.touch = read_delay(reader, "response_offset");
   panel.flash = read_delay(reader, "flash");
@@ -85,7 +85,7 @@ PanelLatency read_panel(const text::Value& table, text::Findings& findings) {
 Calibration::Transducer read_transducer(const text::Value& table, text::Findings& findings) {
   text::TableReader reader(table, text::titled("transducer", table), findings);
   Calibration::Transducer transducer;
-  transducer.name = reader.string("name", phrase("problem.rig_transducer"));
+  transducer.name = reader.string("name", phrase("write the name that the rig file gives to the transducer"));
   if (const auto band = reader.maybe_interval("band_kHz", {0, 1000, Ends::open_low, "kHz"})) {
     transducer.response.low_Hz = band->first * 1e3;
     transducer.response.high_Hz = band->second * 1e3;
@@ -99,7 +99,7 @@ Calibration::Transducer read_transducer(const text::Value& table, text::Findings
       same_length(reader, "phase_deg", phase.size(), frequency.size()))
     for (std::size_t k = 0; k < frequency.size(); ++k) {
       if (k > 0 && frequency[k] <= frequency[k - 1])
-        reader.problem("frequency_Hz", phrase("problem.not_ascending"));
+        reader.problem("frequency_Hz", phrase("the values are not in ascending order"));
       transducer.response.points.push_back({frequency[k], response[k] * 1e-6, phase[k] * kDegree_rad});
     }
   reader.finish();
@@ -110,9 +110,9 @@ rig::SurfaceFit::Parameter read_parameter(const text::Value& table, std::size_t 
                                           text::Findings& findings) {
   text::TableReader reader(table, text::titled("boundary.parameter", table), findings);
   rig::SurfaceFit::Parameter parameter;
-  parameter.name = reader.string("name", phrase("problem.surface_parameter"));
+  parameter.name = reader.string("name", phrase("write the name of a parameter of the surface"));
   if (!physics::find_parameter(parameter.name))
-    reader.problem("name", phrase("problem.no_surface_parameter", {plain(parameter.name)}));
+    reader.problem("name", phrase("\"%1\" is not a parameter of a surface", {plain(parameter.name)}));
   parameter.change = reader.number("change", {-large, large});
   parameter.sd = reader.number("sd", {0, large});
   parameter.stated_sd = reader.number("stated_sd", {0, large, Ends::open_low});
@@ -125,7 +125,7 @@ rig::SurfaceFit::Parameter read_parameter(const text::Value& table, std::size_t 
 BoundaryFit read_boundary(const text::Value& table, text::Findings& findings) {
   text::TableReader reader(table, "boundary", findings);
   BoundaryFit fit;
-  fit.edge = reader.string("edge", phrase("problem.measured_edge"));
+  fit.edge = reader.string("edge", phrase("write the edge that was measured"));
   const Range mm{-1e6, 1e6, Ends::closed, "mm"};
   const auto frequency = reader.numbers("frequency_Hz", {0, 1e6, Ends::open_low, "Hz"}),
              boundary = reader.numbers("boundary_mm", mm), sd = reader.numbers("sd_mm", mm),
@@ -169,7 +169,10 @@ void read_tables(text::TableReader& reader, Calibration& calibration) {
       for (std::size_t k = 0; k < u.size(); ++k) fit.points.push_back({u[k] * 1e-6, mu[k]});
     rig::FrictionTable points;
     for (const auto& point : fit.points) points.emplace_back(point.displacement_m, point.relative_friction);
-    if (rig::falling(points).empty()) inner.problem("relative_friction", phrase("problem.friction_rows"));
+    if (rig::falling(points).empty())
+      inner.problem("relative_friction",
+                    phrase("displacements must be in ascending order from 0; friction must be 1 at "
+                           "displacement 0, at least 0.001, never increase, and end below 1"));
     inner.finish();
     calibration.friction = fit;
   }
@@ -219,9 +222,9 @@ Calibration parse(const std::string& source, const std::string& path) {
   text::TableReader reader(document, "", findings);
   Calibration calibration;
   reader.word("format", {"friction-calibration/1"});
-  calibration.rig_name = reader.string("rig", phrase("problem.rig_name"));
-  calibration.rig_sha256 = reader.string("rig_sha256", phrase("problem.rig_sha"));
-  calibration.made_on = reader.string("made_on", phrase("problem.write_date"));
+  calibration.rig_name = reader.string("rig", phrase("write the rig's name"));
+  calibration.rig_sha256 = reader.string("rig_sha256", phrase("write the rig file's SHA-256"));
+  calibration.made_on = reader.string("made_on", phrase("write the date as YYYY-MM-DD"));
   calibration.valid_days = reader.integer("valid_days", 1, 3650);
   calibration.note = reader.maybe_string("note").value_or("");
   calibration.quality_factor = reader.maybe_number("quality_factor", {0, 1e9, Ends::open_low});

@@ -22,8 +22,8 @@ std::string quoted(const std::string& plain) {
 
 bool same_length(text::TableReader& reader, const char* key, std::size_t length, std::size_t wanted) {
   if (length == wanted) return true;
-  reader.problem(key, phrase("problem.values", {plain(length)}),
-                 phrase("problem.same_length", {plain(wanted)}));
+  reader.problem(key, phrase("%1 values", {plain(length)}),
+                 phrase("there must be %1 values, as in the other columns", {plain(wanted)}));
   return false;
 }
 
@@ -99,7 +99,7 @@ PickUp read_pick_up(const text::Value& table, text::Findings& findings) {
       same_length(reader, "phase_deg", phase.size(), frequency.size()))
     for (std::size_t k = 0; k < frequency.size(); ++k) {
       if (k > 0 && frequency[k] <= frequency[k - 1])
-        reader.problem("frequency_Hz", phrase("problem.not_ascending"));
+        reader.problem("frequency_Hz", phrase("the values are not in ascending order"));
       response.points.push_back({frequency[k], amplitude[k], phase[k] * kDegree_rad});
     }
   reader.finish();
@@ -161,10 +161,10 @@ rig::ForceCells read_forces(const text::Value& table, text::Findings& findings) 
     forces.usable_Hz = reader.number("usable_Hz", {0, 1e3, SensorEnds::open_low, "Hz"});
   const auto matrix = reader.numbers("matrix", {-1e12, 1e12});
   const auto changes = reader.maybe_numbers("changes", {-1e12, 1e12});
-  if (rotation.size() != 3) reader.problem("rotation_deg", phrase("problem.three_values"));
-  if (rated.size() != 3) reader.problem("rated_ratio", phrase("problem.three_values"));
-  if (matrix.size() != 9) reader.problem("matrix", phrase("problem.nine_values"));
-  if (changes.size() % 9 != 0) reader.problem("changes", phrase("problem.nine_values_change"));
+  if (rotation.size() != 3) reader.problem("rotation_deg", phrase("needs one value for each of three cells"));
+  if (rated.size() != 3) reader.problem("rated_ratio", phrase("needs one value for each of three cells"));
+  if (matrix.size() != 9) reader.problem("matrix", phrase("needs nine values: three for each cell"));
+  if (changes.size() % 9 != 0) reader.problem("changes", phrase("needs nine values for each change"));
   reader.finish();
   if (rotation.size() != 3 || rated.size() != 3 || matrix.size() != 9 || changes.size() % 9 != 0)
     return forces;

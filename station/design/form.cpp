@@ -221,8 +221,9 @@ void give_out(const std::vector<text::Problem>& remarks, const Document& documen
 
 [[noreturn]] void refuse(const Field& field, const std::string& typed, const char* allowed) {
   using texts::phrase, texts::plain;
-  throw text::BadInput(
-      {{{}, phrase("problem.not_possible", {plain(field.path.back()), plain(typed)}), phrase(allowed)}});
+  throw text::BadInput({{{},
+                         phrase("%1: \"%2\" is not possible", {plain(field.path.back()), plain(typed)}),
+                         phrase(allowed)}});
 }
 
 std::vector<std::string> items_of(const std::string& typed, const char* separators) {
@@ -302,16 +303,16 @@ std::string encoded(const Field& field, const std::string& typed) {
     case RuleKind::number:
     case RuleKind::integer:
       if (!is_number(typed, field.kind == RuleKind::integer))
-        refuse(field, typed, field.kind == RuleKind::integer ? "problem.a_whole_number" : "problem.a_number");
+        refuse(field, typed, field.kind == RuleKind::integer ? "a whole number" : "a number");
       return typed;
     case RuleKind::boolean:
-      if (typed != "true" && typed != "false") refuse(field, typed, "problem.true_or_false");
+      if (typed != "true" && typed != "false") refuse(field, typed, "true or false");
       return typed;
     case RuleKind::expression:
       return is_number(typed, false) ? typed : toml_string(typed);
     case RuleKind::numbers:
       return list(", ", [&](const std::string& item) {
-        if (!is_number(item, false)) refuse(field, item, "problem.numbers_commas");
+        if (!is_number(item, false)) refuse(field, item, "numbers, separated by commas");
         return item;
       });
     case RuleKind::names:

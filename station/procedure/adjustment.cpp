@@ -61,10 +61,13 @@ void read_starts(text::TableReader& reader, Spec& spec) {
     return;
   }
   if (reader.has("start"))
-    reader.problem("start", phrase("problem.starts_together"), phrase("problem.give_starts"));
+    reader.problem("start",
+                   phrase("\"start\" is not allowed together with \"start_below\" or \"start_above\""),
+                   phrase("give either \"start\", or \"start_below\" and \"start_above\""));
   if (below.size() != above.size())
     reader.problem(reader.has("start_below") ? "start_below" : "start_above",
-                   phrase("problem.starts_unequal"), phrase("problem.starts_equal"));
+                   phrase("there must be as many starts from below as from above"),
+                   phrase("list equally many levels in \"start_below\" and \"start_above\""));
   spec.values = below;
   spec.values.insert(spec.values.end(), above.begin(), above.end());
 }
@@ -81,13 +84,13 @@ extern const Description adjustment{
     },
     [](const Spec& spec, std::vector<Problem>& problems) {
       if (spec.values.empty())
-        problems.push_back({"start", phrase("problem.missing"), phrase("problem.list_starts")});
+        problems.push_back({"start", plain("missing"), phrase("list one or more levels to start from")});
       const auto &below = spec.ascending.values, &above = spec.descending.values;
       if (!below.empty() && !above.empty() && spec.ascending.ends().second >= spec.descending.ends().first)
-        problems.push_back(
-            {"start_below", phrase("problem.start_crossed"), phrase("problem.start_all_below")});
+        problems.push_back({"start_below", phrase("a start from below lies above a start from above"),
+                            phrase("choose all of them below all of \"start_above\"")});
       if (spec.repeats < 1)
-        problems.push_back({"repeats", phrase("problem.below_one"), phrase("problem.one_or_more_whole")});
+        problems.push_back({"repeats", phrase("below 1"), phrase("write a whole number of 1 or more")});
     },
     [](const Spec& spec, const Context& context, const random::Key& key) -> std::unique_ptr<Procedure> {
       return std::make_unique<Adjustment>(spec, context, key);

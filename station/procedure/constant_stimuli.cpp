@@ -165,17 +165,18 @@ extern const Description constant_stimuli{
         text::TableReader inner(*stop, reader.path("stop"), reader.findings());
         read_right_of_last(inner, spec);
         if (!inner.has("right") && !inner.has("of_last"))
-          reader.problem("stop", phrase("problem.stop_no_rule"), plain("stop = { right = 8, of_last = 10 }"));
+          reader.problem("stop", phrase("\"stop\" does not contain a rule"),
+                         plain("stop = { right = 8, of_last = 10 }"));
         inner.finish();
       }
     },
     [](const Spec& spec, std::vector<Problem>& problems) {
       if (spec.values.empty())
-        problems.push_back({"values", phrase("problem.missing"), phrase("problem.list_levels")});
+        problems.push_back({"values", plain("missing"), phrase("list one or more levels")});
       if (spec.repeats < 1)
-        problems.push_back({"repeats", phrase("problem.below_one"), phrase("problem.one_or_more_whole")});
+        problems.push_back({"repeats", phrase("below 1"), phrase("write a whole number of 1 or more")});
       if (spec.max_run && *spec.max_run < 1)
-        problems.push_back({"order.max_run", phrase("problem.below_one"), phrase("problem.one_or_more")});
+        problems.push_back({"order.max_run", phrase("below 1"), phrase("1 or more")});
     },
     [](const Spec& spec, const Context& context, const random::Key& key) -> std::unique_ptr<Procedure> {
       return std::make_unique<ConstantStimuli>(spec, context, key);

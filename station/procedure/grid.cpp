@@ -17,8 +17,9 @@ using text::TableReader;
 
 constexpr int most_points = 10001;
 texts::Phrase forms() {
-  return phrase("problem.allowed_grids", {plain("{ from, to, step }"), plain("{ from, to, count }"),
-                                          plain("{ log_from, log_to, count }"), plain("{ values = [...] }")});
+  return phrase("allowed: %1, %2, %3 or %4",
+                {plain("{ from, to, step }"), plain("{ from, to, count }"),
+                 plain("{ log_from, log_to, count }"), plain("{ values = [...] }")});
 }
 
 // Computes each value as from + i * step, because adding the step again and again would accumulate rounding
@@ -27,16 +28,16 @@ std::vector<double> even_steps(TableReader& reader, double from, double to) {
   const double step = reader.number("step", {0, 1e6, Range::Ends::open_low});
   const double intervals = (to - from) / step;
   if (!(intervals <= most_points - 1)) {
-    reader.problem("step", phrase("problem.grid_points", {plain(text::number(intervals + 1))}),
-                   phrase("problem.at_most", {plain(most_points)}));
+    reader.problem("step", phrase("the grid would have %1 points", {plain(text::number(intervals + 1))}),
+                   phrase("at most %1", {plain(most_points)}));
     return {from};
   }
   const double whole = std::round(intervals);
   if (std::fabs(intervals - whole) > 1e-6 || whole < 0)
     reader.problem("to",
-                   phrase("problem.grid_end",
+                   phrase("the steps from %1 by %2 do not end exactly at %3",
                           {plain(text::number(from)), plain(text::number(step)), plain(text::number(to))}),
-                   phrase("problem.possible_end", {plain(text::number(from + std::max(whole, 0.0) * step))}));
+                   phrase("a possible end is %1", {plain(text::number(from + std::max(whole, 0.0) * step))}));
   std::vector<double> values;
   for (int i = 0; i <= static_cast<int>(whole); ++i) values.push_back(at_step(from, i, step));
   return values;
@@ -45,8 +46,8 @@ std::vector<double> even_steps(TableReader& reader, double from, double to) {
 std::vector<double> linear_axis(TableReader& reader) {
   const double from = reader.number("from", {-1e6, 1e6}), to = reader.number("to", {-1e6, 1e6});
   if (reader.has("to") && to < from) {
-    reader.problem("to", phrase("problem.is_less", {plain("\"to\""), plain("\"from\"")}),
-                   phrase("problem.at_least", {plain(text::number(from))}));
+    reader.problem("to", phrase("%1 is less than %2", {plain("\"to\""), plain("\"from\"")}),
+                   phrase("at least %1", {plain(text::number(from))}));
     return {from};
   }
   if (!reader.has("count")) return even_steps(reader, from, to);
@@ -61,8 +62,8 @@ std::vector<double> log_axis(TableReader& reader) {
   const double from = reader.number("log_from", positive), to = reader.number("log_to", positive);
   const int count = reader.integer("count", 2, most_points);
   if (reader.has("log_to") && to <= from) {
-    reader.problem("log_to", phrase("problem.log_order"),
-                   phrase("problem.above", {plain(text::number(from))}));
+    reader.problem("log_to", phrase("\"log_to\" must be greater than \"log_from\""),
+                   phrase("above %1", {plain(text::number(from))}));
     return {from};
   }
   std::vector<double> values{from};
@@ -96,7 +97,7 @@ double at_step(double from, std::int64_t steps, double step) {
 Grid read_grid(const text::Value& table, const std::string& name, Axis axis, text::Findings& findings) {
   Grid grid;
   if (table.kind != text::Value::Kind::table) {
-    findings.add(table.place, phrase("problem.is", {plain(name), describe(table)}), forms());
+    findings.add(table.place, phrase("\"%1\" is %2", {plain(name), describe(table)}), forms());
     return grid;
   }
   TableReader reader(table, name, findings);
@@ -106,7 +107,8 @@ Grid read_grid(const text::Value& table, const std::string& name, Axis axis, tex
     grid.values = reader.numbers("values", {-1e6, 1e6});
     for (std::size_t i = 1; i < grid.values.size(); ++i)
       if (grid.values[i] <= grid.values[i - 1]) {
-        reader.problem("values", phrase("problem.values_order"), phrase("problem.greater_than_before"));
+        reader.problem("values", phrase("\"values\" are not in ascending order"),
+                       phrase("each value must be greater than the one before"));
         break;
       }
   } else if (reader.has("log_from")) {
@@ -114,7 +116,7 @@ Grid read_grid(const text::Value& table, const std::string& name, Axis axis, tex
   } else if (reader.has("from")) {
     grid.values = linear_axis(reader);
   } else {
-    findings.add(table.place, phrase("problem.no_grid", {plain(name)}), forms());
+    findings.add(table.place, phrase("\"%1\" does not describe a grid", {plain(name)}), forms());
     for (const auto* key : {"values", "from", "to", "step", "count", "log_from", "log_to"}) reader.take(key);
   }
   reader.finish();
@@ -125,8 +127,8 @@ Prior read_prior(const text::Value& table, const std::string& name, text::Findin
   Prior prior;
   if (table.kind != text::Value::Kind::table) {
     findings.add(
-        table.place, phrase("problem.is", {plain(name), describe(table)}),
-        phrase("problem.write_either", {plain("{ normal = { mean, sd } }"), plain("{ weights = [...] }")}));
+        table.place, phrase("\"%1\" is %2", {plain(name), describe(table)}),
+        phrase("write %1 or %2", {plain("{ normal = { mean, sd } }"), plain("{ weights = [...] }")}));
     return prior;
   }
   TableReader reader(table, name, findings);
@@ -135,8 +137,8 @@ Prior read_prior(const text::Value& table, const std::string& name, text::Findin
   if (reader.has("normal") == reader.has("weights"))
     findings.add(
         table.place,
-        normal ? phrase("problem.two_forms", {plain(name)}) : phrase("problem.no_form", {plain(name)}),
-        phrase("problem.normal_or_weights"));
+        normal ? phrase("\"%1\" has two forms", {plain(name)}) : phrase("\"%1\" has no form", {plain(name)}),
+        phrase("write either \"normal\" or \"weights\""));
   if (normal) {
     TableReader inner(*normal, name + ".normal", findings);
     const double mean = inner.number("mean", {-1e6, 1e6});

@@ -39,7 +39,8 @@ void read_scale(TableReader& reader, Spec& spec) {
 }
 
 void read_stop(TableReader& reader, Spec& spec) {
-  const auto* table = reader.table("stop", phrase("problem.say_stop", {plain("{ trials = 40 }")}));
+  const auto* table =
+      reader.table("stop", phrase("say when the procedure ends: %1", {plain("{ trials = 40 }")}));
   if (!table) return;
   TableReader inner(*table, reader.path("stop"), reader.findings());
   spec.stop.trials = inner.maybe_integer("trials", 1, 100000);
@@ -48,20 +49,23 @@ void read_stop(TableReader& reader, Spec& spec) {
   spec.stop.threshold_sd = inner.maybe_number("threshold_sd", {0, 1e6, Range::Ends::open_low});
   spec.stop.entropy_nats = inner.maybe_number("entropy_nats", {-100, 100});
   spec.stop.max_trials = inner.maybe_integer("max_trials", 1, 100000);
-  if (spec.stop.max_trials && *spec.stop.max_trials < std::max(spec.stop.trials.value_or(0),
-                                                               spec.stop.min_trials.value_or(0)))
-    inner.problem("max_trials", phrase("problem.max_trials"),
-                  phrase("problem.at_least", {plain(std::max(spec.stop.trials.value_or(0),
-                                                             spec.stop.min_trials.value_or(0)))}));
+  if (spec.stop.max_trials &&
+      *spec.stop.max_trials < std::max(spec.stop.trials.value_or(0), spec.stop.min_trials.value_or(0)))
+    inner.problem("max_trials", phrase("\"max_trials\" is smaller than another rule asks for"),
+                  phrase("at least %1",
+                         {plain(std::max(spec.stop.trials.value_or(0), spec.stop.min_trials.value_or(0)))}));
   if (spec.start) spec.stop.limit_steps = inner.maybe_integer("limit_steps", 1, 1000);
   read_right_of_last(inner, spec);
   const int rules = inner.has("right") + inner.has("trials") + inner.has("reversals") +
                     inner.has("threshold_sd") + inner.has("entropy_nats");
   if (rules == 0)
-    reader.findings().add(table->place, phrase("problem.stop_no_stopping"), phrase("problem.add_stopping"));
+    reader.findings().add(
+        table->place, phrase("\"stop\" does not contain a stopping rule"),
+        phrase("add \"trials\", \"reversals\", \"threshold_sd\", \"entropy_nats\" or \"right\""));
   if (rules > 1 && !inner.has("rule"))
-    reader.findings().add(table->place, phrase("problem.stop_several"),
-                          phrase("problem.add_rule", {plain("rule = \"or\""), plain("rule = \"and\"")}));
+    reader.findings().add(table->place, phrase("\"stop\" contains several stopping rules"),
+                          phrase("add %1 (any of them ends the procedure) or %2 (all must be met)",
+                                 {plain("rule = \"or\""), plain("rule = \"and\"")}));
   spec.stop.rule =
       inner.maybe_word("rule", {"or", "and"}).value_or("or") == "and" ? StopRule::all : StopRule::any;
   inner.finish();
@@ -71,10 +75,11 @@ void read_right_of_last(TableReader& stop, Spec& spec) {
   spec.stop.right = stop.maybe_integer("right", 1, 1000);
   spec.stop.of_last = stop.maybe_integer("of_last", 1, 1000);
   if (stop.has("right") != stop.has("of_last"))
-    stop.problem(stop.has("right") ? "right" : "of_last", phrase("problem.right_of_last"),
-                 phrase("problem.eight_of_ten", {plain("right = 8, of_last = 10")}));
+    stop.problem(
+        stop.has("right") ? "right" : "of_last", phrase("\"right\" and \"of_last\" belong together"),
+        phrase("%1 ends after 8 right answers among the last 10", {plain("right = 8, of_last = 10")}));
   else if (spec.stop.right && spec.stop.of_last && *spec.stop.right > *spec.stop.of_last)
-    stop.problem("right", phrase("problem.more_right"), phrase("problem.at_most_last"));
+    stop.problem("right", phrase("more right answers than answers"), phrase("at most \"of_last\""));
   if (!spec.stop.right || !spec.stop.of_last) spec.stop.right.reset(), spec.stop.of_last.reset();
 }
 
@@ -91,13 +96,16 @@ void read_span(TableReader& reader, Spec& spec) {
 }
 
 void validate_span(const Spec& spec, std::vector<Problem>& problems) {
-  if (!spec.start) problems.push_back({"start", phrase("problem.missing"), phrase("problem.first_level")});
+  if (!spec.start)
+    problems.push_back({"start", plain("missing"), phrase("write the first level as a number")});
   if (spec.min && spec.max && *spec.min >= *spec.max)
-    problems.push_back({"min", phrase("problem.min_max"), plain("min < max")});
+    problems.push_back({"min", phrase("\"min\" is not less than \"max\""), plain("min < max")});
   if (spec.start && ((spec.min && *spec.start < *spec.min) || (spec.max && *spec.start > *spec.max)))
-    problems.push_back({"start", phrase("problem.start_outside"), phrase("problem.level_between")});
+    problems.push_back({"start", phrase("the first level is not between min and max"),
+                        phrase("write a level between min and max")});
   if (spec.scale != Scale::linear && spec.start && !(*spec.start > 0))
-    problems.push_back({"start", phrase("problem.log_start"), phrase("problem.level_above_zero")});
+    problems.push_back({"start", phrase("on a logarithmic scale the first level must be above 0"),
+                        phrase("write a level above 0")});
 }
 
 bool positive(const std::vector<double>& values) {

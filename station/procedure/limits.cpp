@@ -213,20 +213,24 @@ SeriesStarts read_starts(text::TableReader& reader, const std::string& key) {
     return starts;
   }
   text::TableReader inner(*value, reader.path(key), reader.findings());
-  inner.require("uniform", phrase("problem.start_interval", {plain("{ uniform = [2.0, 4.0] }")}));
+  inner.require("uniform",
+                phrase("give the lowest and the highest start: %1", {plain("{ uniform = [2.0, 4.0] }")}));
   starts.uniform = inner.maybe_interval("uniform", any_level);
   inner.finish();
   return starts;
 }
 
 void read_limits(text::TableReader& reader, Spec& spec) {
-  spec.tracks = reader.string("tracks", phrase("problem.write_tracked"));
+  spec.tracks =
+      reader.string("tracks", phrase("write the id of the answer that is more frequent at higher levels"));
   read_scale(reader, spec);
   spec.ascending = read_starts(reader, "start_ascending");
   spec.descending = read_starts(reader, "start_descending");
   if (!reader.has("start_ascending") && !reader.has("start_descending"))
-    reader.problem("start_ascending", phrase("problem.no_series_start", {reader.title()}),
-                   phrase("problem.give_series_start", {plain("{ uniform = [low, high] }")}));
+    reader.problem("start_ascending",
+                   phrase("%1 says nowhere at which levels series start", {reader.title()}),
+                   phrase("give \"start_ascending\", \"start_descending\" or both: a list of levels, or %1",
+                          {plain("{ uniform = [low, high] }")}));
   spec.min = reader.number("min", any_level);
   spec.max = reader.number("max", any_level);
   spec.step = {reader.number("step", {0, 1e6, text::Range::Ends::open_low})};
@@ -242,35 +246,39 @@ void validate_starts(const Spec& spec, std::vector<Problem>& problems) {
     if (starts.empty()) return;
     const auto [low, high] = starts.ends();
     if (low < *spec.min || high > *spec.max)
-      problems.push_back({key, phrase("problem.series_outside"), phrase("problem.levels_between")});
+      problems.push_back(
+          {key, phrase("a series starts outside of min to max"), phrase("write levels between min and max")});
     else if (std::fabs(gap(end == *spec.max ? high : low, end, spec.scale)) <
              spec.step.front() * (spec.n_change - kSlack))
-      problems.push_back({key, phrase("problem.series_short"), phrase("problem.start_before_end")});
+      problems.push_back({key, phrase("a series reaches its end before the answer can change"),
+                          phrase("start at least n_change steps before the end")});
   };
   check("start_ascending", spec.ascending, *spec.max);
   check("start_descending", spec.descending, *spec.min);
   if (!spec.ascending.empty() && !spec.descending.empty() &&
       spec.ascending.ends().second >= spec.descending.ends().first)
-    problems.push_back({"start_ascending", phrase("problem.series_crossed"), phrase("problem.series_sides")});
+    problems.push_back({"start_ascending", phrase("an ascending series starts above a descending one"),
+                        phrase("ascending series start below the threshold, descending series above it")});
 }
 
 void validate_limits(const Spec& spec, std::vector<Problem>& problems) {
-  if (spec.tracks.empty())
-    problems.push_back({"tracks", phrase("problem.missing"), phrase("problem.answer_id")});
+  if (spec.tracks.empty()) problems.push_back({"tracks", plain("missing"), phrase("the id of an answer")});
   if (spec.ascending.empty() && spec.descending.empty())
     problems.push_back(
-        {"start_ascending", phrase("problem.no_start_level"), phrase("problem.give_start_levels")});
+        {"start_ascending", phrase("no series has a starting level"), phrase("give levels to start from")});
   if (spec.step.size() != 1 || !positive(spec.step))
-    problems.push_back({"step", phrase("problem.missing_or_zero"), phrase("problem.one_above_zero")});
+    problems.push_back({"step", phrase("missing or not above 0"), phrase("one number above 0")});
   if (!spec.min || !spec.max || !(*spec.min < *spec.max))
-    problems.push_back({"min", phrase("problem.min_max"), plain("min < max")});
+    problems.push_back({"min", phrase("\"min\" is not less than \"max\""), plain("min < max")});
   if (spec.scale != Scale::linear && spec.min && !(*spec.min > 0))
-    problems.push_back({"min", phrase("problem.log_levels"), phrase("problem.level_above_zero")});
+    problems.push_back({"min", phrase("on a logarithmic scale all levels must be above 0"),
+                        phrase("write a level above 0")});
   if (spec.n_change < 1)
-    problems.push_back({"n_change", phrase("problem.below_one"), phrase("problem.one_or_more_whole")});
+    problems.push_back({"n_change", phrase("below 1"), phrase("write a whole number of 1 or more")});
   const bool both = !spec.ascending.empty() && !spec.descending.empty();
   if (spec.series < 1 || (both && spec.series % 2 != 0))
-    problems.push_back({"series", phrase("problem.series_unequal"), phrase("problem.series_even")});
+    problems.push_back({"series", phrase("there must be as many ascending as descending series"),
+                        phrase("write an even number; each direction has half of it")});
   if (problems.empty()) validate_starts(spec, problems);
 }
 

@@ -57,7 +57,7 @@ std::vector<std::string> kind_names() {
 std::vector<Problem> validate(const Spec& spec) {
   std::vector<Problem> problems;
   if (spec.level.empty())
-    problems.push_back({"level", phrase("problem.missing"), phrase("problem.factor_name")});
+    problems.push_back({"level", plain("missing"), phrase("write the name of a factor")});
   description(spec.kind).validate(spec, problems);
   return problems;
 }

@@ -38,7 +38,7 @@ class StandIn final : public Procedure {
 void read_program(text::TableReader& reader, Spec& spec) {
   read_tracks(reader, spec);
   auto& program = spec.program;
-  program.file = reader.string("program", phrase("problem.program_file"));
+  program.file = reader.string("program", phrase("name the file of the program, as seen from this file"));
   program.place = reader.place("program");
   program.limit_s = reader.number("limit_s", {0.05, 60, text::Range::Ends::closed, "s"}, 2);
   if (const auto* settings = reader.maybe_table("settings")) program.settings = *settings;
@@ -57,17 +57,20 @@ bool expressible(const text::Value& value) {
 
 void validate_program(const Spec& spec, std::vector<Problem>& problems) {
   if (spec.program.file.empty())
-    problems.push_back({"program", phrase("problem.missing_or_empty"), phrase("problem.executable")});
+    problems.push_back({"program", phrase("missing or empty"), phrase("the path of an executable file")});
   if (!spec.min || !spec.max || *spec.min >= *spec.max)
-    problems.push_back({"min", phrase("problem.min_max"), plain("min < max")});
+    problems.push_back({"min", phrase("\"min\" is not less than \"max\""), plain("min < max")});
   const auto& stop = spec.stop;
   const bool others =
       stop.reversals || stop.min_trials || stop.threshold_sd || stop.entropy_nats || stop.right;
   if (!stop.trials || others)
-    problems.push_back({"stop", phrase("problem.program_stop"), plain("stop = { trials = N }")});
+    problems.push_back(
+        {"stop", phrase("a program decides itself when it is done, so \"stop\" only limits its trials"),
+         plain("stop = { trials = N }")});
   for (const auto& entry : spec.program.settings.entries)
     if (!expressible(entry.value))
-      problems.push_back({"settings." + entry.key, phrase("problem.no_json"), phrase("problem.json_values")});
+      problems.push_back({"settings." + entry.key, phrase("JSON has no such value"),
+                          phrase("a finite number, text, true, false, a list or a table of them")});
 }
 
 }  // namespace

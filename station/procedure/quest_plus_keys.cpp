@@ -33,12 +33,12 @@ void read_axes(text::TableReader& reader, Spec& spec) {
   for (const auto& parameter : kParameters)
     if (needs_grid(spec, parameter.name) && std::string(parameter.name) != "lapse")
       needed += (needed.empty() ? "grid." : ", grid.") + std::string(parameter.name);
-  if (const auto* grid = reader.table("grid", phrase("problem.give_grids", {plain(needed)}))) {
+  if (const auto* grid = reader.table("grid", phrase("give %1 and grid.lapse", {plain(needed)}))) {
     text::TableReader inner(*grid, reader.path("grid"), reader.findings());
     for (const auto& [key, axis, prior] : kParameters) {
       const auto* value =
           needs_grid(spec, key)
-              ? inner.require(key, phrase("problem.write_grid",
+              ? inner.require(key, phrase("write a grid: %1 or %2",
                                           {plain("{ from, to, step }"), plain("{ values = [...] }")}))
               : inner.take(key);
       if (value) spec.*axis = read_grid(*value, inner.path(key), Axis::parameter, reader.findings());
@@ -59,9 +59,9 @@ void read_second(text::TableReader& reader, Spec& spec) {
   if (!table) return;
   text::TableReader inner(*table, reader.path("second"), reader.findings());
   auto& second = spec.second.emplace();
-  second.level = inner.string("level", phrase("problem.factor_name"));
-  if (const auto* stimuli =
-          inner.require("stimuli", phrase("problem.give_values", {plain("{ from, to, step }")})))
+  second.level = inner.string("level", phrase("write the name of a factor"));
+  if (const auto* stimuli = inner.require(
+          "stimuli", phrase("give the values from which to choose: %1", {plain("{ from, to, step }")})))
     second.stimuli = read_grid(*stimuli, inner.path("stimuli"), Axis::stimuli, reader.findings());
   second.origin = inner.number("origin", any_level, 0);
   inner.finish();
@@ -76,8 +76,8 @@ void read_grids(text::TableReader& reader, Spec& spec) {
   spec.function = function == "normal"     ? terms::Function::normal
                   : function == "logistic" ? terms::Function::logistic
                                            : terms::Function::weibull;
-  if (const auto* stimuli =
-          reader.require("stimuli", phrase("problem.give_levels", {plain("{ from, to, step }")})))
+  if (const auto* stimuli = reader.require(
+          "stimuli", phrase("give the levels from which to choose: %1", {plain("{ from, to, step }")})))
     spec.stimuli = read_grid(*stimuli, reader.path("stimuli"), Axis::stimuli, reader.findings());
   read_axes(reader, spec);
   read_stop(reader, spec);
@@ -91,15 +91,17 @@ void read_posterior(text::TableReader& reader, Spec& spec) {
   spec.nuisance = reader.maybe_strings("nuisance");
   for (const auto& name : spec.nuisance)
     if (std::find(parameters.begin(), parameters.end(), name) == parameters.end())
-      reader.problem("nuisance", phrase("problem.no_parameter", {plain(name)}),
-                     phrase("problem.allowed", {text::quoted_list(parameters)}));
+      reader.problem("nuisance",
+                     phrase("\"%1\" is not a parameter of the psychometric function", {plain(name)}),
+                     phrase("allowed: %1", {text::quoted_list(parameters)}));
   reader.word("select", {"min-expected-entropy"}, "min-expected-entropy");
 }
 
 void validate_rate(const char* key, const Grid& grid, std::vector<Problem>& problems) {
   for (const double rate : grid.values)
     if (!(rate >= 0 && rate < 1))
-      return problems.push_back({key, phrase("problem.rate_outside"), phrase("problem.rates")});
+      return problems.push_back({key, phrase("a rate is outside the range from 0 to 1"),
+                                 phrase("write probabilities of at least 0 and less than 1")});
 }
 
 void validate_prior(const std::string& key, const Prior& prior, const Grid& grid,
@@ -107,10 +109,10 @@ void validate_prior(const std::string& key, const Prior& prior, const Grid& grid
   if (prior.weights.empty()) return;
   const auto values = grid.values.size();
   if (prior.weights.size() != values)
-    problems.push_back({key, phrase("problem.weights", {plain(prior.weights.size())}),
-                        phrase("problem.one_weight_each", {plain(values)})});
+    problems.push_back({key, phrase("%1 weights", {plain(prior.weights.size())}),
+                        phrase("there must be one weight for each value of the grid: %1", {plain(values)})});
   else if (std::none_of(prior.weights.begin(), prior.weights.end(), [](double w) { return w > 0; }))
-    problems.push_back({key, phrase("problem.weights_zero"), phrase("problem.weight_above_zero")});
+    problems.push_back({key, phrase("all weights are 0"), phrase("at least one weight must be above 0")});
 }
 
 /// Adds a problem if the tables of the posterior would be too large: choosing a stimulus would take too long,
@@ -125,21 +127,24 @@ void validate_size(const Spec& spec, std::vector<Problem>& problems) {
   for (const auto& parameter : kParameters) parameters *= count(spec.*parameter.grid);
   const double places = count(spec.threshold) * count(spec.gradient) * count(spec.floor);
   if (stimuli * parameters > most)
-    problems.push_back(
-        {"grid.threshold",
-         phrase("problem.combinations", {plain(text::number(stimuli)), plain(text::number(parameters)),
-                                         plain(text::number(stimuli * parameters, 3)),
-                                         plain(text::number(stimuli * parameters * bytes_each / 1e6, 3))}),
-         phrase("problem.most_combinations")});
+    problems.push_back({"grid.threshold",
+                        phrase("%1 stimuli and %2 points of the grid make %3 combinations, too many to "
+                               "choose a level in time (up to %4 MB)",
+                               {plain(text::number(stimuli)), plain(text::number(parameters)),
+                                plain(text::number(stimuli * parameters, 3)),
+                                plain(text::number(stimuli * parameters * bytes_each / 1e6, 3))}),
+                        phrase("allow at most 50 million combinations (up to 400 MB)")});
   else if (stimuli * places > most_distances)
-    problems.push_back(
-        {"grid.threshold",
-         spec.second
-             ? phrase("problem.pairs_of_all", {plain(text::number(stimuli)), plain(text::number(places)),
-                                               plain(text::number(stimuli * places, 3))})
-             : phrase("problem.pairs", {plain(text::number(stimuli)), plain(text::number(places)),
-                                        plain(text::number(stimuli * places, 3))}),
-         phrase("problem.most_pairs")});
+    problems.push_back({"grid.threshold",
+                        spec.second
+                            ? phrase("%1 stimuli and %2 thresholds, gradients and floors make %3 pairs, too "
+                                     "many for the memory",
+                                     {plain(text::number(stimuli)), plain(text::number(places)),
+                                      plain(text::number(stimuli * places, 3))})
+                            : phrase("%1 stimuli and %2 thresholds make %3 pairs, too many for the memory",
+                                     {plain(text::number(stimuli)), plain(text::number(places)),
+                                      plain(text::number(stimuli * places, 3))}),
+                        phrase("allow at most 5 million pairs")});
 }
 
 void validate_second(const Spec& spec, std::vector<Problem>& problems) {
@@ -148,58 +153,64 @@ void validate_second(const Spec& spec, std::vector<Problem>& problems) {
          {std::pair("grid.", !grid.values.empty() || !grid.tied.empty()),
           std::pair("prior.", prior.normal.has_value() || !prior.weights.empty())})
       if (given && !spec.second)
-        problems.push_back({table + std::string(parameter), phrase("problem.no_second"),
-                            phrase("problem.leave_or_add", {plain("second = { level, stimuli }")})});
+        problems.push_back({table + std::string(parameter), phrase("there is no second dimension"),
+                            phrase("leave it out, or add %1", {plain("second = { level, stimuli }")})});
   };
   unused("gradient", spec.gradient, spec.prior_gradient);
   unused("floor", spec.floor, spec.prior_floor);
   if (!spec.second) return;
   if (spec.second->stimuli.values.empty())
-    problems.push_back({"second.stimuli", phrase("problem.missing"), phrase("problem.give_the_values")});
+    problems.push_back({"second.stimuli", plain("missing"), phrase("give the values from which to choose")});
   if (spec.second->level == spec.level)
-    problems.push_back({"second.level", phrase("problem.first_dimension_too", {plain(spec.level)}),
-                        phrase("problem.another_factor")});
+    problems.push_back({"second.level", phrase("\"%1\" is the first dimension too", {plain(spec.level)}),
+                        phrase("another factor")});
   if (spec.gradient.values.empty())
-    problems.push_back({"grid.gradient", phrase("problem.missing"), phrase("problem.give_gradient")});
+    problems.push_back(
+        {"grid.gradient", plain("missing"),
+         phrase("give the values of the change of the threshold per unit of the second dimension")});
   if (spec.scale != Scale::linear && !positive(spec.floor.values))
-    problems.push_back({"grid.floor", phrase("problem.log_floor"), phrase("problem.above", {plain("0")})});
+    problems.push_back({"grid.floor", phrase("on a logarithmic scale each floor must be above 0"),
+                        phrase("above %1", {plain("0")})});
 }
 
 void validate_detection(const Spec& spec, std::vector<Problem>& problems) {
   if (!spec.signal_detection) {
     if (!spec.criterion.values.empty() || !spec.criterion.tied.empty())
       problems.push_back({"grid.criterion",
-                          phrase("problem.only_has_criterion", {plain("function = \"signal-detection\"")}),
-                          phrase("problem.leave_or_function")});
+                          phrase("only %1 has a criterion", {plain("function = \"signal-detection\"")}),
+                          phrase("leave it out, or set this function")});
     return;
   }
   if (!spec.guess.values.empty() || !spec.guess.tied.empty())
-    problems.push_back(
-        {"grid.guess", phrase("problem.false_alarms"), phrase("problem.leave_give_criterion")});
+    problems.push_back({"grid.guess", phrase("in signal detection, false alarms follow from the criterion"),
+                        phrase("leave it out, and give grid.criterion")});
   if (spec.criterion.values.empty())
-    problems.push_back({"grid.criterion", phrase("problem.missing"), phrase("problem.give_criterion")});
+    problems.push_back(
+        {"grid.criterion", plain("missing"), phrase("give the values of the criterion, such as 0 to 2")});
   if (spec.tracks.empty())
-    problems.push_back({"tracks", phrase("problem.missing"), phrase("problem.write_yes")});
+    problems.push_back({"tracks", plain("missing"), phrase("write the id of the answer that means \"yes\"")});
   for (const double lapse : spec.lapse.values)
     if (lapse >= 0.5)
-      return problems.push_back({"grid.lapse", phrase("problem.asymptotes"), phrase("problem.below_half")});
+      return problems.push_back(
+          {"grid.lapse", phrase("both asymptotes would be on the wrong side"), phrase("less than 0.5")});
 }
 
 void validate_posterior(const Spec& spec, std::vector<Problem>& problems) {
   if (spec.stimuli.values.empty())
-    problems.push_back({"stimuli", phrase("problem.missing"), phrase("problem.give_the_levels")});
+    problems.push_back({"stimuli", plain("missing"), phrase("give the levels from which to choose")});
   if (spec.threshold.values.empty())
-    problems.push_back({"grid.threshold", phrase("problem.missing"), phrase("problem.give_threshold")});
+    problems.push_back({"grid.threshold", plain("missing"), phrase("give the values of the threshold")});
   if (spec.slope.values.empty())
-    problems.push_back({"grid.slope", phrase("problem.missing"), phrase("problem.give_slope")});
+    problems.push_back({"grid.slope", plain("missing"), phrase("give the values of the slope")});
   if (!positive(spec.slope.values))
     problems.push_back(
-        {"grid.slope", phrase("problem.slope_above_zero"), phrase("problem.above", {plain("0")})});
+        {"grid.slope", phrase("each slope must be above 0"), phrase("above %1", {plain("0")})});
   for (const auto& parameter : kParameters)
     if (const auto& tied = (spec.*parameter.grid).tied;
         !tied.empty() && std::string(parameter.name) != "guess" && std::string(parameter.name) != "lapse")
-      problems.push_back({std::string("grid.") + parameter.name, phrase("problem.only_guess_tied"),
-                          phrase("problem.parameter_values")});
+      problems.push_back({std::string("grid.") + parameter.name,
+                          phrase("only the guess rate can be tied to the lapse rate"),
+                          phrase("write the values of this parameter")});
   validate_rate("grid.guess", spec.guess, problems);
   validate_rate("grid.lapse", spec.lapse, problems);
   for (const auto& [key, grid, prior] : kParameters)
@@ -208,19 +219,19 @@ void validate_posterior(const Spec& spec, std::vector<Problem>& problems) {
   validate_detection(spec, problems);
   validate_size(spec, problems);
   if (!spec.stop.trials && !spec.stop.threshold_sd && !spec.stop.entropy_nats && !spec.stop.right)
-    problems.push_back({"stop", phrase("problem.no_rule_ends"), phrase("problem.add_trials_sd")});
+    problems.push_back({"stop", phrase("no rule ends the procedure"), phrase("add trials or threshold_sd")});
 }
 
 void validate_at_threshold(const Spec& spec, std::vector<Problem>& problems) {
   validate_posterior(spec, problems);
   for (const auto& [key, grid, unused] : kParameters)
     if (grid != &Spec::threshold && (spec.*grid).values.size() > 1)
-      problems.push_back(
-          {std::string("grid.") + key, phrase("problem.only_threshold"), phrase("problem.one_value")});
+      problems.push_back({std::string("grid.") + key, phrase("only the threshold is estimated"),
+                          phrase("one value, or quest-plus or psi instead")});
   const auto& prior = spec.prior_threshold;
   if (spec.kind == Kind::best_pest && (prior.normal || !prior.weights.empty()))
-    problems.push_back({"prior.threshold", phrase("problem.no_prior"),
-                        phrase("problem.leave_or_write", {plain("kind = \"zest\"")})});
+    problems.push_back({"prior.threshold", phrase("the most likely threshold has no prior"),
+                        phrase("leave it out, or write %1", {plain("kind = \"zest\"")})});
 }
 
 std::unique_ptr<Procedure> make_quest_plus(const Spec& spec, const Context&, const random::Key&) {

@@ -22,32 +22,40 @@ int most_trials(const Stop& stop) {
 std::vector<Problem> advise(const Spec& spec) {
   std::vector<Problem> advice;
   if (spec.stimuli.values.size() == 1)
-    advice.push_back({"stimuli", phrase("problem.one_point"), phrase("problem.two_points_to_choose")});
+    advice.push_back({"stimuli", phrase("the grid has only one point"),
+                      phrase("give two or more points, so that there is a level to choose")});
   if (spec.threshold.values.size() == 1)
-    advice.push_back({"grid.threshold", phrase("problem.one_point_estimate"), phrase("problem.two_points")});
+    advice.push_back({"grid.threshold",
+                      phrase("the grid has only one point, so there is nothing to estimate"),
+                      phrase("give two or more points")});
   const auto left_out = [&](const char* key) {
     return std::find(spec.nuisance.begin(), spec.nuisance.end(), key) != spec.nuisance.end();
   };
   if (!spec.nuisance.empty() && spec.kind != Kind::psi_marginal)
-    advice.push_back({"nuisance", phrase("problem.no_effect_kind"),
-                      phrase("problem.set", {plain("kind = \"psi-marginal\"")})});
+    advice.push_back({"nuisance", phrase("it has no effect in this kind of procedure"),
+                      phrase("set %1", {plain("kind = \"psi-marginal\"")})});
   else if (left_out("threshold") && left_out("slope"))
-    advice.push_back(
-        {"nuisance", phrase("problem.nothing_estimated"), phrase("problem.leave_threshold_slope")});
+    advice.push_back({"nuisance", phrase("no parameter is left for the procedure to estimate"),
+                      phrase("leave out \"threshold\" or \"slope\"")});
   if (spec.start && (spec.stop.threshold_sd || spec.stop.entropy_nats))
-    advice.push_back({"stop", phrase("problem.staircase_end"), phrase("problem.use_trials_reversals")});
+    advice.push_back({"stop", phrase("a staircase can only be ended by a number of trials or reversals"),
+                      phrase("use \"trials\" or \"reversals\"")});
   if (!spec.stimuli.values.empty() && spec.stop.reversals)
-    advice.push_back({"stop", phrase("problem.only_staircases"), phrase("problem.use_trials_sd")});
-  if (spec.second && spec.second->stimuli.values.size() == 1)
     advice.push_back(
-        {"second.stimuli", phrase("problem.one_point_gradient"), phrase("problem.two_points_or_second")});
+        {"stop", phrase("only staircases have reversals"), phrase("use \"trials\" or \"threshold_sd\"")});
+  if (spec.second && spec.second->stimuli.values.size() == 1)
+    advice.push_back({"second.stimuli",
+                      phrase("the grid has only one point, so the gradient cannot be estimated"),
+                      phrase("give two or more points, or leave \"second\" out")});
   const auto& levels = spec.stimuli.values;
   if (spec.signal_detection && spec.criterion.values.size() > 1 &&
       (spec.scale == Scale::linear || levels.empty() || levels.front() > 0))
-    advice.push_back({"stimuli", phrase("problem.criterion_unknown"),
-                      phrase("problem.add_zero", {plain("scale = \"log10\"")})});
+    advice.push_back({"stimuli", phrase("without trials without a signal the criterion is hardly known"),
+                      phrase("add the level 0, with %1", {plain("scale = \"log10\"")})});
   if (spec.lapse.values.size() == 1 && spec.lapse.values[0] == 0)
-    advice.push_back({"grid.lapse", phrase("problem.lapse_zero"), phrase("problem.add_small")});
+    advice.push_back({"grid.lapse",
+                      phrase("with a lapse rate of 0 only, a single slip is treated as impossible"),
+                      phrase("add a value above 0, such as 0.02")});
   return advice;
 }
 

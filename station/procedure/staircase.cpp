@@ -94,9 +94,10 @@ void read_steps(text::TableReader& reader, Spec& spec) {
   spec.step_up = reader.maybe_numbers("step_up", step);
   if (reader.has("step") == reader.has("step_down"))
     reader.findings().add(reader.has("step") ? reader.place("step_down") : reader.place("step_up"),
-                          reader.has("step") ? phrase("problem.both_steps", {reader.title()})
-                                             : phrase("problem.no_steps", {reader.title()}),
-                          phrase("problem.step_or_down"));
+                          reader.has("step")
+                              ? phrase("%1 has both \"step\" and \"step_down\"", {reader.title()})
+                              : phrase("%1 has no steps", {reader.title()}),
+                          phrase("give either \"step\" (for both directions) or \"step_down\""));
 }
 
 void read_staircase(text::TableReader& reader, Spec& spec) {
@@ -112,8 +113,10 @@ void read_staircase(text::TableReader& reader, Spec& spec) {
   } else {
     spec.target = reader.number("target", {0, 1, text::Range::Ends::open});
     if (reader.has("step_up"))
-      reader.problem("step_up", phrase("problem.not_together", {plain("step_up"), plain("target")}),
-                     phrase("problem.leave_step_up"));
+      reader.problem(
+          "step_up",
+          phrase("\"%1\" is not allowed together with \"%2\"", {plain("step_up"), plain("target")}),
+          phrase("leave it out: the step up follows from the target and the step down"));
   }
   read_stop(reader, spec);
 }
@@ -121,20 +124,24 @@ void read_staircase(text::TableReader& reader, Spec& spec) {
 void validate_staircase(const Spec& spec, std::vector<Problem>& problems) {
   validate_span(spec, problems);
   if (spec.step.empty() && spec.step_down.empty() && spec.step_up.empty())
-    problems.push_back({"step_down", phrase("problem.missing"), phrase("problem.give_steps")});
+    problems.push_back({"step_down", plain("missing"), phrase("give one or more steps above 0")});
   if (!positive(spec.step) || !positive(spec.step_down) || !positive(spec.step_up))
-    problems.push_back({"step_down", phrase("problem.steps_above_zero"), phrase("problem.steps_positive")});
+    problems.push_back({"step_down", phrase("every step must be above 0"), phrase("steps above 0")});
   if (spec.kind == Kind::weighted_up_down && (!spec.target || !(*spec.target > 0 && *spec.target < 1)))
-    problems.push_back({"target", phrase("problem.target_missing"), phrase("problem.give_probability")});
+    problems.push_back({"target", phrase("the target is missing, or not between 0 and 1"),
+                        phrase("give a probability between 0 and 1")});
   if (spec.kind == Kind::up_down && (spec.n_down < 1 || spec.n_up < 1))
-    problems.push_back({"n_down", phrase("problem.below_one"), phrase("problem.whole_numbers")});
+    problems.push_back({"n_down", phrase("below 1"), phrase("write whole numbers of 1 or more")});
   if (spec.kind == Kind::up_down && spec.step.empty() && (spec.step_down.empty() || spec.step_up.empty()))
-    problems.push_back({"step", phrase("problem.step_one_way"), phrase("problem.step_or_both")});
+    problems.push_back({"step", phrase("the step is missing for one direction"),
+                        phrase("give step, or both step_down and step_up")});
   if (!spec.stop.trials && !spec.stop.reversals && !spec.stop.right)
-    problems.push_back({"stop", phrase("problem.no_rule_ends"), phrase("problem.add_trials_reversals")});
+    problems.push_back({"stop", phrase("no rule ends the procedure"), phrase("add trials or reversals")});
   if (spec.discard_reversals < 0 || (spec.stop.reversals && spec.stop.rule == StopRule::any &&
                                      spec.discard_reversals + 2 > *spec.stop.reversals))
-    problems.push_back({"discard_reversals", phrase("problem.two_reversals"), phrase("problem.two_less")});
+    problems.push_back(
+        {"discard_reversals", phrase("fewer than two reversals would be left to average"),
+         phrase("it must be at least two less than the number of reversals at which the staircase stops")});
 }
 
 std::unique_ptr<Procedure> make_staircase(const Spec& spec, const Context&, const random::Key&) {

@@ -65,11 +65,12 @@ extern const Description accelerated_stochastic_approximation{
     [](const Spec& spec, std::vector<Problem>& problems) {
       validate_span(spec, problems);
       if (spec.step.size() != 1 || !positive(spec.step))
-        problems.push_back({"step", phrase("problem.missing_or_zero"), phrase("problem.one_above_zero")});
+        problems.push_back({"step", phrase("missing or not above 0"), phrase("one number above 0")});
       if (!spec.target || !(*spec.target > 0 && *spec.target < 1))
-        problems.push_back({"target", phrase("problem.missing_outside"), phrase("problem.probability")});
+        problems.push_back(
+            {"target", phrase("missing or outside (0, 1)"), phrase("a probability between 0 and 1")});
       if (!spec.stop.trials && !spec.stop.reversals && !spec.stop.right)
-        problems.push_back({"stop", phrase("problem.no_rule_ends"), phrase("problem.add_trials_reversals")});
+        problems.push_back({"stop", phrase("no rule ends the procedure"), phrase("add trials or reversals")});
     },
     [](const Spec& spec, const Context&, const random::Key&) -> std::unique_ptr<Procedure> {
       return std::make_unique<StochasticApproximation>(spec);

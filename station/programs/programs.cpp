@@ -47,12 +47,14 @@ std::vector<text::Problem> problems_of(const protocol::Protocol& protocol) {
     try {
       const auto procedure = programs.procedure(spec, procedure::key_of(protocol.seed.value_or(0), 0, 0, 0));
       if (!procedure->next())
-        problems.push_back({spec.program.place, phrase("problem.program_done", {plain(spec.name)}),
-                            phrase("problem.program_level")});
+        problems.push_back(
+            {spec.program.place,
+             phrase("procedure \"%1\": the program is done before its first trial", {plain(spec.name)}),
+             phrase("a program that gives at least one level")});
     } catch (const terms::ProgramFailed& failed) {
       problems.push_back({spec.program.place,
-                          phrase("problem.of_procedure", {plain(spec.name), plain(failed.what())}),
-                          phrase("problem.program_works")});
+                          phrase("procedure \"%1\": %2", {plain(spec.name), plain(failed.what())}),
+                          phrase("a program that works as protocols/programs.md says")});
     }
   }
   return problems;

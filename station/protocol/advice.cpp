@@ -54,13 +54,14 @@ void check_fineness(AdviceList& advice, const procedure::Spec& spec) {
             largest(spec.values) * per_unit < enough ? "scene." + name + ".tolerance"
                                                      : key_of(spec, "values"),
             phrase(key, {plain(spec.name), plain(name), plain(number(step)), plain(number(tolerance))}),
-            phrase("problem.four_tolerances"));
+            phrase("use levels of at least four times the tolerance"));
     };
     tell(coefficient(scene.boundary_mm, spec.level), scene.tolerance.boundary_mm.value_or(0),
-         "problem.fine_boundary");
+         "the smallest level of \"%1\" moves scene \"%2\" by %3 mm, but the scene's tolerance is %4 mm");
     if (scene.zone)
       tell(coefficient(scene.zone->friction, spec.level), scene.tolerance.friction.value_or(0),
-           "problem.fine_friction");
+           "the smallest level of \"%1\" moves scene \"%2\" by %3 of friction, but the scene's tolerance is "
+           "%4 of friction");
   }
 }
 
@@ -74,9 +75,11 @@ void check_coarseness(AdviceList& advice, const procedure::Spec& spec) {
   if (levels.empty()) return;
   const auto tell = [&](double fraction) {
     if (fraction > felt_by_all)
-      advice.add("procedure." + spec.name,
-                 phrase("problem.felt_by_all", {plain(spec.name), plain(number(100 * fraction, 3))}),
-                 phrase("problem.add_weber"));
+      advice.add(
+          "procedure." + spec.name,
+          phrase("the smallest level of \"%1\" is a friction difference of %2 %, which everybody feels",
+                 {plain(spec.name), plain(number(100 * fraction, 3))}),
+          phrase("add levels down to a Weber fraction of 0.1 or less (-20 dB)"));
   };
   for (const auto& name : scenes_used(advice.protocol)) {
     const auto& scene = advice.protocol.scenes.at(name);
@@ -96,8 +99,10 @@ void check_unequal_steps(AdviceList& advice, const procedure::Spec& spec) {
   if (down == up) return;
   const double target = std::pow(up / (up + down), 1.0 / spec.n_down);
   advice.add(key_of(spec, "step_up"),
-             phrase("problem.unequal_steps", {plain(spec.name), plain(number(100 * target, 3))}),
-             phrase("problem.equal_steps", {plain(number(100 * std::pow(0.5, 1.0 / spec.n_down), 4))}));
+             phrase("the unequal steps of \"%1\" let it converge near %2 % right",
+                    {plain(spec.name), plain(number(100 * target, 3))}),
+             phrase("with equal steps it would converge at %1 %",
+                    {plain(number(100 * std::pow(0.5, 1.0 / spec.n_down), 4))}));
 }
 
 void check_unused(AdviceList& advice) {
@@ -108,7 +113,8 @@ void check_unused(AdviceList& advice) {
     const auto sets = [&](const Source& source) { return source.sets.count(factor.name) > 0; };
     // a factor that divides participants into groups need not change what the surface presents
     if (!is_group(factor) && !used.count(factor.name) && std::none_of(sources.begin(), sources.end(), sets))
-      advice.add("factor." + factor.name + ".name", phrase("problem.factor_unused", {plain(factor.name)}));
+      advice.add("factor." + factor.name + ".name",
+                 phrase("the factor \"%1\" is not used", {plain(factor.name)}));
   }
   auto scenes = scenes_used(protocol);
   for (const auto& interlude : protocol.interludes)
@@ -119,12 +125,13 @@ void check_unused(AdviceList& advice) {
     const auto is_base = [&, base = name](const auto& other) { return other.second.base == base; };
     if (std::find(scenes.begin(), scenes.end(), name) == scenes.end() &&
         std::none_of(protocol.scenes.begin(), protocol.scenes.end(), is_base))
-      advice.add("scene." + name, phrase("problem.scene_unused", {plain(name)}));
+      advice.add("scene." + name, phrase("the scene \"%1\" is not used", {plain(name)}));
   }
   for (const auto& spec : protocol.procedures) {
     const auto runs = [&](const Source& source) { return source.spec == &spec; };
     if (std::none_of(sources.begin(), sources.end(), runs))
-      advice.add(key_of(spec, "name"), phrase("problem.procedure_unused", {plain(spec.name)}));
+      advice.add(key_of(spec, "name"),
+                 phrase("the procedure \"%1\" is not used in any block", {plain(spec.name)}));
   }
 }
 
@@ -148,7 +155,7 @@ std::vector<text::Problem> advice(const Protocol& protocol) {
   AdviceList advice(protocol);
   for (const auto& spec : protocol.procedures)
     for (const auto& fault : procedure::advise(spec))
-      advice.add(key_of(spec, fault.key), phrase("problem.of_procedure", {plain(spec.name), fault.what}),
+      advice.add(key_of(spec, fault.key), phrase("procedure \"%1\": %2", {plain(spec.name), fault.what}),
                  fault.allowed);
   advise_on_levels(advice);
   advise_on_answers(advice);

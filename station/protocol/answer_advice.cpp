@@ -74,11 +74,11 @@ void check_each_answer(AdviceList& advice) {
   for (const auto& [id, comparison] : protocol.task.correct_answer) {
     const int times = right.times[id];
     if (times == 0)
-      advice.add("task.correct." + id, phrase("problem.never_right", {plain(id)}),
-                 phrase("problem.true_for_some"));
+      advice.add("task.correct." + id, phrase("the answer \"%1\" is never right", {plain(id)}),
+                 phrase("write a comparison that is true for some levels"));
     else if (times == right.all)
-      advice.add("task.correct." + id, phrase("problem.always_right", {plain(id)}),
-                 phrase("problem.false_for_some"));
+      advice.add("task.correct." + id, phrase("the answer \"%1\" is always right", {plain(id)}),
+                 phrase("write a comparison that is false for some levels"));
   }
 }
 
@@ -91,7 +91,8 @@ void check_block(AdviceList& advice, const std::variant<Block, Sequence>& part) 
   const auto count = [&](const std::string& at, const std::string& level, const std::vector<double>& levels) {
     const auto here = right_at(protocol, level, levels);
     if (here.all > 0 && here.scored == 0)
-      advice.add(at, phrase("problem.none_right"), phrase("problem.levels_for_correct"));
+      advice.add(at, phrase("no answer is right at any of these levels"),
+                 phrase("use levels for which \"correct\" makes one answer right"));
     if (key.empty()) key = at;
     right += here;
   };
@@ -104,8 +105,8 @@ void check_block(AdviceList& advice, const std::variant<Block, Sequence>& part) 
   }
   if (!block.level.empty()) count(key_of(part, "levels"), block.level, block.levels);
   if (right.scored > 0 && right.times.size() == 1 && !block.pass)
-    advice.add(key, phrase("problem.right_everywhere", {plain(right.times.begin()->first)}),
-               phrase("problem.equally_right"));
+    advice.add(key, phrase("\"%1\" is right at all of these levels", {plain(right.times.begin()->first)}),
+               phrase("use levels at which each answer is right equally often"));
 }
 
 // A staircase or a Bayesian procedure assumes that the task becomes easier in one direction only, either
@@ -116,13 +117,19 @@ void check_followed(AdviceList& advice, const Source& source) {
   const auto kind = answer_rule(advice.protocol, spec->level).kind;
   if (kind == AnswerKind::category)
     return advice.add(key_of(*spec, "level"),
-                      phrase("problem.follows_which", {plain(spec->name), plain(spec->level)}),
-                      phrase("problem.use", {plain("kind = \"constant-stimuli\"")}));
+                      phrase("\"%1\" follows right answers, but \"%2\" decides which answer is right, not "
+                             "how difficult the trial is",
+                             {plain(spec->name), plain(spec->level)}),
+                      phrase("use %1", {plain("kind = \"constant-stimuli\"")}));
   const auto& levels = source.levels;
   if (levels.empty() || levels.front() >= 0 || levels.back() <= 0) return;
   if (kind == AnswerKind::side)
-    advice.add(key_of(*spec, "level"), phrase("problem.follows_both_sides", {plain(spec->name)}),
-               phrase("problem.set_tracks"));
+    advice.add(key_of(*spec, "level"),
+               phrase("\"%1\" follows right answers over levels on both sides of zero, but the task is easy "
+                      "on both sides",
+                      {plain(spec->name)}),
+               phrase("set \"tracks\" to the answer that the procedure should follow, or use levels on one "
+                      "side of zero only"));
 }
 
 // Checks that some order of the trials satisfies `max_run`. Only a trial with another right answer can end a
@@ -132,9 +139,11 @@ void check_runs(AdviceList& advice, const Spec& spec) {
   const auto right = right_at(advice.protocol, spec.level, spec.values);
   for (const auto& [id, times] : right.times)
     if (times > *spec.max_run * (right.all - times))
-      return advice.add(key_of(spec, "order.max_run"),
-                        phrase("problem.long_runs", {plain(id), plain(times), plain(right.all)}),
-                        phrase("problem.set_max_run"));
+      return advice.add(
+          key_of(spec, "order.max_run"),
+          phrase("\"%1\" is right in %2 of %3 trials: longer runs cannot be avoided",
+                 {plain(id), plain(times), plain(right.all)}),
+          phrase("set a larger \"max_run\", or use levels at which each answer is right equally often"));
 }
 
 // The fraction of practice trials that a participant gets right by always pressing the same key.
@@ -152,16 +161,18 @@ void check_pass(AdviceList& advice, const std::variant<Block, Sequence>& part) {
   if (!block.pass || block.kind != BlockKind::trials) return;
   const double share = one_key_share(advice.protocol, block);
   if (share >= block.pass->accuracy)
-    advice.add(key_of(part, "pass"),
-               phrase("problem.same_key", {plain(block.name), plain(number(100 * share, 3))}),
-               phrase("problem.equally_and_higher"));
+    advice.add(
+        key_of(part, "pass"),
+        phrase("practice \"%1\" can be passed by always pressing the same key (%2 % right)",
+               {plain(block.name), plain(number(100 * share, 3))}),
+        phrase("use levels at which each answer is right equally often, and require a higher accuracy"));
 }
 
 // Suggests the ends of the factor's range, which are its easiest levels, for catch trials.
 texts::Phrase easy_on_both_sides(const Protocol& protocol, const std::string& name) {
   const auto* factor = find_factor(protocol.factors, name);
-  if (!factor || !factor->range) return phrase("problem.easy_levels");
-  return phrase("problem.easy_levels_such",
+  if (!factor || !factor->range) return phrase("include easy levels for each answer");
+  return phrase("include easy levels for each answer, such as %1 = [%2, %3]",
                 {plain(name), plain(number(factor->range->first)), plain(number(factor->range->second))});
 }
 
@@ -172,10 +183,12 @@ void check_catch(AdviceList& advice, const std::variant<Block, Sequence>& part) 
   if (protocol.task.kind == TaskKind::single_interval) {
     const auto right = right_at(protocol, trials->factor, trials->levels);
     if (right.all > 0 && right.times.size() < 2)
-      return advice.add(key_of(part, "catch"),
-                        right.times.empty() ? phrase("problem.catch_none_right", {plain(block_of(part).name)})
-                                            : phrase("problem.catch_one_right", {plain(block_of(part).name)}),
-                        easy_on_both_sides(protocol, trials->factor));
+      return advice.add(
+          key_of(part, "catch"),
+          right.times.empty()
+              ? phrase("the catch trials of \"%1\" have no right answer", {plain(block_of(part).name)})
+              : phrase("the catch trials of \"%1\" have only one right answer", {plain(block_of(part).name)}),
+          easy_on_both_sides(protocol, trials->factor));
     // In two cases there is nothing to advise: catch trials without a signal are easy, and if the answers are
     // categories, no level is easier than another.
     const auto kind = answer_rule(protocol, trials->factor).kind;
@@ -194,8 +207,9 @@ void check_catch(AdviceList& advice, const std::variant<Block, Sequence>& part) 
     if ((sides     ? std::fabs((rule.size ? std::fabs(level) : level) - rule.cut)
          : decibel ? level
                    : std::fabs(level)) < middle)
-      return advice.add(key_of(part, "catch"), phrase("problem.catch_hard", {plain(number(level))}),
-                        phrase("problem.well_above", {plain(number(middle))}));
+      return advice.add(key_of(part, "catch"),
+                        phrase("catch trials at %1 are harder than most trials", {plain(number(level))}),
+                        phrase("use easy levels, well above %1", {plain(number(middle))}));
 }
 
 }  // namespace

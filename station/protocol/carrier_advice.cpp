@@ -28,8 +28,14 @@ texts::Phrase remedy(const ToneProduct& product, double carrier_Hz, int rate_Hz)
   };
   const double higher_Hz = product.first_Hz + shift_Hz, lower_Hz = product.first_Hz - shift_Hz;
   const bool up = distance_at(higher_Hz) > distance_at(lower_Hz);
-  return up ? phrase("problem.move_higher", {plain(number(product.first_Hz, 7)), plain(number(higher_Hz, 7))})
-            : phrase("problem.move_lower", {plain(number(product.first_Hz, 7)), plain(number(lower_Hz, 7))});
+  return up ? phrase(
+                  "move a tone (that of %1 Hz to %2 Hz or higher), or compare the forces with those of "
+                  "trials without these tones before you rely on them",
+                  {plain(number(product.first_Hz, 7)), plain(number(higher_Hz, 7))})
+            : phrase(
+                  "move a tone (that of %1 Hz to %2 Hz or lower), or compare the forces with those of trials "
+                  "without these tones before you rely on them",
+                  {plain(number(product.first_Hz, 7)), plain(number(lower_Hz, 7))});
 }
 
 struct Worst {
@@ -62,7 +68,8 @@ std::vector<text::Problem> carrier_warnings(const Protocol& protocol, const rig:
     warnings.push_back(
         {protocol.scenes.at(name).place,
          counted(in_case({name, sight.block, sight.factors},
-                         phrase("problem.near_carrier",
+                         phrase("%1 is only %2 Hz from the carrier of the force cells (%3 Hz), so distortion "
+                                "can appear as an oscillation of the force",
                                 {plain(scene::name(found.product)),
                                  plain(number(found.product.distance_Hz, 3)), plain(number(carrier_Hz))})),
                  found.cases),

@@ -22,14 +22,19 @@ using text::number;
 bool time_is_known(const Protocol& protocol, const texts::Phrase& what, text::Findings& findings) {
   const auto& signal = *protocol.timing.signal;
   if (!explored(protocol.task)) {
-    findings.add(signal.by_place, phrase("problem.signal_after", {what}),
-                 phrase("problem.signal_by", {plain("by = \"screen\"")}));
+    findings.add(signal.by_place,
+                 phrase("%1 is part of the stimulus, but this task is answered after its intervals", {what}),
+                 phrase("%1 or \"flash\", or a task with a single interval", {plain("by = \"screen\"")}));
     return false;
   }
   const auto zero = protocol.timing.response_zero;
   if (zero == ResponseZero::go_cue || zero == ResponseZero::change) return true;
-  findings.add(signal.by_place, phrase("problem.signal_zero", {what, plain(name(zero))}),
-               phrase("problem.signal_by_zero", {plain("by = \"screen\"")}));
+  findings.add(signal.by_place,
+               phrase("%1 is part of the stimulus, but \"response_zero\" is \"%2\", whose time is not known "
+                      "when the stimulus begins",
+                      {what, plain(name(zero))}),
+               phrase("%1 or \"flash\", or a \"response_zero\" of \"go_cue\" or \"change\"",
+                      {plain("by = \"screen\"")}));
   return false;
 }
 
@@ -41,8 +46,10 @@ void check_same_buzz(const Reading& reading) {
   for (auto at = scenes.find(reading.protocol.timing.signal->scene); at != scenes.end();
        at = scenes.find(at->second.base))
     for (const auto& name : factors_of(at->second))
-      return reading.findings.add(reading.places.of("timing.response_signal.scene"),
-                                  phrase("problem.buzz_tells", {plain(name)}), phrase("problem.same_scene"));
+      return reading.findings.add(
+          reading.places.of("timing.response_signal.scene"),
+          phrase("the buzz depends on \"%1\", so it could tell something of the answer", {plain(name)}),
+          phrase("a scene that is the same in all trials"));
 }
 
 /// A lag that depends on what makes an answer right would tell something of the answer.
@@ -53,9 +60,10 @@ void check_telling_lag(const Reading& reading) {
       for (const auto& name : factors_in(*side)) deciding.insert(name);
   for (const auto& name : factors_in(reading.protocol.timing.signal->after_s))
     if (deciding.count(name))
-      return reading.findings.add(reading.places.of("timing.response_signal.after_s"),
-                                  phrase("problem.lag_tells", {plain(name)}),
-                                  phrase("problem.other_factors"));
+      return reading.findings.add(
+          reading.places.of("timing.response_signal.after_s"),
+          phrase("the time of the signal depends on \"%1\", which decides the right answer", {plain(name)}),
+          phrase("other factors"));
 }
 
 /// A buzz takes the place of the last scene, which must have been reached, and be long enough before to be
@@ -68,15 +76,17 @@ void check_buzz(const Reading& reading) {
   if (!changes) return;
   const auto& signal = *protocol.timing.signal;
   if (protocol.timing.response_zero != ResponseZero::change)
-    return reading.findings.add(signal.by_place, phrase("problem.buzz_meets"),
-                                phrase("problem.or_one_scene", {plain("response_zero = \"change\"")}));
+    return reading.findings.add(
+        signal.by_place,
+        phrase("a buzz that is timed from \"go_cue\" could meet the change to the second scene"),
+        phrase("%1, or an interval of one scene", {plain("response_zero = \"change\"")}));
   const double first_s = bounds(signal.after_s, protocol.factors).first;
   const double changed_s = 1e-3 * task.transition_ms.value_or(0) + terms::kBetweenChanges_s;
   if (first_s < changed_s)
-    reading.findings.add(
-        reading.places.of("timing.response_signal.after_s"),
-        phrase("problem.buzz_early", {plain(number(first_s)), plain(number(task.transition_ms.value_or(0)))}),
-        phrase("problem.at_least", {plain(number(changed_s) + " s")}));
+    reading.findings.add(reading.places.of("timing.response_signal.after_s"),
+                         phrase("the buzz can begin %1 s after the change begins, which takes %2 ms",
+                                {plain(number(first_s)), plain(number(task.transition_ms.value_or(0)))}),
+                         phrase("at least %1", {plain(number(changed_s) + " s")}));
 }
 
 /// All lags of a signal, if they are a list; empty if a factor varies over a range.
@@ -108,16 +118,19 @@ void check_flash(const Reading& reading) {
   if (first_s < terms::kSignalLate_s - 1e-9)
     reading.findings.add(
         place,
-        phrase("problem.flash_early",
+        phrase("the flash can be due %1 s after \"%2\", but a screen may need three frames to show it",
                {plain(number(first_s)), plain(name(reading.protocol.timing.response_zero))}),
-        phrase("problem.at_least_or", {plain(number(terms::kSignalLate_s)), plain("by = \"tone\"")}));
+        phrase("at least %1 s, or %2", {plain(number(terms::kSignalLate_s)), plain("by = \"tone\"")}));
   std::optional<double> before_s;
   for (const double lag_s : lags_of(after_s, factors)) {
     const double apart_s = lag_s - before_s.value_or(-1);
     if (apart_s > 1e-9 && apart_s < terms::kFrame_s - 1e-9)
-      return reading.findings.add(
-          place, phrase("problem.lags_close", {plain(number(*before_s)), plain(number(lag_s))}),
-          phrase("problem.lags_apart", {plain(number(terms::kFrame_s, 3)), plain("by = \"tone\"")}));
+      return reading.findings.add(place,
+                                  phrase("the lags %1 and %2 s differ by less than a frame of the screen, so "
+                                         "a flash cannot present both",
+                                         {plain(number(*before_s)), plain(number(lag_s))}),
+                                  phrase("lags that differ by at least %1 s, or %2",
+                                         {plain(number(terms::kFrame_s, 3)), plain("by = \"tone\"")}));
     before_s = lag_s;
   }
 }
@@ -132,21 +145,21 @@ void check_signal(const Reading& reading) {
   if (signal->by == By::screen) return;
   if (signal->by == By::flash) return check_flash(reading);
   const bool tone = signal->by == By::tone;
-  if (!time_is_known(protocol, tone ? phrase("problem.a_tone") : phrase("problem.a_buzz"), reading.findings))
-    return;
+  if (!time_is_known(protocol, tone ? phrase("a tone") : phrase("a buzz"), reading.findings)) return;
   if (!tone) check_buzz(reading);
   const auto end = stimulus_end(protocol);
   const double length_s = tone ? terms::kSignal_s : signal->length_s + terms::kBuzzRamp_s;
   const double latest_s = bounds(signal->after_s, protocol.factors).second + length_s;
   if (end && latest_s > end->earliest_s)
-    reading.findings.add(reading.places.of("timing.response_signal.after_s"),
-                         tone ? phrase("problem.tone_late",
-                                       {plain(number(latest_s)), plain(name(protocol.timing.response_zero)),
-                                        plain(number(end->earliest_s))})
-                              : phrase("problem.buzz_late",
-                                       {plain(number(latest_s)), plain(name(protocol.timing.response_zero)),
-                                        plain(number(end->earliest_s))}),
-                         phrase("problem.longer_explore", {plain(number(end->earliest_s - length_s))}));
+    reading.findings.add(
+        reading.places.of("timing.response_signal.after_s"),
+        tone ? phrase("the tone can end %1 s after \"%2\", but the stimulus can end %3 s after it",
+                      {plain(number(latest_s)), plain(name(protocol.timing.response_zero)),
+                       plain(number(end->earliest_s))})
+             : phrase("the buzz can end %1 s after \"%2\", but the stimulus can end %3 s after it",
+                      {plain(number(latest_s)), plain(name(protocol.timing.response_zero)),
+                       plain(number(end->earliest_s))}),
+        phrase("a longer \"explore_s\", or at most %1 s", {plain(number(end->earliest_s - length_s))}));
 }
 
 }  // namespace turnpoint::protocol

@@ -26,9 +26,11 @@ void check_values(const std::vector<Source>& sources, const std::string& name, c
   const bool set_somewhere = std::any_of(sources.begin(), sources.end(), sets);
   for (const auto& source : sources) {
     if (sets(source)) continue;
-    reading.findings.add(factor && !set_somewhere ? factor->place : source.block->place,
-                         phrase("problem.no_value", {plain(source.block->name), source.what, plain(name)}),
-                         phrase("problem.set_factor"));
+    reading.findings.add(
+        factor && !set_somewhere ? factor->place : source.block->place,
+        phrase("in block \"%1\", %2, \"%3\" has no value",
+               {plain(source.block->name), source.what, plain(name)}),
+        phrase("set this factor with a procedure or fixed levels, or give it \"levels\" from which to draw"));
     if (!set_somewhere) return;
   }
 }
@@ -46,9 +48,10 @@ void check_answers(const std::vector<Source>& sources, const Reading& reading) {
       return reading.findings.add(
           last->second.left.place,
           answers.size() > 2
-              ? phrase("problem.two_right", {plain(source.level), plain(text::number(level))})
-              : phrase("problem.both_right", {plain(source.level), plain(text::number(level))}),
-          phrase("problem.not_both_true"));
+              ? phrase("at %1 = %2 two answers are right", {plain(source.level), plain(text::number(level))})
+              : phrase("at %1 = %2 both answers are right",
+                       {plain(source.level), plain(text::number(level))}),
+          phrase("write comparisons that cannot both be true"));
     }
   }
 }
@@ -72,8 +75,8 @@ void check_present(const std::vector<Source>& sources, const Reading& reading) {
   }
   if (with != without)
     reading.findings.add(present->left.place,
-                         with ? phrase("problem.all_signal") : phrase("problem.no_signal"),
-                         phrase("problem.signal_levels"));
+                         with ? phrase("every trial has a signal") : phrase("no trial has a signal"),
+                         phrase("levels with a signal and levels without one, such as 0"));
 }
 
 // Without correct answers, a procedure cannot follow right answers, and practice cannot be passed. Reports
@@ -86,12 +89,15 @@ void check_scored(text::TableReader& file, const Reading& reading) {
   if (!table || task.kind != TaskKind::single_interval || stated) return;
   for (const auto& spec : protocol.procedures) {
     if (procedure::follows_answers(spec) && judges(task))
-      reading.findings.add(reading.places.of(key_of(spec, "kind")),
-                           phrase("problem.needs_right", {plain(spec.name)}),
-                           plain("kind = \"constant-stimuli\""));
+      reading.findings.add(
+          reading.places.of(key_of(spec, "kind")),
+          phrase("the procedure \"%1\" needs answers that are right or wrong", {plain(spec.name)}),
+          plain("kind = \"constant-stimuli\""));
     else if (procedure::follows_answers(spec) && spec.tracks.empty())
-      reading.findings.add(table->place, phrase("problem.needs_correct", {plain(spec.name)}),
-                           phrase("problem.correct_or_tracks"));
+      reading.findings.add(table->place,
+                           phrase("the procedure \"%1\" depends on correct answers, but no answer is correct",
+                                  {plain(spec.name)}),
+                           phrase("set \"correct\" in [task], or \"tracks\" in the procedure"));
   }
   for (const auto& part : protocol.plan) {
     const auto& block = block_of(part);
@@ -99,9 +105,10 @@ void check_scored(text::TableReader& file, const Reading& reading) {
     if (block.kind != BlockKind::trials) continue;
     for (const auto* key : {"pass", "feedback"})
       if (key == std::string("pass") ? block.pass.has_value() : block.feedback != Feedback::none)
-        reading.findings.add(reading.places.of(key_of(part, key)),
-                             phrase("problem.block_judges", {plain(block.name)}),
-                             phrase("problem.set_correct"));
+        reading.findings.add(
+            reading.places.of(key_of(part, key)),
+            phrase("block \"%1\" judges answers, but no answer is correct", {plain(block.name)}),
+            phrase("set \"correct\" in [task]"));
   }
 }
 
@@ -113,22 +120,26 @@ void check_limits(const Reading& reading) {
     if (spec.kind != procedure::Kind::limits) continue;
     const auto report = [&](const char* key, const texts::Phrase& what, const texts::Phrase& allowed) {
       reading.findings.add(reading.places.of(key_of(spec, key)),
-                           phrase("problem.of_procedure", {plain(spec.name), what}), allowed);
+                           phrase("procedure \"%1\": %2", {plain(spec.name), what}), allowed);
     };
     if (task.kind != TaskKind::single_interval && task.kind != TaskKind::same_different) {
-      report("kind", phrase("problem.none_more_frequent"),
-             phrase("problem.single_or_same", {plain("kind = \"single-interval\"")}));
+      report("kind", phrase("in this kind of task no answer becomes more frequent as the level rises"),
+             phrase("use %1 or \"same-different\" in [task]", {plain("kind = \"single-interval\"")}));
       continue;
     }
     const auto rule = answer_rule(protocol, spec.level);
     if (rule.kind != AnswerKind::side && rule.kind != AnswerKind::presence) continue;
     const auto& risen = task.choices.at(static_cast<std::size_t>(rule.positive)).id;
     if (!spec.tracks.empty() && spec.tracks != risen)
-      report("tracks", phrase("problem.not_more_frequent", {plain(spec.tracks)}),
-             plain("tracks = \"" + risen + "\""));
+      report(
+          "tracks",
+          phrase("the answer \"%1\" does not become more frequent as the level rises", {plain(spec.tracks)}),
+          plain("tracks = \"" + risen + "\""));
     const bool magnitude = task.kind == TaskKind::single_interval && rule.kind == AnswerKind::presence;
     if (magnitude && spec.min && *spec.min < 0)
-      report("min", phrase("problem.frequent_below", {plain(risen)}), phrase("problem.levels_from_zero"));
+      report("min",
+             phrase("below 0 the answer \"%1\" becomes more frequent as the level falls", {plain(risen)}),
+             phrase("use levels of 0 and above"));
   }
 }
 
@@ -141,16 +152,21 @@ void check_detection(const Reading& reading) {
     const auto rule = answer_rule(protocol, spec.level);
     const bool scored = !task.correct_answer.empty();
     if (task.kind != TaskKind::single_interval || (scored && rule.kind != AnswerKind::presence)) {
-      reading.findings.add(reading.places.of(key_of(spec, "function")),
-                           phrase("problem.detection_task", {plain(spec.name)}),
-                           phrase("problem.detection_use", {plain("kind = \"single-interval\"")}));
+      reading.findings.add(
+          reading.places.of(key_of(spec, "function")),
+          phrase("procedure \"%1\": signal detection needs a task in which people say whether there was a "
+                 "signal",
+                 {plain(spec.name)}),
+          phrase("use %1 in [task], with one answer that is right at level 0 and another that is right above",
+                 {plain("kind = \"single-interval\"")}));
       continue;
     }
     const auto& yes = task.choices.at(static_cast<std::size_t>(rule.positive)).id;
     if (scored && spec.tracks != yes)
-      reading.findings.add(reading.places.of(key_of(spec, "tracks")),
-                           phrase("problem.means_no", {plain(spec.name), plain(spec.tracks)}),
-                           plain("tracks = \"" + yes + "\""));
+      reading.findings.add(
+          reading.places.of(key_of(spec, "tracks")),
+          phrase("procedure \"%1\": the answer \"%2\" means \"no\"", {plain(spec.name), plain(spec.tracks)}),
+          plain("tracks = \"" + yes + "\""));
   }
 }
 
@@ -164,12 +180,14 @@ void check_adjustment(const Reading& reading) {
       if (!spec) continue;
       if ((spec->kind == procedure::Kind::adjustment) != adjusting)
         reading.findings.add(
-            reading.places.of(key_of(*spec, "kind")), phrase("problem.does_not_fit", {plain(name)}),
-            adjusting ? plain("kind = \"adjustment\"") : phrase("problem.except_adjustment"));
+            reading.places.of(key_of(*spec, "kind")),
+            phrase("the procedure \"%1\" does not fit the kind of task", {plain(name)}),
+            adjusting ? plain("kind = \"adjustment\"") : phrase("use any kind except \"adjustment\""));
       else if (adjusting && spec->level != protocol.task.adjusts)
-        reading.findings.add(reading.places.of(key_of(*spec, "level")),
-                             phrase("problem.procedure_sets", {plain(name), plain(spec->level)}),
-                             phrase("problem.slider_factor", {plain(protocol.task.adjusts)}));
+        reading.findings.add(
+            reading.places.of(key_of(*spec, "level")),
+            phrase("the procedure \"%1\" sets \"%2\"", {plain(name), plain(spec->level)}),
+            phrase("it must set the factor that the slider moves: \"%1\"", {plain(protocol.task.adjusts)}));
     }
   }
 }
@@ -205,18 +223,27 @@ void check_timing(text::TableReader& file, const Reading& reading) {
   auto& findings = reading.findings;
   const bool one_interval = explored(protocol.task);
   if (one_interval && !table->find("explore_s") && !protocol.task.duration_s)
-    findings.add(table->place, phrase("problem.nothing_ends"), phrase("problem.set_longest"));
+    findings.add(
+        table->place, phrase("nothing ends the interval: [timing] has no \"explore_s\""),
+        phrase(
+            "set it to the longest time that the tones last, in seconds (or set \"duration_s\" in [task])"));
   if (!one_interval && table->find("explore_s"))
-    findings.add(place("explore_s"), phrase("problem.explore_several"), phrase("problem.use_duration"));
+    findings.add(place("explore_s"), phrase("\"explore_s\" does not apply to a task with several intervals"),
+                 phrase("use \"duration_s\" in [task] instead"));
   if (timing.signal && protocol.task.kind == TaskKind::adjustment)
-    findings.add(place("response_signal"), phrase("problem.slider_signal"), phrase("problem.use_deadline"));
+    findings.add(
+        place("response_signal"),
+        phrase("a slider is not set at a signal: \"response_signal\" does not apply to \"adjustment\""),
+        phrase("use \"deadline_s\""));
   if (timing.response_zero == ResponseZero::change && !has_change(protocol.task))
-    findings.add(place("response_zero"), phrase("problem.zero_change"),
-                 phrase("problem.two_scenes", {plain("intervals = [[\"a\", \"b\"]]")}));
+    findings.add(place("response_zero"),
+                 phrase("\"response_zero\" is \"change\", but no interval has a second scene"),
+                 phrase("use an interval of two scenes: %1", {plain("intervals = [[\"a\", \"b\"]]")}));
   if (!table->find("deadline_s") && !table->find("response_signal"))
     if (const auto block = block_without_deadline(protocol))
-      findings.add(table->place, phrase("problem.no_deadline", {plain(*block)}),
-                   phrase("problem.set_deadline"));
+      findings.add(table->place,
+                   phrase("block \"%1\" has no deadline: [timing] has no \"deadline_s\"", {plain(*block)}),
+                   phrase("set \"deadline_s\" here, or in the block's [instructions.NAME]"));
   // Reports anticipation_s if it is not shorter than a deadline. If the deadline is shorter than any person's
   // response, the deadline is to blame; otherwise it is anticipation_s, which is normally about 0.15 s.
   const double anticipation_s = bounds(timing.anticipation_s, protocol.factors).second;
@@ -224,7 +251,8 @@ void check_timing(text::TableReader& file, const Reading& reading) {
     const double deadline_s = bounds(deadline, protocol.factors).first;
     if (anticipation_s >= deadline_s)
       findings.add(deadline_s < shortest_deadline_s ? reading.places.of(key) : place("anticipation_s"),
-                   phrase("problem.anticipation", {plain(text::number(deadline_s))}));
+                   phrase("\"anticipation_s\" must be shorter than the deadline of %1 s",
+                          {plain(text::number(deadline_s))}));
   };
   if (timing.deadline_s) check_anticipation("timing.deadline_s", *timing.deadline_s);
   for (const auto& [name, instruction] : protocol.instructions)
@@ -232,8 +260,9 @@ void check_timing(text::TableReader& file, const Reading& reading) {
       const auto key = "instructions." + name + ".deadline_s";
       check_anticipation(key, *instruction.deadline_s);
       if (timing.signal)
-        findings.add(reading.places.of(key), phrase("problem.signal_no_deadline"),
-                     phrase("problem.signal_window"));
+        findings.add(reading.places.of(key),
+                     phrase("a deadline does not apply if there is a response signal"),
+                     phrase("answers count from the signal to the end of its \"window_s\""));
     }
 }
 

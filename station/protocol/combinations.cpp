@@ -141,13 +141,15 @@ std::vector<Combination> thinned(const Scene& scene, const std::vector<Combinati
 
 texts::Phrase in_case(const Combination& combination, texts::Phrase what) {
   const auto scene = plain(combination.scene), block = plain(combination.block);
-  if (combination.factors.empty()) return phrase("problem.in_case", {scene, block, std::move(what)});
-  return phrase("problem.in_case_at", {scene, block, plain(format(combination.factors)), std::move(what)});
+  if (combination.factors.empty())
+    return phrase("scene \"%1\" in block \"%2\": %3", {scene, block, std::move(what)});
+  return phrase("scene \"%1\" in block \"%2\" at %3: %4",
+                {scene, block, plain(format(combination.factors)), std::move(what)});
 }
 
 texts::Phrase counted(texts::Phrase first, int cases) {
   if (cases < 2) return first;
-  return phrase("problem.more_cases", {std::move(first), plain(cases - 1)});
+  return phrase("%1 (and in %2 more cases)", {std::move(first), plain(cases - 1)});
 }
 
 std::string format(const Factors& factors) {

@@ -42,9 +42,11 @@ void check_labels(AdviceList& advice, const std::string& language, const std::ve
     const auto label = found == text->end() ? "" : trimmed(found->second);
     const auto whole = key + "." + language;
     if (label.empty())
-      advice.add(whole, phrase("problem.label_blank", {plain(name)}), phrase("problem.write_label"));
+      advice.add(whole, phrase("the label of \"%1\" is blank", {plain(name)}),
+                 phrase("write what the participant reads on the button"));
     else if (!seen.insert(label).second)
-      advice.add(whole, phrase("problem.label_twice", {plain(label)}), phrase("problem.labels_differ"));
+      advice.add(whole, phrase("two answers have the label \"%1\"", {plain(label)}),
+                 phrase("give each answer a different label"));
   }
 }
 
@@ -66,8 +68,8 @@ void check_words(AdviceList& advice) {
     for (const auto* labels : {&choices, &degrees, &points}) check_labels(advice, language, *labels);
     const auto question = task.question.find(language);
     if (question != task.question.end() && trimmed(question->second).empty())
-      advice.add("task.question." + language, phrase("problem.question_blank"),
-                 phrase("problem.write_question"));
+      advice.add("task.question." + language, phrase("the question is blank"),
+                 phrase("write what the participant is asked"));
   }
 }
 
@@ -82,8 +84,9 @@ void check_ramps(AdviceList& advice) {
     return advice.add(stated    ? "scene." + name + ".ramp_ms"
                       : several ? "task.duration_s"
                                 : "timing.explore_s",
-                      phrase("problem.ramps_long", {plain(name), plain(number(longest_s))}),
-                      phrase("problem.ramps_shorter"));
+                      phrase("the ramps of scene \"%1\" take as long as its tones, %2 s",
+                             {plain(name), plain(number(longest_s))}),
+                      phrase("the tones must last longer than both ramps together"));
   }
 }
 
@@ -100,16 +103,17 @@ void check_scenes(AdviceList& advice) {
          {std::pair{&scene.displacement_um, "displacement_um"},
           std::pair{&scene.displacement_under_finger_um, "displacement_under_finger_um"}})
       if (*displacement && bounds(**displacement, advice.protocol.factors).second < least_displacement_um)
-        advice.add(key + of, phrase("problem.not_felt", {plain((*displacement)->source)}),
-                   phrase("problem.about_um"));
+        advice.add(key + of, phrase("nobody feels a displacement of %1 um", {plain((*displacement)->source)}),
+                   phrase("use about 0.2 to 3 um"));
     for (std::size_t i = 0; i < scene.tones.size(); ++i)
       for (std::size_t j = 0; j < i; ++j) {
         const auto &a = scene.tones[i], &b = scene.tones[j];
         if (same(a.frequency_Hz, b.frequency_Hz) ||
             (same(a.boundary_mm, b.boundary_mm) && a.edge.name == b.edge.name &&
              a.edge.friction == b.edge.friction))
-          advice.add(key + "tones." + std::to_string(i), phrase("problem.tone_twice"),
-                     phrase("problem.one_tone"));
+          advice.add(key + "tones." + std::to_string(i),
+                     phrase("this tone is the same as another tone of the scene"),
+                     phrase("use one stronger tone, or place this tone elsewhere"));
       }
   }
 }
@@ -119,17 +123,20 @@ void check_task(AdviceList& advice) {
   const auto& task = protocol.task;
   for (const auto& interval : task.intervals)
     if (interval.size() == 2 && interval[0] == interval[1])
-      advice.add("task.intervals", phrase("problem.scene_itself", {plain(interval[0])}),
-                 phrase("problem.use_two_scenes"));
+      advice.add("task.intervals",
+                 phrase("the scene \"%1\" is followed by itself, so nothing changes", {plain(interval[0])}),
+                 phrase("use two different scenes"));
   const auto* slider = find_factor(protocol.factors, task.adjusts);
   if (slider && slider->range && task.step && *task.step >= slider->range->second - slider->range->first)
-    advice.add("task.step", phrase("problem.slider_step", {plain(number(*task.step))}),
-               phrase("problem.well_below", {plain(number(slider->range->second - slider->range->first))}));
+    advice.add(
+        "task.step",
+        phrase("a step of %1 is as large as the slider's whole range", {plain(number(*task.step))}),
+        phrase("use steps well below %1", {plain(number(slider->range->second - slider->range->first))}));
   const auto& plan = protocol.plan;
   for (const auto& part : plan)
     if (task.kind == TaskKind::adjustment && block_of(part).feedback != Feedback::none)
-      advice.add(key_of(part, "feedback"), phrase("problem.setting_unscored"),
-                 phrase("problem.set", {plain("feedback = \"none\"")}));
+      advice.add(key_of(part, "feedback"), phrase("a setting of the slider is neither right nor wrong"),
+                 phrase("set %1", {plain("feedback = \"none\"")}));
 }
 
 /// Returns the largest number of trials in a block, including catch trials; empty if the answers decide when
@@ -160,17 +167,22 @@ void check_counts(AdviceList& advice, const std::variant<Block, Sequence>& part)
       levels += spec->values.size(), constant = spec;
   const auto trials = static_cast<std::size_t>(block.trials.value_or(0));
   if (block.trials && trials < levels)
-    advice.add(key_of(part, "trials"), phrase("problem.never_presented", {plain(levels), plain(trials)}),
-               phrase("problem.allow_trials", {plain(levels)}));
+    advice.add(key_of(part, "trials"),
+               phrase("the block has %1 levels but only %2 trials, so some levels are never presented",
+                      {plain(levels), plain(trials)}),
+               phrase("allow at least %1 trials", {plain(levels)}));
   else if (block.trials && constant && block.procedures.size() == 1 && !block.practice &&
            !block.catch_trials && trials < levels * static_cast<std::size_t>(constant->repeats) &&
            trials % levels != 0)
-    advice.add(key_of(part, "trials"), phrase("problem.uneven_trials", {plain(trials), plain(levels)}),
-               phrase("problem.use_multiple", {plain(levels)}));
+    advice.add(key_of(part, "trials"),
+               phrase("%1 trials cannot be divided evenly among %2 levels", {plain(trials), plain(levels)}),
+               phrase("use a multiple of %1, or leave out \"trials\"", {plain(levels)}));
   const auto most = most_trials(advice.protocol, block);
   if (block.break_after && most && block.break_after->trials >= *most)
-    advice.add(key_of(part, "break_after"), phrase("problem.no_break", {plain(number(std::floor(*most)))}),
-               phrase("problem.break_earlier"));
+    advice.add(
+        key_of(part, "break_after"),
+        phrase("there will be no break: the block has only %1 trials", {plain(number(std::floor(*most)))}),
+        phrase("have the break after fewer trials"));
 }
 
 void check_blocks(AdviceList& advice) {
@@ -182,29 +194,34 @@ void check_blocks(AdviceList& advice) {
     check_counts(advice, part);
     if (block.kind != BlockKind::trials) continue;
     if (advice.places.has(key_of(part, "interleave")) && block.procedures.size() < 2)
-      advice.add(key_of(part, "interleave"), phrase("problem.interleave_one"),
-                 phrase("problem.two_procedures"));
+      advice.add(key_of(part, "interleave"),
+                 phrase("\"interleave\" has no effect in a block with one procedure"),
+                 phrase("use two or more procedures"));
     const auto* sequence = std::get_if<Sequence>(&part);
     if (sequence && sequence->mirror && sequence->cycles < 2)
-      advice.add("sequence." + sequence->name + ".mirror", phrase("problem.mirror_one"),
-                 phrase("problem.set_cycles"));
+      advice.add("sequence." + sequence->name + ".mirror",
+                 phrase("\"mirror\" has no effect with a single cycle"), phrase("set cycles to 2 or more"));
     for (const auto& name : block.procedures)
       if (const auto* spec = find_procedure(protocol, name);
           sequence && spec &&
           std::find(spec->balance.begin(), spec->balance.end(), sequence->over) != spec->balance.end())
-        advice.add(key_of(*spec, "balance"),
-                   phrase("problem.sequence_holds", {plain(sequence->name), plain(sequence->over)}),
-                   phrase("problem.remove_one"));
+        advice.add(
+            key_of(*spec, "balance"),
+            phrase("the sequence \"%1\" holds \"%2\" constant in each block, but \"balance\" would change it",
+                   {plain(sequence->name), plain(sequence->over)}),
+            phrase("remove one of the two"));
     const double trials = most_trials(protocol, block).value_or(1e9);
     (block.practice ? practice : rest) += trials;
     if (block.practice)
       practice_key = key_of(part, advice.places.has(key_of(part, "trials")) ? "trials" : "practice");
   }
   if (practice > 0 && rest == 0)
-    advice.add(key_of(protocol.plan.back(), "practice"), phrase("problem.all_practice"),
-               phrase("problem.add_no_practice"));
+    advice.add(key_of(protocol.plan.back(), "practice"),
+               phrase("all blocks are practice: nothing is measured"),
+               phrase("add a block without \"practice\""));
   else if (practice > rest)
-    advice.add(practice_key, phrase("problem.more_practice"), phrase("problem.less_practice"));
+    advice.add(practice_key, phrase("there are more practice trials than other trials"),
+               phrase("plan fewer practice trials"));
 }
 
 void check_instructions(AdviceList& advice) {
@@ -215,12 +232,14 @@ void check_instructions(AdviceList& advice) {
       return fixed != block.fixed.end() && fixed->second == wanted;
     };
     if (std::none_of(blocks.begin(), blocks.end(), shows))
-      advice.add("instructions." + name, phrase("problem.instruction_unused", {plain(name)}),
-                 phrase("problem.set_instruction", {plain("instruction = \"" + name + "\"")}));
+      advice.add("instructions." + name, phrase("no block shows the instruction \"%1\"", {plain(name)}),
+                 phrase("set %1 in a block, or use a sequence over a factor named \"instruction\"",
+                        {plain("instruction = \"" + name + "\"")}));
     const auto& target = instruction.target_accuracy;
     if (target && target->second <= chance(advice.protocol))
-      advice.add("instructions." + name + ".target_accuracy", phrase("problem.guessing_reaches"),
-                 phrase("problem.between", {plain(number(chance(advice.protocol), 3)), plain("1")}));
+      advice.add("instructions." + name + ".target_accuracy",
+                 phrase("guessing already reaches this target accuracy"),
+                 phrase("between %1 and %2", {plain(number(chance(advice.protocol), 3)), plain("1")}));
   }
 }
 
@@ -229,12 +248,13 @@ void check_analysis(AdviceList& advice) {
   const auto moves = [](const auto& term) { return term.second != 0; };
   if (analysis.difficulty && analysis.difficulty->products.empty() &&
       std::none_of(analysis.difficulty->terms.begin(), analysis.difficulty->terms.end(), moves))
-    advice.add("analysis.difficulty", phrase("problem.difficulty_same"), phrase("problem.write_arithmetic"));
+    advice.add("analysis.difficulty", phrase("\"difficulty\" is the same in all trials"),
+               phrase("write arithmetic that depends on a factor"));
   std::set<std::string> seen;
   for (const auto& word : analysis.show.value_or(std::vector<std::string>{}))
     if (!seen.insert(word).second)
-      advice.add("analysis.show", phrase("problem.twice_in", {plain(word), plain("show")}),
-                 phrase("problem.list_once"));
+      advice.add("analysis.show", phrase("\"%1\" appears twice in \"%2\"", {plain(word), plain("show")}),
+                 phrase("list each only once"));
 }
 
 }  // namespace
@@ -263,10 +283,11 @@ void note_uneven(AdviceList& notes, const procedure::Spec& spec, std::size_t cel
   const auto repeats = static_cast<std::size_t>(spec.repeats), least = repeats / cells;
   if (repeats % cells == 0) return;
   const auto even = (least + 1) * cells;
-  notes.add(
-      key_of(spec, "balance"),
-      phrase("problem.uneven_cells", {plain(cells), cell_names, plain(least), plain(least + 1)}),
-      even > most_repeats ? phrase("problem.fewer_factors") : phrase("problem.even_repeats", {plain(even)}));
+  notes.add(key_of(spec, "balance"),
+            phrase("each level is combined with each of the %1 %2 %3 or %4 times",
+                   {plain(cells), cell_names, plain(least), plain(least + 1)}),
+            even > most_repeats ? phrase("use fewer factors or fewer levels")
+                                : phrase("for equal counts, set repeats = %1", {plain(even)}));
 }
 
 }  // namespace
@@ -278,27 +299,30 @@ std::vector<Problem> notes(const Protocol& protocol) {
     std::string all;
     for (const auto& name : spec.balance) {
       const auto levels = find_factor(protocol.factors, name)->levels.size();
-      note_uneven(notes, spec, levels, phrase("problem.cell_values", {plain(name)}));
+      note_uneven(notes, spec, levels, phrase("values of \"%1\"", {plain(name)}));
       crossed = std::min(crossed * levels, most_cells);
       if (name != spec.balance.back()) all += (all.empty() ? "\"" : ", \"") + name + "\"";
     }
     if (spec.balance.size() > 1)
       note_uneven(notes, spec, crossed,
-                  phrase("problem.cell_combinations", {plain(all), plain(spec.balance.back())}));
+                  phrase("combinations of %1 and \"%2\"", {plain(all), plain(spec.balance.back())}));
     std::map<double, int> times;
     for (const double value : spec.values) ++times[value];
     for (const auto& [value, listed] : times) {
       if (listed > 1)
         notes.add(levels_key(spec),
                   listed == 2
-                      ? phrase("problem.level_twice", {plain(number(value))})
-                      : phrase("problem.level_times", {plain(number(value)), plain(listed), plain(listed)}));
+                      ? phrase("the level %1 is listed twice, so it is presented twice as often",
+                               {plain(number(value))})
+                      : phrase("the level %1 is listed %2 times, so it is presented %3 times as often",
+                               {plain(number(value)), plain(listed), plain(listed)}));
     }
   }
-  if (protocol.timing.iti_s.high == 0) notes.add("timing.iti_s", phrase("problem.no_iti"));
-  if (protocol.task.gap_s == 0.0) notes.add("task.gap_s", phrase("problem.no_gap"));
+  if (protocol.timing.iti_s.high == 0) notes.add("timing.iti_s", phrase("there is no pause between trials"));
+  if (protocol.task.gap_s == 0.0)
+    notes.add("task.gap_s", phrase("there is no pause between the intervals of a trial"));
   if (protocol.task.foreperiod_s && protocol.task.foreperiod_s->high == 0)
-    notes.add("task.foreperiod_s", phrase("problem.no_foreperiod"));
+    notes.add("task.foreperiod_s", phrase("the second scene begins at once, without a foreperiod"));
   return std::move(notes.found);
 }
 

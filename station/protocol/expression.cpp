@@ -30,23 +30,25 @@ class Parser {
   Linear whole() {
     auto result = sum();
     if (peek() != '\0')
-      throw SyntaxError{at_, phrase("problem.not_here", {plain(std::string(1, source_[at_]))}), form()};
-    if (!std::isfinite(result.constant)) throw SyntaxError{0, phrase("problem.not_finite"), form()};
+      throw SyntaxError{at_, phrase("\"%1\" is not allowed here", {plain(std::string(1, source_[at_]))}),
+                        form()};
+    if (!std::isfinite(result.constant)) throw SyntaxError{0, phrase("the result is not finite"), form()};
     for (const auto& [name, coefficient] : result.terms)
       if (!std::isfinite(coefficient))
-        throw SyntaxError{0, phrase("problem.coefficient_infinite", {plain(name)}), form()};
+        throw SyntaxError{0, phrase("the coefficient of %1 is not finite", {plain(name)}), form()};
     for (const auto& product : result.products)
       if (!std::isfinite(product.coefficient))
-        throw SyntaxError{0, phrase("problem.a_coefficient_infinite"), form()};
+        throw SyntaxError{0, phrase("a coefficient is not finite"), form()};
     if (factors_in(result).size() > most_factors)
-      throw SyntaxError{0, phrase("problem.many_factors"), form()};
+      throw SyntaxError{0, phrase("the expression depends on more than 10 factors"), form()};
     return result;
   }
 
  private:
   static texts::Phrase form() {
-    return phrase("problem.allowed_sums",
-                  {plain("\"150 - 0.5 * spread_mm\""), plain("\"ref * (1 + weber)\"")});
+    return phrase(
+        "allowed: sums and products of factors, such as %1 or %2, or abs(...) around the whole expression",
+        {plain("\"150 - 0.5 * spread_mm\""), plain("\"ref * (1 + weber)\"")});
   }
   static constexpr std::size_t most_factors = 10;
 
@@ -74,8 +76,9 @@ class Parser {
         left = multiplied(left, signed_term(), at);
       } else if (accept('/')) {
         const auto right = signed_term();
-        if (!right.is_constant()) throw SyntaxError{at, phrase("problem.divide_factor"), form()};
-        if (right.constant == 0) throw SyntaxError{at, phrase("problem.divide_zero"), form()};
+        if (!right.is_constant())
+          throw SyntaxError{at, phrase("dividing by a factor is not allowed"), form()};
+        if (right.constant == 0) throw SyntaxError{at, phrase("division by 0"), form()};
         scale(left, 1 / right.constant, at);
       } else {
         return left;
@@ -92,7 +95,7 @@ class Parser {
     return term;
   }
   Linear signed_term_deeper() {
-    if (++depth_ > 50) throw SyntaxError{at_, phrase("problem.nested"), form()};
+    if (++depth_ > 50) throw SyntaxError{at_, phrase("the expression is nested too deeply"), form()};
     auto term = signed_term();
     --depth_;
     return term;
@@ -103,18 +106,18 @@ class Parser {
     if (c == '(') return parenthesised();
     if ((c >= '0' && c <= '9') || c == '.') return number();
     if (std::isalpha(static_cast<unsigned char>(c)) || c == '_') return name();
-    throw SyntaxError{
-        at_,
-        c == '\0' ? phrase("problem.ends_early") : phrase("problem.not_here", {plain(std::string(1, c))}),
-        form()};
+    throw SyntaxError{at_,
+                      c == '\0' ? phrase("the expression ends too early")
+                                : phrase("\"%1\" is not allowed here", {plain(std::string(1, c))}),
+                      form()};
   }
 
   Linear parenthesised() {
     ++at_;
-    if (++depth_ > 50) throw SyntaxError{at_, phrase("problem.nested"), form()};
+    if (++depth_ > 50) throw SyntaxError{at_, phrase("the expression is nested too deeply"), form()};
     auto inner = sum();
     --depth_;
-    if (!accept(')')) throw SyntaxError{at_, phrase("problem.bracket_missing"), form()};
+    if (!accept(')')) throw SyntaxError{at_, phrase("a \")\" is missing"), form()};
     return inner;
   }
 
@@ -122,7 +125,7 @@ class Parser {
     Linear result;
     const auto [end, error] = std::from_chars(source_.data() + at_, source_.data() + end_, result.constant);
     if (error != std::errc() || !std::isfinite(result.constant))
-      throw SyntaxError{at_, phrase("problem.not_number"), form()};
+      throw SyntaxError{at_, phrase("not a number"), form()};
     at_ = static_cast<std::size_t>(end - source_.data());
     return result;
   }
@@ -140,17 +143,19 @@ class Parser {
     }
     const auto* factor = find_factor(factors_, word);
     if (!factor)
-      throw SyntaxError{begin, phrase("problem.unknown_factor", {plain(word)}),
+      throw SyntaxError{begin, phrase("unknown factor \"%1\"", {plain(word)}),
                         text::suggestion(word, names(factors_))};
     if (!span(*factor) && !is_broken(*factor))
-      throw SyntaxError{begin, phrase("problem.factor_names", {plain(word)}), form()};
+      throw SyntaxError{begin, phrase("the factor \"%1\" has names as values, not numbers", {plain(word)}),
+                        form()};
     Linear result;
     result.terms.emplace_back(word, 1.0);
     return result;
   }
 
   static void add(Linear& left, const Linear& right, double sign, std::size_t at) {
-    if (left.absolute || right.absolute) throw SyntaxError{at, phrase("problem.abs_sum"), form()};
+    if (left.absolute || right.absolute)
+      throw SyntaxError{at, phrase("abs(...) is not allowed inside a sum"), form()};
     left.constant += sign * right.constant;
     for (const auto& [name, coefficient] : right.terms) {
       const auto same = [&, word = name](const auto& term) { return term.first == word; };
@@ -182,7 +187,8 @@ class Parser {
   }
 
   static Linear multiplied(const Linear& left, const Linear& right, std::size_t at) {
-    if (left.absolute || right.absolute) throw SyntaxError{at, phrase("problem.abs_product"), form()};
+    if (left.absolute || right.absolute)
+      throw SyntaxError{at, phrase("abs(...) is not allowed inside a product"), form()};
     Linear result = left.is_constant() ? right : left;
     if (left.is_constant() || right.is_constant()) {
       scale(result, left.is_constant() ? left.constant : right.constant, at);
@@ -194,7 +200,7 @@ class Parser {
         std::vector<std::string> both;
         std::merge(a.begin(), a.end(), b.begin(), b.end(), std::back_inserter(both));
         if (std::adjacent_find(both.begin(), both.end()) != both.end())
-          throw SyntaxError{at, phrase("problem.factor_squared"), form()};
+          throw SyntaxError{at, phrase("a factor is multiplied by itself"), form()};
         if (x * y != 0) parts[both] += x * y;
       }
     result = {};
@@ -207,7 +213,8 @@ class Parser {
   }
 
   static void scale(Linear& expression, double by, std::size_t at) {
-    if (expression.absolute) throw SyntaxError{at, phrase("problem.abs_product"), form()};
+    if (expression.absolute)
+      throw SyntaxError{at, phrase("abs(...) is not allowed inside a product"), form()};
     expression.constant *= by;
     for (auto& term : expression.terms) term.second *= by;
     for (auto& product : expression.products) product.coefficient *= by;
@@ -237,8 +244,8 @@ std::optional<Linear> side(const std::string& source, std::size_t begin, std::si
     result.place = place;
     return result;
   } catch (const SyntaxError& error) {
-    findings.add(inside(place, source, error.at),
-                 phrase("problem.of_expression", {plain(source), error.what}), error.allowed);
+    findings.add(inside(place, source, error.at), phrase("\"%1\": %2", {plain(source), error.what}),
+                 error.allowed);
     return std::nullopt;
   }
 }
@@ -266,8 +273,9 @@ std::optional<Comparison> parse_comparison(const std::string& source, const text
     comparison.relation = two[0] == '<' ? Relation::less : Relation::greater;
     length = 1;
   } else {
-    findings.add(place, phrase("problem.no_comparison", {plain(source)}),
-                 phrase("problem.write_sides", {plain("< <= == >= >"), plain("\"offset_mm < 0\"")}));
+    findings.add(place, phrase("\"%1\" is not a comparison", {plain(source)}),
+                 phrase("write two sides with one of %1 between them, such as %2",
+                        {plain("< <= == >= >"), plain("\"offset_mm < 0\"")}));
     return std::nullopt;
   }
   const auto left = side(source, 0, at, place, factors, findings);
@@ -289,8 +297,9 @@ std::optional<Linear> linear_from(const text::Value& value, const std::string& k
     result->source = text::exact(value.number);
     result->place = value.place;
   } else {
-    findings.add(value.place, phrase("problem.is", {plain(key), describe(value)}),
-                 phrase("problem.write_linear", {plain("\"mark_mm + offset_mm\"")}));
+    findings.add(value.place, phrase("\"%1\" is %2", {plain(key), describe(value)}),
+                 phrase("write a number, or a linear expression of factors in quotes, such as %1",
+                        {plain("\"mark_mm + offset_mm\"")}));
     return std::nullopt;
   }
   const auto broken = [&](const std::string& name) { return is_broken(*find_factor(factors, name)); };
@@ -299,12 +308,13 @@ std::optional<Linear> linear_from(const text::Value& value, const std::string& k
   const auto [low, high] = bounds(*result, factors);
   if (text::inside_range(low, range) && inside_range(high, range)) return result;
   if (result->is_constant())
-    findings.add(value.place, phrase("problem.is", {plain(key), plain(text::number(low))}),
-                 phrase("problem.allowed", {describe(range)}));
+    findings.add(value.place, phrase("\"%1\" is %2", {plain(key), plain(text::number(low))}),
+                 phrase("allowed: %1", {describe(range)}));
   else
     findings.add(value.place,
-                 phrase("problem.runs", {plain(key), plain(text::number(low)), plain(text::number(high))}),
-                 phrase("problem.allowed", {describe(range)}));
+                 phrase("\"%1\" runs from %2 to %3 depending on the values of its factors",
+                        {plain(key), plain(text::number(low)), plain(text::number(high))}),
+                 phrase("allowed: %1", {describe(range)}));
   return std::nullopt;
 }
 

@@ -50,8 +50,11 @@ class Search {
     std::string missing;
     collect(value, missing);
     if (!missing.empty())
-      found.push_back({place, phrase("problem.undrawable", {plain(key), plain(missing)}),
-                       phrase("problem.other_characters")});
+      found.push_back({place,
+                       phrase("\"%1\" has characters that no font on this machine can draw: %2",
+                              {plain(key), plain(missing)}),
+                       phrase("use other characters, or install a font for them; fonts-noto-core and "
+                              "fonts-noto-cjk together cover almost all scripts")});
     for (const auto& entry : value.entries) look(key + "." + entry.key, entry.place, entry.value);
     for (const auto& item : value.items)
       for (const auto& entry : item.entries) look(key + "." + entry.key, entry.place, entry.value);

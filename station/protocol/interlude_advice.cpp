@@ -86,8 +86,11 @@ void check_privacy(AdviceList& advice, const std::string& key, const Item& item)
   auto word = identifying_word(item.question);
   if (word.empty() && std::find(ids.begin(), ids.end(), lower(item.id)) != ids.end()) word = item.id;
   if (!word.empty())
-    advice.add(key + ".id", phrase("problem.identifies", {plain(item.id), plain(word)}),
-               phrase("problem.ask_only"));
+    advice.add(key + ".id",
+               phrase("the item \"%1\" seems to ask for what identifies a person (\"%2\")",
+                      {plain(item.id), plain(word)}),
+               phrase("ask only for what the analysis needs, such as the age in years; keep a list of names "
+                      "and codes elsewhere"));
 }
 
 void check_item_words(AdviceList& advice, const std::string& key, const Item& item) {
@@ -97,7 +100,8 @@ void check_item_words(AdviceList& advice, const std::string& key, const Item& it
         const auto &a = item.choices[i].label, &b = item.choices[j].label;
         if (a.count(language) && b.count(language) && a.at(language) == b.at(language))
           advice.add(key + ".choices." + std::to_string(i) + ".label." + language,
-                     phrase("problem.label_twice", {plain(a.at(language))}), phrase("problem.labels_differ"));
+                     phrase("two answers have the label \"%1\"", {plain(a.at(language))}),
+                     phrase("give each answer a different label"));
       }
 }
 
@@ -129,7 +133,10 @@ void check_asked(AdviceList& advice, const Interlude& screening) {
                          within(screening.audience.groups, asked.audience.groups);
         if (all && std::all_of(item.when.begin(), item.when.end(), required)) continue;
         advice.found.push_back(
-            {rule.place, phrase("problem.not_asked", {plain(rule.about)}), phrase("problem.ask_everybody")});
+            {rule.place,
+             phrase("\"%1\" is not asked of everybody, and nobody passes without an answer",
+                    {plain(rule.about)}),
+             phrase("ask it of everybody, with an answer for those to whom it does not apply")});
       }
 }
 

@@ -46,11 +46,18 @@ void check_label(AdviceList& advice, const std::string& key, const std::string& 
   const auto room = room_for(answers);
   const auto length = length_of(label);
   if (length.word > room.word)
-    advice.add(key, phrase("problem.label_words", {plain(label), plain(answers), plain(room.word)}),
-               phrase("problem.shorter_words"));
+    advice.add(
+        key,
+        phrase("\"%1\" does not fit a screen of 7 inches, where each of %2 answers has room for words of %3 "
+               "letters",
+               {plain(label), plain(answers), plain(room.word)}),
+        phrase("shorter words, fewer answers, or a soft hyphen (\\u00AD) where a word may be divided"));
   else if (length.label > room.label)
-    advice.add(key, phrase("problem.label_letters", {plain(label), plain(answers), plain(room.label)}),
-               phrase("problem.shorter_label"));
+    advice.add(
+        key,
+        phrase("\"%1\" does not fit a screen of 7 inches, where each of %2 answers has room for %3 letters",
+               {plain(label), plain(answers), plain(room.label)}),
+        phrase("a shorter label, or fewer answers"));
 }
 
 }  // namespace

@@ -59,8 +59,9 @@ Protocol load(const std::string& path) {
   text::Findings findings;
   for (const auto& picture : pictures(protocol))
     if (!is_picture(picture.path))
-      findings.add(picture.place, phrase("problem.picture", {plain(picture.path)}),
-                   phrase("problem.relative_protocol"));
+      findings.add(picture.place,
+                   phrase("the picture %1 does not exist, or is neither PNG nor JPEG", {plain(picture.path)}),
+                   phrase("write a path relative to the protocol file"));
   findings.throw_if_any();
   return protocol;
 }

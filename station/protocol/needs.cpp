@@ -22,30 +22,36 @@ void check_devices(const Protocol& protocol, const rig::Rig& rig, Survey& survey
   };
   const auto& task = protocol.task;
   if (task.device == Device::buttons && !rig.buttons_uri)
-    add(task.device_place, phrase("problem.needs_buttons"),
-        phrase("problem.use_buttons", {plain("device = \"touch\"")}));
+    add(task.device_place, phrase("the task needs buttons, but the rig has none"),
+        phrase("use a rig with [buttons], or set %1", {plain("device = \"touch\"")}));
   if (task.device == Device::touch && !rig.touch_uri)
-    add(task.device_place, phrase("problem.needs_touch"),
-        phrase("problem.use_touch", {plain("device = \"buttons\"")}));
+    add(task.device_place, phrase("the task needs a touchscreen, but the rig has none"),
+        phrase("use a rig with [touch], or set %1", {plain("device = \"buttons\"")}));
   if (task.device == Device::either && !rig.touch_uri && !rig.buttons_uri)
-    add(task.device_place, phrase("problem.no_device"), phrase("problem.use_touch_buttons"));
+    add(task.device_place, phrase("the rig has neither touchscreen nor buttons"),
+        phrase("use a rig with [touch] or [buttons]"));
   const bool two_lines = rig.buttons_uri && rig.buttons_uri->rfind("gpio:", 0) == 0 &&
                          rig.buttons_uri->find("third=") == std::string::npos;
   const std::size_t answers = task.choices.size(), buttons = two_lines ? 2 : 3;
   if (task.device == Device::buttons && answers > buttons && rig.buttons_uri)
-    add(task.device_place, phrase("problem.few_buttons", {plain(answers), plain(buttons)}),
-        answers == 3 ? phrase("problem.add_third", {plain("device = \"touch\"")})
-                     : phrase("problem.set", {plain("device = \"touch\"")}));
+    add(task.device_place,
+        phrase("the task has %1 answers, but the rig has only %2 buttons", {plain(answers), plain(buttons)}),
+        answers == 3 ? phrase("add a line \"third\" to [buttons], or set %1", {plain("device = \"touch\"")})
+                     : phrase("set %1", {plain("device = \"touch\"")}));
   if (task.sound == Sound::masking_noise && !rig.noise)
-    add(task.sound_place, phrase("problem.needs_noise"), phrase("problem.use_noise"));
+    add(task.sound_place, phrase("the task needs masking noise, but the rig has none"),
+        phrase("use a rig with [noise] (headphones on a spare channel), or leave out \"sound\""));
   const auto& signal = protocol.timing.signal;
   if (signal && signal->by == ResponseSignal::By::tone && !(rig.noise && rig.noise->signal))
-    add(signal->by_place, phrase("problem.needs_signal_tone"),
-        phrase("problem.use_noise_signal", {plain("by = \"screen\"")}));
+    add(signal->by_place, phrase("the response signal is a tone, but the rig has none"),
+        phrase("use a rig with [noise] (headphones on a spare channel) and its \"signal\", or set %1",
+               {plain("by = \"screen\"")}));
   const auto zero = protocol.timing.response_zero;
   const bool contact = zero == ResponseZero::first_contact || zero == ResponseZero::lift_off;
   if (contact && !rig.contact_uri)
-    add(protocol.timing.response_zero_place, phrase("problem.needs_contact"), phrase("problem.use_contact"));
+    add(protocol.timing.response_zero_place,
+        phrase("response times are measured from the finger's contact, but the rig cannot sense contact"),
+        phrase("use a rig with [contact], or another \"response_zero\""));
 }
 
 /// The shortest time from the beginning of an interval, or of its second scene, to the next event.
@@ -67,14 +73,19 @@ void check_triggers(const Protocol& protocol, const rig::Rig& rig, Survey& surve
   if (most != codes.end() && most->code > largest)
     survey.problems.push_back(
         {place,
-         phrase("problem.codes_up_to",
+         phrase("the trigger codes go up to %1, for %2 conditions",
                 {plain(most->code), plain(codes.size() / protocol.triggers.send.size() - 1)}),
-         phrase("problem.outputs_up_to", {plain(largest)})});
+         phrase("the rig's outputs give codes up to %1; send fewer events (\"send\" in [triggers]), or use a "
+                "rig with more trigger lines",
+                {plain(largest)})});
   const bool marked = rig.marker && rig.marker->kind == rig::Marker::Kind::code;
   const double code_s = marked ? rig::trigger_code_bits * rig.marker->duration_s : 0;
   if (!codes.empty() && code_s > shortest_event_s(protocol))
-    survey.problems.push_back({place, phrase("problem.code_long", {plain(text::number(1e3 * code_s, 3))}),
-                               phrase("problem.shorten_code")});
+    survey.problems.push_back(
+        {place,
+         phrase("a trigger code lasts %1 ms, longer than the shortest time between two events",
+                {plain(text::number(1e3 * code_s, 3))}),
+         phrase("shorten \"duration_ms\" in [marker] of the rig")});
 }
 
 void check_sensing(const Protocol& protocol, const rig::Rig& rig, Survey& survey) {
@@ -82,12 +93,15 @@ void check_sensing(const Protocol& protocol, const rig::Rig& rig, Survey& survey
   if (rig::has_force_cells(rig)) {
     if (rig.capture->uri != "sim:" && !rig.capture->forces)
       survey.problems.push_back(
-          {protocol.sensing->place, phrase("problem.forces_uncalibrated"),
-           phrase("problem.calibrate_forces", {plain("`turnpoint calibrate --forces`")})});
+          {protocol.sensing->place,
+           phrase("the rig's force cells are not calibrated, so the finger's movement is not known"),
+           phrase("calibrate them with %1, or leave out [sensing]",
+                  {plain("`turnpoint calibrate --forces`")})});
     return;
   }
   survey.problems.push_back(
-      {protocol.sensing->place, phrase("problem.no_forces"), phrase("problem.leave_sensing")});
+      {protocol.sensing->place, phrase("the rig has no force cells, so the finger's movement is not known"),
+       phrase("leave out [sensing], or use a rig with \"bridges\" in [capture] or with [force_cells]")});
 }
 
 /// Plans each friction table's trials with the largest displacement, and reports those that the rig cannot
@@ -107,9 +121,9 @@ void check_friction_tables(const Protocol& protocol, const rig::Rig& rig, Survey
     } catch (const scene::Unreachable& error) {
       survey.problems.push_back(
           {block.place,
-           phrase("problem.friction_table",
+           phrase("friction table \"%1\" at %2 um: %3",
                   {plain(block.name), plain(text::number(strokes.levels_um.back())), error.why()}),
-           phrase("problem.smaller_displacement")});
+           phrase("use smaller displacements, or another scene")});
     }
   }
 }

@@ -14,8 +14,8 @@ using text::TableReader;
 
 namespace {
 
-const std::vector<std::string> kShown{"psychometric",    "diffusion",   "bis", "lisas", "ies", "caf", "dprime",
-                                      "response-signal", "trace"};
+const std::vector<std::string> kShown{"psychometric", "diffusion",       "bis",  "lisas", "ies", "caf",
+                                      "dprime",       "response-signal", "trace"};
 
 void read_by(TableReader& reader, Reading& reading) {
   auto& by = reading.protocol.analysis.by;
@@ -30,18 +30,19 @@ void read_by(TableReader& reader, Reading& reading) {
   for (const auto& name : by) {
     const auto* factor = find_factor(factors, name);
     if (!factor)
-      reader.problem("by", phrase("problem.unknown_factor", {plain(name)}),
+      reader.problem("by", phrase("unknown factor \"%1\"", {plain(name)}),
                      text::suggestion(name, names(factors)));
     else if (factor->levels.empty())
-      reader.problem("by", phrase("problem.factor_range", {plain(name)}),
-                     phrase("problem.levels_for_curves"));
+      reader.problem("by", phrase("the factor \"%1\" has a range, not levels", {plain(name)}),
+                     phrase("use factors with \"levels\", because one curve is fitted for each level"));
     else if (!seen.insert(name).second)
-      reader.problem("by", phrase("problem.twice_in_list", {plain(name), plain("\"by\"")}),
-                     phrase("problem.factor_once"));
+      reader.problem("by", phrase("\"%1\" appears twice in %2", {plain(name), plain("\"by\"")}),
+                     phrase("list each factor only once"));
     for (const auto& spec : reading.protocol.procedures)
       if (spec.level == name)
-        reader.problem("by", phrase("problem.procedure_sets", {plain(spec.name), plain(name)}),
-                       phrase("problem.unset_factors"));
+        reader.problem("by", phrase("the procedure \"%1\" sets \"%2\"", {plain(spec.name), plain(name)}),
+                       phrase("use factors that no procedure sets, because each curve needs several levels "
+                              "of the procedure's own factor"));
   }
 }
 
@@ -50,30 +51,32 @@ texts::Phrase without_effect(const std::string& word, const Protocol& protocol) 
   const auto& task = protocol.task;
   // do not add a second message: the reader of [task] has reported a task without choices
   if (word == "trace" || task.choices.empty()) return {};
-  if (task.kind == TaskKind::adjustment) return phrase("problem.adjustment_settings");
+  if (task.kind == TaskKind::adjustment) return phrase("an adjustment task has settings instead of answers");
   if (word == "dprime" && task.present) return {};
-  if (judges(task)) return phrase("problem.judgements_unscored");
+  if (judges(task)) return phrase("ratings and numbers are neither right nor wrong");
   const auto& procedures = protocol.procedures;
   if ((word == "psychometric" || word == "dprime") && !procedures.empty() &&
       std::all_of(procedures.begin(), procedures.end(), [&](const auto& spec) {
         return answer_rule(protocol, spec.level).kind == AnswerKind::category;
       }))
-    return phrase("problem.level_decides");
+    return phrase("the level decides which answer is right, not how difficult the trial is");
   if (word == "diffusion" && task.choices.size() > 2 && task.kind != TaskKind::oddity)
-    return phrase("problem.diffusion_two");
+    return phrase("the diffusion model is a model of two answers");
   const auto& by = protocol.analysis.by;
   for (const auto& spec : protocol.procedures)
     if (word == "psychometric" && spec.second &&
         std::find(by.begin(), by.end(), spec.second->level) == by.end())
-      return phrase("problem.threshold_depends", {plain(spec.second->level)});
+      return phrase("the threshold depends on \"%1\", so one curve does not describe all trials",
+                    {plain(spec.second->level)});
   if (word == "psychometric") return {};
   if (task.kind == TaskKind::single_interval && task.correct_answer.empty())
-    return phrase("problem.without_correct");
-  if (word == "response-signal" && !protocol.timing.signal) return phrase("problem.no_signal_key");
+    return phrase("without \"correct\" in [task], no answer is right or wrong");
+  if (word == "response-signal" && !protocol.timing.signal)
+    return phrase("[timing] has no \"response_signal\"");
   if (word == "dprime" && (task.kind == TaskKind::oddity || task.kind == TaskKind::same_different))
-    return phrase("problem.no_dprime");
+    return phrase("d' is not estimated for \"oddity\" and \"same-different\"");
   if (word == "bis" && protocol.analysis.by.empty() && protocol.instructions.size() < 2)
-    return phrase("problem.bis_one");
+    return phrase("BIS compares conditions, and there is only one");
   return {};
 }
 
@@ -89,14 +92,14 @@ void read_show(TableReader& reader, Reading& reading) {
     if (without_effect(word, reading.protocol).empty()) useful.push_back(word);
   for (const auto& word : *analysis.show) {
     if (std::find(kShown.begin(), kShown.end(), word) == kShown.end()) {
-      reader.problem("show", phrase("problem.has_word", {plain("show"), plain(word)}),
+      reader.problem("show", phrase("\"%1\" has \"%2\"", {plain("show"), plain(word)}),
                      text::suggestion(word, kShown));
       continue;
     }
     const auto reason = without_effect(word, reading.protocol);
     if (!reason.empty())
-      reader.problem("show", phrase("problem.shows_nothing", {plain(word), reason}),
-                     phrase("problem.allowed_here", {text::quoted_list(useful)}));
+      reader.problem("show", phrase("\"%1\" would show nothing: %2", {plain(word), reason}),
+                     phrase("allowed here: %1", {text::quoted_list(useful)}));
   }
 }
 
@@ -118,8 +121,10 @@ void read_analysis(TableReader& file, Reading& reading) {
   const auto incomplete = reader.maybe_word("incomplete_sessions", {"leave_out", "count"});
   if (incomplete) analysis.count_incomplete = *incomplete == "count";
   if (incomplete == "leave_out" && sessions && sessions->incomplete == Unfinished::count)
-    reader.problem("incomplete_sessions", phrase("problem.sessions_count"),
-                   plain("incomplete_sessions = \"count\""));
+    reader.problem(
+        "incomplete_sessions",
+        phrase("the protocol counts unfinished sessions already ([sessions] incomplete = \"count\")"),
+        plain("incomplete_sessions = \"count\""));
   if (const auto* exclude = reader.maybe_table("response_time_exclude")) {
     TableReader inner(*exclude, "analysis.response_time_exclude", reading.findings);
     analysis.exclude_below_s = inner.number("below_s", {0, 10, Range::Ends::closed, "s"}, 0);

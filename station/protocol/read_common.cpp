@@ -18,29 +18,32 @@ Localised localised_from(const text::Value& value, const std::string& key, const
   auto& findings = reading.findings;
   const std::string example = "{ " + (languages.empty() ? "en" : languages.front()) + " = \"...\" }";
   if (value.kind != Value::Kind::table) {
-    findings.add(value.place, phrase("problem.is", {plain(key), describe(value)}),
-                 phrase("problem.each_language", {plain(example)}));
+    findings.add(value.place, phrase("\"%1\" is %2", {plain(key), describe(value)}),
+                 phrase("write a text in each language: %1", {plain(example)}));
     return texts;
   }
   for (const auto& entry : value.entries) {
     if (std::find(languages.begin(), languages.end(), entry.key) == languages.end())
-      findings.add(entry.place, phrase("problem.undeclared_language", {plain(key), plain(entry.key)}),
-                   phrase("problem.declared_languages", {text::quoted_list(languages)}));
+      findings.add(entry.place,
+                   phrase("\"%1\" has a text in \"%2\", which is not a declared language",
+                          {plain(key), plain(entry.key)}),
+                   phrase("the languages declared in [protocol] are %1", {text::quoted_list(languages)}));
     else if (entry.value.kind != Value::Kind::string || entry.value.string.empty())
-      findings.add(entry.value.place, phrase("problem.is", {plain(key), describe(entry.value)}),
-                   phrase("problem.write_text"));
+      findings.add(entry.value.place, phrase("\"%1\" is %2", {plain(key), describe(entry.value)}),
+                   phrase("write a text in quotes"));
     else
       texts[entry.key] = entry.value.string;
   }
   for (const auto& language : languages)
     if (!value.find(language))
-      findings.add(value.place, phrase("problem.no_text_in", {plain(key), plain(language)}),
-                   phrase("problem.every_language"));
+      findings.add(value.place, phrase("\"%1\" has no text in \"%2\"", {plain(key), plain(language)}),
+                   phrase("write a text in every language that [protocol] declares"));
   return texts;
 }
 
 Localised read_localised(TableReader& reader, const std::string& key, const Reading& reading) {
-  const auto* value = reader.require(key, phrase("problem.each_language", {plain("{ en = \"...\" }")}));
+  const auto* value =
+      reader.require(key, phrase("write a text in each language: %1", {plain("{ en = \"...\" }")}));
   return value ? localised_from(*value, key, reading) : Localised{};
 }
 
@@ -50,7 +53,8 @@ std::optional<Distribution> read_distribution(TableReader& reader, const std::st
   const text::Range seconds{0, 3600, text::Range::Ends::closed, "s"};
   if (value->kind == Value::Kind::table) {
     TableReader inner(*value, reader.path(key), reader.findings());
-    inner.require("uniform", phrase("problem.give_times", {plain("{ uniform = [0.8, 1.2] }")}));
+    inner.require("uniform", phrase("give the shortest and longest time in seconds: %1",
+                                    {plain("{ uniform = [0.8, 1.2] }")}));
     const auto interval = inner.maybe_interval("uniform", seconds);
     inner.finish();
     return interval ? std::optional(Distribution{interval->first, interval->second}) : std::nullopt;
@@ -65,7 +69,8 @@ std::string read_name(TableReader& reader, const std::string& key, const texts::
     return std::isalnum(static_cast<unsigned char>(c)) || c == '_' || c == '-';
   };
   if (!std::all_of(name.begin(), name.end(), good) || name.size() > 64)
-    reader.problem(key, phrase("problem.is_word", {plain(key), plain(name)}), phrase("problem.allowed_name"));
+    reader.problem(key, phrase("\"%1\" is \"%2\"", {plain(key), plain(name)}),
+                   phrase("allowed: at most 64 letters, digits, _ and -"));
   return name;
 }
 
@@ -86,36 +91,38 @@ std::optional<FactorValue> read_factor_value(const text::Value& value, const Fac
   const bool numeric = span(factor).has_value();
   const bool is_number = value.kind == Value::Kind::number || value.kind == Value::Kind::integer;
   if (numeric != is_number || (!numeric && value.kind != Value::Kind::string)) {
-    findings.add(value.place, phrase("problem.value_is", {plain(factor.name), describe(value)}),
-                 numeric ? phrase("problem.write_number") : phrase("problem.one_of_names"));
+    findings.add(value.place, phrase("a value of \"%1\" is %2", {plain(factor.name), describe(value)}),
+                 numeric ? phrase("write a number")
+                         : phrase("write one of the names in the factor's list, in quotes"));
     return std::nullopt;
   }
   const FactorValue result = numeric ? FactorValue(value.number) : FactorValue(value.string);
   if (factor.range) {
     const text::Range range{factor.range->first, factor.range->second};
     if (text::inside_range(value.number, range)) return result;
-    findings.add(value.place, phrase("problem.is", {plain(factor.name), plain(text::number(value.number))}),
-                 phrase("problem.factor_range_is", {describe(range)}));
+    findings.add(value.place, phrase("\"%1\" is %2", {plain(factor.name), plain(text::number(value.number))}),
+                 phrase("the factor's range is %1", {describe(range)}));
     return std::nullopt;
   }
   if (std::find(factor.levels.begin(), factor.levels.end(), result) != factor.levels.end()) return result;
   std::string levels;
   for (const auto& level : factor.levels) levels += (levels.empty() ? "" : ", ") + shown(level);
-  findings.add(value.place, phrase("problem.is", {plain(factor.name), plain(shown(result))}),
-               phrase("problem.factor_levels_are", {plain(levels)}));
+  findings.add(value.place, phrase("\"%1\" is %2", {plain(factor.name), plain(shown(result))}),
+               phrase("the factor's levels are %1", {plain(levels)}));
   return std::nullopt;
 }
 
 const Factor* read_numeric_factor(TableReader& reader, const std::string& key, const Reading& reading) {
   const auto& factors = reading.protocol.factors;
-  const auto name = reader.string(key, phrase("problem.factor_name"));
+  const auto name = reader.string(key, phrase("write the name of a factor"));
   if (name.empty()) return nullptr;
   const auto* factor = find_factor(factors, name);
   if (!factor)
-    reader.problem(key, phrase("problem.unknown_factor", {plain(name)}),
+    reader.problem(key, phrase("unknown factor \"%1\"", {plain(name)}),
                    text::suggestion(name, names(factors)));
   else if (!span(*factor) && !is_broken(*factor))
-    reader.problem(key, phrase("problem.factor_names", {plain(name)}), phrase("problem.use_numeric"));
+    reader.problem(key, phrase("the factor \"%1\" has names as values, not numbers", {plain(name)}),
+                   phrase("use a factor with a range or numeric levels"));
   return factor && (span(*factor) || is_broken(*factor)) ? factor : nullptr;
 }
 
@@ -124,7 +131,7 @@ std::string read_scene_name(TableReader& reader, const std::string& key, const t
   auto name = reader.string(key, what);
   const auto& known = reading.declared_scenes;
   if (reader.has(key) && std::find(known.begin(), known.end(), name) == known.end())
-    reading.findings.add(reader.place(key), phrase("problem.unknown_scene", {plain(name)}),
+    reading.findings.add(reader.place(key), phrase("unknown scene \"%1\"", {plain(name)}),
                          text::suggestion(name, known));
   return name;
 }

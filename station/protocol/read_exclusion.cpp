@@ -20,14 +20,16 @@ void check_rules(TableReader& reader, const Reading& reading) {
               (std::holds_alternative<Block>(part) ? std::get<Block>(part) : std::get<Sequence>(part).block)
                   .catch_trials.has_value();
   if (rules.catch_accuracy_below && !catches)
-    reader.problem("catch_accuracy_below", phrase("problem.no_catch"), phrase("problem.add_catch"));
+    reader.problem("catch_accuracy_below", phrase("no block has catch trials"),
+                   phrase("add \"catch\" to a block, or leave this rule out"));
   const auto& task = protocol.task;
   // Do not report a task without choices again: the reader of [task] has reported that mistake.
   const bool unscored =
       judges(task) || task.kind == TaskKind::adjustment ||
       (task.kind == TaskKind::single_interval && !task.choices.empty() && task.correct_answer.empty());
   if (rules.accuracy_below && unscored)
-    reader.problem("accuracy_below", phrase("problem.task_unscored"), phrase("problem.leave_rule"));
+    reader.problem("accuracy_below", phrase("no answer of this task is right or wrong"),
+                   phrase("leave this rule out"));
 }
 
 }  // namespace
@@ -50,11 +52,13 @@ void read_exclusion(TableReader& file, Reading& reading) {
   rules.incomplete = reader.boolean("incomplete", "false");
   if (rules.median_time_below_s && rules.median_time_above_s &&
       *rules.median_time_below_s >= *rules.median_time_above_s)
-    reader.problem("median_time_below_s", phrase("problem.all_medians"), phrase("problem.below_median"));
+    reader.problem("median_time_below_s", phrase("every median time would be excluded"),
+                   phrase("write a value below \"median_time_above_s\""));
   check_rules(reader, reading);
   reader.finish();
   if (table->entries.empty())
-    reading.findings.add(table->place, phrase("problem.exclusion_no_rule"), phrase("problem.state_one"));
+    reading.findings.add(table->place, phrase("[exclusion] has no rule"),
+                         phrase("state at least one, or leave the table out"));
 }
 
 }  // namespace turnpoint::protocol

@@ -29,16 +29,16 @@ void read_seed(TableReader& file, Reading& reading) {
     return;
   }
   TableReader reader(*table, "random", reading.findings);
-  const auto* seed = reader.require("seed", phrase("problem.write_seed"));
+  const auto* seed = reader.require("seed", phrase("write \"per-session\" or a whole number from 0 to 2^53"));
   if (seed && seed->kind == Value::Kind::integer && seed->integer >= 0 &&
       seed->integer <= (std::int64_t{1} << 53))
     reading.protocol.seed = static_cast<std::uint64_t>(seed->integer);
   else if (seed && (seed->kind != Value::Kind::string || seed->string != "per-session"))
     reader.problem(
         "seed",
-        phrase("problem.is",
+        phrase("\"%1\" is %2",
                {plain("seed"), seed->kind == Value::Kind::integer ? plain(seed->integer) : describe(*seed)}),
-        phrase("problem.allowed_seed"));
+        phrase("allowed: \"per-session\" or a whole number from 0 to 2^53"));
   reader.finish();
 }
 
@@ -47,8 +47,9 @@ void check_factor_name(TableReader& reader, const std::string& name) {
   if (name.empty()) return;
   if (!std::all_of(name.begin(), name.end(), good) || std::isdigit(static_cast<unsigned char>(name[0])) ||
       name == "abs")
-    reader.problem("name", phrase("problem.bad_factor_name", {plain(name)}),
-                   phrase("problem.factor_name_rule"));
+    reader.problem("name", phrase("\"%1\" is not a valid name for a factor", {plain(name)}),
+                   phrase("use letters, digits and _, and do not begin with a digit; end the name with the "
+                          "unit: \"offset_mm\""));
 }
 
 void read_level(const text::Value& item, Factor& factor, text::Findings& findings) {
@@ -58,13 +59,13 @@ void read_level(const text::Value& item, Factor& factor, text::Findings& finding
   const FactorValue value = number ? FactorValue(item.number) : FactorValue(item.string);
   const auto& levels = factor.levels;
   if (!fits || (!levels.empty() && value.index() != levels.front().index()))
-    findings.add(item.place, phrase("problem.level_is", {plain(factor.name), describe(item)}),
-                 phrase("problem.levels_alike"));
+    findings.add(item.place, phrase("a level of \"%1\" is %2", {plain(factor.name), describe(item)}),
+                 phrase("levels must be either all numbers (between -1000000 and 1000000) or all names"));
   else if (std::find(levels.begin(), levels.end(), value) != levels.end())
-    findings.add(item.place, phrase("problem.level_again", {plain(factor.name)}),
-                 phrase("problem.levels_distinct"));
+    findings.add(item.place, phrase("a level of \"%1\" appears twice", {plain(factor.name)}),
+                 phrase("each level must be different"));
   else if (factor.range && !text::inside_range(item.number, {factor.range->first, factor.range->second}))
-    findings.add(item.place, phrase("problem.level_out_of_range", {plain(factor.name)}),
+    findings.add(item.place, phrase("a level of \"%1\" is outside its range", {plain(factor.name)}),
                  describe(Range{factor.range->first, factor.range->second}));
   else
     factor.levels.push_back(value);
@@ -88,8 +89,10 @@ void read_draw(TableReader& reader, Factor& factor, bool has_levels, Reading& re
     factor.sd = inner.number("sd", {0, high - low, Range::Ends::open_low});
     inner.finish();
   } else {
-    reader.problem("draw", phrase("problem.draw_is", {plain(factor.name), describe(*draw)}),
-                   phrase("problem.draw_allowed", {plain("{ normal = { mean = ..., sd = ... } }")}));
+    reader.problem(
+        "draw", phrase("\"draw\" of \"%1\" is %2", {plain(factor.name), describe(*draw)}),
+        phrase("with a range: \"uniform\" or %1; with levels: \"without-repetition\" or \"per-participant\"",
+               {plain("{ normal = { mean = ..., sd = ... } }")}));
   }
 }
 
@@ -97,20 +100,19 @@ Factor read_factor(const text::Value& table, Reading& reading) {
   TableReader reader(table, titled("factor", table), reading.findings);
   Factor factor;
   factor.place = reader.place("name");
-  factor.name = reader.string("name", phrase("problem.name_factor"));
+  factor.name = reader.string("name", phrase("give the factor a name, such as \"offset_mm\""));
   check_factor_name(reader, factor.name);
   factor.range = reader.maybe_interval("range", {-1e6, 1e6});
   const auto* levels = reader.take("levels");
   if (!reader.has("range") && !levels)
-    reading.findings.add(
-        factor.place, phrase("problem.factor_no_values", {plain(factor.name)}),
-        phrase("problem.write_either", {plain("range = [low, high]"), plain("levels = [...]")}));
+    reading.findings.add(factor.place, phrase("the factor \"%1\" has no values", {plain(factor.name)}),
+                         phrase("write %1 or %2", {plain("range = [low, high]"), plain("levels = [...]")}));
   if (levels && (levels->kind != Value::Kind::array || levels->items.empty()))
     reader.problem("levels",
                    levels->kind == Value::Kind::array
-                       ? phrase("problem.levels_empty")
-                       : phrase("problem.is", {plain("levels"), describe(*levels)}),
-                   phrase("problem.write_levels"));
+                       ? phrase("\"levels\" is empty")
+                       : phrase("\"%1\" is %2", {plain("levels"), describe(*levels)}),
+                   phrase("write a list of numbers or of names"));
   else if (levels)
     for (const auto& item : levels->items) read_level(item, factor, reading.findings);
   read_draw(reader, factor, levels != nullptr, reading);
@@ -123,21 +125,25 @@ Factor read_factor(const text::Value& table, Reading& reading) {
 void read_header(TableReader& file, Reading& reading) {
   file.word("format", {"friction-protocol/1"});
   auto& protocol = reading.protocol;
-  if (const auto* table = file.table("protocol", phrase("problem.add_protocol"))) {
+  if (const auto* table =
+          file.table("protocol", phrase("add a table [protocol] with id, version, title and languages"))) {
     TableReader reader(*table, "protocol", reading.findings);
-    protocol.id = read_name(reader, "id", phrase("problem.short_id"));
-    protocol.version = reader.string("version", phrase("problem.write_version"));
-    protocol.title = reader.string("title", phrase("problem.write_title"));
-    protocol.languages =
-        reader.strings("languages", phrase("problem.write_languages", {plain("[\"en\", \"ja\"]")}));
+    protocol.id = read_name(
+        reader, "id", phrase("choose a short name; exported data are written to a folder with this name"));
+    protocol.version =
+        reader.string("version", phrase("write a text such as \"1.0.0\" and increase it with each change"));
+    protocol.title = reader.string("title", phrase("write a title for the researcher"));
+    protocol.languages = reader.strings(
+        "languages", phrase("write a list of language codes: %1", {plain("[\"en\", \"ja\"]")}));
     std::set<std::string> seen;
     for (const auto& code : protocol.languages)
       if (!is_language(code))
-        reader.problem("languages", phrase("problem.in_languages", {plain(code)}),
-                       phrase("problem.language_code"));
+        reader.problem("languages", phrase("\"%1\" in \"languages\"", {plain(code)}),
+                       phrase("a language code has 2 to 16 letters, with a hyphen before a region, such as "
+                              "\"en\" or \"pt-BR\""));
       else if (!seen.insert(code).second)
-        reader.problem("languages", phrase("problem.in_languages", {plain(code)}),
-                       phrase("problem.languages_once"));
+        reader.problem("languages", phrase("\"%1\" in \"languages\"", {plain(code)}),
+                       phrase("list each language code only once, such as \"en\", \"de\", \"ja\""));
     reader.finish();
   }
   read_seed(file, reading);
@@ -148,14 +154,14 @@ void read_factors(TableReader& file, Reading& reading) {
   constexpr std::size_t most_factors = 100;
   const auto tables = file.tables("factor");
   if (tables.size() > most_factors)
-    return reading.findings.add(tables[most_factors]->place,
-                                phrase("problem.factors", {plain(tables.size())}),
-                                phrase("problem.at_most", {plain(most_factors)}));
+    return reading.findings.add(tables[most_factors]->place, phrase("%1 factors", {plain(tables.size())}),
+                                phrase("at most %1", {plain(most_factors)}));
   for (const auto* table : tables) {
     auto factor = read_factor(*table, reading);
     if (find_factor(factors, factor.name))
-      reading.findings.add(factor.place, phrase("problem.factor_again", {plain(factor.name)}),
-                           phrase("problem.factor_names_differ"));
+      reading.findings.add(factor.place,
+                           phrase("there is already a factor named \"%1\"", {plain(factor.name)}),
+                           phrase("each factor needs a different name"));
     else
       factors.push_back(std::move(factor));
   }

@@ -72,17 +72,18 @@ void check_value(const AnswerCondition& rule, const Item* item, const std::strin
                         : item              ? static_cast<double>(item->choices.size())
                                             : 1;
     if (!number || *number < low || *number > high)
-      findings.add(rule.place, phrase("problem.compares_number", {plain(rule.source), plain(right)}),
-                   phrase("problem.number_from_to", {plain(text::number(low)), plain(text::number(high))}));
+      findings.add(rule.place,
+                   phrase("\"%1\" compares a number with \"%2\"", {plain(rule.source), plain(right)}),
+                   phrase("a number from %1 to %2", {plain(text::number(low)), plain(text::number(high))}));
     return;
   }
   std::vector<std::string> ids;
   for (const auto& choice : item->choices) ids.push_back(choice.id);
   if (rule.relation != Relation::equal)
-    findings.add(rule.place, phrase("problem.choices_ordered", {plain(rule.source)}),
-                 phrase("problem.use", {plain("== or !=")}));
+    findings.add(rule.place, phrase("\"%1\" puts choices in an order", {plain(rule.source)}),
+                 phrase("use %1", {plain("== or !=")}));
   else if (std::find(ids.begin(), ids.end(), right) == ids.end())
-    findings.add(rule.place, phrase("problem.no_such_choice", {plain(rule.source), plain(right)}),
+    findings.add(rule.place, phrase("\"%1\": there is no choice \"%2\"", {plain(rule.source), plain(right)}),
                  text::suggestion(right, ids));
 }
 
@@ -92,10 +93,10 @@ void add_rule(const Value& value, const Interlude& here, const Reading& reading,
       {"==", Relation::equal, false},      {"!=", Relation::equal, true},
       {"<=", Relation::less_equal, false}, {">=", Relation::greater_equal, false},
       {"<", Relation::less, false},        {">", Relation::greater, false}};
-  const auto example =
-      phrase("problem.comparison_or", {plain("\"age >= 18\""), plain("\"practice.accuracy >= 0.8\"")});
+  const auto example = phrase("write a comparison in quotes: %1 or %2",
+                              {plain("\"age >= 18\""), plain("\"practice.accuracy >= 0.8\"")});
   if (value.kind != Value::Kind::string)
-    return reading.findings.add(value.place, phrase("problem.rule_is", {describe(value)}), example);
+    return reading.findings.add(value.place, phrase("a rule is %1", {describe(value)}), example);
   for (const auto& [sign, relation, unequal] : signs) {
     const auto at = value.string.find(sign);
     if (at == std::string::npos) continue;
@@ -106,7 +107,7 @@ void add_rule(const Value& value, const Interlude& here, const Reading& reading,
     const auto right = without_spaces(value.string.substr(at + std::string(sign).size()));
     const auto* item = find_item(rule.about, here, reading.protocol);
     if (!item && !is_score(rule.about, here, reading.protocol))
-      return reading.findings.add(value.place, phrase("problem.nothing_above", {plain(rule.about)}),
+      return reading.findings.add(value.place, phrase("nothing above is called \"%1\"", {plain(rule.about)}),
                                   text::suggestion(rule.about, known_names(here, reading.protocol)));
     const auto number = text::read_number(right);
     const bool numeric = !item || item->value || item->rating;
@@ -115,7 +116,7 @@ void add_rule(const Value& value, const Interlude& here, const Reading& reading,
     rules.push_back(std::move(rule));
     return;
   }
-  reading.findings.add(value.place, phrase("problem.no_comparison", {plain(value.string)}), example);
+  reading.findings.add(value.place, phrase("\"%1\" is not a comparison", {plain(value.string)}), example);
 }
 
 std::vector<AnswerCondition> read_rules(TableReader& reader, const std::string& key, const Interlude& here,
@@ -145,26 +146,26 @@ void read_simulated(TableReader& reader, Item& item, const Reading& reading) {
            std::any_of(item.choices.begin(), item.choices.end(), is))
     item.simulated = value->string;
   else
-    reading.findings.add(value->place, phrase("problem.is", {plain("simulated"), describe(*value)}),
-                         phrase("problem.allowed_answer"));
+    reading.findings.add(value->place, phrase("\"%1\" is %2", {plain("simulated"), describe(*value)}),
+                         phrase("an answer that the item allows"));
 }
 
 Item read_item(const Value& table, const Interlude& here, const std::string& path, const Reading& reading) {
   TableReader reader(table, path, reading.findings);
   Item item;
   item.place = reader.place("id");
-  item.id = read_name(reader, "id", phrase("problem.short_item"));
+  item.id = read_name(reader, "id", phrase("choose a short name, which is stored with the answer"));
   item.question = read_localised(reader, "question", reading);
   const int kinds = reader.has("choices") + reader.has("rating") + reader.has("number");
   if (kinds != 1)
     reader.problem("id",
-                   kinds == 0 ? phrase("problem.item_no_answers", {plain(item.id)})
-                              : phrase("problem.item_two_kinds", {plain(item.id)}),
-                   phrase("problem.write_answers"));
+                   kinds == 0 ? phrase("the item \"%1\" has no answers", {plain(item.id)})
+                              : phrase("the item \"%1\" has two kinds of answers", {plain(item.id)}),
+                   phrase("write \"choices\", a \"rating\" or a \"number\""));
   item.choices = read_choice_list(reader, path + ".choices", reading);
   if (reader.has("choices") && (item.choices.size() < 2 || item.choices.size() > most_choices))
-    reader.problem("choices", phrase("problem.has", {plain("choices"), plain(item.choices.size())}),
-                   phrase("problem.from_to", {plain("2"), plain("9")}));
+    reader.problem("choices", phrase("\"%1\" has %2", {plain("choices"), plain(item.choices.size())}),
+                   phrase("from %1 to %2", {plain("2"), plain("9")}));
   if (const auto* rating = reader.maybe_table("rating")) {
     auto scale = read_scale(*rating, reader.path("rating"), reading);
     item.rating = !scale.choices.empty();
@@ -184,17 +185,19 @@ Item read_item(const Value& table, const Interlude& here, const std::string& pat
 }
 
 void read_items(TableReader& reader, Interlude& interlude, const Reading& reading) {
-  reader.require("item", phrase("problem.add_item"));
+  reader.require("item", phrase("add at least one [[questionnaire.item]] below it"));
   const auto tables = reader.tables("item");
   if (tables.size() > most_items)
-    return reader.problem("item", phrase("problem.has_items", {plain(interlude.name), plain(tables.size())}),
-                          phrase("problem.at_most", {plain(most_items)}));
+    return reader.problem("item",
+                          phrase("\"%1\" has %2 items", {plain(interlude.name), plain(tables.size())}),
+                          phrase("at most %1", {plain(most_items)}));
   for (const auto* table : tables) {
     auto item = read_item(*table, interlude, reader.path("item"), reading);
     const auto same = [&](const Item& other) { return other.id == item.id; };
     if (!item.id.empty() && std::any_of(interlude.items.begin(), interlude.items.end(), same))
-      reading.findings.add(item.place, phrase("problem.item_again", {plain(item.id)}),
-                           phrase("problem.items_differ"));
+      reading.findings.add(item.place,
+                           phrase("there is already an item with the id \"%1\"", {plain(item.id)}),
+                           phrase("each item of a questionnaire needs a different id"));
     interlude.items.push_back(std::move(item));
   }
 }
@@ -215,14 +218,14 @@ Example read_example(const Value& table, const std::string& path, const Reading&
   TableReader reader(table, path, reading.findings);
   Example example;
   example.label = read_localised(reader, "label", reading);
-  example.scene = read_scene_name(reader, "scene", phrase("problem.scene_to_present"), reading);
+  example.scene = read_scene_name(reader, "scene", phrase("name the scene to present"), reading);
   example.duration_s = reader.number("duration_s", {0.2, 10, Range::Ends::closed, "s"}, 2);
   const auto& factors = reading.protocol.factors;
   if (const auto* with = reader.maybe_table("with"))
     for (const auto& entry : with->entries) {
       const auto* factor = find_factor(factors, entry.key);
       if (!factor)
-        reading.findings.add(entry.place, phrase("problem.unknown_factor", {plain(entry.key)}),
+        reading.findings.add(entry.place, phrase("unknown factor \"%1\"", {plain(entry.key)}),
                              text::suggestion(entry.key, names(factors)));
       else if (const auto value = read_factor_value(entry.value, *factor, reading.findings))
         example.with[entry.key] = *value;
@@ -232,15 +235,17 @@ Example read_example(const Value& table, const std::string& path, const Reading&
     for (const auto* expression : expressions_of(scene->second))
       for (const auto& name : factors_in(*expression))
         if (!example.with.count(name))
-          reader.problem("with", phrase("problem.does_not_set", {plain("\"with\""), plain(name)}),
-                         plain("with = { " + name + " = ... }"));
+          reader.problem(
+              "with",
+              phrase("%1 does not set \"%2\", on which the scene depends", {plain("\"with\""), plain(name)}),
+              plain("with = { " + name + " = ... }"));
   reader.finish();
   return example;
 }
 
 void read_pages(TableReader& reader, Interlude& interlude, const Reading& reading) {
   constexpr std::size_t most_examples = 4;
-  reader.require("page", phrase("problem.add_page"));
+  reader.require("page", phrase("add at least one [[explanation.page]] below it"));
   for (const auto* table : reader.tables("page")) {
     TableReader inner(*table, reader.path("page"), reading.findings);
     ExplanationPage page;
@@ -250,8 +255,8 @@ void read_pages(TableReader& reader, Interlude& interlude, const Reading& readin
     page.picture_place = inner.place("picture");
     const auto examples = inner.tables("examples");
     if (examples.size() > most_examples)
-      inner.problem("examples", phrase("problem.has", {plain("examples"), plain(examples.size())}),
-                    phrase("problem.four_on_page"));
+      inner.problem("examples", phrase("\"%1\" has %2", {plain("examples"), plain(examples.size())}),
+                    phrase("at most 4 on a page"));
     for (const auto* example : examples)
       page.examples.push_back(read_example(*example, inner.path("examples"), reading));
     inner.finish();
@@ -260,12 +265,12 @@ void read_pages(TableReader& reader, Interlude& interlude, const Reading& readin
 }
 
 void read_screening(TableReader& reader, Interlude& interlude, const Reading& reading) {
-  reader.require("pass", phrase("problem.who_passes",
+  reader.require("pass", phrase("write who passes: %1",
                                 {plain("[\"about-you.age >= 18\", \"practice.accuracy >= 0.8\"]")}));
   interlude.pass = read_rules(reader, "pass", interlude, reading);
   interlude.farewell = read_localised(reader, "farewell", reading);
   if (reader.has("pass") && interlude.pass.empty() && reading.findings.problems.empty())
-    reader.problem("pass", phrase("problem.pass_no_rule"), phrase("problem.one_comparison"));
+    reader.problem("pass", phrase("\"pass\" has no rule"), phrase("write at least one comparison"));
 }
 
 /// Counts the parts of the plan (blocks and sequences) that begin above this line.
@@ -280,13 +285,13 @@ void read_interlude(const Value& table, InterludeKind kind, const char* list, Re
   interlude.kind = kind;
   interlude.place = reader.place();
   interlude.above = parts_above(reading.protocol, table.place);
-  interlude.name = read_name(reader, "name", phrase("problem.choose_name"));
+  interlude.name = read_name(reader, "name", phrase("choose a name, which is stored with the data"));
   std::vector<std::string> parts;
   for (const auto& part : reading.protocol.plan) parts.push_back(plan_name(part));
   const bool repeats = kind == InterludeKind::questionnaire || kind == InterludeKind::explanation;
   if (const auto after = repeats ? reader.maybe_string("after_each") : std::nullopt) {
     if (std::find(parts.begin(), parts.end(), *after) == parts.end())
-      reader.problem("after_each", phrase("problem.no_part", {plain(*after)}),
+      reader.problem("after_each", phrase("there is no block or sequence \"%1\"", {plain(*after)}),
                      text::suggestion(*after, parts));
     interlude.after_each = *after;
   }
@@ -295,8 +300,8 @@ void read_interlude(const Value& table, InterludeKind kind, const char* list, Re
   const auto& others = reading.protocol.interludes;
   if (!interlude.name.empty() && (std::find(parts.begin(), parts.end(), interlude.name) != parts.end() ||
                                   std::any_of(others.begin(), others.end(), same)))
-    reader.problem("name", phrase("problem.part_again", {plain(interlude.name)}),
-                   phrase("problem.parts_differ"));
+    reader.problem("name", phrase("there is already a part named \"%1\"", {plain(interlude.name)}),
+                   phrase("each part of the session needs a different name"));
   if (kind == InterludeKind::questionnaire) read_items(reader, interlude, reading);
   if (kind == InterludeKind::consent) read_consent(reader, interlude, reading);
   if (kind == InterludeKind::explanation) read_pages(reader, interlude, reading);

@@ -18,7 +18,7 @@ namespace {
 
 void read_what(TableReader& reader, Block& block, const Reading& reading) {
   if (reader.has("procedures"))
-    block.procedures = reader.strings("procedures", phrase("problem.name_procedure"));
+    block.procedures = reader.strings("procedures", phrase("name at least one procedure"));
   std::vector<std::string> known, whole;
   for (const auto& spec : reading.protocol.procedures) known.push_back(spec.name);
   for (const auto& name : block.procedures) {
@@ -33,21 +33,22 @@ void read_what(TableReader& reader, Block& block, const Reading& reading) {
   for (const auto& name : block.procedures) {
     // `known` is empty if no procedure could be read. Do not report every name in the list as unknown then.
     if (!known.empty() && std::find(known.begin(), known.end(), name) == known.end())
-      reader.problem("procedures", phrase("problem.unknown_procedure", {plain(name)}),
+      reader.problem("procedures", phrase("unknown procedure \"%1\"", {plain(name)}),
                      text::suggestion(name, known));
     if (!seen.insert(name).second)
-      reader.problem("procedures", phrase("problem.twice", {plain(name)}), phrase("problem.procedure_once"));
+      reader.problem("procedures", phrase("\"%1\" appears twice", {plain(name)}),
+                     phrase("list each procedure only once"));
   }
   const bool levels = reader.has("level") || reader.has("levels");
   reader.take("level"), reader.take("levels");
   if (reader.has("procedures") == levels)
     return reading.findings.add(reader.place(),
-                                levels ? phrase("problem.both_ways", {reader.title()})
-                                       : phrase("problem.presents_nothing", {reader.title()}),
-                                phrase("problem.procedures_or_levels"));
+                                levels ? phrase("%1 has both procedures and fixed levels", {reader.title()})
+                                       : phrase("%1 presents nothing", {reader.title()}),
+                                phrase("write either \"procedures\" or both \"level\" and \"levels\""));
   if (!levels) return;
   const auto* factor = read_numeric_factor(reader, "level", reading);
-  const auto* list = reader.require("levels", phrase("problem.levels_to_present"));
+  const auto* list = reader.require("levels", phrase("list the levels to present"));
   reader.numbers("levels", {-1e6, 1e6});
   if (!factor || !list || list->kind != Value::Kind::array) return;
   block.level = factor->name;
@@ -66,25 +67,29 @@ void read_catch(TableReader& reader, Block& block, const Reading& reading) {
     const auto* value = inner.take(factor.name);
     if (!value) continue;
     if (!trials.factor.empty())
-      inner.problem(factor.name, phrase("problem.catch_second"), phrase("problem.catch_one"));
+      inner.problem(factor.name, phrase("\"catch\" sets a second factor"),
+                    phrase("\"catch\" may set only one factor"));
     trials.factor = factor.name;
     const auto one = [&](const Value& item) {
       const auto read = read_factor_value(item, factor, reading.findings);
       if (const auto* number = read ? std::get_if<double>(&*read) : nullptr)
         trials.levels.push_back(*number);
       else if (read)
-        inner.problem(factor.name, phrase("problem.catch_names"), phrase("problem.numeric_factor"));
+        inner.problem(factor.name, phrase("\"catch\" sets a factor whose values are names"),
+                      phrase("a numeric factor"));
     };
     if (value->kind != Value::Kind::array)
       one(*value);
     else
       for (const auto& item : value->items) one(item);
     if (value->kind == Value::Kind::array && value->items.empty())
-      inner.problem(factor.name, phrase("problem.catch_empty"), phrase("problem.one_easy"));
+      inner.problem(factor.name, phrase("\"catch\" has an empty list"),
+                    phrase("list at least one easy level"));
   }
   if (trials.factor.empty() && table->entries.size() <= 1)
-    reading.findings.add(table->place, phrase("problem.catch_nothing"),
-                         phrase("problem.name_easy", {plain("{ rate = 0.06, offset_mm = [-25.0, 25.0] }")}));
+    reading.findings.add(table->place, phrase("\"catch\" does not say what to present"),
+                         phrase("name a factor and its easy levels: %1",
+                                {plain("{ rate = 0.06, offset_mm = [-25.0, 25.0] }")}));
   inner.finish();
   block.catch_trials = trials;
 }
@@ -94,8 +99,8 @@ void read_practice(TableReader& reader, Block& block, const Reading& reading) {
   const auto* table = reader.maybe_table("pass");
   if (!table) return;
   if (!block.practice)
-    reader.problem("pass", phrase("problem.pass_practice"),
-                   phrase("problem.set", {plain("practice = true")}));
+    reader.problem("pass", phrase("\"pass\" is only allowed in a practice block"),
+                   phrase("set %1", {plain("practice = true")}));
   TableReader inner(*table, reader.path("pass"), reading.findings);
   block.pass = Pass{inner.number("accuracy", {0, 1, Range::Ends::open_low}), inner.integer("retries", 0, 20)};
   inner.finish();
@@ -116,14 +121,15 @@ void read_block_keys(TableReader& reader, Block& block, const Reading& reading) 
                      : order == "alternate" ? Interleave::alternate
                                             : Interleave::none;
   if (std::set(block.procedures.begin(), block.procedures.end()).size() > 1)
-    reader.require("interleave", phrase("problem.allowed_interleave"));
+    reader.require("interleave",
+                   phrase("allowed: \"none\" (one after the other), \"random\" or \"alternate\""));
   read_catch(reader, block, reading);
   read_break(reader, block, reading);
   if (const auto name = reader.maybe_string("instruction")) {
     std::vector<std::string> known;
     for (const auto& [key, instruction] : reading.protocol.instructions) known.push_back(key);
     if (std::find(known.begin(), known.end(), *name) == known.end())
-      reader.problem("instruction", phrase("problem.no_instructions", {plain(*name)}),
+      reader.problem("instruction", phrase("there is no [instructions.%1]", {plain(*name)}),
                      text::suggestion(*name, known));
     block.fixed["instruction"] = *name;
   }
@@ -132,7 +138,7 @@ void read_block_keys(TableReader& reader, Block& block, const Reading& reading) 
 Block read_block(const Value& table, const Reading& reading) {
   TableReader reader(table, titled("block", table), reading.findings);
   Block block;
-  block.name = read_name(reader, "name", phrase("problem.choose_name"));
+  block.name = read_name(reader, "name", phrase("choose a name, which is stored with the data"));
   read_audience(reader, block.audience, reading);
   const auto kind = reader.word("kind", {"trials", "training", "friction-table"}, "trials");
   if (kind == "trials")
@@ -148,30 +154,33 @@ void check_instruction_levels(const Factor& factor, TableReader& reader, const R
   for (const auto& level : factor.levels) {
     const auto* name = std::get_if<std::string>(&level);
     if (name && !reading.protocol.instructions.count(*name))
-      reader.problem("over", phrase("problem.no_instructions", {plain(*name)}), phrase("problem.add_tables"));
+      reader.problem("over", phrase("there is no [instructions.%1]", {plain(*name)}),
+                     phrase("add such a table for each level of the factor \"instruction\""));
   }
 }
 
 Sequence read_sequence(const Value& table, const Reading& reading) {
   TableReader reader(table, titled("sequence", table), reading.findings);
   Sequence sequence;
-  sequence.name = read_name(reader, "name", phrase("problem.choose_name"));
+  sequence.name = read_name(reader, "name", phrase("choose a name, which is stored with the data"));
   reader.word("design", {"latin-square"});
-  sequence.over = reader.string("over", phrase("problem.name_over"));
+  sequence.over = reader.string("over", phrase("name the factor that differs between the blocks"));
   const auto& factors = reading.protocol.factors;
   const auto* factor = find_factor(factors, sequence.over);
   if (!sequence.over.empty() && !factor)
-    reader.problem("over", phrase("problem.unknown_factor", {plain(sequence.over)}),
+    reader.problem("over", phrase("unknown factor \"%1\"", {plain(sequence.over)}),
                    text::suggestion(sequence.over, names(factors)));
   if (factor && factor->levels.size() < 2)
-    reader.problem("over", phrase("problem.few_levels", {plain(sequence.over)}),
-                   phrase("problem.two_levels"));
+    reader.problem(
+        "over",
+        phrase("the factor \"%1\" does not have several levels to put in order", {plain(sequence.over)}),
+        phrase("use a factor with two or more \"levels\""));
   if (factor) check_instruction_levels(*factor, reader, reading);
   sequence.cycles = reader.integer("cycles", 1, 100, 1);
   sequence.mirror = reader.boolean("mirror", "false");
   sequence.one_per_session = reader.word("each_session", {"all", "one"}, "all") == "one";
-  if (const auto* block =
-          reader.table("block", phrase("problem.describe_block", {plain("{ procedures = [\"levels\"] }")}))) {
+  if (const auto* block = reader.table("block", phrase("describe what each block presents: %1",
+                                                       {plain("{ procedures = [\"levels\"] }")}))) {
     TableReader inner(*block, reader.path("block"), reading.findings);
     read_block_keys(inner, sequence.block, reading);
     inner.finish();
@@ -215,11 +224,13 @@ void read_plan(TableReader& file, Reading& reading) {
       reading.protocol.plan.emplace_back(std::move(block));
     }
     if (!name.empty() && !seen.insert(name).second)
-      reading.findings.add(table->find("name")->place, phrase("problem.block_again", {plain(name)}),
-                           phrase("problem.blocks_differ"));
+      reading.findings.add(table->find("name")->place,
+                           phrase("there is already a block or sequence named \"%1\"", {plain(name)}),
+                           phrase("each block and sequence needs a different name"));
   }
   if (tables.empty() && !file.has("block") && !file.has("sequence"))
-    reading.findings.add(file.place(), phrase("problem.no_blocks"), phrase("problem.add_one"));
+    reading.findings.add(file.place(), phrase("the file has no [[block]] and no [[sequence]]"),
+                         phrase("add at least one of them"));
 }
 
 }  // namespace turnpoint::protocol

@@ -46,13 +46,14 @@ void check_balance(TableReader& reader, const Spec& spec, const Reading& reading
   for (const auto& name : spec.balance) {
     const auto* factor = find_factor(factors, name);
     if (!factor)
-      reader.problem("balance", phrase("problem.unknown_factor", {plain(name)}),
+      reader.problem("balance", phrase("unknown factor \"%1\"", {plain(name)}),
                      text::suggestion(name, names(factors)));
     else if (factor->levels.empty())
-      reader.problem("balance", phrase("problem.factor_range", {plain(name)}),
-                     phrase("problem.factor_with_levels"));
+      reader.problem("balance", phrase("the factor \"%1\" has a range, not levels", {plain(name)}),
+                     phrase("use a factor with \"levels\""));
     if (name == spec.level || !seen.insert(name).second)
-      reader.problem("balance", phrase("problem.set_twice", {plain(name)}), phrase("problem.once_and_not"));
+      reader.problem("balance", phrase("\"%1\" is set twice", {plain(name)}),
+                     phrase("list each factor only once, and not the factor that the procedure sets"));
   }
 }
 
@@ -60,7 +61,7 @@ void check_tracks(TableReader& reader, const Spec& spec, const Reading& reading)
   std::vector<std::string> ids;
   for (const auto& choice : reading.protocol.task.choices) ids.push_back(choice.id);
   if (!spec.tracks.empty() && !ids.empty() && std::find(ids.begin(), ids.end(), spec.tracks) == ids.end())
-    reader.problem("tracks", phrase("problem.no_choice", {plain(spec.tracks)}),
+    reader.problem("tracks", phrase("\"%1\" is not a choice of the task", {plain(spec.tracks)}),
                    text::suggestion(spec.tracks, ids));
 }
 
@@ -72,11 +73,11 @@ void check_levels(TableReader& reader, const Spec& spec, const Factor& factor) {
                             ? level >= factor.range->first && level <= factor.range->second
                             : std::find(levels.begin(), levels.end(), FactorValue(level)) != levels.end();
     if (inside || !reader.has(key)) return true;
-    reader.problem(key, phrase("problem.has", {plain(std::string(key)), plain(text::number(level))}),
-                   factor.range ? phrase("problem.range_of",
+    reader.problem(key, phrase("\"%1\" has %2", {plain(std::string(key)), plain(text::number(level))}),
+                   factor.range ? phrase("the range of \"%1\" is %2",
                                          {plain(factor.name),
                                           describe(Range{factor.range->first, factor.range->second})})
-                                : phrase("problem.level_of", {plain(factor.name)}));
+                                : phrase("a level of \"%1\"", {plain(factor.name)}));
     return false;
   };
   const auto check_all = [&](const char* key, const std::vector<double>& levels) {
@@ -111,7 +112,8 @@ void check_spec(const Value& table, const Spec& spec, text::Findings& findings) 
       at = &entry->value;
       rest = dot == std::string::npos ? "" : rest.substr(dot + 1);
     }
-    findings.add(at->place, phrase("problem.of_key", {plain(spec.name), plain(fault.key), fault.what}),
+    findings.add(at->place,
+                 phrase("procedure \"%1\": \"%2\": %3", {plain(spec.name), plain(fault.key), fault.what}),
                  fault.allowed);
   }
 }
@@ -130,11 +132,11 @@ void check_second(const Value& table, const Spec& spec, const Reading& reading, 
                             : std::find(levels.begin(), levels.end(), FactorValue(value)) != levels.end();
     if (inside) continue;
     return reader.problem(
-        "stimuli", phrase("problem.has", {plain("stimuli"), plain(text::number(value))}),
+        "stimuli", phrase("\"%1\" has %2", {plain("stimuli"), plain(text::number(value))}),
         factor->range
-            ? phrase("problem.range_of",
+            ? phrase("the range of \"%1\" is %2",
                      {plain(factor->name), describe(Range{factor->range->first, factor->range->second})})
-            : phrase("problem.level_of", {plain(factor->name)}));
+            : phrase("a level of \"%1\"", {plain(factor->name)}));
   }
 }
 
@@ -153,9 +155,10 @@ void read_with(TableReader& reader, Spec& spec, const Reading& reading, text::Fi
                        std::find(spec.balance.begin(), spec.balance.end(), entry.key) != spec.balance.end();
     if (!factor || twice)
       findings.add(entry.place,
-                   twice ? phrase("problem.set_twice", {plain(entry.key)})
-                         : phrase("problem.unknown_factor", {plain(entry.key)}),
-                   twice ? phrase("problem.otherwise_unset") : text::suggestion(entry.key, names(factors)));
+                   twice ? phrase("\"%1\" is set twice", {plain(entry.key)})
+                         : phrase("unknown factor \"%1\"", {plain(entry.key)}),
+                   twice ? phrase("set factors that the procedure does not set otherwise")
+                         : text::suggestion(entry.key, names(factors)));
     else if (const auto value = read_factor_value(entry.value, *factor, findings))
       spec.with[entry.key] = *value;
   }
@@ -171,8 +174,11 @@ std::vector<Spec> family_of(const Value& table, const Spec& spec, const Reading&
                            : nullptr;
   const bool twice = factor && (chooses(spec, factor->name) || spec.with.count(factor->name) > 0);
   if (!factor || factor->levels.empty() || twice) {
-    findings.add(key->value.place, phrase("problem.for_each_is", {describe(key->value)}),
-                 phrase("problem.name_with_levels"));
+    findings.add(
+        key->value.place,
+        phrase("\"for_each\" is %1, which is not a factor with levels that the procedure does not set",
+               {describe(key->value)}),
+        phrase("name a factor with \"levels\""));
     return {};
   }
   std::vector<Spec> family;
@@ -201,9 +207,10 @@ void add_family(const Value& table, const std::string& name, std::vector<Spec> f
       auto& procedures = reading.protocol.procedures;
       const auto same = [&](const Spec& other) { return other.name == one.name; };
       if (std::any_of(procedures.begin(), procedures.end(), same))
-        return reading.findings.add(table.find("for_each")->value.place,
-                                    phrase("problem.for_each_again", {plain(one.name)}),
-                                    phrase("problem.other_name"));
+        return reading.findings.add(
+            table.find("for_each")->value.place,
+            phrase("\"for_each\" makes a second procedure named \"%1\"", {plain(one.name)}),
+            phrase("choose another name for the table or for the level"));
       reading.families[name].push_back(one.name);
     }
     reading.protocol.procedures.push_back(std::move(one));
@@ -213,7 +220,7 @@ void add_family(const Value& table, const std::string& name, std::vector<Spec> f
 Spec read_procedure(const Value& table, const Reading& reading, text::Findings& findings) {
   TableReader reader(table, titled("procedure", table), findings);
   Spec spec;
-  spec.name = read_name(reader, "name", phrase("problem.choose_name"));
+  spec.name = read_name(reader, "name", phrase("choose a name, which is stored with the data"));
   reader.take("copy");
   spec.kind =
       procedure::parse_kind(reader.word("kind", procedure::kind_names())).value_or(Kind::constant_stimuli);
@@ -245,7 +252,8 @@ Value with_copies(const Value& table, const std::map<std::string, Value>& above,
   for (const auto& [name, value] : above) known.push_back(name);
   const auto found = copy->value.kind == Value::Kind::string ? above.find(copy->value.string) : above.end();
   if (found != above.end()) return overlay(found->second, table);
-  findings.add(copy->value.place, phrase("problem.copy_is", {describe(copy->value)}),
+  findings.add(copy->value.place,
+               phrase("\"copy\" is %1, which is not a procedure above this one", {describe(copy->value)}),
                text::suggestion(copy->value.string, known));
   return table;
 }
@@ -271,8 +279,9 @@ void read_procedures(TableReader& file, Reading& reading) {
     auto& defaults = reading.findings.defaults_used;
     defaults.insert(defaults.end(), found.defaults_used.begin(), found.defaults_used.end());
     if (!name.empty() && !above.emplace(name, whole).second)
-      reading.findings.add(table->find("name")->place, phrase("problem.procedure_again", {plain(name)}),
-                           phrase("problem.procedures_differ"));
+      reading.findings.add(table->find("name")->place,
+                           phrase("there is already a procedure named \"%1\"", {plain(name)}),
+                           phrase("each procedure needs a different name"));
     else if (!name.empty())
       add_family(*table, name, std::move(family), reading);
   }

@@ -34,8 +34,9 @@ std::optional<Linear> read_linear(TableReader& reader, const std::string& key, c
 
 Edge read_edge(TableReader& reader) {
   Edge edge;
-  const auto* value = reader.require(
-      "edge", phrase("problem.which_edge", {text::quoted_list(edge_names), plain("{ friction = 0.7 }")}));
+  const auto* value =
+      reader.require("edge", phrase("say which edge \"boundary_mm\" means: %1, or %2",
+                                    {text::quoted_list(edge_names), plain("{ friction = 0.7 }")}));
   if (!value) return edge;
   if (value->kind != Value::Kind::table) {
     edge.name = reader.maybe_word("edge", edge_names).value_or("");
@@ -55,14 +56,15 @@ SceneTone read_tone(const Value& table, const std::string& name, Findings& findi
   tone.frequency_Hz = read_linear(reader, "frequency_Hz", {0, 1e6, Ends::open_low, "Hz"}, reading);
   if (reader.has("boundary_mm") == reader.has("frequency_Hz"))
     findings.add(table.place,
-                 reader.has("boundary_mm") ? phrase("problem.tone_two_places", {plain(name)})
-                                           : phrase("problem.tone_no_place", {plain(name)}),
-                 phrase("problem.boundary_or_frequency"));
+                 reader.has("boundary_mm") ? phrase("a tone of %1 has two places", {plain(name)})
+                                           : phrase("a tone of %1 has no place", {plain(name)}),
+                 phrase("give either \"boundary_mm\" or \"frequency_Hz\""));
   if (reader.has("boundary_mm"))
     tone.edge = read_edge(reader);
   else if (reader.take("edge"))
-    reader.problem("edge", phrase("problem.edge_needs"), phrase("problem.no_edge"));
-  reader.require("displacement_um", phrase("problem.give_peak"));
+    reader.problem("edge", phrase("\"edge\" needs \"boundary_mm\""),
+                   phrase("a tone placed by its frequency has no edge"));
+  reader.require("displacement_um", phrase("give the peak displacement at the tone's last maximum, in um"));
   if (const auto displacement = read_linear(reader, "displacement_um", displacement_um, reading))
     tone.displacement_um = *displacement;
   tone.phase_deg = reader.maybe_number("phase_deg", {-360, 360, Ends::closed, "degrees"}).value_or(0);
@@ -74,7 +76,7 @@ Zone read_zone(const Value& table, const std::string& name, Findings& findings, 
   TableReader reader(table, name, findings);
   Zone zone;
   zone.from_mm = reader.number("from_mm", {0, 1e5, Ends::closed, "mm"});
-  reader.require("friction", phrase("problem.give_zone_friction"));
+  reader.require("friction", phrase("give the mean relative friction inside the zone, above 0 and below 1"));
   zone.friction = read_linear(reader, "friction", relative_friction, reading);
   zone.tones = reader.integer("tones", 1, 16);
   reader.finish();
@@ -95,25 +97,34 @@ Tolerance read_tolerance(const Value& table, const std::string& name, Findings& 
 void check_finger(TableReader& reader, const Scene& scene) {
   const bool wanted = reader.has("displacement_under_finger_um");
   if (wanted && !reader.has("finger_mm"))
-    reader.problem("displacement_under_finger_um", phrase("problem.finger_needed"),
-                   phrase("problem.where_finger"));
+    reader.problem("displacement_under_finger_um",
+                   phrase("\"displacement_under_finger_um\" needs \"finger_mm\""),
+                   phrase("say where the finger is, in mm from the wide end"));
   if (!wanted && reader.has("finger_mm"))
-    reader.problem("finger_mm", phrase("problem.finger_unneeded"), phrase("problem.free_surface"));
+    reader.problem(
+        "finger_mm", phrase("\"finger_mm\" needs \"displacement_under_finger_um\""),
+        phrase("leave it out: \"displacement_um\" and \"friction\" are those of the free surface"));
   if (wanted && scene.edge.friction)
-    reader.problem("edge", phrase("problem.friction_edge"), phrase("problem.edge_by_name"));
+    reader.problem(
+        "edge", phrase("an edge that friction defines is not allowed with \"displacement_under_finger_um\""),
+        phrase("use an edge by name, or \"displacement_um\""));
 }
 
 // Checks that a scene is given in exactly one of the three possible forms.
 void check_form(TableReader& reader, const Scene& scene, Findings& findings) {
-  const auto form = phrase("problem.three_forms");
+  const auto form = phrase(
+      "use one of three forms: one boundary (\"boundary_mm\", \"edge\" and \"displacement_um\" or "
+      "\"friction\"), a \"zone\" with \"boundary_mm\" and \"edge\", or explicit \"tones\"");
   const bool tones = reader.has("tones"), zone = reader.has("zone"), boundary = reader.has("boundary_mm");
   if (!tones && !boundary)
-    return findings.add(reader.place(), phrase("problem.presents_nothing", {reader.title()}), form);
+    return findings.add(reader.place(), phrase("%1 presents nothing", {reader.title()}), form);
   if (tones) {
     for (const auto* key : {"boundary_mm", "edge", "zone", "displacement_um", "friction",
                             "displacement_under_finger_um", "finger_mm", "friction_contrast_dB"})
       if (reader.has(key))
-        reader.problem(key, phrase("problem.not_with_tones", {plain(key), reader.title()}), form);
+        reader.problem(
+            key, phrase("\"%1\" is not allowed together with \"tones\" in %2", {plain(key), reader.title()}),
+            form);
     return;
   }
   std::vector<std::string> stated;
@@ -122,24 +133,29 @@ void check_form(TableReader& reader, const Scene& scene, Findings& findings) {
   if (zone) {
     for (const auto* key : {"displacement_um", "friction", "displacement_under_finger_um", "finger_mm"})
       if (reader.has(key))
-        reader.problem(key, phrase("problem.not_together", {plain(key), plain("zone")}),
-                       phrase("problem.friction_in_zone"));
+        reader.problem(key, phrase("\"%1\" is not allowed together with \"%2\"", {plain(key), plain("zone")}),
+                       phrase("set \"friction\" inside \"zone\" instead"));
   } else if (stated.size() != 1) {
     findings.add(stated.size() > 1 ? reader.place(stated[1]) : reader.place(),
-                 stated.size() > 1
-                     ? phrase("problem.has_both", {reader.title(), plain(stated[0]), plain(stated[1])})
-                     : phrase("problem.no_strength", {reader.title()}),
-                 phrase("problem.one_strength"));
+                 stated.size() > 1 ? phrase("%1 has both \"%2\" and \"%3\"",
+                                            {reader.title(), plain(stated[0]), plain(stated[1])})
+                                   : phrase("%1 does not say how strong it is", {reader.title()}),
+                 phrase("give exactly one of \"displacement_um\" (at the last maximum), \"friction\" and "
+                        "\"displacement_under_finger_um\""));
   } else {
     check_finger(reader, scene);
   }
   if (scene.friction_contrast_dB && !zone && !reader.has("friction"))
-    reader.problem("friction_contrast_dB", phrase("problem.contrast_needs"), phrase("problem.base_with"));
+    reader.problem("friction_contrast_dB",
+                   phrase("\"friction_contrast_dB\" needs a base that states friction"),
+                   phrase("use a base with \"friction\" or with a \"zone\""));
   if (scene.zone && scene.boundary_mm && scene.zone->from_mm) {
     const auto least = bounds(*scene.boundary_mm, {}).first;
     if (scene.boundary_mm->is_constant() && *scene.zone->from_mm >= least)
-      reader.problem("zone", phrase("problem.zone_beyond", {plain(text::number(*scene.zone->from_mm))}),
-                     phrase("problem.from_less"));
+      reader.problem("zone",
+                     phrase("the zone begins at %1 mm, beyond its boundary",
+                            {plain(text::number(*scene.zone->from_mm))}),
+                     phrase("\"from_mm\" must be less than \"boundary_mm\""));
   }
 }
 
@@ -155,7 +171,8 @@ Scene read_scene(const Value& table, const std::string& name, const Value& own, 
   if (reader.has("boundary_mm"))
     scene.edge = read_edge(reader);
   else if (reader.take("edge"))
-    reader.problem("edge", phrase("problem.edge_needs"), phrase("problem.give_boundary"));
+    reader.problem("edge", phrase("\"edge\" needs \"boundary_mm\""),
+                   phrase("give the boundary to which the edge belongs"));
   scene.displacement_um = read_linear(reader, "displacement_um", displacement_um, reading);
   scene.friction = read_linear(reader, "friction", relative_friction, reading);
   scene.displacement_under_finger_um =
@@ -164,13 +181,15 @@ Scene read_scene(const Value& table, const std::string& name, const Value& own, 
   for (const auto* tone : reader.tables("tones"))
     scene.tones.push_back(read_tone(*tone, path + ".tones", findings, reading));
   if (reader.has("tones") && scene.tones.empty())
-    reader.problem("tones", phrase("problem.no_tone"), phrase("problem.add_tone", {plain("{ ... }")}));
+    reader.problem("tones", phrase("\"tones\" has no tone"),
+                   phrase("add at least one tone: %1", {plain("{ ... }")}));
   if (const auto* zone = reader.maybe_table("zone"))
     scene.zone = read_zone(*zone, path + ".zone", findings, reading);
   scene.friction_contrast_dB =
       read_linear(reader, "friction_contrast_dB", {-infinity, 0, Ends::open_high, "dB"}, reading);
   if (own.find("friction_contrast_dB") && scene.base.empty())
-    reader.problem("friction_contrast_dB", phrase("problem.contrast_base"), phrase("problem.name_lowered"));
+    reader.problem("friction_contrast_dB", phrase("\"friction_contrast_dB\" needs a \"base\""),
+                   phrase("name the scene whose friction is to be lowered"));
   scene.rove_dB = reader.number("rove_dB", {0, 40, Ends::closed, "dB"}, 0);
   scene.ramp_ms = reader.number("ramp_ms", {1, 2000, Ends::closed, "ms"}, 50);
   if (const auto* tolerance = reader.maybe_table("tolerance"))
@@ -227,11 +246,14 @@ class Resolver {
       const auto* below = base_of(name, base->value);
       if (!below) return open_.erase(name), nullptr;
       if (own.find("friction_contrast_dB") && below->find("friction_contrast_dB"))
-        reading_.findings.add(base->value.place, phrase("problem.base_contrast", {plain(base->value.string)}),
-                              phrase("problem.base_without"));
+        reading_.findings.add(
+            base->value.place,
+            phrase("the base \"%1\" has a friction contrast itself", {plain(base->value.string)}),
+            phrase("use a base without \"friction_contrast_dB\""));
       if (own.find("friction_contrast_dB") && (own.find("zone") || own.find("friction")))
-        reading_.findings.add(own.find("friction_contrast_dB")->place, phrase("problem.contrast_and_own"),
-                              phrase("problem.remove_one"));
+        reading_.findings.add(own.find("friction_contrast_dB")->place,
+                              phrase("the scene has both a contrast to its base and its own friction"),
+                              phrase("remove one of the two"));
       table = laid_over(*below, own);
     }
     open_.erase(name);
@@ -245,12 +267,13 @@ class Resolver {
     for (const auto& entry : scenes_.entries)
       if (entry.key != name) others.push_back(entry.key);
     if (open_.count(base.string)) {
-      reading_.findings.add(base.place, phrase("problem.circle", {plain(name)}), phrase("problem.no_circle"));
+      reading_.findings.add(base.place, phrase("the bases of \"%1\" run in a circle", {plain(name)}),
+                            phrase("use a base that does not depend on this scene"));
       return nullptr;
     }
     const auto* found = scenes_.find(base.string);
     if (found && found->value.kind == Value::Kind::table) return resolve(base.string);
-    reading_.findings.add(base.place, phrase("problem.unknown_scene", {plain(base.string)}),
+    reading_.findings.add(base.place, phrase("unknown scene \"%1\"", {plain(base.string)}),
                           text::suggestion(base.string, others));
     return nullptr;
   }
@@ -283,7 +306,7 @@ class Resolver {
 }  // namespace
 
 void read_scenes(TableReader& file, Reading& reading) {
-  const auto* scenes = file.table("scene", phrase("problem.add_scene"));
+  const auto* scenes = file.table("scene", phrase("add at least one table [scene.NAME]"));
   if (!scenes) return;
   for (const auto& entry : scenes->entries) reading.declared_scenes.push_back(entry.key);
   Resolver resolver(*scenes, reading);
@@ -291,8 +314,9 @@ void read_scenes(TableReader& file, Reading& reading) {
     if (entry.value.kind == Value::Kind::table)
       resolver.resolve(entry.key);
     else
-      reading.findings.add(entry.place, phrase("problem.scene_is", {plain(entry.key), describe(entry.value)}),
-                           phrase("problem.write_table", {plain("[scene.NAME]")}));
+      reading.findings.add(entry.place,
+                           phrase("\"scene.%1\" is %2", {plain(entry.key), describe(entry.value)}),
+                           phrase("write a table %1", {plain("[scene.NAME]")}));
   }
 }
 

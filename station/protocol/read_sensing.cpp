@@ -12,8 +12,9 @@ void read_sensing(TableReader& file, Reading& reading) {
   if (!table) {
     for (const auto& part : reading.protocol.plan)
       if (const auto* block = std::get_if<Block>(&part); block && block->kind != BlockKind::trials)
-        reading.findings.add(block->place, phrase("problem.needs_sensing", {plain(block->name)}),
-                             phrase("problem.add_sensing"));
+        reading.findings.add(block->place,
+                             phrase("the block \"%1\" needs a [sensing] table", {plain(block->name)}),
+                             phrase("add [sensing] with the movement to make"));
     return;
   }
   TableReader reader(*table, "sensing", reading.findings);
@@ -27,17 +28,18 @@ void read_sensing(TableReader& file, Reading& reading) {
   if (outside == "repeat")
     sensing.repeats = reader.integer("repeats", 1, 10, 2);
   else if (reader.maybe_integer("repeats", 1, 10))
-    reader.problem("repeats", phrase("problem.no_effect", {plain("repeats")}),
-                   phrase("problem.or_leave_repeats", {plain("outside = \"repeat\"")}));
+    reader.problem("repeats", phrase("\"%1\" has no effect", {plain("repeats")}),
+                   phrase("%1, or leave \"repeats\" out", {plain("outside = \"repeat\"")}));
   if (reading.protocol.task.kind == TaskKind::adjustment && sensing.repeats > 0)
-    reader.problem("outside", phrase("problem.adjustment_again"), plain("outside = \"mark\""));
+    reader.problem("outside", phrase("an adjustment is not presented again"), plain("outside = \"mark\""));
   sensing.guidance = reader.boolean("guidance", "false");
   if (sensing.guidance && !sensing.normal_N && !sensing.speed_mm_s)
-    reader.problem("guidance", phrase("problem.no_guide"), phrase("problem.add_guide"));
+    reader.problem("guidance", phrase("there is nothing to guide to"),
+                   phrase("add \"normal_N\" or \"speed_mm_s\""));
   if (sensing.guidance)
     sensing.live_guidance = reader.boolean("live_guidance", "false");
   else if (reader.take("live_guidance"))
-    reader.problem("live_guidance", phrase("problem.no_effect", {plain("live_guidance")}),
+    reader.problem("live_guidance", phrase("\"%1\" has no effect", {plain("live_guidance")}),
                    plain("guidance = true"));
   reader.finish();
 }

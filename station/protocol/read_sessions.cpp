@@ -32,14 +32,14 @@ void read_session_numbers(TableReader& reader, Audience& audience, const Reading
   if (!list) return;
   const auto& plan = reading.protocol.sessions;
   if (!plan)
-    return reader.problem("sessions", phrase("problem.sessions_unplanned"),
-                          phrase("problem.add_session_count", {plain("count = 2")}));
+    return reader.problem("sessions", phrase("\"sessions\" is set, but the file has no [sessions]"),
+                          phrase("add [sessions] with the number of sessions: %1", {plain("count = 2")}));
   for (const double number : reader.numbers("sessions", {1, static_cast<double>(plan->count)})) {
     const int whole = static_cast<int>(number);
     const auto& before = audience.sessions;
     if (whole != number || std::find(before.begin(), before.end(), whole) != before.end())
-      reader.problem("sessions", phrase("problem.sessions_whole"),
-                     phrase("problem.such_as", {plain("[1, " + std::to_string(plan->count) + "]")}));
+      reader.problem("sessions", phrase("\"sessions\" must have whole numbers, each only once"),
+                     phrase("such as %1", {plain("[1, " + std::to_string(plan->count) + "]")}));
     audience.sessions.push_back(whole);
   }
 }
@@ -48,7 +48,7 @@ void read_session_numbers(TableReader& reader, Audience& audience, const Reading
 texts::Phrase visit_words(const Protocol& protocol, const Visit& visit) {
   const auto session = phrase("check.session", {plain(visit.session)});
   const auto name = group_name(protocol, visit);
-  if (name.empty()) return protocol.sessions ? session : phrase("problem.the_session");
+  if (name.empty()) return protocol.sessions ? session : phrase("the session");
   const auto group = phrase("check.group", {plain(name)});
   return protocol.sessions ? texts::Phrase{"", "", {session, plain(", "), group}} : group;
 }
@@ -61,7 +61,8 @@ void check_blocks(const Reading& reading) {
     if (protocol.plan.empty() || std::any_of(protocol.plan.begin(), protocol.plan.end(), mine)) continue;
     return reading.findings.add(
         protocol.sessions ? protocol.sessions->place : block_of(protocol.plan.front()).place,
-        phrase("problem.no_block", {visit_words(protocol, visit)}), phrase("problem.give_block"));
+        phrase("%1 has no block", {visit_words(protocol, visit)}),
+        phrase("give at least one block or sequence to each session of each group"));
   }
 }
 
@@ -75,16 +76,17 @@ void check_sequences(const Reading& reading) {
     if (!factor) continue;
     const auto place = reading.places.of("sequence." + sequence->name + ".over");
     if (is_group(*factor))
-      reading.findings.add(place, phrase("problem.one_level_each", {plain(factor->name)}),
-                           phrase("problem.not_per_participant"));
+      reading.findings.add(place,
+                           phrase("each participant has only one level of \"%1\"", {plain(factor->name)}),
+                           phrase("use a factor whose \"draw\" is not \"per-participant\""));
     if (!sequence->one_per_session) continue;
     const auto& listed = sequence->block.audience.sessions;
     const auto sessions = listed.empty() ? session_count(protocol) : static_cast<int>(listed.size());
     if (sessions != static_cast<int>(factor->levels.size()))
       reading.findings.add(reading.places.of("sequence." + sequence->name + ".each_session"),
-                           phrase("problem.levels_and_sessions",
+                           phrase("\"%1\" has %2 levels, but the sequence has %3 sessions",
                                   {plain(factor->name), plain(factor->levels.size()), plain(sessions)}),
-                           phrase("problem.session_each"));
+                           phrase("there must be one session for each level"));
   }
 }
 
@@ -98,13 +100,15 @@ void check_group_factors(const Reading& reading) {
       if (source.sets.count(factor.name) > 0 && source.spec)
         return reading.findings.add(
             source.block->place,
-            phrase("problem.sets_group", {plain(source.block->name), source.what, plain(factor.name)}),
-            phrase("problem.nothing_sets"));
+            phrase("in block \"%1\", %2 sets \"%3\", of which each participant has only one level",
+                   {plain(source.block->name), source.what, plain(factor.name)}),
+            phrase("let nothing else set a factor that is drawn per participant"));
     if (factor.name != "instruction") continue;
     for (const auto& level : factor.levels)
       if (const auto* name = std::get_if<std::string>(&level); !name || !protocol.instructions.count(*name))
-        return reading.findings.add(factor.place, phrase("problem.instruction_tables"),
-                                    phrase("problem.add_instructions"));
+        return reading.findings.add(
+            factor.place, phrase("not every level of \"instruction\" has a table"),
+            phrase("add [instructions.NAME] for each level of the factor \"instruction\""));
   }
 }
 
@@ -122,9 +126,10 @@ void check_rules(const Reading& reading) {
     const auto* needed = audience_of(rule.about.substr(0, rule.about.find('.')));
     for (const auto& visit : different_visits(protocol))
       if (needed && is_for(interlude.audience, protocol, visit) && !is_for(*needed, protocol, visit))
-        return reading.findings.add(
-            rule.place, phrase("problem.not_in_session", {plain(rule.source), visit_words(protocol, visit)}),
-            phrase("problem.same_sessions"));
+        return reading.findings.add(rule.place,
+                                    phrase("\"%1\" is about something that %2 does not have",
+                                           {plain(rule.source), visit_words(protocol, visit)}),
+                                    phrase("give both the same \"sessions\" and \"groups\""));
   };
   for (const auto& interlude : protocol.interludes) {
     for (const auto& rule : interlude.pass) check(interlude, rule);
@@ -143,13 +148,14 @@ void check_days_of(const procedure::Spec& spec, const Protocol& protocol, const 
       if (std::find(block.procedures.begin(), block.procedures.end(), spec.name) == block.procedures.end())
         continue;
       if (block.practice)
-        return report(phrase("problem.block_practice", {plain(block.name)}),
-                      phrase("problem.use_no_practice"));
+        return report(phrase("block \"%1\" is practice", {plain(block.name)}),
+                      phrase("use it in a block that is no practice"));
       if (!block.trials)
-        return report(phrase("problem.day_trials", {plain(block.name)}), phrase("problem.add_trials"));
+        return report(phrase("block \"%1\" does not say how many trials a day has", {plain(block.name)}),
+                      phrase("add \"trials\" to the block"));
       if (++blocks > 1)
-        return report(phrase("problem.two_blocks", {visit_words(protocol, visit)}),
-                      phrase("problem.use_one_block"));
+        return report(phrase("%1 has two blocks with it", {visit_words(protocol, visit)}),
+                      phrase("use it in one block of a session"));
     }
   }
 }
@@ -160,14 +166,16 @@ void check_continuing(const Reading& reading) {
   for (const auto& spec : protocol.procedures) {
     if (!spec.continues) continue;
     const auto report = [&](const texts::Phrase& what, const texts::Phrase& allowed) {
-      reading.findings.add(reading.places.of(key_of(spec, "continues")),
-                           phrase("problem.continues", {plain(spec.name), what}), allowed);
+      reading.findings.add(
+          reading.places.of(key_of(spec, "continues")),
+          phrase("procedure \"%1\" continues on another day, but %2", {plain(spec.name), what}), allowed);
     };
     const auto choice = procedure::description(spec.kind).choice;
     if (choice != procedure::Choice::track && choice != procedure::Choice::posterior)
-      report(phrase("problem.not_from_answers"), phrase("problem.use_staircase"));
+      report(phrase("this kind of procedure does not follow from its answers alone"),
+             phrase("use a staircase, QUEST+ or another procedure with a posterior"));
     else if (!protocol.sessions)
-      report(phrase("problem.no_sessions"), phrase("problem.add_sessions"));
+      report(phrase("the file plans no sessions"), phrase("add [sessions]"));
     else
       check_days_of(spec, protocol, report);
   }
@@ -178,8 +186,8 @@ void check_continuing(const Reading& reading) {
 void read_sessions(TableReader& file, Reading& reading) {
   if (group_count(reading.protocol) > most_groups)
     reading.findings.add(reading.protocol.factors.front().place,
-                         phrase("problem.groups", {plain(group_count(reading.protocol))}),
-                         phrase("problem.at_most", {plain("100")}));
+                         phrase("%1 groups", {plain(group_count(reading.protocol))}),
+                         phrase("at most %1", {plain("100")}));
   const auto* table = file.maybe_table("sessions");
   if (!table) return;
   TableReader reader(*table, "sessions", reading.findings);
@@ -201,13 +209,16 @@ void read_audience(TableReader& reader, Audience& audience, const Reading& readi
   for (const auto& name : audience.groups) {
     const auto count = std::count(known.begin(), known.end(), name);
     if (count == 0)
-      reader.problem("groups", phrase("problem.no_group", {plain(name)}),
-                     known.empty() ? phrase("problem.name_levels", {plain("draw = \"per-participant\"")})
-                                   : text::suggestion(name, known));
+      reader.problem("groups", phrase("there is no group \"%1\"", {plain(name)}),
+                     known.empty()
+                         ? phrase("name levels of a factor with %1", {plain("draw = \"per-participant\"")})
+                         : text::suggestion(name, known));
     else if (count > 1)
-      reader.problem("groups", phrase("problem.group_twice", {plain(name)}), phrase("problem.groups_differ"));
+      reader.problem("groups", phrase("two factors have the level \"%1\"", {plain(name)}),
+                     phrase("give the groups different names"));
     else if (!seen.insert(name).second)
-      reader.problem("groups", phrase("problem.twice", {plain(name)}), phrase("problem.group_once"));
+      reader.problem("groups", phrase("\"%1\" appears twice", {plain(name)}),
+                     phrase("list each group only once"));
   }
 }
 

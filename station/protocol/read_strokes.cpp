@@ -37,32 +37,33 @@ void check_scene(TableReader& reader, const Block& block, const Reading& reading
     const auto& declared = reading.declared_scenes;
     if (!block.strokes.scene.empty() &&
         std::find(declared.begin(), declared.end(), block.strokes.scene) == declared.end())
-      reader.problem("scene", phrase("problem.no_scene", {plain(block.strokes.scene)}),
+      reader.problem("scene", phrase("there is no [scene.%1]", {plain(block.strokes.scene)}),
                      text::suggestion(block.strokes.scene, known));
     return;
   }
   const auto expressions = expressions_of(found->second);
   if (std::any_of(expressions.begin(), expressions.end(),
                   [](const Linear* expression) { return !expression->is_constant(); }))
-    reader.problem("scene", phrase("problem.scene_factors", {plain(block.strokes.scene)}),
-                   phrase("problem.table_scene"));
+    reader.problem("scene", phrase("the scene \"%1\" depends on factors", {plain(block.strokes.scene)}),
+                   phrase("a friction table needs a scene without factors"));
 }
 
 void read_friction_table(TableReader& reader, Block& block, const Reading& reading) {
   block.kind = BlockKind::friction_table;
   auto& strokes = block.strokes;
-  strokes.scene = reader.string("scene", phrase("problem.strength_scene"));
+  strokes.scene = reader.string("scene", phrase("name the scene whose strength is changed"));
   check_scene(reader, block, reading);
   const Range place{0, 10000, Range::Ends::closed, "mm"};
   strokes.from_mm = reader.number("from_mm", place);
   strokes.to_mm = reader.number("to_mm", place);
   if (strokes.to_mm < strokes.from_mm + 20)
-    reader.problem("to_mm", phrase("problem.short_stretch"), plain("to_mm >= from_mm + 20"));
+    reader.problem("to_mm", phrase("the part of the surface is shorter than 20 mm"),
+                   plain("to_mm >= from_mm + 20"));
   strokes.levels_um = reader.numbers("displacement_um", {0, 100, Range::Ends::open_low, "um"}, fewest_levels);
   if (std::adjacent_find(strokes.levels_um.begin(), strokes.levels_um.end(), std::greater_equal<>()) !=
       strokes.levels_um.end())
-    reader.problem("displacement_um", phrase("problem.displacements_order"),
-                   phrase("problem.displacement_once"));
+    reader.problem("displacement_um", phrase("the displacements are not in ascending order"),
+                   phrase("list each displacement once, the smallest first"));
   strokes.repeats = reader.integer("repeats", fewest_repeats, 50, 6);
   strokes.used = reader.boolean("use", "false");
   block.trials = 2 * static_cast<int>(strokes.levels_um.size()) * strokes.repeats + 1;

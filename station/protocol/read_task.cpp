@@ -41,16 +41,15 @@ bool compares(TaskKind kind) {
 void check_scene(const std::string& name, const text::Place& place, const Reading& reading) {
   const auto& known = reading.declared_scenes;
   if (std::find(known.begin(), known.end(), name) == known.end())
-    reading.findings.add(place, phrase("problem.unknown_scene", {plain(name)}),
-                         text::suggestion(name, known));
+    reading.findings.add(place, phrase("unknown scene \"%1\"", {plain(name)}), text::suggestion(name, known));
 }
 
 std::vector<std::string> read_interval(const Value& item, const Reading& reading) {
   std::vector<std::string> scenes;
   const auto one = [&](const Value& value) {
     if (value.kind != Value::Kind::string)
-      return reading.findings.add(value.place, phrase("problem.interval_holds", {describe(value)}),
-                                  phrase("problem.scene_name_quoted"));
+      return reading.findings.add(value.place, phrase("an interval holds %1", {describe(value)}),
+                                  phrase("write the name of a scene in quotes"));
     check_scene(value.string, value.place, reading);
     scenes.push_back(value.string);
   };
@@ -59,32 +58,35 @@ std::vector<std::string> read_interval(const Value& item, const Reading& reading
   else
     for (const auto& value : item.items) one(value);
   if (item.kind == Value::Kind::array && item.items.size() != 1 && item.items.size() != 2)
-    reading.findings.add(item.place, phrase("problem.interval_scenes", {plain(item.items.size())}),
-                         phrase("problem.one_or_two_scenes"));
+    reading.findings.add(
+        item.place, phrase("an interval has %1 scenes", {plain(item.items.size())}),
+        phrase("an interval must have one scene, or two scenes with a foreperiod before the second"));
   return scenes;
 }
 
 void read_intervals(TableReader& reader, Task& task, const Reading& reading) {
   if (compares(task.kind)) {
-    task.standard = reader.string("standard", phrase("problem.name_standard"));
-    task.target = reader.string("target", phrase("problem.name_target"));
+    task.standard = reader.string("standard", phrase("name the scene that most intervals present"));
+    task.target = reader.string("target", phrase("name the scene that differs"));
     for (const auto* key : {"standard", "target"})
       if (reader.has(key))
         check_scene(key == std::string("standard") ? task.standard : task.target, reader.place(key), reading);
     if (!task.standard.empty() && task.standard == task.target)
-      reader.problem("target", phrase("problem.target_standard"), phrase("problem.name_two_scenes"));
+      reader.problem("target", phrase("\"target\" and \"standard\" are the same scene"),
+                     phrase("name two different scenes"));
     return;
   }
-  const auto* list = reader.require("intervals", phrase("problem.write_scenes", {plain("[\"edge\"]")}));
+  const auto* list =
+      reader.require("intervals", phrase("write a list of scene names: %1", {plain("[\"edge\"]")}));
   if (!list) return;
   if (list->kind != Value::Kind::array)
-    return reader.problem("intervals", phrase("problem.is", {plain("intervals"), describe(*list)}),
-                          phrase("problem.write_scenes", {plain("[\"edge\"]")}));
+    return reader.problem("intervals", phrase("\"%1\" is %2", {plain("intervals"), describe(*list)}),
+                          phrase("write a list of scene names: %1", {plain("[\"edge\"]")}));
   for (const auto& item : list->items) task.intervals.push_back(read_interval(item, reading));
   const std::size_t needed = task.kind == TaskKind::two_interval ? 2 : 1;
   if (task.intervals.size() != needed)
-    reader.problem("intervals", phrase("problem.has", {plain("intervals"), plain(task.intervals.size())}),
-                   phrase("problem.must_be_given", {plain(needed)}));
+    reader.problem("intervals", phrase("\"%1\" has %2", {plain("intervals"), plain(task.intervals.size())}),
+                   phrase("%1 must be given for this kind of task", {plain(needed)}));
 }
 
 void read_times(TableReader& reader, Task& task) {
@@ -98,35 +100,38 @@ void read_times(TableReader& reader, Task& task) {
   const auto sequence = [](const auto& interval) { return interval.size() > 1; };
   const bool change = std::any_of(task.intervals.begin(), task.intervals.end(), sequence);
   if (change) {
-    reader.require("foreperiod_s", phrase("problem.give_foreperiod", {plain("{ uniform = [1.0, 2.5] }")}));
+    reader.require("foreperiod_s", phrase("give the time before the second scene, in seconds: %1",
+                                          {plain("{ uniform = [1.0, 2.5] }")}));
     task.foreperiod_s = read_distribution(reader, "foreperiod_s");
     task.transition_ms = reader.number("transition_ms", {1, 5000, Range::Ends::closed, "ms"});
   } else {
     for (const auto* key : {"foreperiod_s", "transition_ms"})
       if (reader.take(key))
-        reader.problem(key, phrase("problem.needs_second_scene", {plain(key)}),
-                       phrase("problem.two_scenes", {plain("intervals = [[\"a\", \"b\"]]")}));
+        reader.problem(key, phrase("\"%1\" needs an interval with a second scene", {plain(key)}),
+                       phrase("use an interval of two scenes: %1", {plain("intervals = [[\"a\", \"b\"]]")}));
   }
 }
 
 /// Reads the labels at values of a scale. Both ends of the scale must have a label.
 std::vector<Anchor> read_anchors(TableReader& reader, double low, double high, const Reading& reading) {
   std::vector<Anchor> anchors;
-  reader.require(
-      "labels", phrase("problem.write_ends", {plain("[ { at = 1, text = { en = \"not at all\" } }, ... ]")}));
+  reader.require("labels", phrase("write what the ends mean: %1",
+                                  {plain("[ { at = 1, text = { en = \"not at all\" } }, ... ]")}));
   for (const auto* table : reader.tables("labels")) {
     TableReader inner(*table, reader.path("labels"), reading.findings);
     Anchor anchor;
     anchor.at = inner.number("at", {low, high});
     anchor.text = read_localised(inner, "text", reading);
     if (!anchors.empty() && anchor.at <= anchors.back().at)
-      inner.problem("at", phrase("problem.labels_order"), phrase("problem.begin_lowest"));
+      inner.problem("at", phrase("the labels are not in ascending order"),
+                    phrase("begin with the lowest value"));
     inner.finish();
     anchors.push_back(std::move(anchor));
   }
   if (reader.has("labels") && (anchors.size() < 2 || anchors.front().at > low || anchors.back().at < high))
-    reader.problem("labels", phrase("problem.end_unlabelled"),
-                   phrase("problem.label_ends", {plain(text::number(low)), plain(text::number(high))}));
+    reader.problem(
+        "labels", phrase("an end of the scale has no label"),
+        phrase("write labels at %1 and at %2", {plain(text::number(low)), plain(text::number(high))}));
   return anchors;
 }
 
@@ -136,8 +141,9 @@ Scale read_scale(const Value& table, const std::string& path, const Reading& rea
   TableReader reader(table, path, reading.findings);
   Scale scale;
   if (reader.has("points") == reader.has("line"))
-    reader.problem("points", phrase("problem.points_or_line"),
-                   phrase("problem.seven_buttons", {plain("points = 7"), plain("line = [0, 100]")}));
+    reader.problem("points", phrase("a rating needs either \"points\" or a \"line\""),
+                   phrase("%1 for seven buttons, or %2 for a line without points",
+                          {plain("points = 7"), plain("line = [0, 100]")}));
   if (const auto points = reader.maybe_integer("points", 2, most_choices)) {
     for (int i = 1; i <= *points; ++i) scale.choices.push_back({std::to_string(i), {}});
     scale.anchors = read_anchors(reader, 1, *points, reading);
@@ -147,13 +153,14 @@ Scale read_scale(const Value& table, const std::string& path, const Reading& rea
     const double steps = (value.high - value.low) * std::pow(10.0, value.decimals);
     if (steps < 10 || steps > 1000)
       reader.problem(reader.has("decimals") ? "decimals" : "line",
-                     phrase("problem.line_steps", {plain(text::number(steps))}), phrase("problem.use_steps"));
+                     phrase("the line has %1 steps of its smallest decimal", {plain(text::number(steps))}),
+                     phrase("use 10 to 1000, because a finger cannot choose between more places"));
     value.anchors = read_anchors(reader, value.low, value.high, reading);
     scale.value = std::move(value);
   }
   for (const auto* key : {"labels", "decimals"}) {
     if (!scale.choices.empty() && key == std::string("decimals") && reader.has(key))
-      reader.problem(key, phrase("problem.points_decimals"), phrase("problem.remove_decimals"));
+      reader.problem(key, phrase("points have no decimals"), phrase("remove \"decimals\""));
     reader.take(key);
   }
   reader.finish();
@@ -168,7 +175,8 @@ ValueAnswer read_typed(TableReader& reader) {
   value.low = reader.number("low", {0, 1e6}, least);
   value.high = reader.number("high", {least, 1e6}, 1000);
   if (value.high <= value.low)
-    reader.problem("high", phrase("problem.high_low"), phrase("problem.largest_typed"));
+    reader.problem("high", phrase("\"high\" is not above \"low\""),
+                   phrase("give the largest number that may be typed"));
   return value;
 }
 
@@ -178,11 +186,11 @@ std::vector<Choice> read_choice_list(TableReader& reader, const std::string& pat
   for (const auto* table : reader.tables("choices")) {
     TableReader inner(*table, path, reading.findings);
     Choice choice;
-    choice.id = read_name(inner, "id", phrase("problem.short_name"));
+    choice.id = read_name(inner, "id", phrase("choose a short name, which is stored with the data"));
     choice.label = read_localised(inner, "label", reading);
     if (!choice.id.empty() && !seen.insert(choice.id).second)
-      inner.problem("id", phrase("problem.choice_again", {plain(choice.id)}),
-                    phrase("problem.choices_differ"));
+      inner.problem("id", phrase("there is already a choice with the id \"%1\"", {plain(choice.id)}),
+                    phrase("each choice needs a different id"));
     inner.finish();
     choices.push_back(std::move(choice));
   }
@@ -203,12 +211,13 @@ void read_number(const Value& table, Task& task, const Reading& reading) {
   TableReader reader(table, "task.number", reading.findings);
   auto value = read_typed(reader);
   if (reader.has("standard")) {
-    task.standard = reader.string("standard", phrase("problem.begins_trial"));
+    task.standard = reader.string("standard", phrase("name the scene that begins each trial"));
     check_scene(task.standard, reader.place("standard"), reading);
-    reader.require("modulus", phrase("problem.give_modulus"));
+    reader.require("modulus", phrase("give the number that stands for the standard, such as 10"));
     task.modulus = reader.maybe_number("modulus", {value.low, value.high});
   } else if (reader.take("modulus")) {
-    reader.problem("modulus", phrase("problem.modulus_standard"), phrase("problem.name_modulus"));
+    reader.problem("modulus", phrase("\"modulus\" needs a \"standard\""),
+                   phrase("name the scene that has this number, or leave the modulus free"));
   }
   reader.finish();
   task.value = std::move(value);
@@ -219,11 +228,12 @@ void read_present(TableReader& reader, Task& task, const Reading& reading) {
   const auto* value = reader.take("present");
   if (!value) return;
   if (!task.rating)
-    return reader.problem("present", phrase("problem.only_points"),
-                          phrase("problem.in_rating", {plain("points = 6")}));
+    return reader.problem("present",
+                          phrase("only a rating on points can say how sure a person is of a signal"),
+                          phrase("%1 in [task.rating]", {plain("points = 6")}));
   if (value->kind != Value::Kind::string)
-    return reader.problem("present", phrase("problem.is", {plain("present"), describe(*value)}),
-                          phrase("problem.comparison", {plain("\"strength_um > 0\"")}));
+    return reader.problem("present", phrase("\"%1\" is %2", {plain("present"), describe(*value)}),
+                          phrase("write a comparison in quotes: %1", {plain("\"strength_um > 0\"")}));
   task.present = parse_comparison(value->string, value->place, reading.protocol.factors, reading.findings);
 }
 
@@ -233,16 +243,18 @@ void read_judgement(TableReader& reader, Task& task, const Reading& reading) {
   const auto* number = reader.maybe_table("number");
   if (!rating && !number) return;
   if (rating && number)
-    return reader.problem("number", phrase("problem.rating_and_number"), phrase("problem.use_one"));
+    return reader.problem("number", phrase("the task has both a \"rating\" and a \"number\""),
+                          phrase("use one of them"));
   const char* key = rating ? "rating" : "number";
   if (task.kind != TaskKind::single_interval)
-    reader.problem(key, phrase("problem.cannot_have", {plain(key)}), plain("kind = \"single-interval\""));
+    reader.problem(key, phrase("this kind of task cannot have a \"%1\"", {plain(key)}),
+                   plain("kind = \"single-interval\""));
   for (const auto* other : {"choices", "correct"})
     if (reader.take(other))
-      reader.problem(other, phrase("problem.has_no", {plain(key), plain(other)}),
-                     phrase("problem.remove", {plain(other)}));
+      reader.problem(other, phrase("a %1 has no \"%2\"", {plain(key), plain(other)}),
+                     phrase("remove \"%1\"", {plain(other)}));
   if (task.device == Device::buttons)
-    reader.problem("device", phrase("problem.given_on_screen", {plain(key)}), plain("\"touch\""));
+    reader.problem("device", phrase("a %1 is given on the screen", {plain(key)}), plain("\"touch\""));
   if (rating)
     read_rating(*rating, task, reading);
   else
@@ -257,22 +269,26 @@ void read_confidence(TableReader& reader, Task& task, const Reading& reading) {
   TableReader inner(*table, "task.confidence", reading.findings);
   Confidence confidence;
   confidence.question = read_localised(inner, "question", reading);
-  inner.require("labels", phrase("problem.list_confidence", {plain("[ { en = \"guessed\" }, ... ]")}));
+  inner.require("labels", phrase("list what the participant can say, from the least sure: %1",
+                                 {plain("[ { en = \"guessed\" }, ... ]")}));
   for (const auto* label : inner.tables("labels"))
     confidence.labels.push_back(localised_from(*label, "labels", reading));
   if (inner.has("labels") && (confidence.labels.size() < 2 || confidence.labels.size() > most_choices))
-    inner.problem("labels", phrase("problem.has", {plain("labels"), plain(confidence.labels.size())}),
-                  phrase("problem.two_to_nine"));
+    inner.problem("labels", phrase("\"%1\" has %2", {plain("labels"), plain(confidence.labels.size())}),
+                  phrase("from 2 to 9, from the least sure to the surest"));
   inner.finish();
   if (task.kind == TaskKind::adjustment)
-    reader.problem("confidence", phrase("problem.no_confidence"), phrase("problem.another_task"));
+    reader.problem("confidence", phrase("an adjustment cannot have a \"confidence\""),
+                   phrase("use another kind of task"));
   if (task.device == Device::buttons)
-    reader.problem("device", phrase("problem.confidence_screen"), phrase("problem.touch_or_either"));
+    reader.problem("device",
+                   phrase("the confidence is stated on the screen, so buttons alone are not enough"),
+                   phrase("use \"touch\" or \"either\""));
   task.confidence = std::move(confidence);
 }
 
 void read_choices(TableReader& reader, Task& task, const TaskForm& kind, const Reading& reading) {
-  reader.require("choices", phrase("problem.list_answers",
+  reader.require("choices", phrase("list the answers: %1",
                                    {plain("[ { id = \"left\", label = { en = \"Left\" } }, ... ]")}));
   task.choices = read_choice_list(reader, "task.choices", reading);
   std::set<std::string> seen;
@@ -282,12 +298,14 @@ void read_choices(TableReader& reader, Task& task, const TaskForm& kind, const R
   if (const auto given = list && list->kind == Value::Kind::array ? list->items.size() : fewest;
       given < fewest || given > most)
     reading.findings.add(given > most ? list->items[most].place : list->place,
-                         phrase("problem.has", {plain("choices"), plain(given)}),
-                         fewest < most ? phrase("problem.from_to_given", {plain(fewest), plain(most)})
-                                       : phrase("problem.must_be_given", {plain(most)}));
+                         phrase("\"%1\" has %2", {plain("choices"), plain(given)}),
+                         fewest < most ? phrase("from %1 to %2 must be given for this kind of task",
+                                                {plain(fewest), plain(most)})
+                                       : phrase("%1 must be given for this kind of task", {plain(most)}));
   if (task.kind == TaskKind::same_different && task.choices.size() == 2 &&
       seen != std::set<std::string>{"same", "different"})
-    reader.problem("choices", phrase("problem.same_different_ids"), phrase("problem.use_same"));
+    reader.problem("choices", phrase("these are not the ids of the answers in a same-different task"),
+                   phrase("use the ids \"same\" and \"different\""));
 }
 
 /// Reads for each of the two scenes when its interval is the right answer, such as the one that is rougher.
@@ -299,14 +317,14 @@ void read_correct_scenes(TableReader& reader, Task& task, const Reading& reading
       if (std::find(scenes.begin(), scenes.end(), name) == scenes.end()) scenes.push_back(name);
   for (const auto& entry : table->entries) {
     if (std::find(scenes.begin(), scenes.end(), entry.key) == scenes.end()) {
-      reading.findings.add(entry.place, phrase("problem.unknown_scene", {plain(entry.key)}),
+      reading.findings.add(entry.place, phrase("unknown scene \"%1\"", {plain(entry.key)}),
                            text::suggestion(entry.key, scenes));
       continue;
     }
     if (entry.value.kind != Value::Kind::string) {
       reading.findings.add(entry.value.place,
-                           phrase("problem.has", {plain("correct"), describe(entry.value)}),
-                           phrase("problem.comparison", {plain("\"change > 0\"")}));
+                           phrase("\"%1\" has %2", {plain("correct"), describe(entry.value)}),
+                           phrase("write a comparison in quotes: %1", {plain("\"change > 0\"")}));
       continue;
     }
     const auto comparison =
@@ -315,14 +333,15 @@ void read_correct_scenes(TableReader& reader, Task& task, const Reading& reading
   }
   for (const auto& name : scenes)
     if (!table->find(name))
-      reading.findings.add(table->place, phrase("problem.correct_lacks", {plain(name)}),
-                           phrase("problem.comparison_each"));
+      reading.findings.add(table->place,
+                           phrase("\"correct\" does not say when \"%1\" is right", {plain(name)}),
+                           phrase("write a comparison for each choice"));
 }
 
 void read_correct_scene(TableReader& reader, Task& task, const Reading& reading) {
   if (const auto* value = reader.take("correct"); value && value->kind == Value::Kind::table)
     return read_correct_scenes(reader, task, reading);
-  task.correct_scene = reader.string("correct", phrase("problem.name_right_scene"));
+  task.correct_scene = reader.string("correct", phrase("name the scene whose interval is the right answer"));
   if (task.correct_scene.empty()) return;
   check_scene(task.correct_scene, reader.place("correct"), reading);
   const auto in = [&](const auto& interval) {
@@ -330,9 +349,10 @@ void read_correct_scene(TableReader& reader, Task& task, const Reading& reading)
   };
   if (task.intervals.size() == 2 && in(task.intervals[0]) == in(task.intervals[1]))
     reader.problem(task.intervals[0] == task.intervals[1] ? "intervals" : "correct",
-                   in(task.intervals[0]) ? phrase("problem.both_intervals", {plain(task.correct_scene)})
-                                         : phrase("problem.neither_interval", {plain(task.correct_scene)}),
-                   phrase("problem.in_one_interval"));
+                   in(task.intervals[0])
+                       ? phrase("\"%1\" is in both intervals", {plain(task.correct_scene)})
+                       : phrase("\"%1\" is in neither interval", {plain(task.correct_scene)}),
+                   phrase("name a scene that is in only one of the two intervals"));
 }
 
 void read_correct_answers(TableReader& reader, Task& task, const Reading& reading) {
@@ -342,12 +362,13 @@ void read_correct_answers(TableReader& reader, Task& task, const Reading& readin
   for (const auto& choice : task.choices) ids.push_back(choice.id);
   for (const auto& entry : table->entries) {
     if (std::find(ids.begin(), ids.end(), entry.key) == ids.end())
-      reading.findings.add(entry.place, phrase("problem.correct_has", {plain(entry.key)}),
-                           text::suggestion(entry.key, ids));
+      reading.findings.add(
+          entry.place, phrase("\"correct\" has \"%1\", which is not the id of a choice", {plain(entry.key)}),
+          text::suggestion(entry.key, ids));
     if (entry.value.kind != Value::Kind::string) {
       reading.findings.add(entry.value.place,
-                           phrase("problem.has", {plain("correct"), describe(entry.value)}),
-                           phrase("problem.comparison", {plain("\"offset_mm < 0\"")}));
+                           phrase("\"%1\" has %2", {plain("correct"), describe(entry.value)}),
+                           phrase("write a comparison in quotes: %1", {plain("\"offset_mm < 0\"")}));
       continue;
     }
     const auto comparison =
@@ -356,8 +377,8 @@ void read_correct_answers(TableReader& reader, Task& task, const Reading& readin
   }
   for (const auto& id : ids)
     if (!id.empty() && !table->find(id))
-      reading.findings.add(table->place, phrase("problem.correct_lacks", {plain(id)}),
-                           phrase("problem.comparison_each"));
+      reading.findings.add(table->place, phrase("\"correct\" does not say when \"%1\" is right", {plain(id)}),
+                           phrase("write a comparison for each choice"));
 }
 
 void read_correct(TableReader& reader, Task& task, const Reading& reading) {
@@ -375,8 +396,8 @@ void read_correct(TableReader& reader, Task& task, const Reading& reading) {
       if (const auto* factor = read_numeric_factor(reader, "adjusts", reading)) {
         task.adjusts = factor->name;
         if (!factor->range)
-          reader.problem("adjusts", phrase("problem.factor_no_range", {plain(factor->name)}),
-                         phrase("problem.give_range"));
+          reader.problem("adjusts", phrase("the factor \"%1\" has no range", {plain(factor->name)}),
+                         phrase("give this factor a \"range\", over which the slider moves"));
       }
       task.step = reader.number("step", {0, 1e6, Range::Ends::open_low});
       return;
@@ -391,7 +412,7 @@ void read_correct(TableReader& reader, Task& task, const Reading& reading) {
 }  // namespace
 
 void read_task(TableReader& file, Reading& reading) {
-  const auto* table = file.table("task", phrase("problem.a_table_of", {plain("[task]")}));
+  const auto* table = file.table("task", phrase("a table %1", {plain("[task]")}));
   if (!table) return;
   TableReader reader(*table, "task", reading.findings);
   auto& task = reading.protocol.task;
@@ -408,7 +429,7 @@ void read_task(TableReader& file, Reading& reading) {
   task.device_place = reader.place("device");
   task.device = device == "touch" ? Device::touch : device == "buttons" ? Device::buttons : Device::either;
   if (task.kind == TaskKind::adjustment && task.device == Device::buttons)
-    reader.problem("device", phrase("problem.slider_buttons"), plain("\"touch\""));
+    reader.problem("device", phrase("a slider cannot be moved with buttons"), plain("\"touch\""));
   if (reader.maybe_word("sound", {"none", "masking_noise"}) == "masking_noise")
     task.sound = Sound::masking_noise;
   task.sound_place = reader.place("sound");

@@ -23,13 +23,15 @@ const Range deadline_range{0, 3600, Range::Ends::open_low, "s"};
 
 void read_buzz(TableReader& reader, ResponseSignal& signal, const Reading& reading) {
   if (signal.by == ResponseSignal::By::buzz) {
-    signal.scene = read_scene_name(reader, "scene", phrase("problem.signal_scene"), reading);
+    signal.scene = read_scene_name(reader, "scene",
+                                   phrase("name the scene that the surface presents as the signal"), reading);
     signal.length_s = 1e-3 * reader.number("length_ms", {20, 500, Range::Ends::closed, "ms"});
     return;
   }
   for (const char* key : {"scene", "length_ms"})
     if (reader.take(key))
-      reader.problem(key, phrase("problem.only_buzz", {plain(std::string(key))}), plain("by = \"buzz\""));
+      reader.problem(key, phrase("\"%1\" applies only to a buzz of the surface", {plain(std::string(key))}),
+                     plain("by = \"buzz\""));
 }
 
 void read_signal(TableReader& timing, Reading& reading) {
@@ -37,11 +39,14 @@ void read_signal(TableReader& timing, Reading& reading) {
   if (!table) return;
   for (const char* key : {"deadline_s", "anticipation_s"})
     if (timing.has(key))
-      timing.problem(key, phrase("problem.not_with_signal", {plain(std::string(key))}),
-                     phrase("problem.signal_window"));
+      timing.problem(key,
+                     phrase("\"%1\" does not apply if there is a response signal", {plain(std::string(key))}),
+                     phrase("answers count from the signal to the end of its \"window_s\""));
   TableReader reader(*table, "timing.response_signal", reading.findings);
   ResponseSignal signal;
-  reader.require("after_s", phrase("problem.say_signal"));
+  reader.require(
+      "after_s",
+      phrase("say when the signal comes, in seconds after response_zero: a number, or a factor in quotes"));
   if (const auto after = read_time(reader, "after_s", {0.02, 60, Range::Ends::closed, "s"}, reading))
     signal.after_s = *after;
   signal.window_s = reader.number("window_s", {0.05, 10, Range::Ends::closed, "s"});
@@ -59,7 +64,7 @@ void read_signal(TableReader& timing, Reading& reading) {
 }  // namespace
 
 void read_timing(TableReader& file, Reading& reading) {
-  const auto* table = file.table("timing", phrase("problem.a_table_of", {plain("[timing]")}));
+  const auto* table = file.table("timing", phrase("a table %1", {plain("[timing]")}));
   if (!table) return;
   TableReader reader(*table, "timing", reading.findings);
   auto& timing = reading.protocol.timing;
@@ -72,7 +77,8 @@ void read_timing(TableReader& file, Reading& reading) {
   timing.explore_s = reader.maybe_number("explore_s", {0, 600, Range::Ends::open_low, "s"});
   read_signal(reader, reading);
   timing.deadline_s = read_time(reader, "deadline_s", deadline_range, reading);
-  reader.require("iti_s", phrase("problem.give_pause", {plain("{ uniform = [0.8, 1.2] }")}));
+  reader.require("iti_s", phrase("give the pause between trials in seconds: a number or %1",
+                                 {plain("{ uniform = [0.8, 1.2] }")}));
   timing.iti_s = read_distribution(reader, "iti_s").value_or(Distribution{1, 1});
   if (!timing.signal && !reader.has("anticipation_s")) reader.defaulted("anticipation_s", "0");
   timing.anticipation_s =
@@ -86,8 +92,8 @@ void read_instructions(TableReader& file, Reading& reading) {
   for (const auto& entry : tables->entries) {
     if (entry.value.kind != Value::Kind::table) {
       reading.findings.add(entry.place,
-                           phrase("problem.instructions_is", {plain(entry.key), describe(entry.value)}),
-                           phrase("problem.write_table", {plain("[instructions.NAME]")}));
+                           phrase("\"instructions.%1\" is %2", {plain(entry.key), describe(entry.value)}),
+                           phrase("write a table %1", {plain("[instructions.NAME]")}));
       continue;
     }
     TableReader reader(entry.value, "instructions." + entry.key, reading.findings);

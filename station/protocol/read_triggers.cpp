@@ -30,11 +30,11 @@ void read_send(TableReader& reader, Triggers& triggers) {
   triggers.send.clear();
   for (const auto& word : reader.maybe_strings("send")) {
     if (std::find(kEvents.begin(), kEvents.end(), word) == kEvents.end())
-      reader.problem("send", phrase("problem.has_word", {plain("send"), plain(word)}),
-                     phrase("problem.allowed", {text::quoted_list(kEvents)}));
+      reader.problem("send", phrase("\"%1\" has \"%2\"", {plain("send"), plain(word)}),
+                     phrase("allowed: %1", {text::quoted_list(kEvents)}));
     else if (std::find(triggers.send.begin(), triggers.send.end(), event_of(word)) != triggers.send.end())
-      reader.problem("send", phrase("problem.twice_in", {plain(word), plain("send")}),
-                     phrase("problem.event_once"));
+      reader.problem("send", phrase("\"%1\" appears twice in \"%2\"", {plain(word), plain("send")}),
+                     phrase("list each event only once"));
     else
       triggers.send.push_back(event_of(word));
   }
@@ -47,14 +47,18 @@ void read_code(const text::Value& table, Reading& reading) {
   const auto known = conditions(reading.protocol);
   code.condition = reader.maybe_string("condition").value_or("");
   if (!code.condition.empty() && std::find(known.begin(), known.end(), code.condition) == known.end())
-    reader.problem("condition", phrase("problem.no_condition", {plain(code.condition)}),
-                   known.empty() ? phrase("problem.leave_condition", {plain("\"by\"")})
-                                 : text::suggestion(code.condition, known));
+    reader.problem(
+        "condition", phrase("there is no condition \"%1\"", {plain(code.condition)}),
+        known.empty()
+            ? phrase(
+                  "leave out \"condition\": no factor is in [analysis] %1, and no block has an instruction",
+                  {plain("\"by\"")})
+            : text::suggestion(code.condition, known));
   code.code = reader.integer("code", 1, 255);
   const auto& send = reading.protocol.triggers.send;
   if (std::find(send.begin(), send.end(), code.event) == send.end())
-    reader.problem("event", phrase("problem.not_in_send", {plain(name(code.event))}),
-                   phrase("problem.add_to_send"));
+    reader.problem("event", phrase("\"%1\" is not in \"send\"", {plain(name(code.event))}),
+                   phrase("add it to \"send\" in [triggers]"));
   reader.finish();
   reading.protocol.triggers.stated.push_back(code);
 }
@@ -69,10 +73,11 @@ void check_unique(TableReader& reader, const Reading& reading) {
   for (const auto& code : trigger_codes(reading.protocol)) {
     const auto [first, fresh] = seen.emplace(code.code, code);
     if (!fresh)
-      reader.problem("code",
-                     phrase("problem.code_twice", {plain(text::number(code.code)),
-                                                   plain(described(first->second)), plain(described(code))}),
-                     phrase("problem.codes_differ"));
+      reader.problem(
+          "code",
+          phrase("the code %1 stands for %2 and for %3",
+                 {plain(text::number(code.code)), plain(described(first->second)), plain(described(code))}),
+          phrase("give each event of each condition its own code"));
   }
 }
 

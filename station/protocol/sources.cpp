@@ -57,10 +57,10 @@ void add_block(const Protocol& protocol, const Block& block, const std::string& 
   };
   for (const auto& name : block.procedures)
     if (const auto* spec = find_procedure(protocol, name); spec && !spec->level.empty())
-      push(phrase("problem.the_procedure", {plain(name)}), spec->level, levels_of(protocol, *spec), spec);
-  if (!block.level.empty()) push(phrase("problem.fixed_levels"), block.level, block.levels, nullptr);
+      push(phrase("procedure \"%1\"", {plain(name)}), spec->level, levels_of(protocol, *spec), spec);
+  if (!block.level.empty()) push(phrase("fixed levels"), block.level, block.levels, nullptr);
   if (block.catch_trials && !block.catch_trials->factor.empty())
-    push(phrase("problem.catch_trials"), block.catch_trials->factor, block.catch_trials->levels, nullptr);
+    push(phrase("catch trials"), block.catch_trials->factor, block.catch_trials->levels, nullptr);
 }
 
 }  // namespace

@@ -50,8 +50,8 @@ texts::Phrase reach(const scene::Scene& scene, const rig::Rig& rig, const scene:
       nearest = std::min(nearest.value_or(*x), *x);
       furthest = std::max(furthest.value_or(*x), *x);
     }
-  if (!nearest) return phrase("problem.no_boundary");
-  return phrase("problem.boundaries_from",
+  if (!nearest) return phrase("this rig cannot present any boundary with this edge");
+  return phrase("with this edge the rig can present boundaries from %1 to %2 mm (%3 to %4 kHz)",
                 {plain(text::number(1e3 * *nearest, 4)), plain(text::number(1e3 * *furthest, 4)),
                  plain(text::number(1e-3 * low_Hz, 4)), plain(text::number(1e-3 * high_Hz, 4))});
 }
@@ -256,8 +256,8 @@ void plan_scenes(const Protocol& protocol, const rig::Rig& rig, const std::stop_
   for (const auto& [name, trouble] : unreachable)
     survey.problems.push_back({trouble.place, counted(trouble.first, trouble.cases), trouble.allowed});
   for (const auto& [name, trouble] : inexact)
-    survey.warnings.push_back(
-        {protocol.scenes.at(name).place, counted(trouble.first, trouble.cases), phrase("problem.no_model")});
+    survey.warnings.push_back({protocol.scenes.at(name).place, counted(trouble.first, trouble.cases),
+                               phrase("no physical model is known to meet the scene's tolerance")});
   // this rig reproduces an historical one, whose weaknesses are known, so leave out the planner's warnings
   if (rig.reproduction) return;
   for (const auto& [code, warning] : told) survey.warnings.push_back({{protocol.path, 0, 0}, warning, {}});
@@ -267,10 +267,12 @@ void check_limits(const Protocol& protocol, const rig::Rig& rig, Survey& survey)
   const double longest_s =
       protocol.task.duration_s ? *protocol.task.duration_s : protocol.timing.explore_s.value_or(0);
   if (longest_s > rig.limits.continuous_s)
-    survey.problems.push_back({KeyPlaces(protocol.source, protocol.path)
-                                   .of(protocol.task.duration_s ? "task.duration_s" : "timing.explore_s"),
-                               phrase("problem.tones_last", {plain(text::number(longest_s))}),
-                               phrase("problem.rig_allows", {plain(text::number(rig.limits.continuous_s))})});
+    survey.problems.push_back(
+        {KeyPlaces(protocol.source, protocol.path)
+             .of(protocol.task.duration_s ? "task.duration_s" : "timing.explore_s"),
+         phrase("tones last up to %1 s without a pause", {plain(text::number(longest_s))}),
+         phrase("the rig allows at most continuous_s = %1 s",
+                {plain(text::number(rig.limits.continuous_s))})});
 }
 
 }  // namespace

@@ -19,9 +19,8 @@ constexpr double longest_s = 120;
 
 void check_length(AdviceList& advice, const std::string& key, double seconds) {
   if (seconds > longest_s)
-    advice.add(key,
-               phrase("problem.seconds_minutes", {plain(number(seconds)), plain(number(seconds / 60, 3))}),
-               phrase("problem.in_seconds"));
+    advice.add(key, phrase("%1 s are %2 minutes", {plain(number(seconds)), plain(number(seconds / 60, 3))}),
+               phrase("times are in seconds: write 0.8 for 800 ms"));
 }
 
 // A person may think about what was felt, but nobody remembers it for longer than this. Typing a number takes
@@ -37,14 +36,17 @@ void check_reach(AdviceList& advice, const std::string& key, double shortest, do
   const double answers_from_s = explored(advice.protocol.task) ? 0 : end->latest_s;
   if (answers_from_s > 0 && shortest < answers_from_s + shortest_deadline_s)
     advice.add(key,
-               phrase("problem.deadline_unmet",
+               phrase("the deadline of %1 s cannot be met: answers are accepted when the last interval has "
+                      "ended, up to %2 s after \"%3\"",
                       {plain(number(shortest)), plain(number(answers_from_s)), plain(zero)}),
-               phrase("problem.seconds_or", {plain(number(answers_from_s + shortest_deadline_s)),
-                                             plain("response_zero = \"interval_off\"")}));
+               phrase("%1 s or more, or %2", {plain(number(answers_from_s + shortest_deadline_s)),
+                                              plain("response_zero = \"interval_off\"")}));
   else if (!advice.protocol.task.value && longest - end->latest_s > longest_after_s && longest <= longest_s)
-    advice.add(key, phrase("problem.deadline_late", {plain(number(longest - end->latest_s))}),
-               phrase("problem.nobody_remembers",
-                      {plain(number(longest_after_s)), plain(number(end->latest_s + longest_after_s))}));
+    advice.add(
+        key,
+        phrase("the deadline is %1 s after the stimulus has ended", {plain(number(longest - end->latest_s))}),
+        phrase("nobody remembers for longer than %1 s what was felt: at most %2 s",
+               {plain(number(longest_after_s)), plain(number(end->latest_s + longest_after_s))}));
 }
 
 void check_deadline(AdviceList& advice, const std::string& key, const Linear& deadline) {
@@ -52,13 +54,14 @@ void check_deadline(AdviceList& advice, const std::string& key, const Linear& de
   check_length(advice, key, longest);
   if (seconds >= shortest_deadline_s) check_reach(advice, key, seconds, longest);
   if (seconds < shortest_deadline_s)
-    advice.add(key, phrase("problem.nobody_answers", {plain(number(seconds))}),
-               phrase("problem.seconds_or_more", {plain(number(shortest_deadline_s))}));
+    advice.add(key, phrase("nobody can answer within %1 s", {plain(number(seconds))}),
+               phrase("%1 s or more", {plain(number(shortest_deadline_s))}));
   const double below_s = advice.protocol.analysis.exclude_below_s;
   if (below_s >= seconds)
     advice.add("analysis.response_time_exclude.below_s",
-               phrase("problem.excludes_all", {plain(number(below_s)), plain(number(seconds))}),
-               phrase("problem.below_deadlines"));
+               phrase("\"below_s\" excludes all answers up to %1 s, but the deadline is only %2 s",
+                      {plain(number(below_s)), plain(number(seconds))}),
+               phrase("set it well below every deadline"));
 }
 
 // Checks that the change to the second scene, which follows the foreperiod, is complete before the tones end.
@@ -68,9 +71,11 @@ void check_change(AdviceList& advice) {
   const double whole_s = task.duration_s.value_or(advice.protocol.timing.explore_s.value_or(0));
   const double latest_s = task.foreperiod_s->high + 1e-3 * task.transition_ms.value_or(0);
   if (whole_s > 0 && latest_s >= whole_s)
-    advice.add("task.foreperiod_s",
-               phrase("problem.change_late", {plain(number(latest_s)), plain(number(whole_s))}),
-               phrase("problem.change_below", {plain(number(whole_s))}));
+    advice.add(
+        "task.foreperiod_s",
+        phrase("the change can end %1 s after the tones begin, but the tones last only %2 s",
+               {plain(number(latest_s)), plain(number(whole_s))}),
+        phrase("the foreperiod plus the transition must be well below %1 s", {plain(number(whole_s))}));
 }
 
 // A person who slides over the surface judges what it does at the signal. After the tones there is nothing to
@@ -83,10 +88,10 @@ void check_lag(AdviceList& advice, const ResponseSignal& signal) {
       explored(advice.protocol.task) && advice.protocol.timing.response_zero != ResponseZero::interval_off;
   if (end && is_felt && !in_stimulus(signal) && latest_s > end->earliest_s)
     advice.add(key,
-               phrase("problem.signal_late",
+               phrase("the signal can come %1 s after \"%2\", when the tones may have ended %3 s before",
                       {plain(number(latest_s)), plain(name(advice.protocol.timing.response_zero)),
                        plain(number(latest_s - end->earliest_s))}),
-               phrase("problem.or_longer_tones", {plain(number(end->earliest_s))}));
+               phrase("at most %1 s, or longer tones", {plain(number(end->earliest_s))}));
 }
 
 }  // namespace
@@ -100,8 +105,8 @@ void advise_on_times(AdviceList& advice) {
       check_deadline(advice, "instructions." + name + ".deadline_s", *instruction.deadline_s);
   if (timing.signal && timing.signal->window_s < shortest_deadline_s)
     advice.add("timing.response_signal.window_s",
-               phrase("problem.nobody_signal", {plain(number(timing.signal->window_s))}),
-               phrase("problem.seconds_or_more", {plain(number(shortest_deadline_s))}));
+               phrase("nobody can answer within %1 s of a signal", {plain(number(timing.signal->window_s))}),
+               phrase("%1 s or more", {plain(number(shortest_deadline_s))}));
   if (timing.signal) check_lag(advice, *timing.signal);
   check_length(advice, "timing.iti_s", timing.iti_s.high);
   check_length(advice, "timing.explore_s", timing.explore_s.value_or(0));

@@ -72,8 +72,8 @@ std::vector<std::vector<double>> read_table(const std::string& path, const std::
   try {
     bytes = text::read_text_file(path);
   } catch (const std::runtime_error& error) {
-    findings.add(needed_by, phrase("problem.cannot_read", {plain(std::string(error.what()))}),
-                 phrase("problem.relative_rig"));
+    findings.add(needed_by, phrase("cannot read %1", {plain(std::string(error.what()))}),
+                 phrase("write a path relative to the rig file"));
     return {};
   }
   const auto lines = lines_of(bytes);
@@ -82,8 +82,9 @@ std::vector<std::vector<double>> read_table(const std::string& path, const std::
                        return line.text.find(',') != std::string::npos;
                      });
   if (!lines.empty() && split(lines.front().text, separator) != columns)
-    findings.add({path, lines.front().number, 1}, phrase("problem.first_line", {plain(lines.front().text)}),
-                 phrase("problem.column_names", {plain(joined(columns))}));
+    findings.add({path, lines.front().number, 1},
+                 phrase("the first line is \"%1\"", {plain(lines.front().text)}),
+                 phrase("the column names must be: %1", {plain(joined(columns))}));
   std::vector<std::vector<double>> rows;
   for (std::size_t n = 1; n < lines.size(); ++n) {
     const auto cells = split(lines[n].text, separator);
@@ -94,15 +95,20 @@ std::vector<std::vector<double>> read_table(const std::string& path, const std::
     if (good)
       rows.push_back(std::move(row));
     else
-      findings.add({path, lines[n].number, 1}, phrase("problem.no_row", {plain(lines[n].text)}),
-                   comma
-                       ? phrase("problem.row_decimal_commas", {plain(columns.size()), plain(joined(columns))})
-                       : phrase("problem.row_numbers", {plain(columns.size()), plain(joined(columns))}));
+      findings.add({path, lines[n].number, 1},
+                   phrase("\"%1\" is not a row of numbers", {plain(lines[n].text)}),
+                   comma ? phrase("%1 numbers are needed in each row: %2; this file has decimal commas, so "
+                                  "its numbers may not have points",
+                                  {plain(columns.size()), plain(joined(columns))})
+                         : phrase("%1 numbers are needed in each row: %2",
+                                  {plain(columns.size()), plain(joined(columns))}));
   }
   if (rows.size() < least)
     findings.add({path, 0, 0},
-                 least == 2 ? phrase("problem.few_rows") : phrase("problem.rows", {plain(rows.size())}),
-                 least == 2 ? phrase("problem.two_rows") : phrase("problem.needed_at_least", {plain(least)}));
+                 least == 2 ? phrase("the file has fewer than two rows of numbers")
+                            : phrase("the file has %1 rows of numbers", {plain(rows.size())}),
+                 least == 2 ? phrase("at least two rows are needed")
+                            : phrase("at least %1 are needed", {plain(least)}));
   return rows;
 }
 

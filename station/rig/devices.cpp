@@ -18,8 +18,8 @@ std::string read_uri(TableReader& reader, const std::vector<std::string>& forms)
     const auto scheme = form.substr(0, form.find(':') + 1);
     if (scheme == form ? uri == form : uri.starts_with(scheme) && uri.size() > scheme.size()) return uri;
   }
-  reader.problem("uri", phrase("problem.is_word", {plain("uri"), plain(uri)}),
-                 phrase("problem.allowed", {allowed}));
+  reader.problem("uri", phrase("\"%1\" is \"%2\"", {plain("uri"), plain(uri)}),
+                 phrase("allowed: %1", {allowed}));
   return uri;
 }
 
@@ -38,13 +38,13 @@ void check_gpio(TableReader& reader, const std::string& uri, const std::vector<s
     const auto name = part.substr(0, equals);
     const bool known = std::find(all.begin(), all.end(), name) != all.end();
     if (!known || equals == std::string::npos || equals + 1 == part.size() || !seen.insert(name).second)
-      return reader.problem("uri", phrase("problem.names_no_line", {plain(part), plain(uri)}),
-                            phrase("problem.each_line_once", {text::quoted_list(all)}));
+      return reader.problem("uri", phrase("\"%1\" in \"%2\" does not name a line", {plain(part), plain(uri)}),
+                            phrase("each of %1 once, as name=LINE", {text::quoted_list(all)}));
   }
   for (const auto& name : needed)
     if (!seen.count(name))
-      return reader.problem("uri", phrase("problem.no_line", {plain(uri), plain(name)}),
-                            phrase("problem.needed", {text::quoted_list(needed)}));
+      return reader.problem("uri", phrase("\"%1\" has no line \"%2\"", {plain(uri), plain(name)}),
+                            phrase("needed: %1", {text::quoted_list(needed)}));
 }
 
 namespace {
@@ -64,13 +64,14 @@ std::optional<std::string> read_device(TableReader& file, const std::string& key
 
 std::string read_thermometer(TableReader& reader, const std::string& key) {
   const auto allowed =
-      phrase("problem.thermometer",
+      phrase("%1 or %2, such as %3; NAME@DEVICE if several have that name",
              {plain("\"hwmon:NAME/tempN\""), plain("\"iio:NAME/temp\""), plain("\"hwmon:lm75/temp1\"")});
   const auto uri = reader.string(key, allowed);
   static const std::regex form("hwmon:[^/]+/temp[0-9]+|iio:[^/]+/temp[0-9a-z_]*");
   const bool good = std::regex_match(uri, form);
   if (!uri.empty() && !good)
-    reader.problem(key, phrase("problem.no_sensor", {plain(uri)}), phrase("problem.allowed", {allowed}));
+    reader.problem(key, phrase("\"%1\" does not name a temperature sensor", {plain(uri)}),
+                   phrase("allowed: %1", {allowed}));
   return uri;
 }
 
@@ -88,7 +89,7 @@ std::optional<Thermometers> read_thermometers(TableReader& file) {
 }  // namespace
 
 void read_devices(TableReader& file, Rig& rig) {
-  if (!file.has("amplifier")) file.require("amplifier", phrase("problem.add_amplifier"));
+  if (!file.has("amplifier")) file.require("amplifier", phrase("add a table [amplifier] with uri"));
   rig.amplifier_uri =
       read_device(file, "amplifier", {"sim:", "gpio:enable=LINE,fault=LINE,stop=LINE,heartbeat=LINE"},
                   {"enable"}, {"fault", "stop", "heartbeat", "active", "fault_active", "stop_active"})

@@ -59,8 +59,8 @@ void read_response(TableReader& reader, const std::string& rig_path, Transducer&
   const auto file = reader.maybe_string("response_csv");
   const auto um = reader.maybe_number("um_per_full_scale", {0, 1000, Ends::open_low, "um"});
   if (reader.has("response_csv") == reader.has("um_per_full_scale"))
-    reader.findings().add(reader.place(), phrase("problem.one_response", {reader.title()}),
-                          phrase("problem.give_response"));
+    reader.findings().add(reader.place(), phrase("%1 needs exactly one response", {reader.title()}),
+                          phrase("give either \"um_per_full_scale\" or \"response_csv\""));
   if (um) transducer.m_per_full_scale = 1e-6 * *um;
   if (!file) return;
   const auto csv = beside(rig_path, *file);
@@ -71,8 +71,10 @@ void read_response(TableReader& reader, const std::string& rig_path, Transducer&
     const auto& points = transducer.response;
     if (row[0] <= (points.empty() ? 0 : points.back().frequency_Hz) || row[1] <= 0)
       return reader.findings().add(
-          place, phrase("problem.bad_response_row", {plain(csv), plain(text::number(row[0]))}),
-          phrase("problem.response_rows"));
+          place,
+          phrase("%1 has a row %2 Hz with a value that is not allowed",
+                 {plain(csv), plain(text::number(row[0]))}),
+          phrase("frequencies must be above 0 and in ascending order; um_per_full_scale must be above 0"));
     transducer.response.push_back({row[0], 1e-6 * row[1], row[2] * pi / 180});
   }
 }
@@ -80,9 +82,9 @@ void read_response(TableReader& reader, const std::string& rig_path, Transducer&
 Transducer read_transducer(const text::Value& table, const std::string& rig_path, Findings& findings) {
   TableReader reader(table, titled("transducer", table), findings);
   Transducer transducer;
-  transducer.name = reader.string("name", phrase("problem.name_transducer"));
+  transducer.name = reader.string("name", phrase("give the transducer a name, which messages use"));
   transducer.channel = reader.integer("channel", 0, kLastChannel);
-  reader.require("band_kHz", phrase("problem.give_band", {plain("[low, high]")}));
+  reader.require("band_kHz", phrase("give the usable band as %1 in kHz", {plain("[low, high]")}));
   if (const auto band = reader.maybe_interval("band_kHz", {0, 1000, Ends::open_low, "kHz"})) {
     transducer.low_Hz = 1e3 * band->first;
     transducer.high_Hz = 1e3 * band->second;
@@ -92,9 +94,10 @@ Transducer read_transducer(const text::Value& table, const std::string& rig_path
   if (response.size() >= 2 && transducer.high_Hz > 0 &&
       (transducer.low_Hz < response.front().frequency_Hz ||
        transducer.high_Hz > response.back().frequency_Hz))
-    reader.problem("band_kHz", phrase("problem.band_beyond"),
-                   phrase("problem.band_within", {plain(text::number(1e-3 * response.front().frequency_Hz)),
-                                                  plain(text::number(1e-3 * response.back().frequency_Hz))}));
+    reader.problem("band_kHz", phrase("the band extends beyond the measured response"),
+                   phrase("it must lie within %1 to %2 kHz",
+                          {plain(text::number(1e-3 * response.front().frequency_Hz)),
+                           plain(text::number(1e-3 * response.back().frequency_Hz))}));
   reader.finish();
   return transducer;
 }
@@ -102,25 +105,26 @@ Transducer read_transducer(const text::Value& table, const std::string& rig_path
 void read_transducers(TableReader& file, Rig& rig) {
   const auto tables = file.tables("transducer");
   if (tables.empty() && !file.has("transducer"))
-    file.findings().add({rig.path, 0, 0}, phrase("problem.no_transducer"),
-                        phrase("problem.table_each_drive"));
+    file.findings().add({rig.path, 0, 0}, phrase("the file has no [[transducer]] table"),
+                        phrase("add one table for each drive element"));
   std::set<std::string> names;
   std::set<int> channels;
   for (const auto* table : tables) {
     rig.transducers.push_back(read_transducer(*table, rig.path, file.findings()));
     const auto& transducer = rig.transducers.back();
     if (!transducer.name.empty() && !names.insert(transducer.name).second)
-      file.findings().add(table->place, phrase("problem.transducer_again", {plain(transducer.name)}),
-                          phrase("problem.transducers_differ"));
+      file.findings().add(table->place,
+                          phrase("there is already a transducer named \"%1\"", {plain(transducer.name)}),
+                          phrase("each transducer needs a different name"));
     if (table->find("channel") && !channels.insert(transducer.channel).second)
       file.findings().add(table->find("channel")->value.place,
-                          phrase("problem.channel_twice", {plain(transducer.channel)}),
-                          phrase("problem.own_channel"));
+                          phrase("channel %1 is used by two transducers", {plain(transducer.channel)}),
+                          phrase("give each transducer its own channel"));
   }
 }
 
 void read_output(TableReader& file, Rig& rig) {
-  const auto* table = file.table("output", phrase("problem.add_output"));
+  const auto* table = file.table("output", phrase("add a table [output] with uri and rate_Hz"));
   if (!table) return;
   TableReader reader(*table, "output", file.findings());
   auto& output = rig.output;
@@ -133,10 +137,13 @@ void read_output(TableReader& file, Rig& rig) {
   if (reader.has("device_channels")) output.device_channels = reader.integer("device_channels", 1, 64);
   if (const double period_s = static_cast<double>(output.period_frames) / std::max(output.rate_Hz, 1);
       output.rate_Hz > 0 && period_s > longest_period_s)
-    reader.problem("period_frames", phrase("problem.long_period", {plain(text::number(1e3 * period_s, 3))}),
-                   phrase("problem.at_most_frames",
-                          {plain(text::number(1e3 * longest_period_s)),
-                           plain(text::number(std::floor(longest_period_s * output.rate_Hz)))}));
+    reader.problem(
+        "period_frames",
+        phrase("a period lasts %1 ms; the amplifier's guard would conclude that the audio thread has stopped",
+               {plain(text::number(1e3 * period_s, 3))}),
+        phrase("at most %1 ms: %2 frames",
+               {plain(text::number(1e3 * longest_period_s)),
+                plain(text::number(std::floor(longest_period_s * output.rate_Hz)))}));
   if (!reader.has("allow_plugin")) reader.defaulted("allow_plugin", "[]");
   output.allow_plugin = reader.maybe_strings("allow_plugin");
   reader.finish();
@@ -146,9 +153,9 @@ void check_device_channels(TableReader& file, const Rig& rig) {
   const auto* table = file.maybe_table("output");
   const auto* given = table == nullptr ? nullptr : table->find("device_channels");
   if (given == nullptr || rig.output.device_channels >= channels(rig)) return;
-  file.findings().add(given->value.place,
-                      phrase("problem.device_channels", {plain(rig.output.device_channels)}),
-                      phrase("problem.channels_used", {plain(channels(rig))}));
+  file.findings().add(
+      given->value.place, phrase("device_channels is %1", {plain(rig.output.device_channels)}),
+      phrase("at least %1, the number of channels that the rig uses", {plain(channels(rig))}));
 }
 
 void check_bands(TableReader& file, const Rig& rig) {
@@ -160,8 +167,9 @@ void check_bands(TableReader& file, const Rig& rig) {
     const auto* band = table->find("band_kHz");
     if (!band || band->value.items.size() != 2 || band->value.items[1].number * 1e3 <= limit_Hz) continue;
     file.findings().add(band->value.place,
-                        phrase("problem.band_ends", {plain(text::number(band->value.items[1].number))}),
-                        phrase("problem.band_limit", {plain(text::number(1e-3 * limit_Hz))}));
+                        phrase("the band ends at %1 kHz", {plain(text::number(band->value.items[1].number))}),
+                        phrase("it may extend at most to 0.45 of rate_Hz, which is %1 kHz",
+                               {plain(text::number(1e-3 * limit_Hz))}));
   }
 }
 
@@ -173,14 +181,19 @@ void read_friction_table(TableReader& reader, const std::string& file, Rig& rig)
        read_table(csv, {"displacement_um", "relative_friction"}, place, reader.findings())) {
     if (!may_follow(table, 1e-6 * row[0], row[1]))
       return reader.findings().add(
-          place, phrase("problem.bad_friction_row", {plain(csv), plain(text::number(row[0]))}),
-          phrase("problem.friction_rows"));
+          place,
+          phrase("%1 has a row %2 um with a value that is not allowed",
+                 {plain(csv), plain(text::number(row[0]))}),
+          phrase("displacements must be in ascending order from 0; friction must be 1 at displacement 0, at "
+                 "least 0.001, never increase, and end below 1"));
     table.emplace_back(1e-6 * row[0], row[1]);
   }
   if (!table.empty() && falling(table).empty())
-    reader.findings().add(
-        place, phrase("problem.bad_friction_row", {plain(csv), plain(text::number(1e6 * table.back().first))}),
-        phrase("problem.friction_rows"));
+    reader.findings().add(place,
+                          phrase("%1 has a row %2 um with a value that is not allowed",
+                                 {plain(csv), plain(text::number(1e6 * table.back().first))}),
+                          phrase("displacements must be in ascending order from 0; friction must be 1 at "
+                                 "displacement 0, at least 0.001, never increase, and end below 1"));
   rig.friction.measured = true;
 }
 
@@ -196,8 +209,9 @@ void read_friction(TableReader& file, Rig& rig) {
   if (reader.has("table_csv")) {
     for (const auto* key : {"model", "pressure_kPa", "floor"})
       if (reader.take(key))
-        reader.problem(key, phrase("problem.not_together", {plain(key), plain("table_csv")}),
-                       phrase("problem.table_replaces"));
+        reader.problem(key,
+                       phrase("\"%1\" is not allowed together with \"%2\"", {plain(key), plain("table_csv")}),
+                       phrase("leave it out: the measured table replaces it"));
     if (csv) read_friction_table(reader, *csv, rig);
   } else {
     reader.word("model", {"load-sharing"}, "load-sharing");
@@ -224,7 +238,7 @@ void read_finger(TableReader& file, Rig& rig) {
 }
 
 void read_limits(TableReader& file, Rig& rig) {
-  const auto* table = file.table("limits", phrase("problem.add_limits"));
+  const auto* table = file.table("limits", phrase("add a table [limits] with displacement_um"));
   if (!table) return;
   TableReader reader(*table, "limits", file.findings());
   rig.limits.displacement_m = 1e-6 * reader.number("displacement_um", {0, 1000, Ends::open_low, "um"});
@@ -243,9 +257,9 @@ Rig parse(const std::string& source, const std::string& path) {
   rig.path = path, rig.source = source, rig.sha256 = text::sha256(source);
   TableReader file(document, "", findings);
   file.word("format", {"friction-rig/1"});
-  rig.name = file.string("name", phrase("problem.name_rig"));
+  rig.name = file.string("name", phrase("give the rig a name that people recognise"));
   rig.reproduction = file.boolean("reproduction", "false");
-  if (const auto* surface = file.table("surface", phrase("problem.a_table_of", {plain("[surface]")})))
+  if (const auto* surface = file.table("surface", phrase("a table %1", {plain("[surface]")})))
     rig.surface = read_surface(*surface, findings);
   read_transducers(file, rig);
   read_output(file, rig);

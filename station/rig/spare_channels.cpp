@@ -21,14 +21,14 @@ void check_spare(TableReader& reader, const std::string& key, int channel, const
   const auto number = std::to_string(channel);
   for (const auto& transducer : rig.transducers)
     if (transducer.channel == channel)
-      reader.problem(key, phrase("problem.channel_drives", {plain(number), plain(transducer.name)}),
-                     phrase("problem.channel_free"));
+      reader.problem(key, phrase("channel %1 drives \"%2\"", {plain(number), plain(transducer.name)}),
+                     phrase("use a channel without a transducer"));
   const bool marker = rig.marker && rig.marker->channel == channel;
   if (marker || (rig.noise && rig.noise->channel == channel))
     reader.problem(key,
-                   marker ? phrase("problem.channel_marker", {plain(number)})
-                          : phrase("problem.channel_noise", {plain(number)}),
-                   phrase("problem.channel_own"));
+                   marker ? phrase("channel %1 is used by the marker", {plain(number)})
+                          : phrase("channel %1 is used by the noise", {plain(number)}),
+                   phrase("use a channel of its own"));
 }
 
 double highest_Hz(const Rig& rig) { return terms::kHighestShareOfRate * std::max(rig.output.rate_Hz, 8000); }
@@ -82,11 +82,11 @@ void read_loop(TableReader& reader, const Rig& rig, Capture& capture) {
   capture.reference = reader.integer("reference", 0, 31);
   const auto& pick_ups = capture.pick_ups;
   if (capture.reference >= capture.channels)
-    reader.problem("reference", phrase("problem.not_captured", {plain(capture.reference)}),
-                   phrase("problem.whole_to", {plain(capture.channels - 1)}));
+    reader.problem("reference", phrase("channel %1 is not captured", {plain(capture.reference)}),
+                   phrase("a whole number from 0 to %1", {plain(capture.channels - 1)}));
   else if (std::find(pick_ups.begin(), pick_ups.end(), capture.reference) != pick_ups.end())
-    reader.problem("reference", phrase("problem.in_pickups", {plain(capture.reference)}),
-                   phrase("problem.channel_own"));
+    reader.problem("reference", phrase("channel %1 is also in \"pickups\"", {plain(capture.reference)}),
+                   phrase("use a channel of its own"));
   capture.excitation_channel = reader.integer("excitation_channel", 0, kLastChannel);
   check_spare(reader, "excitation_channel", *capture.excitation_channel, rig);
 }
@@ -96,12 +96,13 @@ void check_captured(TableReader& reader, const std::string& key, int channel, co
   const auto& pick_ups = capture.pick_ups;
   const auto number = std::to_string(channel);
   if (channel >= capture.channels)
-    reader.problem(key, phrase("problem.not_captured", {plain(number)}),
-                   phrase("problem.whole_to", {plain(capture.channels - 1)}));
+    reader.problem(key, phrase("channel %1 is not captured", {plain(number)}),
+                   phrase("a whole number from 0 to %1", {plain(capture.channels - 1)}));
   else if (std::find(pick_ups.begin(), pick_ups.end(), channel) != pick_ups.end() ||
            (capture.excitation_channel && capture.reference == channel) ||
            std::find(capture.bridges.begin(), capture.bridges.end(), channel) != capture.bridges.end())
-    reader.problem(key, phrase("problem.captured_else", {plain(number)}), phrase("problem.channel_own"));
+    reader.problem(key, phrase("channel %1 is also captured for something else", {plain(number)}),
+                   phrase("use a channel of its own"));
 }
 
 void read_bridges(TableReader& reader, Capture& capture) {
@@ -110,7 +111,9 @@ void read_bridges(TableReader& reader, Capture& capture) {
     const int channel = static_cast<int>(number);
     const auto same = std::count(channels.begin(), channels.end(), number);
     if (channels.size() != 3 || number != channel || same > 1) {
-      reader.problem("bridges", phrase("problem.three_cells"), phrase("problem.three_numbers"));
+      reader.problem(
+          "bridges", phrase("\"bridges\" needs the channels of three cells"),
+          phrase("write three different whole numbers: two cells below the surface, and the lateral cell"));
       return;
     }
     check_captured(reader, "bridges", channel, capture);
@@ -126,8 +129,8 @@ void read_marker_channel(TableReader& reader, const Rig& rig, Capture& capture) 
   capture.marker_channel = reader.integer("marker_channel", 0, 31);
   check_captured(reader, "marker_channel", *capture.marker_channel, capture);
   if (!rig.marker || rig.marker->kind != Marker::Kind::code)
-    reader.problem("marker_channel", phrase("problem.no_marker"),
-                   phrase("problem.add_marker", {plain("kind = \"code\"")}));
+    reader.problem("marker_channel", phrase("the rig has no marker with codes"),
+                   phrase("add [marker] with %1, or leave this out", {plain("kind = \"code\"")}));
 }
 
 Sync read_sync(const text::Value& table, const Rig& rig, text::Findings& findings) {
@@ -138,8 +141,8 @@ Sync read_sync(const text::Value& table, const Rig& rig, text::Findings& finding
   if (sync.uri == "capture:") {
     sync.channel = reader.integer("channel", 0, 31);
     if (!rig.capture)
-      reader.problem("uri", phrase("problem.captures_nothing"),
-                     phrase("problem.add_capture_or", {plain("\"gpio:line=LINE\"")}));
+      reader.problem("uri", phrase("the rig captures nothing"),
+                     phrase("add [capture], or use %1", {plain("\"gpio:line=LINE\"")}));
     else
       check_captured(reader, "channel", *sync.channel, *rig.capture);
   }
@@ -155,8 +158,10 @@ Capture read_capture(const text::Value& table, const Rig& rig, text::Findings& f
   std::set<double> seen;
   for (const double channel : reader.numbers("pickups", {0, 31, Range::Ends::closed})) {
     if (channel != std::floor(channel) || channel >= capture.channels || !seen.insert(channel).second)
-      reader.problem("pickups", phrase("problem.no_own_channel", {plain(text::number(channel))}),
-                     phrase("problem.different_to", {plain(capture.channels - 1)}));
+      reader.problem(
+          "pickups",
+          phrase("channel %1 is not a captured channel of its own", {plain(text::number(channel))}),
+          phrase("write different whole numbers from 0 to %1", {plain(capture.channels - 1)}));
     capture.pick_ups.push_back(static_cast<int>(channel));
   }
   const bool has_bridges = reader.has("bridges");
@@ -173,7 +178,8 @@ Capture read_capture(const text::Value& table, const Rig& rig, text::Findings& f
 /// A name of the kernel, which may not contain what separates names in messages and files.
 void check_name(TableReader& reader, const std::string& key, const std::string& name) {
   if (name.find_first_of(" \t/,\"") == std::string::npos) return;
-  reader.problem(key, phrase("problem.no_channel_name", {plain(name)}), phrase("problem.name_without"));
+  reader.problem(key, phrase("\"%1\" is not the name of a channel or trigger", {plain(name)}),
+                 phrase("a name without spaces, slashes and commas, such as \"voltage0-voltage1\""));
 }
 
 CellConverter read_converter(const text::Value& table, Rig& rig, text::Findings& findings) {
@@ -183,12 +189,13 @@ CellConverter read_converter(const text::Value& table, Rig& rig, text::Findings&
   const std::array keys{"a", "b", "lateral"};
   for (std::size_t k = 0; k < keys.size(); ++k) {
     auto& name = converter.channels[k];
-    name = reader.string(keys[k], phrase("problem.channel_name"));
+    name = reader.string(keys[k], phrase("the name of a channel, such as \"voltage0-voltage1\""));
     check_name(reader, keys[k], name);
     for (std::size_t other = 0; other < k; ++other)
       if (!name.empty() && converter.channels[other] == name)
-        reader.problem(keys[k], phrase("problem.channel_also", {plain(name), plain(keys[other])}),
-                       phrase("problem.cell_channel"));
+        reader.problem(keys[k],
+                       phrase("channel \"%1\" is also that of \"%2\"", {plain(name), plain(keys[other])}),
+                       phrase("a channel of its own for each cell"));
   }
   // Below 80 samples a second the contact of a finger is not seen in time; the grid has 1000 points a second.
   converter.rate_Hz = reader.number("rate_Hz", {80, 1000, Range::Ends::closed, "Hz"});
@@ -198,10 +205,11 @@ CellConverter read_converter(const text::Value& table, Rig& rig, text::Findings&
   converter.delay_s = 1e-3 * reader.number("delay_ms", {0, 1000, Range::Ends::closed, "ms"}, 0);
   reader.finish();
   if (!rig.capture || !rig.capture->uri.starts_with("alsa:"))
-    reader.problem("uri", phrase("problem.cells_need"),
-                   phrase("problem.add_capture", {plain("uri = \"alsa:NAME\"")}));
+    reader.problem("uri", phrase("force cells on a converter need pick-ups on the card that plays"),
+                   phrase("add [capture] with %1", {plain("uri = \"alsa:NAME\"")}));
   else if (!rig.capture->bridges.empty())
-    reader.problem("uri", phrase("problem.capture_has_cells"), phrase("problem.leave_bridges"));
+    reader.problem("uri", phrase("[capture] already has force cells"),
+                   phrase("leave out \"bridges\" or [force_cells]"));
   return converter;
 }
 

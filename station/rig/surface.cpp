@@ -52,7 +52,10 @@ void read_material(text::TableReader& reader, Surface& surface) {
   const auto bending = reader.word("bending", words, "auto");
   surface.bending = bending == "on" ? Bending::on : bending == "off" ? Bending::off : Bending::automatic;
   if (surface.tension_Pa == 0 && surface.bending == Bending::off)
-    reader.problem("bending", phrase("problem.bending_off"), phrase("problem.set_bending"));
+    reader.problem(
+        "bending",
+        phrase("\"bending\" is off although there is no tension, so nothing would hold the surface"),
+        phrase("set \"tension_Pa\" above 0, or \"bending\" to \"auto\" or \"on\""));
   const bool needs_bending = surface.tension_Pa == 0 || surface.bending == Bending::on;
   const Range modulus{1e-6, 2000, Ends::closed, "GPa"}, poisson{-1, 0.5, Ends::open_low};
   if (filled || needs_bending || reader.has("modulus_GPa")) {
@@ -74,40 +77,45 @@ double read_quality_factor(text::TableReader& reader) {
 }
 
 void read_profile(const text::Value& list, text::TableReader& reader, Taper& taper) {
-  const auto allowed = phrase("problem.write_profile", {plain("[x, half-width]")});
+  const auto allowed = phrase(
+      "write a list of %1 pairs in mm, with x in ascending order from 0 and half-widths above 0 that never "
+      "increase",
+      {plain("[x, half-width]")});
   const auto bad = [&](const text::Place& place, const texts::Phrase& what) {
     reader.findings().add(place, what, allowed);
   };
   if (list.kind != text::Value::Kind::array)
-    return bad(list.place, phrase("problem.is", {plain("profile_mm"), describe(list)}));
+    return bad(list.place, phrase("\"%1\" is %2", {plain("profile_mm"), describe(list)}));
   for (const auto& item : list.items) {
     const bool pair = item.kind == text::Value::Kind::array && item.items.size() == 2;
-    if (!pair) return bad(item.place, phrase("problem.profile_pair"));
+    if (!pair) return bad(item.place, phrase("a point of \"profile_mm\" is not a pair"));
     for (const auto& x : item.items)
       if ((x.kind != text::Value::Kind::number && x.kind != text::Value::Kind::integer) ||
           !std::isfinite(x.number))
-        return bad(x.place, phrase("problem.profile_contains", {describe(x)}));
+        return bad(x.place, phrase("a point of \"profile_mm\" contains %1", {describe(x)}));
     const double x_m = 1e-3 * item.items[0].number, w_m = 1e-3 * item.items[1].number;
     const auto& points = taper.profile_m;
     if (points.empty() ? x_m != 0 : x_m <= points.back().first)
-      return bad(item.place, phrase("problem.profile_order"));
+      return bad(item.place, phrase("the x values of \"profile_mm\" are not in ascending order from 0"));
     if (w_m <= 0 || (!points.empty() && w_m > points.back().second))
-      return bad(item.place, phrase("problem.profile_width"));
+      return bad(item.place,
+                 phrase("a half-width of \"profile_mm\" is not above 0, or is larger than the one before"));
     taper.profile_m.emplace_back(x_m, w_m);
   }
-  if (taper.profile_m.size() < 2) return bad(list.place, phrase("problem.profile_points"));
+  if (taper.profile_m.size() < 2) return bad(list.place, phrase("\"profile_mm\" has fewer than two points"));
   taper.half_width_m = taper.profile_m.front().second;
 }
 
 void check_length(const Surface& surface, text::TableReader& reader) {
   const auto& taper = surface.taper;
   if (taper.slope && taper.half_width_m - *taper.slope * surface.length_m < -1e-9)
-    reader.problem(
-        "slope",
-        phrase("problem.width_zero", {plain(text::number(1e3 * taper.half_width_m / *taper.slope))}),
-        phrase("problem.length_at_most", {plain("half_width_mm / slope")}));
+    reader.problem("slope",
+                   phrase("the half-width reaches 0 at %1 mm, before the end of the surface",
+                          {plain(text::number(1e3 * taper.half_width_m / *taper.slope))}),
+                   phrase("\"length_mm\" must be at most %1", {plain("half_width_mm / slope")}));
   if (!taper.profile_m.empty() && taper.profile_m.back().first < surface.length_m - 1e-9)
-    reader.problem("profile_mm", phrase("problem.profile_short"), phrase("problem.last_point"));
+    reader.problem("profile_mm", phrase("the profile ends before the surface does"),
+                   phrase("the last point must be at \"length_mm\" or beyond"));
 }
 
 void read_taper(const text::Value& table, Surface& surface, text::Findings& findings) {
@@ -118,12 +126,14 @@ void read_taper(const text::Value& table, Surface& surface, text::Findings& find
   const auto* profile = reader.take("profile_mm");
   const int forms = reader.has("slope") + reader.has("decay_length_mm") + reader.has("profile_mm");
   if (forms != 1)
-    findings.add(reader.place(), phrase("problem.taper_forms", {plain(forms)}), phrase("problem.one_taper"));
+    findings.add(reader.place(), phrase("[surface.taper] has %1 forms", {plain(forms)}),
+                 phrase("give exactly one of \"slope\", \"decay_length_mm\" and \"profile_mm\""));
   const Range half_width{0.5, 1000, Ends::closed, "mm"};
   if (profile && reader.has("half_width_mm"))
-    reader.problem("half_width_mm",
-                   phrase("problem.not_together", {plain("half_width_mm"), plain("profile_mm")}),
-                   phrase("problem.profile_has_it"));
+    reader.problem(
+        "half_width_mm",
+        phrase("\"%1\" is not allowed together with \"%2\"", {plain("half_width_mm"), plain("profile_mm")}),
+        phrase("leave it out: the profile already contains it"));
   if (!profile) taper.half_width_m = 1e-3 * reader.number("half_width_mm", half_width);
   reader.take("half_width_mm");
   taper.slope = slope;
@@ -136,7 +146,8 @@ void read_taper(const text::Value& table, Surface& surface, text::Findings& find
       1e-3 * reader.maybe_number("decay_length_sd_mm", {0, 1e6, Ends::closed, "mm"}).value_or(0);
   surface.clamp_line_sd_m = 1e-3 * reader.maybe_number("clamp_line_sd_mm", sd_mm).value_or(0);
   if (surface.clamp_line_sd_m > 0 && taper.decay_length_m)
-    reader.problem("clamp_line_sd_mm", phrase("problem.no_clamp_line"), phrase("problem.use_half_width_sd"));
+    reader.problem("clamp_line_sd_mm", phrase("an exponential taper has no clamp line"),
+                   phrase("use \"half_width_sd_mm\""));
   check_length(surface, reader);
   reader.finish();
 }
@@ -158,8 +169,8 @@ void read_deviations(text::TableReader& reader, Surface& surface) {
   surface.modulus_per_K =
       reader.maybe_number("modulus_per_K", softening).value_or(filled ? filled->modulus_per_K : 0);
   if (surface.temperature_sd_K > 0 && surface.expansion_per_K == 0 && surface.modulus_per_K == 0)
-    reader.problem("temperature_sd_K", phrase("problem.temperature_unknown"),
-                   phrase("problem.add_expansion"));
+    reader.problem("temperature_sd_K", phrase("nothing says how this surface changes with temperature"),
+                   phrase("add \"expansion_per_K\" and \"modulus_per_K\""));
 }
 
 void read_plate_theory(text::TableReader& reader, Surface& surface) {
@@ -171,8 +182,8 @@ void read_plate_theory(text::TableReader& reader, Surface& surface) {
   const bool needed = word == "mindlin" || word == "elastic";
   const double poisson = surface.poisson.value_or(-1);
   if (needed && (surface.tension_Pa > 0 || surface.edges != Edges::clamped || poisson < 0 || poisson > 0.49))
-    reader.problem("plate_theory", phrase("problem.plate_theory", {plain(word)}),
-                   phrase("problem.plate_needs"));
+    reader.problem("plate_theory", phrase("\"plate_theory\" is \"%1\" on this surface", {plain(word)}),
+                   phrase("\"edges\" \"clamped\", \"tension_Pa\" 0 and \"poisson\" from 0 to 0.49 with it"));
 }
 
 }  // namespace
@@ -196,7 +207,7 @@ Surface read_surface(const text::Value& table, text::Findings& findings) {
   surface.wide_end =
       reader.word("wide_end", {"left", "right"}, "left") == "left" ? WideEnd::left : WideEnd::right;
   read_deviations(reader, surface);
-  if (const auto* taper = reader.table("taper", phrase("problem.add_table", {plain("[surface.taper]")})))
+  if (const auto* taper = reader.table("taper", phrase("add a table %1", {plain("[surface.taper]")})))
     read_taper(*taper, surface, findings);
   reader.finish();
   return surface;

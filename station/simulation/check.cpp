@@ -187,11 +187,13 @@ std::vector<text::Problem> language_notes(const Protocol& protocol) {
     if (translation >= texts::Translation::participant_read) continue;
     notes.push_back(
         {{protocol.path, 0, 0},
-         translation == texts::Translation::none ? phrase("problem.not_spoken", {plain(language)})
-                                                 : phrase("problem.unread", {plain(language)}),
          translation == texts::Translation::none
-             ? phrase("problem.add_catalogue")
-             : phrase("problem.let_read", {plain("station/texts/" + language.substr(0, 2) + ".toml")})});
+             ? phrase("the station does not speak \"%1\": its own words, such as Continue, are in English",
+                      {plain(language)})
+             : phrase("no native speaker has read the station's own words in \"%1\"", {plain(language)}),
+         translation == texts::Translation::none
+             ? phrase("add a catalogue of texts for the language")
+             : phrase("let somebody read %1", {plain("station/texts/" + language.substr(0, 2) + ".toml")})});
   }
   return notes;
 }
@@ -279,14 +281,18 @@ Check check(const std::string& protocol_path, const std::string& rig_path, const
     check.problems.push_back({{protocol_path, 0, 0}, texts::phrase_of(error), {}});
   }
   if (!check.cues.not_compared.empty())
-    check.warnings.push_back({{protocol_path, 0, 0},
-                              phrase("problem.cues_unknown", {plain(check.cues.not_compared)}),
-                              phrase("problem.fewer_combinations")});
+    check.warnings.push_back(
+        {{protocol_path, 0, 0},
+         phrase(
+             "the cues of %1 cannot be computed: a cue may give the answers away without being noticed here",
+             {plain(check.cues.not_compared)}),
+         phrase("use fewer combinations of factors in one scene")});
   if (check.duration_s.median > 60 * rig->limits.session_minutes)
     check.warnings.push_back(
         {{protocol_path, 0, 0},
-         phrase("problem.session_long", {plain(std::lround(check.duration_s.median / 60))}),
-         phrase("problem.at_most", {plain(std::lround(rig->limits.session_minutes))})});
+         phrase("the session will last about %1 minutes, longer than the rig's session_minutes",
+                {plain(std::lround(check.duration_s.median / 60))}),
+         phrase("at most %1", {plain(std::lround(rig->limits.session_minutes))})});
   return check;
 }
 

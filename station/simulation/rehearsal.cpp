@@ -156,7 +156,9 @@ Rehearsal rehearse(const protocol::Protocol& protocol, const protocol::Visit& vi
       now_ns = bench.now_ns();
       record.trials.push_back(std::move(row));
       if (++rehearsal.trials > most_trials)
-        throw texts::Failure(texts::phrase("problem.block_endless", {texts::plain(block->name)}));
+        throw texts::Failure(
+            texts::phrase("block \"%1\" does not end: a simulated observer leaves too many trials unanswered",
+                          {texts::plain(block->name)}));
     }
     for (auto& estimate : director.estimates()) rehearsal.estimates.push_back(std::move(estimate));
     director.finish_block();

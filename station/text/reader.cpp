@@ -17,13 +17,13 @@ texts::Phrase describe(const Range& range) {
   const std::string unit = *range.unit ? std::string(" ") + range.unit : "";
   const auto low = plain(number(range.low)), high = plain(number(range.high) + unit);
   if (!std::isfinite(range.low) && !std::isfinite(range.high))
-    return {"", "", {phrase("problem.finite"), plain(unit)}};
+    return {"", "", {phrase("a finite number"), plain(unit)}};
   if (!std::isfinite(range.high))
-    return phrase(low_open ? "problem.above" : "problem.at_least", {plain(number(range.low) + unit)});
-  if (!std::isfinite(range.low)) return phrase(high_open ? "problem.below" : "problem.at_most", {high});
-  if (range.ends == Ends::closed) return phrase("problem.from_to", {low, high});
-  if (low_open) return phrase(high_open ? "problem.above_below" : "problem.above_at_most", {low, high});
-  return phrase("problem.at_least_below", {low, high});
+    return phrase(low_open ? "above %1" : "at least %1", {plain(number(range.low) + unit)});
+  if (!std::isfinite(range.low)) return phrase(high_open ? "below %1" : "at most %1", {high});
+  if (range.ends == Ends::closed) return phrase("from %1 to %2", {low, high});
+  if (low_open) return phrase(high_open ? "above %1 and below %2" : "above %1 and at most %2", {low, high});
+  return phrase("at least %1 and below %2", {low, high});
 }
 
 bool inside_range(double value, const Range& range) {
@@ -55,26 +55,26 @@ texts::Phrase quoted_list(const std::vector<std::string>& words) {
   std::string list;
   for (std::size_t i = 0; i < words.size(); ++i) {
     const auto word = "\"" + words[i] + "\"";
-    if (i > 0 && i + 1 == words.size()) return phrase("problem.or", {plain(list), plain(word)});
+    if (i > 0 && i + 1 == words.size()) return phrase("%1 or %2", {plain(list), plain(word)});
     list += (i > 0 ? ", " : "") + word;
   }
   return plain(list);
 }
 
 texts::Phrase suggestion(const std::string& word, const std::vector<std::string>& known) {
-  if (known.empty()) return phrase("problem.none_defined");
+  if (known.empty()) return phrase("nothing of this kind is defined in this file");
   std::string all;
   for (const auto& name : known) all += (all.empty() ? "" : ", ") + name;
-  auto list = phrase("problem.known", {plain(all)});
+  auto list = phrase("known: %1", {plain(all)});
   const auto near = nearest(word, known);
-  return near.empty() ? list : phrase("problem.did_you_mean", {plain(near), std::move(list)});
+  return near.empty() ? list : phrase("did you mean \"%1\"? %2", {plain(near), std::move(list)});
 }
 
 TableReader::TableReader(const Value& table, std::string name, Findings& findings)
     : table_(&table), name_(std::move(name)), findings_(&findings) {}
 
 texts::Phrase TableReader::title() const {
-  return name_.empty() ? phrase("problem.the_file") : plain("[" + name_ + "]");
+  return name_.empty() ? phrase("the file") : plain("[" + name_ + "]");
 }
 
 std::string TableReader::path(const std::string& key) const {
@@ -102,14 +102,14 @@ const Value* TableReader::take(const std::string& key) {
 
 const Value* TableReader::require(const std::string& key, const texts::Phrase& what) {
   const auto* value = take(key);
-  if (!value) findings_->add(table_->place, phrase("problem.needs_key", {title(), plain(key)}), what);
+  if (!value) findings_->add(table_->place, phrase("%1 needs the key \"%2\"", {title(), plain(key)}), what);
   return value;
 }
 
 bool TableReader::check_number(const Value& value, const std::string& key, const Range& range) {
   if (value.kind != Value::Kind::integer && value.kind != Value::Kind::number) {
-    findings_->add(value.place, phrase("problem.is", {plain(key), describe(value)}),
-                   phrase("problem.number_needed", {describe(range)}));
+    findings_->add(value.place, phrase("\"%1\" is %2", {plain(key), describe(value)}),
+                   phrase("a number %1 is needed", {describe(range)}));
     return false;
   }
   const double x = value.number;
@@ -117,8 +117,8 @@ bool TableReader::check_number(const Value& value, const std::string& key, const
   const std::string shown = std::isnan(x)   ? "nan"
                             : std::isinf(x) ? (x < 0 ? "-inf" : "inf")
                                             : text::number(x);
-  findings_->add(value.place, phrase("problem.is", {plain(key), plain(shown)}),
-                 phrase("problem.allowed", {describe(range)}));
+  findings_->add(value.place, phrase("\"%1\" is %2", {plain(key), plain(shown)}),
+                 phrase("allowed: %1", {describe(range)}));
   return false;
 }
 
@@ -143,7 +143,7 @@ std::optional<double> TableReader::maybe_number(const std::string& key, const Ra
 }
 
 double TableReader::number(const std::string& key, const Range& range) {
-  const auto* value = require(key, phrase("problem.number", {describe(range)}));
+  const auto* value = require(key, phrase("a number %1", {describe(range)}));
   return number_from(value, key, range).value_or(harmless(range));
 }
 
@@ -159,10 +159,10 @@ std::optional<int> TableReader::maybe_integer(const std::string& key, int low, i
   const Range range{static_cast<double>(low), static_cast<double>(high)};
   if (value->kind != Value::Kind::integer) {
     findings_->add(value->place,
-                   phrase("problem.is",
+                   phrase("\"%1\" is %2",
                           {plain(key), value->kind == Value::Kind::number ? plain(text::number(value->number))
                                                                           : describe(*value)}),
-                   phrase("problem.whole_needed", {describe(range)}));
+                   phrase("a whole number %1 is needed", {describe(range)}));
     return std::nullopt;
   }
   if (!check_number(*value, key, range)) return std::nullopt;
@@ -170,7 +170,7 @@ std::optional<int> TableReader::maybe_integer(const std::string& key, int low, i
 }
 
 int TableReader::integer(const std::string& key, int low, int high) {
-  if (!has(key)) require(key, phrase("problem.whole", {describe(Range{double(low), double(high)})}));
+  if (!has(key)) require(key, phrase("a whole number %1", {describe(Range{double(low), double(high)})}));
   return maybe_integer(key, low, high).value_or(low);
 }
 
@@ -186,8 +186,8 @@ bool TableReader::boolean(const std::string& key, const char* fallback) {
     return std::string(fallback) == "true";
   }
   if (value->kind == Value::Kind::boolean) return value->boolean;
-  findings_->add(value->place, phrase("problem.is", {plain(key), describe(*value)}),
-                 phrase("problem.true_false"));
+  findings_->add(value->place, phrase("\"%1\" is %2", {plain(key), describe(*value)}),
+                 phrase("allowed: true or false, without quotes"));
   return false;
 }
 
@@ -195,11 +195,10 @@ std::optional<std::string> TableReader::maybe_string(const std::string& key) {
   const auto* value = take(key);
   if (!value) return std::nullopt;
   if (value->kind == Value::Kind::string && !value->string.empty()) return value->string;
-  findings_->add(
-      value->place,
-      phrase("problem.is",
-             {plain(key), value->kind == Value::Kind::string ? phrase("problem.empty") : describe(*value)}),
-      phrase("problem.text_needed"));
+  findings_->add(value->place,
+                 phrase("\"%1\" is %2",
+                        {plain(key), value->kind == Value::Kind::string ? plain("empty") : describe(*value)}),
+                 phrase("a text in quotes is needed"));
   return std::nullopt;
 }
 
@@ -215,15 +214,15 @@ std::optional<std::string> TableReader::maybe_word(const std::string& key,
   if (value->kind == Value::Kind::string &&
       std::find(words.begin(), words.end(), value->string) != words.end())
     return value->string;
-  auto allowed = phrase("problem.allowed", {quoted_list(words)});
+  auto allowed = phrase("allowed: %1", {quoted_list(words)});
   const auto near = value->kind == Value::Kind::string ? nearest(value->string, words) : "";
-  if (!near.empty()) allowed = phrase("problem.did_you_mean", {plain(near), std::move(allowed)});
-  findings_->add(value->place, phrase("problem.is", {plain(key), describe(*value)}), allowed);
+  if (!near.empty()) allowed = phrase("did you mean \"%1\"? %2", {plain(near), std::move(allowed)});
+  findings_->add(value->place, phrase("\"%1\" is %2", {plain(key), describe(*value)}), allowed);
   return std::nullopt;
 }
 
 std::string TableReader::word(const std::string& key, const std::vector<std::string>& words) {
-  if (!has(key)) require(key, phrase("problem.allowed", {quoted_list(words)}));
+  if (!has(key)) require(key, phrase("allowed: %1", {quoted_list(words)}));
   return maybe_word(key, words).value_or(words.front());
 }
 
@@ -238,21 +237,21 @@ std::vector<double> TableReader::maybe_numbers(const std::string& key, const Ran
   const auto* value = take(key);
   if (!value) return {};
   if (value->kind != Value::Kind::array) {
-    findings_->add(value->place, phrase("problem.is", {plain(key), describe(*value)}),
-                   phrase("problem.numbers_needed", {plain("[1.0, 2.0]")}));
+    findings_->add(value->place, phrase("\"%1\" is %2", {plain(key), describe(*value)}),
+                   phrase("a list of numbers is needed: %1", {plain("[1.0, 2.0]")}));
     return {};
   }
   std::vector<double> list;
   for (const auto& item : value->items)
     if (check_number(item, key, range)) list.push_back(item.number);
   if (value->items.size() < at_least)
-    findings_->add(value->place, phrase("problem.has_values", {plain(key), plain(value->items.size())}),
-                   phrase("problem.needed_at_least", {plain(at_least)}));
+    findings_->add(value->place, phrase("\"%1\" has %2 values", {plain(key), plain(value->items.size())}),
+                   phrase("at least %1 are needed", {plain(at_least)}));
   return list;
 }
 
 std::vector<double> TableReader::numbers(const std::string& key, const Range& range, std::size_t at_least) {
-  if (!has(key)) require(key, phrase("problem.numbers", {describe(range)}));
+  if (!has(key)) require(key, phrase("a list of numbers %1", {describe(range)}));
   return maybe_numbers(key, range, at_least);
 }
 
@@ -264,8 +263,8 @@ std::optional<std::pair<double, double>> TableReader::maybe_interval(const std::
   const auto list = maybe_numbers(key, range);
   if (findings_->problems.size() > before) return std::nullopt;
   if (list.size() == 2 && list[0] < list[1]) return std::pair{list[0], list[1]};
-  findings_->add(value->place, phrase("problem.no_range", {plain(key)}),
-                 phrase("problem.two_needed", {plain("[low, high]")}));
+  findings_->add(value->place, phrase("\"%1\" is not a range", {plain(key)}),
+                 phrase("two numbers are needed, the smaller first: %1", {plain("[low, high]")}));
   return std::nullopt;
 }
 
@@ -273,8 +272,8 @@ std::vector<std::string> TableReader::maybe_strings(const std::string& key) {
   const auto* value = take(key);
   if (!value) return {};
   if (value->kind != Value::Kind::array) {
-    findings_->add(value->place, phrase("problem.is", {plain(key), describe(*value)}),
-                   phrase("problem.texts_needed", {plain("[\"a\", \"b\"]")}));
+    findings_->add(value->place, phrase("\"%1\" is %2", {plain(key), describe(*value)}),
+                   phrase("a list of texts is needed: %1", {plain("[\"a\", \"b\"]")}));
     return {};
   }
   std::vector<std::string> list;
@@ -282,8 +281,8 @@ std::vector<std::string> TableReader::maybe_strings(const std::string& key) {
     if (item.kind == Value::Kind::string)
       list.push_back(item.string);
     else
-      findings_->add(item.place, phrase("problem.holds", {plain(key), describe(item)}),
-                     phrase("problem.text_needed"));
+      findings_->add(item.place, phrase("\"%1\" holds %2", {plain(key), describe(item)}),
+                     phrase("a text in quotes is needed"));
   }
   return list;
 }
@@ -292,17 +291,17 @@ std::vector<std::string> TableReader::strings(const std::string& key, const text
   const auto* value = require(key, what);
   auto list = maybe_strings(key);
   if (value && value->kind == Value::Kind::array && value->items.empty())
-    findings_->add(value->place, phrase("problem.empty_list", {plain(key)}), what);
+    findings_->add(value->place, phrase("\"%1\" is an empty list", {plain(key)}), what);
   return list;
 }
 
 const Value* TableReader::maybe_table(const std::string& key) {
   const auto* value = take(key);
   if (!value || value->kind == Value::Kind::table) return value;
-  findings_->add(value->place, phrase("problem.is", {plain(key), describe(*value)}),
+  findings_->add(value->place, phrase("\"%1\" is %2", {plain(key), describe(*value)}),
                  value->kind == Value::Kind::array
-                     ? phrase("problem.one_table", {plain(key)})
-                     : phrase("problem.table_needed", {plain("{ ... }"), plain(key)}));
+                     ? phrase("one table is needed: single brackets [%1]", {plain(key)})
+                     : phrase("a table is needed: %1 or [%2]", {plain("{ ... }"), plain(key)}));
   return nullptr;
 }
 
@@ -315,8 +314,8 @@ std::vector<const Value*> TableReader::tables(const std::string& key) {
   const auto* value = take(key);
   if (!value) return {};
   if (value->kind != Value::Kind::array) {
-    findings_->add(value->place, phrase("problem.is", {plain(key), describe(*value)}),
-                   phrase("problem.tables_needed", {plain(key)}));
+    findings_->add(value->place, phrase("\"%1\" is %2", {plain(key), describe(*value)}),
+                   phrase("a list of tables is needed: double brackets [[%1]]", {plain(key)}));
     return {};
   }
   std::vector<const Value*> list;
@@ -324,8 +323,8 @@ std::vector<const Value*> TableReader::tables(const std::string& key) {
     if (item.kind == Value::Kind::table)
       list.push_back(&item);
     else
-      findings_->add(item.place, phrase("problem.holds", {plain(key), describe(item)}),
-                     phrase("problem.inline_needed", {plain("{ ... }")}));
+      findings_->add(item.place, phrase("\"%1\" holds %2", {plain(key), describe(item)}),
+                     phrase("a table %1 is needed", {plain("{ ... }")}));
   }
   return list;
 }
@@ -335,7 +334,7 @@ void TableReader::finish() {
     if (std::find(known_.begin(), known_.end(), entry.key) != known_.end()) continue;
     auto known = known_;
     std::sort(known.begin(), known.end());
-    findings_->add(entry.place, phrase("problem.unknown_key", {plain(entry.key), title()}),
+    findings_->add(entry.place, phrase("unknown key \"%1\" in %2", {plain(entry.key), title()}),
                    suggestion(entry.key, known));
   }
 }

@@ -59,8 +59,8 @@ Value convert(const toml::node& node, const std::string& path) {
       value.kind = Value::Kind::array;
       if (node.as_array()->size() > most_items)
         throw BadInput(
-            {{place_of(node.source(), path), phrase("problem.long_list", {plain(node.as_array()->size())}),
-              phrase("problem.at_most", {plain(most_items)})}});
+            {{place_of(node.source(), path), phrase("a list of %1 items", {plain(node.as_array()->size())}),
+              phrase("at most %1", {plain(most_items)})}});
       for (const auto& item : *node.as_array()) value.items.push_back(convert(item, path));
       break;
     case toml::node_type::boolean:
@@ -102,10 +102,12 @@ Value parse_toml(const std::string& source, const std::string& path) {
     document.place = {path, 0, 0};
     return document;
   } catch (const ParserAssertion&) {
-    throw BadInput({{{path, 0, 0}, phrase("problem.not_toml"), phrase("problem.odd_character")}});
+    throw BadInput({{{path, 0, 0},
+                     phrase("not valid TOML"),
+                     phrase("look for a key or a value that begins with an odd character")}});
   } catch (const toml::parse_error& error) {
     throw BadInput({{place_of(error.source(), path),
-                     phrase("problem.not_toml_because", {plain(std::string(error.description()))}),
+                     phrase("not valid TOML: %1", {plain(std::string(error.description()))}),
                      {}}});
   }
 }
@@ -116,29 +118,29 @@ texts::Phrase describe(const Value& value) {
       return plain(value.boolean ? "true" : "false");
     case Value::Kind::integer:
     case Value::Kind::number:
-      return phrase("problem.a_number");
+      return phrase("a number");
     case Value::Kind::string:
-      return phrase("problem.the_text", {plain(value.string)});
+      return phrase("the text \"%1\"", {plain(value.string)});
     case Value::Kind::date:
-      return phrase("problem.a_date");
+      return phrase("a date or time");
     case Value::Kind::array:
-      return phrase("problem.a_list");
+      return phrase("a list");
     case Value::Kind::table:
       break;
   }
-  return phrase("problem.a_table");
+  return phrase("a table");
 }
 
 std::string read_text_file(const std::string& path) try {
   return system::read_file(path, most_text_bytes);
 } catch (const std::system_error& error) {
   if (error.code() == std::errc::no_such_file_or_directory)
-    throw BadInput({{{path, 0, 0}, phrase("problem.no_file"), phrase("problem.check_path")}});
+    throw BadInput({{{path, 0, 0}, phrase("there is no such file"), phrase("check the path")}});
   if (error.code() == std::errc::is_a_directory)
-    throw BadInput({{{path, 0, 0}, phrase("problem.a_folder"), phrase("problem.name_a_file")}});
+    throw BadInput({{{path, 0, 0}, phrase("this is a folder"), phrase("name a file")}});
   if (error.code() != std::errc::file_too_large) throw;
   throw BadInput(
-      {{{path, 0, 0}, phrase("problem.file_too_long"), phrase("problem.at_most", {plain("4 MiB")})}});
+      {{{path, 0, 0}, phrase("the file has more than 4 MiB"), phrase("at most %1", {plain("4 MiB")})}});
 }
 
 std::string_view without_byte_order_mark(std::string_view text) {

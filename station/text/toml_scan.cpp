@@ -72,8 +72,9 @@ class Scanner {
   void outside(const Character& character) {
     if (character.code >= 0x80)
       throw BadInput({{{path_, line_, column_},
-                       phrase("problem.character_outside", {plain(printed("U+%04X", character.code))}),
-                       phrase("problem.bare_keys")}});
+                       phrase("not valid TOML: the character %1 outside of quotes",
+                              {plain(printed("U+%04X", character.code))}),
+                       phrase("keys without quotes may contain only A-Z a-z 0-9 _ -")}});
     const char c = source_[at_];
     if (c == '#') comment_ = true;
     count_parts(c);
@@ -92,9 +93,10 @@ class Scanner {
   void check_before_quote(char quote) const {
     if (at_ == 0 || std::string_view(" \t\r\n=,.[{").find(source_[at_ - 1]) != std::string_view::npos) return;
     if (at_ == 3 && source_.starts_with("\xEF\xBB\xBF")) return;
-    throw BadInput({{{path_, line_, column_},
-                     phrase("problem.quote_follows", {plain(std::string(1, quote))}),
-                     phrase("problem.quote_at_start")}});
+    throw BadInput(
+        {{{path_, line_, column_},
+          phrase("not valid TOML: the quote %1 follows a character directly", {plain(std::string(1, quote))}),
+          phrase("put a quote at the start of a key or a value")}});
   }
 
   // Counts the dotted parts of a key. The parser recurses for each part, so a key with very many parts would
@@ -106,8 +108,8 @@ class Scanner {
       parts_ = 1;
     if (parts_ > most_parts)
       throw BadInput({{{path_, line_, column_},
-                       phrase("problem.long_key", {plain(most_parts)}),
-                       phrase("problem.fewer_dots")}});
+                       phrase("a key with more than %1 parts", {plain(most_parts)}),
+                       phrase("fewer dots")}});
   }
 
   void inside(const Character& character) {
@@ -126,8 +128,9 @@ class Scanner {
     escaped_ = quote_[0] == '"' && ((!was_escaped && character.code == '\\') || (was_escaped && blank));
     if (was_escaped && character.code >= 0x80)
       throw BadInput({{{path_, line_, column_},
-                       phrase("problem.backslash", {plain(printed("U+%04X", character.code))}),
-                       phrase("problem.double_backslash")}});
+                       phrase("not valid TOML: a backslash before the character %1",
+                              {plain(printed("U+%04X", character.code))}),
+                       phrase("write \\\\ for a backslash, or end the line directly after it")}});
     if (trimming_ && character.code >= 0x80) {
       out_ += printed("\\U%08X", character.code);
       at_ += character.bytes;
