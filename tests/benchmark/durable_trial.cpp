@@ -23,6 +23,7 @@ constexpr int kEvents = 4;  // number of touches and answers in a usual trial
 SessionStart bench_session() {
   SessionStart start;
   start.participant = "bench";
+  start.station_id = "bench";
   start.run_mode = RunMode::simulated;
   start.observer = "bench";
   start.protocol_id = "bench";

@@ -17,6 +17,7 @@ namespace {
 void begin(const std::string& path) {
   records::SessionStart start;
   start.participant = "P99999";
+  start.station_id = "scale";
   start.protocol_id = "demo";
   auto log = store::SessionLog::begin(path, start, {});
   log.finish(records::SessionStatus::stopped, "");

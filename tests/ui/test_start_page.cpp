@@ -188,7 +188,7 @@ TEST_CASE("the start page says how old the last good backup is", "[start]") {
   StartPage start;
   const auto database = start.folder / "lab.sqlite", record = database + ".last-backup";
   records::SessionStart session;
-  session.participant = "P01";
+  session.participant = "P01", session.station_id = "lab";
   store::SessionLog::begin(database, session, {}).finish(records::SessionStatus::stopped, "");
   start.open();
   CHECK(start.page->backup()["state"] == "none");
