@@ -179,7 +179,8 @@ void read_friction_table(TableReader& reader, const std::string& file, Rig& rig)
   }
   if (!table.empty() && falling(table).empty())
     reader.findings().add(
-        place, phrase("problem.bad_friction_row", {plain(csv), plain(text::number(1e6 * table.back().first))}),
+        place,
+        phrase("problem.bad_friction_row", {plain(csv), plain(text::number(1e6 * table.back().first))}),
         phrase("problem.friction_rows"));
   rig.friction.measured = true;
 }

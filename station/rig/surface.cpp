@@ -103,8 +103,7 @@ void check_length(const Surface& surface, text::TableReader& reader) {
   const auto& taper = surface.taper;
   if (taper.slope && taper.half_width_m - *taper.slope * surface.length_m < -1e-9)
     reader.problem(
-        "slope",
-        phrase("problem.width_zero", {plain(text::number(1e3 * taper.half_width_m / *taper.slope))}),
+        "slope", phrase("problem.width_zero", {plain(text::number(1e3 * taper.half_width_m / *taper.slope))}),
         phrase("problem.length_at_most", {plain("half_width_mm / slope")}));
   if (!taper.profile_m.empty() && taper.profile_m.back().first < surface.length_m - 1e-9)
     reader.problem("profile_mm", phrase("problem.profile_short"), phrase("problem.last_point"));
