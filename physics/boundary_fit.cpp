@@ -37,9 +37,10 @@ struct Problem {
   }
 
   static Refused impossible() {
-    return Refused(make_statement("boundary-fit",
-                                  "the measured boundaries lead to a surface that cannot exist; measure them again, "
-                                  "or correct the rig file"));
+    return Refused(
+        make_statement("boundary-fit",
+                       "the measured boundaries lead to a surface that cannot exist; measure them again, "
+                       "or correct the rig file"));
   }
 
   double boundary_m(const Surface& s, double f) const {
@@ -85,11 +86,12 @@ void check(const MapOptions& options, std::span<const MeasuredBoundary> measured
     if (m.frequency_Hz > 0 && m.frequency_Hz <= highest_Hz && std::abs(m.boundary_m) <= furthest_m &&
         m.sd_m >= least_sd_m && m.sd_m <= largest_sd_m)
       continue;
-    throw Refused(make_statement("measured-boundary",
-                                 "boundary at %1 m for %2 Hz, precise to %3 m; the position must be within "
-                                 "1000 m, the frequency above 0 and at most 1e9 Hz, the precision from 1e-9 to "
-                                 "1 m",
-                                 {m.boundary_m, m.frequency_Hz, m.sd_m}));
+    throw Refused(
+        make_statement("measured-boundary",
+                       "boundary at %1 m for %2 Hz, precise to %3 m; the position must be within "
+                       "1000 m, the frequency above 0 and at most 1e9 Hz, the precision from 1e-9 to "
+                       "1 m",
+                       {m.boundary_m, m.frequency_Hz, m.sd_m}));
   }
   if (problem.unknown.empty())
     throw Refused(

@@ -31,8 +31,8 @@ void require_agreement(const physics::BoundaryFit& fit, const std::vector<Bounda
   std::string named;
   for (std::size_t i = 0; i < points.size(); ++i)
     if (fit.outliers[i])
-      named += fmt::format("{}{} mm at {} Hz", named.empty() ? "" : ", ", text::number(1e3 * points[i].boundary_m),
-                           text::number(points[i].frequency_Hz));
+      named += fmt::format("{}{} mm at {} Hz", named.empty() ? "" : ", ",
+                           text::number(1e3 * points[i].boundary_m), text::number(points[i].frequency_Hz));
   if (!named.empty()) throw texts::Refusal(texts::phrase("series.contradict", {texts::plain(named)}));
 }
 

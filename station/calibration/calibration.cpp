@@ -56,7 +56,8 @@ Calibration fit_measurements(const Measurements& measurements, const rig::Rig& r
   for (const auto& point : calibration.sound)
     if (!(point.frequency_Hz > 0 && point.frequency_Hz <= 1e6 && std::abs(point.level_dB - 50) <= 150))
       throw texts::Refusal(texts::phrase(
-          "series.sound_point", {texts::plain(text::number(point.level_dB)), texts::plain(text::number(point.frequency_Hz))}));
+          "series.sound_point",
+          {texts::plain(text::number(point.level_dB)), texts::plain(text::number(point.frequency_Hz))}));
   std::vector<Resonance> resonances;
   for (std::size_t k = 0; k < sweeps.size(); ++k) {
     calibration.transducers.push_back({measurements.sweeps[k].transducer, fit_response(sweeps[k])});

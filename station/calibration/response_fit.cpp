@@ -190,7 +190,8 @@ FrictionFit fit_friction(std::vector<FrictionPoint> measured) {
   std::string contradicting;
   std::size_t k = 0;
   for (const auto& pool : falling_pools(measured)) {
-    if (pool.friction < 1) fit.points.push_back({pool.displacement_m, std::max(pool.friction, rig::kLeastFriction)});
+    if (pool.friction < 1)
+      fit.points.push_back({pool.displacement_m, std::max(pool.friction, rig::kLeastFriction)});
     for (std::size_t i = 0; i < pool.points; ++i, ++k) {
       const double miss = measured[k].relative_friction - pool.friction;
       fit.residual += miss * miss / static_cast<double>(measured.size());
@@ -200,7 +201,8 @@ FrictionFit fit_friction(std::vector<FrictionPoint> measured) {
                                      text::number(1e6 * measured[k].displacement_m));
     }
   }
-  if (!contradicting.empty()) throw texts::Refusal(texts::phrase("series.contradict", {plain(contradicting)}));
+  if (!contradicting.empty())
+    throw texts::Refusal(texts::phrase("series.contradict", {plain(contradicting)}));
   fit.residual = std::sqrt(fit.residual);
   if (measured.size() < 2 || fit.points.size() < 2)
     throw texts::Refusal(texts::phrase("series.few_displacements"));

@@ -22,7 +22,8 @@ void annotate(const Options& options, Context& context) {
   const auto id = options.session.empty() ? desk::session_to_report(options.database, {}) : options.session;
   store::annotate(options.database, id, options.text);
   if (context.json)
-    context.out << Json{{"session_id", id}, {"text", options.text}}.dump(2, ' ', false, kInvalidBytes) << "\n";
+    context.out << Json{{"session_id", id}, {"text", options.text}}.dump(2, ' ', false, kInvalidBytes)
+                << "\n";
   else
     fmt::print(context.out, "the note was added to session {}\n", id);
 }

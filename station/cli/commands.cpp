@@ -55,8 +55,8 @@ int report(std::ostream& err, const std::exception& error, int code) {
   return code;
 }
 
-/// Returns the exit status after the output has been written out: `status`, or 1 if a command succeeded but its
-/// output did not arrive (full disk, closed pipe).
+/// Returns the exit status after the output has been written out: `status`, or 1 if a command succeeded but
+/// its output did not arrive (full disk, closed pipe).
 int status_of_output(std::ostream& out, std::ostream& err, int status) {
   errno = 0;
   out.flush();

@@ -126,7 +126,8 @@ void field(const Options& options, Context& context) {
   for (const double a : metres) friction.push_back(map.relative_friction(a));
   const auto notes = physics::describe(surface, tones, result);
   if (context.json)
-    context.out << to_json(surface, result, notes, choice, x_m, friction).dump(-1, ' ', false, kInvalidBytes) << "\n";
+    context.out << to_json(surface, result, notes, choice, x_m, friction).dump(-1, ' ', false, kInvalidBytes)
+                << "\n";
   else
     print(context.out, result, notes, choice, x_m, friction);
 }

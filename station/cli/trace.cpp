@@ -96,8 +96,9 @@ void add_trace(CommandLine& app, Context& context) {
       ->add_option("--answers", options->answers,
                    "Answers as a row of 1 (correct, or the tracked answer) and 0, as in 1011")
       ->required();
-  command->add_option("--seed", options->seed,
-                      "Seed for shuffling levels, 0 to 2^53; by default the seed in the protocol file, or 0")
+  command
+      ->add_option("--seed", options->seed,
+                   "Seed for shuffling levels, 0 to 2^53; by default the seed in the protocol file, or 0")
       ->check(range(0, 9007199254740992));
   add_json(*command, context);
   command->footer("Example: turnpoint trace friction-2ifc --procedure threshold --answers 11101");

@@ -50,7 +50,8 @@ std::array<char, header_bytes> header_of(const OutputConfig& config, std::uint32
 
 class WavOutput final : public Output {
  public:
-  WavOutput(OutputConfig config, const std::string& path) : config_(std::move(config)), path_(path), file_(path) {
+  WavOutput(OutputConfig config, const std::string& path)
+      : config_(std::move(config)), path_(path), file_(path) {
     const auto header = header_of(config_, 0);
     file_->write({header.data(), header.size()});
   }

@@ -170,8 +170,7 @@ bool can_plan(const rig::Rig& rig) try {
 
 Calibration calibrate(const rig::Rig& rig, const Measurements& measurements, int valid_days,
                       const std::string& note) {
-  auto calibration =
-      as_unusable([&] { return calibration::fit_measurements(measurements, rig); });
+  auto calibration = as_unusable([&] { return calibration::fit_measurements(measurements, rig); });
   calibration.rig_name = rig.name;
   calibration.rig_sha256 = rig.sha256;
   calibration.made_on = calibration::today();

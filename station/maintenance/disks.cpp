@@ -69,7 +69,9 @@ bool can_be_taken_out(const fs::path& block) {
 
 double size_GB(const fs::path& block) {
   const auto sectors = first_line(block / "size");
-  return sectors.empty() ? 0 : 512e-9 * static_cast<double>(std::stoll(sectors));  // the kernel counts sectors of 512 bytes
+  return sectors.empty()
+             ? 0
+             : 512e-9 * static_cast<double>(std::stoll(sectors));  // the kernel counts sectors of 512 bytes
 }
 
 bool is_of_the_system(const std::string& folder, const std::string& data) {
@@ -162,9 +164,8 @@ std::vector<Disk> removable_disks(const DiskSources& sources) {
     for (const auto& part : parts) {
       const auto folders = folders_of(part, points);
       of_the_system = of_the_system || has_holders(part) ||
-                      std::any_of(folders.begin(), folders.end(), [&](const auto& folder) {
-                        return is_of_the_system(folder, sources.data);
-                      });
+                      std::any_of(folders.begin(), folders.end(),
+                                  [&](const auto& folder) { return is_of_the_system(folder, sources.data); });
       found.push_back({"/dev/" + part.filename().string(), name, folders.empty() ? "" : folders.front()});
     }
     if (!of_the_system) disks.insert(disks.end(), found.begin(), found.end());

@@ -16,7 +16,7 @@ struct Disk {
 struct DiskSources {
   std::string blocks = "/sys/block";
   std::string mounts = "/proc/self/mountinfo";
-  std::string tool = "udisksctl";  ///< Debian package udisks2
+  std::string tool = "udisksctl";           ///< Debian package udisks2
   std::string data = "/var/lib/turnpoint";  ///< the station's data; their disk is part of the system
 };
 

@@ -23,8 +23,8 @@ lines::Finding check_swap(const std::string& swaps = "/proc/swaps");
 /// the kernel lists watchdogs.
 lines::Finding check_watchdog(const std::string& folder = "/sys/class/watchdog");
 
-/// Checks the file system of the data folder, as system::Disk names it: fails for those that lose their files when
-/// the machine is switched off, and warns of network and FUSE mounts.
+/// Checks the file system of the data folder, as system::Disk names it: fails for those that lose their files
+/// when the machine is switched off, and warns of network and FUSE mounts.
 lines::Finding check_file_system(const std::string& file_system);
 
 /// True if no check failed. Warnings do not count.

@@ -8,9 +8,9 @@
 #include <stdexcept>
 
 #include "station/calibration/apply.hpp"
+#include "station/maintenance/calibrate.hpp"
 #include "station/maintenance/panel_latency.hpp"
 #include "station/sensing/tap.hpp"
-#include "station/maintenance/calibrate.hpp"
 #include "station/terms/force_carrier.hpp"
 #include "station/terms/usage_error.hpp"
 #include "station/text/number.hpp"

@@ -5,8 +5,8 @@
 
 #include "station/calibration/apply.hpp"
 #include "station/lines/buttons.hpp"
-#include "station/setup/open_touch.hpp"
 #include "station/maintenance/calibrate.hpp"
+#include "station/setup/open_touch.hpp"
 #include "station/texts/refusal.hpp"
 #include "station/touch/touch_reader.hpp"
 

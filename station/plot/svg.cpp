@@ -1,7 +1,7 @@
 #include "station/plot/svg.hpp"
 
-#include <cmath>
 #include <charconv>
+#include <cmath>
 #include <stdexcept>
 
 #include "station/text/number.hpp"

@@ -200,10 +200,10 @@ struct MaskingNoise {
   std::optional<Signal> signal = {};
 };
 
-/// The friction curve of a measured table, in pairs of (displacement_m, relative_friction): begins at (0, 1), and
-/// falls strictly. Neighbours of equal friction become one point in their middle. Empty if the table is not
-/// usable: displacements must be 0 or more and ascend by at least 1 pm, friction must be at least 0.001, never
-/// rise, be at most 1 (exactly 1 at displacement 0), and end below 1.
+/// The friction curve of a measured table, in pairs of (displacement_m, relative_friction): begins at (0, 1),
+/// and falls strictly. Neighbours of equal friction become one point in their middle. Empty if the table is
+/// not usable: displacements must be 0 or more and ascend by at least 1 pm, friction must be at least 0.001,
+/// never rise, be at most 1 (exactly 1 at displacement 0), and end below 1.
 using FrictionTable = std::vector<std::pair<double, double>>;
 FrictionTable falling(const FrictionTable& table);
 

@@ -174,10 +174,11 @@ void check_csv_folder(const ProtocolSelection& selection, bool whole) {
     lost.insert(found->str());
   for (const auto& session : selection.sessions) lost.erase(session.session_id);
   if (!lost.empty())
-    throw StoreError(ErrorKind::conflict,
-                     fmt::format("export: {} has {} sessions that are not part of this export, such as {}; export "
-                                 "all sessions of the protocol, or name an empty folder",
-                                 selection.folder, lost.size(), *lost.begin()));
+    throw StoreError(
+        ErrorKind::conflict,
+        fmt::format("export: {} has {} sessions that are not part of this export, such as {}; export "
+                    "all sessions of the protocol, or name an empty folder",
+                    selection.folder, lost.size(), *lost.begin()));
 }
 
 SelectedSessions select_for_export(const std::string& path, const std::string& directory,

@@ -80,9 +80,9 @@ class TableFile {
 /// (missing) if nothing is left.
 void keep_with_signals(Database& database, std::vector<ProtocolSelection>& selections);
 
-/// Keeps other exports out of a folder until it is destroyed; waits for one that is running. Creates the folder
-/// if necessary. On a disk without locks it does nothing; the files of the exports are still whole then, each by
-/// itself. Throws StoreError.
+/// Keeps other exports out of a folder until it is destroyed; waits for one that is running. Creates the
+/// folder if necessary. On a disk without locks it does nothing; the files of the exports are still whole
+/// then, each by itself. Throws StoreError.
 class FolderLock {
  public:
   explicit FolderLock(const std::string& folder);
@@ -91,10 +91,10 @@ class FolderLock {
   system::FileDescriptor folder_;
 };
 
-/// These functions throw StoreError (conflict) if the folder has an earlier export with sessions that are not part
-/// of this one. They change nothing. A part of the sessions would otherwise replace all of them, and readers would
-/// take the files of the other sessions for part of this export. `whole`: the options choose all sessions of
-/// the protocol; a CSV export of all sessions may replace any other.
+/// These functions throw StoreError (conflict) if the folder has an earlier export with sessions that are not
+/// part of this one. They change nothing. A part of the sessions would otherwise replace all of them, and
+/// readers would take the files of the other sessions for part of this export. `whole`: the options choose
+/// all sessions of the protocol; a CSV export of all sessions may replace any other.
 void check_csv_folder(const ProtocolSelection& selection, bool whole);
 void check_bids_folder(const ProtocolSelection& selection);
 void check_signals_folder(Database& database, const ProtocolSelection& selection);

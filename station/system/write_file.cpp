@@ -6,7 +6,6 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cstdio>
@@ -52,7 +51,8 @@ bool is_database(const std::string& path) {
   constexpr std::string_view kStart("SQLite format 3\0", 16);
   const FileDescriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
   std::array<char, kStart.size()> start{};
-  return file.is_open() && ::read(file.get(), start.data(), start.size()) == static_cast<ssize_t>(start.size()) &&
+  return file.is_open() &&
+         ::read(file.get(), start.data(), start.size()) == static_cast<ssize_t>(start.size()) &&
          std::string_view(start.data(), start.size()) == kStart;
 }
 
@@ -73,7 +73,8 @@ void require_replaceable(const std::string& path, Replaces replaces) {
 /// because opening it would wait for ever.
 FileDescriptor opened_device(const std::string& path) {
   struct stat status {};
-  if (::stat(path.c_str(), &status) != 0 || !(S_ISCHR(status.st_mode) || S_ISFIFO(status.st_mode))) return FileDescriptor();
+  if (::stat(path.c_str(), &status) != 0 || !(S_ISCHR(status.st_mode) || S_ISFIFO(status.st_mode)))
+    return FileDescriptor();
   FileDescriptor file(::open(path.c_str(), O_WRONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY));
   if (!file.is_open() && errno == ENXIO && S_ISFIFO(status.st_mode))
     throw RefusedDestination(path + " is a pipe that nobody reads; start its reader first");
@@ -85,16 +86,18 @@ FileDescriptor opened_device(const std::string& path) {
 
 /// True if the open file still has this name.
 bool is_named(const FileDescriptor& file, const std::string& path) {
-  struct stat ours {}, named {};
-  return ::fstat(file.get(), &ours) == 0 && ::lstat(path.c_str(), &named) == 0 && ours.st_ino == named.st_ino &&
-         ours.st_dev == named.st_dev;
+  struct stat ours {
+  }, named{};
+  return ::fstat(file.get(), &ours) == 0 && ::lstat(path.c_str(), &named) == 0 &&
+         ours.st_ino == named.st_ino && ours.st_dev == named.st_dev;
 }
 
 /// Removes a draft that no process is writing. Whoever writes a draft holds a lock on it.
 void remove_if_abandoned(const std::string& draft) {
   const FileDescriptor file(::open(draft.c_str(), O_WRONLY | O_NOFOLLOW | O_CLOEXEC | O_NONBLOCK));
   const bool link_or_pipe = !file.is_open() && (errno == ELOOP || errno == ENXIO);
-  const bool abandoned = file.is_open() && ::flock(file.get(), LOCK_EX | LOCK_NB) == 0 && is_named(file, draft);
+  const bool abandoned =
+      file.is_open() && ::flock(file.get(), LOCK_EX | LOCK_NB) == 0 && is_named(file, draft);
   if (link_or_pipe || abandoned) ::unlink(draft.c_str());
 }
 
@@ -111,12 +114,11 @@ void FileWriter::open_draft(mode_t mode) {
   for (int k = 1; k <= kMostDrafts; ++k) {
     const auto draft = path_ + ".new" + (k > 1 ? std::to_string(k) : "");
     remove_if_abandoned(draft);
-    FileDescriptor file(
-        ::open(draft.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, mode));
+    FileDescriptor file(::open(draft.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, mode));
     if (!file.is_open() && errno == EEXIST) continue;
     if (!file.is_open()) fail(draft, errno);
-    // Between the two calls, another process may have taken the draft for an abandoned one. Where there are no
-    // locks, nothing is taken for abandoned.
+    // Between the two calls, another process may have taken the draft for an abandoned one. Where there are
+    // no locks, nothing is taken for abandoned.
     const bool taken = ::flock(file.get(), LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK;
     if (taken || !is_named(file, draft)) continue;
     draft_ = draft, file_ = std::move(file);

@@ -21,9 +21,9 @@ struct AxisRange {
 class EvdevDevice {
  public:
   /// Opens the device with this path or (without a leading slash) this name, for reading only. Empty if there
-  /// is no such device or it cannot be opened; errno says why. Of several devices of this name, takes the one that
-  /// is_touched(). Throws terms::UsageError if several are, and std::system_error if the path is not an input
-  /// device.
+  /// is no such device or it cannot be opened; errno says why. Of several devices of this name, takes the one
+  /// that is_touched(). Throws terms::UsageError if several are, and std::system_error if the path is not an
+  /// input device.
   static std::optional<EvdevDevice> find(const std::string& path_or_name);
 
   /// Takes ownership of an open, non-blocking descriptor. Throws std::system_error.

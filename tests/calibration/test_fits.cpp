@@ -67,7 +67,8 @@ TEST_CASE("a response is smoothed without bias, and its band ends where equalisa
   CHECK(clean.high_Hz < 60000);
 }
 
-TEST_CASE("where measured friction rises with displacement, neighbouring points become one", "[calibration]") {
+TEST_CASE("where measured friction rises with displacement, neighbouring points become one",
+          "[calibration]") {
   const FrictionFit fit = fit_friction({{0, 1.0}, {2e-6, 0.5}, {1e-6, 0.7}, {1.5e-6, 0.74}, {3e-6, 0.2}});
   REQUIRE(fit.points.size() == 4);
   CHECK(fit.points[1].displacement_m == Approx(1.25e-6));
@@ -91,12 +92,14 @@ TEST_CASE("friction that contradicts the curve is named and makes no fit", "[cal
 }
 
 // TURNPOINT_TABLES: number of tables; 200 by default.
-TEST_CASE("whatever friction was measured, the fit is refused or gives a curve for planning", "[calibration]") {
+TEST_CASE("whatever friction was measured, the fit is refused or gives a curve for planning",
+          "[calibration]") {
   const char* wanted = std::getenv("TURNPOINT_TABLES");
   const int tables = wanted != nullptr ? std::atoi(wanted) : 200;
   std::mt19937_64 random(11);
-  const std::vector<double> hostile{0,   -0.0, 1,    1,    0.8,    0.8,  1.5,   1e-300, 1e-12, 1e-13, 1e300,
-                                    -1,  0.5,  1e-3, 9e-4, 1 - 1e-16, 0.5 + 1e-10, 2e-6,  1e-6,  3e-6};
+  const std::vector<double> hostile{0,      -0.0,      1,           1,     0.8,  0.8, 1.5,
+                                    1e-300, 1e-12,     1e-13,       1e300, -1,   0.5, 1e-3,
+                                    9e-4,   1 - 1e-16, 0.5 + 1e-10, 2e-6,  1e-6, 3e-6};
   const auto any = [&](double scale) {
     if (random() % 4 == 0) return hostile[random() % hostile.size()];
     return scale * std::uniform_real_distribution<double>(0, 1)(random);
@@ -106,10 +109,9 @@ TEST_CASE("whatever friction was measured, the fit is refused or gives a curve f
     std::vector<FrictionPoint> points{{0, 1}};
     const auto rows = random() % 8;
     for (std::size_t k = 0; k < rows; ++k)
-      points.push_back(table % 2 == 0
-                           ? FrictionPoint{any(4e-6), any(1.1)}
-                           : FrictionPoint{1e-6 * static_cast<double>(k), 1 / (1 + 0.5 * static_cast<double>(k)) +
-                                                                              0.1 * any(1)});
+      points.push_back(table % 2 == 0 ? FrictionPoint{any(4e-6), any(1.1)}
+                                      : FrictionPoint{1e-6 * static_cast<double>(k),
+                                                      1 / (1 + 0.5 * static_cast<double>(k)) + 0.1 * any(1)});
     turnpoint::rig::Rig rig;
     try {
       for (const auto& point : fit_friction(points).points)

@@ -80,7 +80,8 @@ TEST_CASE("bytes are written directly to a pipe or a device", "[write]") {
   CHECK(fs::is_character_file("/dev/null"));
 }
 
-TEST_CASE("a database, its logs, an input, a folder and a pipe without a reader are refused and unchanged", "[write]") {
+TEST_CASE("a database, its logs, an input, a folder and a pipe without a reader are refused and unchanged",
+          "[write]") {
   const TemporaryFolder folder;
   const auto database = folder / "lab.sqlite", input = folder / "table.csv", pipe = folder / "pipe";
   const auto start = std::string("SQLite format 3\0", 16) + "pages";
@@ -101,7 +102,8 @@ TEST_CASE("a database, its logs, an input, a folder and a pipe without a reader 
   CHECK(content(input) == "again");
 }
 
-TEST_CASE("writers of one file do not share a draft, and a draft that was left behind is removed", "[write]") {
+TEST_CASE("writers of one file do not share a draft, and a draft that was left behind is removed",
+          "[write]") {
   const TemporaryFolder folder;
   const auto path = folder / "a.csv";
   std::ofstream(path + ".new") << "left by a process that was killed";

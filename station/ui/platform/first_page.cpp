@@ -28,7 +28,8 @@ double process_age_s() {
   std::istringstream fields(line.substr(line.rfind(')') + 1));
   std::string field;
   for (int i = 3; i <= 22; ++i) fields >> field;  // field 22 is the start time in ticks since boot
-  return seconds_of(CLOCK_BOOTTIME) - static_cast<double>(std::stoll(field)) / static_cast<double>(::sysconf(_SC_CLK_TCK));
+  return seconds_of(CLOCK_BOOTTIME) -
+         static_cast<double>(std::stoll(field)) / static_cast<double>(::sysconf(_SC_CLK_TCK));
 }
 
 }  // namespace
