@@ -198,14 +198,16 @@ class Sessions(unittest.TestCase):
 
     def study(self, protocol, statuses):
         """The study of sessions of P01, P02, ... with these statuses, each written over that of a completed session."""
-        number = 0
+        number, known = 0, {}
         for person, list_of in statuses.items():
-            for _ in list_of:
+            for status in list_of:
                 number += 1
                 self.call("run", protocol, "--participant", person, "--db", "lab.sqlite", "--observer", "sim", "--seed", str(number))
+                with sqlite3.connect(os.path.join(self.folder, "lab.sqlite")) as database:
+                    for (session,) in database.execute("SELECT session_id FROM session"):
+                        known.setdefault(session, status)
         with sqlite3.connect(os.path.join(self.folder, "lab.sqlite")) as database:
-            ids = [row[0] for row in database.execute("SELECT session_id FROM session ORDER BY rowid")]
-            for session, status in zip(ids, [status for list_of in statuses.values() for status in list_of]):
+            for session, status in known.items():
                 database.execute("UPDATE session SET status = ? WHERE session_id = ?", (status, session))
         self.call("report", "--study", "--db", "lab.sqlite", "--out", "study.html")
         with open(os.path.join(self.folder, "study.html"), encoding="utf-8") as page:

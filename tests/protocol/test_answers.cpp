@@ -198,7 +198,7 @@ TEST_CASE("a zone is designed for the friction of its base scene, so the factors
   const auto protocol = protocol::parse(text, "zones.toml");
   CHECK(protocol::factors_of(protocol.scenes.at("comparison")).count("start") == 1);
   for (const auto& combination : protocol::combinations_of(protocol))
-    CHECK_NOTHROW(protocol::resolve(protocol, combination.scene, combination.factors));
+    CHECK_NOTHROW(protocol::resolve(protocol, combination.scene, combination.factors, 0));
 }
 
 TEST_CASE("in two intervals the level can decide which scene is right", "[protocol]") {
