@@ -241,7 +241,8 @@ std::string trade_sentences(const Summary& summary) {
   const auto detected = [](const Estimate& gap) { return gap.interval.low > 0 || gap.interval.high < 0; };
   const auto size = [](Estimate gap, double scale, const char* unit) {
     if (gap.value < 0) gap = {-gap.value, {-gap.interval.high, -gap.interval.low, gap.interval.confidence}};
-    const Interval scaled{scale * gap.interval.low, scale * gap.interval.high, gap.interval.confidence};
+    const analysis::Interval scaled{scale * gap.interval.low, scale * gap.interval.high,
+                                    gap.interval.confidence};
     return estimated(scale * gap.value, scaled) + unit;
   };
   std::string html;
