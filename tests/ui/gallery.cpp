@@ -301,7 +301,8 @@ std::vector<Exhibit> gallery(const std::string& language) {
   add_interludes(all, words);
   add_notices(all, words);
   for (auto exhibit : std::vector<Exhibit>(all))
-    if (exhibit.name == "fault-amplifier" || exhibit.name == "adjust") {
+    if (exhibit.name == "fault-amplifier" || exhibit.name == "adjust" || exhibit.name == "cue" ||
+        exhibit.name == "response") {
       exhibit.page.run_mode = "pilot";
       all.push_back({exhibit.name + "-pilot", exhibit.page});
     }

@@ -131,6 +131,19 @@ Item {
             compare(faults.join("\n"), "")
         }
 
+        function test_the_surface_and_its_mark_are_there_whenever_the_question_speaks_of_them_data() {
+            return rows(["cue", "cue-pilot", "explore", "explore-pilot", "explore-simulated", "response", "response-pilot"])
+        }
+        function test_the_surface_and_its_mark_are_there_whenever_the_question_speaks_of_them(row) {
+            resize(row.panel)
+            for (const language of ["en", "de", "es", "ar"]) {
+                show(row.name, language)
+                const surface = findChild(view, "surface")
+                verify(surface.visible && surface.hasMark, language)
+                verify(surface.height >= 0.08 * Math.max(row.panel.width, row.panel.height), language + ": " + surface.height)
+            }
+        }
+
         function test_no_texts_or_buttons_before_a_session_overlap_data() {
             const rows = []
             for (const panel of panels)
