@@ -20,7 +20,7 @@ struct GoodRig : SelfTestRig {
   std::vector<CellReading> cells{{{}, texts::plain("a"), {}, 0.1, 0.3}};
   std::optional<double> temperature_C = 50;
   ClockReading wall{{"tsc", true, true}, std::nullopt};
-  system::Disk store{"/data", 5000, true, ""};
+  system::Disk store{"/data", 5000, true, "", "ext4"};
 
   GateReading drop_heartbeat() override { return gate; }
   PressReading press_stop() override { return stop; }
