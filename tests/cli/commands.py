@@ -239,7 +239,7 @@ class Documents(HelpExamples):
                 continue
             with self.subTest(name):
                 self.fresh(name)
-                self.write("edges.csv", b"frequency_Hz,boundary_mm,sd_mm\n26000,124,1\n30000,147,1\n36000,175,1\n")
+                self.write("edges.csv", b"frequency_Hz,boundary_mm,sd_mm\n26000,112,1\n30000,142,1\n36000,177,1\n")
                 example = JSON_EXAMPLES.get(name) or self.example(name)
                 status, out, err = run(example + " --json", self.folder)
                 self.assertIn(status, COMMANDS[name].get("status", (0,)), err)
