@@ -81,7 +81,7 @@ TEST_CASE("a finger that presses harder comes closer to the surface, and its ski
     return FrictionMap(model).relative_friction(displacement_m);
   };
   const auto by_bisection = [](double pressure_Pa, double a) {
-    const double contact_Pa = 36945, length = 2e-6, ambient_Pa = 101325;
+    const double contact_Pa = 36945.28049465325, length = 2e-6, ambient_Pa = 101325;
     double low = a, high = 1e-4;
     for (int i = 0; i < 200; ++i) {
       const double u = 0.5 * (low + high), e = a / u;
