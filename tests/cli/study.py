@@ -365,7 +365,7 @@ class Measures(unittest.TestCase):
             out = subprocess.run([program, os.path.join(SCRIPTS, script), "two"], cwd=self.folder, check=True,
                                  capture_output=True, text=True).stdout
             lines = list(csv.reader(out.splitlines()))
-            self.assertIn("dry, mark 160 mm", [line[1] for line in lines])
+            self.assertIn("dry, mark 150 mm", [line[1] for line in lines])
             self.assertEqual({len(line) for line in lines}, {fields})
 
     def test_settings_have_the_difference_of_their_sides(self):
