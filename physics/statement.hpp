@@ -34,7 +34,7 @@ inline constexpr std::array refusal_codes{
     "below-cut-off",  "turning-beyond",     "peak-hidden",        "no-peak",
     "zone-place",     "zone-friction",      "zone-edge",          "zone-without-edge",
     "zone-band",      "zone-mean-friction", "no-smooth-zone",     "boundary-nowhere",
-    "no-peak-at",     "measured-boundary",  "nothing-uncertain"};
+    "no-peak-at",     "measured-boundary",  "nothing-uncertain",  "boundary-fit"};
 
 // Thrown if the surface cannot do what was asked for, with one of these codes. Errors that only a program can
 // make, such as an empty list of tones, are std::invalid_argument.

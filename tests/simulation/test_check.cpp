@@ -95,8 +95,7 @@ TEST_CASE("a procedure that continues has fewer trials on the second day, and ch
   CHECK(trained.at(2) == 10);
 }
 
-TEST_CASE("a protocol that nobody can answer in time does not end, and check says so in each language",
-          "[check]") {
+TEST_CASE("a protocol that nobody can answer in time does not end, and check says so", "[check]") {
   const std::string root = TURNPOINT_SOURCE_DIR;
   TemporaryFolder folder;
   auto text = system::read_file(root + "/protocols/friction-rating.toml");
@@ -109,7 +108,6 @@ TEST_CASE("a protocol that nobody can answer in time does not end, and check say
   REQUIRE(check.problems.size() == 1);
   CHECK(texts::say(check.problems[0].what, "en").find("does not end") != std::string::npos);
   CHECK(texts::say(check.problems[0].what, "en").find("a.toml") == std::string::npos);
-  CHECK(texts::say(check.problems[0].what, "de").find("endet nicht") != std::string::npos);
 }
 
 TEST_CASE("check says in which languages the station's own words are, and refuses what cannot be drawn",

@@ -98,7 +98,7 @@ def check_pandas(folder, readme):
     with open("trials.csv", newline="", encoding="utf-8") as file:
         rows = list(csv.DictReader(file))
     assert len(trials) == len(rows) == 53, len(trials)
-    for column in ("level", "response_time", "correct", "boundary_mm", "onset"):
+    for column in ("level", "response_time", "correct"):
         assert trials[column].dtype.kind in "if", (column, trials[column].dtype)
     answered = [r for r in rows if r["outcome"] == "answered"]
     assert by_level.n.sum() == len(answered)
