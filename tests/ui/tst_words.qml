@@ -30,12 +30,12 @@ Item {
         function cleanup() { room.close() }
 
         /// Parts of the pages that stay as they are: the program's name, names of languages, names from the files of
-        /// the protocol and the rig, times in minutes, and words that other languages share with English.
+        /// the protocol and the rig, of file systems, times in minutes, and words that other languages share with English.
         function isName(text, language) {
             const names = ["Turnpoint", "English", "Deutsch", "Español", "short", "short.toml", "Four quick trials",
                            "Aluminium tapered plate, simulated", "edge"]
             const shared = { de: ["Text 100 %", "Block", "Fit", "Station", "PSE", "Finger", "Status", "Protocol"] }
-            return names.includes(text) || (shared[language] ?? []).includes(text) || text.includes("/") || /^[0-9.]+ min$/.test(text) || /^[0-9a-f-]{36}$/.test(text)
+            return names.includes(text) || (shared[language] ?? []).includes(text) || text.includes("/") || /^[0-9.]+ min$/.test(text) || /^(ext[234]|xfs|btrfs|f2fs|overlay|tmpfs|0x[0-9a-f]+)$/.test(text) || /^[0-9a-f-]{36}$/.test(text)
         }
         /// Texts with an English word that are also on the page in English.
         function untranslated(english, texts, messages, language) {

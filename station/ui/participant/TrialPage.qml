@@ -50,10 +50,11 @@ Item {
     SurfaceDrawing {
         id: surface
         objectName: "surface"
-        // The question speaks of what is drawn here, so it is there on every panel; the question takes what is left.
-        visible: !root.counted && !root.page.answerNow && (root.cue || root.stimulus || root.page.kind === PageModel.Response)
+        // A question about the mark needs it, so then it is there on every panel, and the question takes what is left.
+        readonly property real least: root.page.hasMark ? 7 * root.theme.unit : 0
+        visible: !root.counted && !root.page.answerNow && height >= 7 * root.theme.unit && (root.cue || root.stimulus || root.page.kind === PageModel.Response)
         anchors { left: parent.left; right: parent.right; top: parent.top }
-        height: Math.max(7 * root.theme.unit, Math.min(0.46 * parent.height, parent.height - answers.height - bars.height - pacer.height - (pacer.visible ? 6.6 : bars.visible ? 5.5 : 10) * root.theme.unit))
+        height: Math.max(least, Math.min(0.46 * parent.height, parent.height - answers.height - bars.height - pacer.height - (pacer.visible ? 6.6 : bars.visible ? 5.5 : 10) * root.theme.unit))
         lengthMm: root.page.lengthMm
         wideHalfWidthMm: root.page.wideHalfWidthMm
         narrowHalfWidthMm: root.page.narrowHalfWidthMm
