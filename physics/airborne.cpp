@@ -9,6 +9,7 @@
 #include "physics/dispersion.hpp"
 #include "physics/field.hpp"
 #include "physics/gate.hpp"
+#include "physics/statement.hpp"
 #include "physics/taper.hpp"
 #include "physics/transverse_basis.hpp"
 
@@ -138,8 +139,8 @@ LoudestSound loudest_sound(const Surface& surface, const Tone& tone, Model model
   const double wave_m = air.speed_m_s / tone.frequency_Hz, half_width = half_width_m(surface, 0);
   if (!(distance_m > wave_m && half_width * half_width < wave_m * distance_m))
     throw std::invalid_argument("sound: the distance must be above a wavelength in air (" +
-                                std::to_string(1e3 * wave_m) + " mm) and " +
-                                std::to_string(1e3 * half_width * half_width / wave_m) + " mm");
+                                StatementValue(1e3 * wave_m).text + " mm) and " +
+                                StatementValue(1e3 * half_width * half_width / wave_m).text + " mm");
   auto sources = sound_sources(surface, tone, model, air);
   // All places are in the plane y = 0, so each has the same distance from both halves of the strip. It is
   // enough to add up one half and count it twice.

@@ -58,7 +58,7 @@ ProfileDesign design_profile(const Surface& surface, std::span<const ProfilePoin
   std::vector<double> columns, frequencies, gains;
   const double candidates = std::floor((band.high_Hz - band.low_Hz) / band.spacing_Hz * (1 + 1e-12));
   if (!(candidates < most_candidates)) {
-    throw std::invalid_argument("tone band: spacing_Hz gives " + std::to_string(candidates) +
+    throw std::invalid_argument("tone band: spacing_Hz gives " + StatementValue(candidates).text +
                                 " candidate tones; allowed: fewer than " + std::to_string(most_candidates));
   }
   const int count = static_cast<int>(candidates);

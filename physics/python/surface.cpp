@@ -53,8 +53,8 @@ py::array_t<double> half_widths(const Surface& surface, const Numbers& x_m) {
   widths.reserve(values(x_m).size());
   for (const double x : values(x_m)) {
     if (!(x >= 0 && x <= surface.length_m))
-      throw std::invalid_argument("x_m: " + std::to_string(x) + " is outside 0 to " +
-                                  std::to_string(surface.length_m));
+      throw std::invalid_argument("x_m: " + physics::StatementValue(x).text + " is outside 0 to " +
+                                  physics::StatementValue(surface.length_m).text);
     widths.push_back(taper.half_width_m(x));
   }
   return array(std::move(widths));

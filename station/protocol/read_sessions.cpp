@@ -163,6 +163,12 @@ void check_days_of(const procedure::Spec& spec, const Protocol& protocol, const 
 /// A procedure that continues needs a session in which to continue, and a block that ends before it is done.
 void check_continuing(const Reading& reading) {
   const auto& protocol = reading.protocol;
+  // A sequence over a factor without levels has no order of blocks; its mistake has been reported.
+  for (const auto& part : protocol.plan)
+    if (const auto* sequence = std::get_if<Sequence>(&part)) {
+      const auto* factor = find_factor(protocol.factors, sequence->over);
+      if (factor == nullptr || factor->levels.empty()) return;
+    }
   for (const auto& spec : protocol.procedures) {
     if (!spec.continues) continue;
     const auto report = [&](const texts::Phrase& what, const texts::Phrase& allowed) {
