@@ -14,8 +14,8 @@ using text::TableReader;
 
 namespace {
 
-const std::vector<std::string> kShown{"psychometric", "diffusion",       "bis",  "lisas", "ies", "caf",
-                                      "dprime",       "response-signal", "trace"};
+const std::vector<std::string> kShown{"psychometric",    "ez",   "bis", "lisas", "ies", "caf", "dprime",
+                                      "response-signal", "trace"};
 
 void read_by(TableReader& reader, Reading& reading) {
   auto& by = reading.protocol.analysis.by;
@@ -60,7 +60,7 @@ texts::Phrase without_effect(const std::string& word, const Protocol& protocol) 
         return answer_rule(protocol, spec.level).kind == AnswerKind::category;
       }))
     return phrase("the level decides which answer is right, not how difficult the trial is");
-  if (word == "diffusion" && task.choices.size() > 2 && task.kind != TaskKind::oddity)
+  if (word == "ez" && task.choices.size() > 2 && task.kind != TaskKind::oddity)
     return phrase("the diffusion model is a model of two answers");
   const auto& by = protocol.analysis.by;
   for (const auto& spec : protocol.procedures)

@@ -146,10 +146,10 @@ using Result = analysis::InstructionResult;
 constexpr MeasureRow kRows[] = {
     {"Proportion correct (0 to 1)", "proportion correct", "", &Result::proportion_correct},
     {"Median response time (s)", "median response time", "", &Result::median_s},
-    {"Boundary a (diffusion, s = 0.1)", "boundary", "diffusion", &Result::boundary},
-    {"Time outside the decision Ter (s)", "time outside the decision", "diffusion", &Result::nondecision_s},
-    {"Drift v, mean over difficulties (1/s, s = 0.1)", "drift", "diffusion", &Result::drift},
-    {"Share of trials that were no decision (0 to 1)", "", "diffusion", &Result::contaminants},
+    {"Boundary a (diffusion, s = 0.1)", "boundary", "ez", &Result::boundary},
+    {"Time outside the decision Ter (s)", "time outside the decision", "ez", &Result::nondecision_s},
+    {"Drift v, mean over difficulties (1/s, s = 0.1)", "drift", "ez", &Result::drift},
+    {"Share of trials that were no decision (0 to 1)", "", "ez", &Result::contaminants},
     {"LISAS (s)", "LISAS", "lisas", &Result::lisas_s},
     {"Inverse efficiency (s)", "inverse efficiency", "ies", &Result::inverse_efficiency_s},
     {"BIS (standard deviations over cells)", "BIS", "bis", &Result::balanced}};
@@ -205,7 +205,7 @@ std::string difference_table(const Summary& summary) {
 }
 
 std::string difficulty_table(const Summary& summary) {
-  const bool drift = shows(summary.data, "diffusion");
+  const bool drift = shows(summary.data, "ez");
   if (std::all_of(summary.trade.instructions.begin(), summary.trade.instructions.end(),
                   [](const auto& entry) { return entry.cells.empty(); }))
     return "<p class=\"note\">No answered trial has a right answer, so there is no table by "
@@ -277,7 +277,7 @@ std::string trade_section(const Summary& summary) {
   html += trade_sentences(summary) + picture(trade_figure(summary)) + instruction_table(summary) +
           difference_table(summary) + picture(response_time_figure(summary));
   if (summary.data.design != Design::categories) html += difficulty_table(summary);
-  if (shows(summary.data, "diffusion"))
+  if (shows(summary.data, "ez"))
     html +=
         "<p class=\"soft\">Boundary, time outside the decision and drift come from the diffusion model, "
         "fitted to all "

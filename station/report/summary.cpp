@@ -89,7 +89,7 @@ NamedFit fit_of(const SessionData& data, const std::string& name, const std::vec
 /// Removes the measures that belong to parts of the report which the protocol does not show.
 void hide(const SessionData& data, analysis::Trade& trade) {
   for (auto& entry : trade.instructions) {
-    if (!shows(data, "diffusion")) {
+    if (!shows(data, "ez")) {
       entry.boundary.reset(), entry.nondecision_s.reset(), entry.contaminants.reset(), entry.drift.reset();
       for (auto& cell : entry.cells) cell.drift.reset();
       std::erase_if(entry.statements, [](const auto& said) { return said.code.starts_with("diffusion-"); });
@@ -105,7 +105,7 @@ void hide(const SessionData& data, analysis::Trade& trade) {
   std::erase_if(trade.differences, [&data](const auto& difference) {
     const auto& name = difference.measure;
     return ((name == "boundary" || name == "time outside the decision" || name == "drift") &&
-            !shows(data, "diffusion")) ||
+            !shows(data, "ez")) ||
            (name == "LISAS" && !shows(data, "lisas")) ||
            (name == "inverse efficiency" && !shows(data, "ies")) || (name == "BIS" && !shows(data, "bis"));
   });
@@ -229,7 +229,7 @@ texts::Phrase describe_intervals(const NamedFit& named, const SessionData& data)
 bool shows(const SessionData& data, const std::string& part) {
   if (data.show) return std::find(data.show->begin(), data.show->end(), part) != data.show->end();
   if (part == "response-signal") return true;
-  if (part == "diffusion") return data.choices.size() <= 2;
+  if (part == "ez") return data.choices.size() <= 2;
   return part != "dprime" || data.design == Design::yes_no || data.design == Design::ratings ||
          !data.deciding.empty();
 }

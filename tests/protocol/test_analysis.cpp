@@ -54,7 +54,7 @@ TEST_CASE("the key by accepts one factor with levels, or several", "[protocol]")
 }
 
 TEST_CASE("a value of the key show that would show nothing is an error that says why", "[protocol]") {
-  const std::vector<std::string> all{"psychometric", "diffusion", "bis", "lisas", "ies", "caf", "dprime", "trace"};
+  const std::vector<std::string> all{"psychometric", "ez", "bis", "lisas", "ies", "caf", "dprime", "trace"};
   const auto refused = [&](const std::string& protocol, const std::string& more = "") {
     std::vector<std::string> words;
     for (const auto& word : all)
@@ -67,11 +67,11 @@ TEST_CASE("a value of the key show that would show nothing is an error that says
   CHECK(refused("friction-2ifc") == Words{"bis"});
   CHECK(refused("demo", "by = \"mark_mm\"\n") == Words{});
   CHECK(refused("two-spots-oddity") == Words{"bis", "dprime"});
-  CHECK(refused("friction-3ifc") == Words{"diffusion", "bis"});
+  CHECK(refused("friction-3ifc") == Words{"ez", "bis"});
   CHECK(refused("friction-abx") == Words{"bis"});
-  CHECK(refused("friction-identification") == Words{"psychometric", "diffusion", "bis", "dprime"});
+  CHECK(refused("friction-identification") == Words{"psychometric", "ez", "bis", "dprime"});
   CHECK(refused("boundary-adjustment") ==
-        Words{"psychometric", "diffusion", "bis", "lisas", "ies", "caf", "dprime"});
+        Words{"psychometric", "ez", "bis", "lisas", "ies", "caf", "dprime"});
   auto unscored = source_of("demo");
   const auto at = unscored.find("[task.correct]");
   unscored.erase(at, unscored.find("[timing]") - at);

@@ -175,7 +175,7 @@ TEST_CASE("same-different counts pairs that are the same as false alarms", "[rep
 TEST_CASE("each value of the key show adds a part to the report", "[report]") {
   const auto source = [](const std::string& show) {
     return replaced(shipped("speed-accuracy"),
-                    "show = [\"psychometric\", \"diffusion\", \"bis\", \"lisas\", \"caf\"]",
+                    "show = [\"psychometric\", \"ez\", \"bis\", \"lisas\", \"caf\"]",
                     "show = [" + show + "]");
   };
   const auto none = data_of(source(""), "sim:threshold=0.2");
@@ -183,7 +183,7 @@ TEST_CASE("each value of the key show adds a part to the report", "[report]") {
     const char *word, *mark;
   };
   const Part parts[] = {{"psychometric", "Psychometric function"},
-                        {"diffusion", "Boundary a (diffusion"},
+                        {"ez", "Boundary a (diffusion"},
                         {"bis", "BIS"},
                         {"lisas", "LISAS"},
                         {"ies", "Inverse efficiency"},
