@@ -113,6 +113,8 @@ class BridgeMean {
                                                          digits_of(point.quadrature[point.bridge])}));
       case sensing::WireFault::overload:
         throw texts::Failure(phrase("weights.overloaded", {plain(cells[point.bridge]), plain(channel)}));
+      case sensing::WireFault::silent:
+        throw texts::Failure(phrase("weights.silent", {plain(cells[point.bridge]), plain(channel)}));
     }
   }
 

@@ -56,9 +56,10 @@ void check_capture(const Setup& setup) {
   for (const auto& pickup : setup.pickups) use(pickup.channel, "pick-up");
 }
 
-constexpr std::array<std::string_view, 12> kNames{
+constexpr std::array<std::string_view, 13> kNames{
     "transducer dead", "transducer half", "resonance off", "frequency off", "drive late", "clip",
-    "broken bridge",   "no reference",    "finger lifts",  "gap",           "warmer",     "sounding"};
+    "broken bridge",   "no reference",    "finger lifts",  "gap",           "warmer",     "sounding",
+    "dead bridge"};
 
 }  // namespace
 
@@ -99,6 +100,9 @@ Condition condition_at(const Setup& setup, const std::vector<Fault>& faults, std
         break;
       case FaultKind::broken_bridge:
         c.bridge_open[index] = true;
+        break;
+      case FaultKind::dead_bridge:
+        c.bridge_dead[index] = true;
         break;
       case FaultKind::no_reference:
         c.no_reference = true;
@@ -142,7 +146,8 @@ void validate(const Setup& setup, const std::vector<Fault>& faults) {
   double left = whole - (setup.loop_delay_frames != whole ? Delay::kLeast : 0);
   double late_s = 0;
   for (const auto& fault : faults) {
-    const int count = fault.kind == FaultKind::broken_bridge ? 3 : static_cast<int>(setup.transducers.size());
+    const bool of_a_cell = fault.kind == FaultKind::broken_bridge || fault.kind == FaultKind::dead_bridge;
+    const int count = of_a_cell ? 3 : static_cast<int>(setup.transducers.size());
     if (fault.index < 0 || fault.index >= std::max(count, 1))
       refuse("the fault's index must be below " + std::to_string(count));
     const double amount = amount_of(fault);

@@ -12,6 +12,7 @@ namespace turnpoint::plant {
 struct Condition {
   std::array<double, kMostTransducers> transducer_gain{};
   std::array<bool, 3> bridge_open{};  ///< true for each of the cells a, b and lateral that has an open wire
+  std::array<bool, 3> bridge_dead{};  ///< true for each of the cells whose captured channel is exactly zero
   bool no_reference = false, lifted = false;
   double clip = 1e300;  ///< level at which the amplifier clips, as a fraction of full scale
   std::int64_t late_frames = 0;

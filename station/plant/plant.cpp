@@ -269,7 +269,9 @@ void Plant::write(std::span<double> out) {
   for (std::size_t c = 0; c < bridges.size(); ++c)
     if (bridges[c])
       put(*bridges[c]) =
-          wires_.bridge(static_cast<int>(c), truth_.reading_N[c], world_, !now_.bridge_open[c]);
+          now_.bridge_dead[c]
+              ? 0
+              : wires_.bridge(static_cast<int>(c), truth_.reading_N[c], world_, !now_.bridge_open[c]);
   for (std::size_t k = 0; k < setup_.pickups.size(); ++k) {
     const Pickup& pickup = setup_.pickups[k];
     const double signal = pickup.full_scale_per_um * filters_[filter_].second.output(k);

@@ -116,7 +116,8 @@ enum class FaultKind {
   finger_lifts,     ///< the finger is not on the surface
   gap,              ///< `amount` captured frames are lost at `from_frame` (480)
   warmer,           ///< surface and cells are warmer by `amount` kelvin (10)
-  sounding          ///< the drive edge also moves at 27 kHz, by `amount` um (0.05), whatever is played
+  sounding,         ///< the drive edge also moves at 27 kHz, by `amount` um (0.05), whatever is played
+  dead_bridge       ///< the captured channel of cell a, b or lateral (`index` 0, 1, 2) is exactly zero, without noise
 };
 
 /// The name of the enumerator, with spaces instead of underscores: "transducer dead".

@@ -17,6 +17,9 @@ namespace {
 constexpr int middle_rate_Hz = 8000;
 constexpr double attenuation_dB = 100;
 constexpr double reference_tolerance = 0.03, quadrature_share = 0.05;
+/// A bridge whose samples are equal for this long is silent. Its carrier is never exactly balanced, and even the
+/// noise of a converter with 16 bits changes the last digit more often.
+constexpr double silent_s = 0.002;
 
 double pass_Hz(Band band) { return band == Band::force ? 400 : 1000; }
 double stop_Hz(Band band) { return band == Band::force ? 600 : 2000; }
@@ -57,6 +60,7 @@ BridgeDemodulator::BridgeDemodulator(const BridgeOptions& options)
     cos_[i] = std::cos(options_.rotation_rad[i]);
     sin_[i] = std::sin(options_.rotation_rad[i]);
   }
+  silent_until_.fill(std::numeric_limits<std::int64_t>::min());
 }
 
 void BridgeDemodulator::check(const CaptureBlock& block) const {
@@ -66,7 +70,9 @@ void BridgeDemodulator::check(const CaptureBlock& block) const {
 }
 
 bool BridgeDemodulator::add(const std::int32_t* frames, std::int64_t count) noexcept {
-  next_frame_ += first_.take(next_frame_, frames, count);
+  const std::int64_t taken = first_.take(next_frame_, frames, count);
+  watch(frames, taken);
+  next_frame_ += taken;
   if (!first_.ready()) return false;
   Decimator::Lanes lanes;
   for (std::size_t i = 0; i < CarrierFilter::inputs; ++i) {
@@ -76,6 +82,17 @@ bool BridgeDemodulator::add(const std::int32_t* frames, std::int64_t count) noex
   if (!second_.push(first_.output_index(), lanes)) return false;
   finish_point();
   return true;
+}
+
+/// Notes which bridges are silent in the next `count` frames.
+void BridgeDemodulator::watch(const std::int32_t* frames, std::int64_t count) noexcept {
+  const auto enough = static_cast<std::int64_t>(silent_s * options_.rate_Hz);
+  for (std::size_t i = 0; i < bridge_count; ++i) {
+    if (frames == nullptr) unchanged_[i].reset();
+    for (std::int64_t n = 0; frames != nullptr && n < count; ++n)
+      if (unchanged_[i].add(frames[n * options_.channels + options_.bridges[i]]) >= enough)
+        silent_until_[i] = next_frame_ + n;
+  }
 }
 
 void BridgeDemodulator::finish_point() noexcept {
@@ -95,9 +112,13 @@ void BridgeDemodulator::finish_point() noexcept {
     point_.quadrature = point_.ratio;
     return;
   }
+  // The point depends on frames as far before it as the newest frame is after it.
+  const std::int64_t depends_from = 2 * point_.index * frames_per_point() - next_frame_;
   for (std::size_t i = 0; i < bridge_count && point_.fault == WireFault::none; ++i) {
     point_.bridge = i;
-    if (std::abs(point_.quadrature[i]) > quadrature_share * options_.full_scale[i])
+    if (silent_until_[i] >= depends_from)
+      point_.fault = WireFault::silent;
+    else if (std::abs(point_.quadrature[i]) > quadrature_share * options_.full_scale[i])
       point_.fault = WireFault::quadrature;
     else if (std::abs(point_.ratio[i]) > overload_share * options_.full_scale[i])
       point_.fault = WireFault::overload;

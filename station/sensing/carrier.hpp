@@ -45,6 +45,25 @@ enum class WireFault {
   reference,   ///< amplitude of the reference more than 3 % off; the ratios are then NaN
   quadrature,  ///< quadrature of a bridge above 5 % of full scale: a wire or a shield is off
   overload,    ///< a bridge above 1.5 times full scale: a wire is off, or the cell is overloaded
+  silent,      ///< samples of a bridge do not change at all, not even by noise: its amplifier or converter is dead
+};
+
+/// Counts how often a value has been the same in a row.
+class Unchanged {
+ public:
+  /// Returns how many values in a row, including this one, are equal.
+  template <typename Value>
+  std::int64_t add(Value value) noexcept {
+    const auto now = static_cast<double>(value);
+    count_ = count_ > 0 && now == last_ ? count_ + 1 : 1;
+    last_ = now;
+    return count_;
+  }
+  void reset() noexcept { count_ = 0; }
+
+ private:
+  double last_ = 0;
+  std::int64_t count_ = 0;
 };
 
 /// The signals of the three bridges, divided by the reference signal, at one point in time.
@@ -55,7 +74,7 @@ struct BridgePoint {
   std::array<double, bridge_count> ratio{}, quadrature{};
   double reference = 0;  ///< amplitude of the reference signal; full scale is 1
   WireFault fault = WireFault::none;
-  std::size_t bridge = 0;  ///< the bridge with the fault `quadrature` or `overload`
+  std::size_t bridge = 0;  ///< the bridge with the fault `quadrature`, `overload` or `silent`
 };
 
 /// Computes the phase between the resistive part of a bridge and the reference from two points: one with a
@@ -96,6 +115,7 @@ class BridgeDemodulator {
   /// Takes some of the next `count` frames; a null `frames` means that they are missing. Returns true if a
   /// point is complete.
   bool add(const std::int32_t* frames, std::int64_t count) noexcept;
+  void watch(const std::int32_t* frames, std::int64_t count) noexcept;
   void finish_point() noexcept;
 
   BridgeOptions options_;
@@ -104,6 +124,8 @@ class BridgeDemodulator {
   Decimator second_;
   std::int64_t next_frame_ = 0;
   bool started_ = false;
+  std::array<Unchanged, bridge_count> unchanged_;
+  std::array<std::int64_t, bridge_count> silent_until_;  ///< last frame at which the bridge was silent
   BridgePoint point_;
 };
 

@@ -9,6 +9,9 @@ namespace {
 
 constexpr int stamps_in_line = 256;
 constexpr std::size_t nodes = 4;
+/// A cell is silent once this many samples in a row, and those of this length of time, are equal: a converter for
+/// force cells has noise in its last digits.
+constexpr double silent_samples = 20, silent_time_s = 0.1;
 
 /// Weights of four samples at 0, 1, 2, 3 for the value at x of the cubic through them.
 std::array<double, nodes> cubic_weights(double x) {
@@ -48,6 +51,9 @@ void OwnClock::add(const Sample& sample) {
   if (steps != 1) newest_.clear();
   newest_.push_back(sample);
   if (newest_.size() > nodes) newest_.pop_front();
+  const double enough = std::max(silent_samples, silent_time_s * options_.rate_Hz);
+  for (std::size_t cell = 0; cell < bridge_count; ++cell)
+    silent_[cell] = static_cast<double>(unchanged_[cell].add(sample.readings[cell])) >= enough;
 }
 
 double OwnClock::position(std::int64_t time_ns) const {
@@ -77,8 +83,9 @@ bool OwnClock::complete(std::int64_t index, const drive::ClockFit& playback) {
       at_limit = at_limit || newest_[k].at_limit[cell];
     }
     const bool over = std::abs(point_.ratio[cell]) > overload_share * options_.full_scale[cell];
-    if ((at_limit || over) && point_.fault == WireFault::none)
-      point_.fault = WireFault::overload, point_.bridge = cell;
+    if (point_.fault != WireFault::none || !(at_limit || over || silent_[cell])) continue;
+    point_.fault = at_limit || over ? WireFault::overload : WireFault::silent;
+    point_.bridge = cell;
   }
   return true;
 }

@@ -67,6 +67,8 @@ class OwnClock {
   std::int64_t number_ = 0;
   std::deque<Sample> newest_;  ///< up to four samples in a row
   std::int64_t next_point_ = 0;
+  std::array<Unchanged, bridge_count> unchanged_;
+  std::array<bool, bridge_count> silent_{};
   BridgePoint point_;
   Counters counters_;
 };

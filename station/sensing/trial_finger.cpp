@@ -194,6 +194,10 @@ TrialForces TrialFinger::result() {
   const auto begin = index_at(quiet_until_), first = index_at(intervals_.front().first_frame);
   const auto end = index_at(intervals_.back().end_frame);
   forces.state = state_of(first, end);
+  const auto faulty = std::ranges::find_if(points_, [&](const BridgePoint& point) {
+    return point.index >= first && point.index < end && point.fault != WireFault::none;
+  });
+  if (faulty != points_.end() && faulty->fault != WireFault::reference) forces.faulty_bridge = faulty->bridge;
   forces.tare_moved_N = tare_moved_N_;
   forces.zero = read_, forces.noise = noise_;
   if ((!zero_ || loaded_) && forces.state != ForcesState::wire) forces.state = ForcesState::tare;

@@ -37,6 +37,7 @@ const char* name(ForcesState state);
 /// the last.
 struct TrialForces {
   ForcesState state = ForcesState::lost;
+  std::optional<std::size_t> faulty_bridge;  ///< which bridge has a wire fault; empty if none or if all have it
   double tare_moved_N = 0;  ///< change of the force zero since the previous tare
   /// Reading of each cell (a, b, lateral) before the trial and its standard deviation, relative to the cell's
   /// full scale; empty if captured frames are missing.

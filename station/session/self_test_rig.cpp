@@ -206,23 +206,25 @@ class StageRig : public SelfTestRig {
   }
 
   std::vector<CellReading> read_cells() override {
-    CellReading reading;
     if (!parts_.capture || !parts_.capture->finger) {
+      CellReading reading;
       reading.missing = phrase(rig::has_force_cells(*parts_.rig) ? "self_test.cells_not_calibrated"
                                                                  : "self_test.cells_missing");
       return {reading};
     }
     std::vector<CellReading> readings;
     for (std::size_t k = 0; k < sensing::bridge_count; ++k) {
+      CellReading& reading = readings.emplace_back();
       reading.cell = k == 2 ? phrase("self_test.lateral") : texts::plain(k == 0 ? "a" : "b");
-      if (forces_ && forces_->zero && forces_->noise) {
+      const bool wire = forces_ && forces_->state == sensing::ForcesState::wire;
+      if (wire && forces_->faulty_bridge.value_or(k) == k) {
+        reading.fault = phrase("self_test.wire_off");
+      } else if (forces_ && forces_->zero && forces_->noise) {
         reading.zero_N = kRated_N * (*forces_->zero)[k];
         reading.noise_mN = 1e3 * kRated_N * (*forces_->noise)[k];
       } else {
-        const bool wire = forces_ && forces_->state == sensing::ForcesState::wire;
-        reading.fault = phrase(wire ? "self_test.wire_off" : "self_test.samples_missing");
+        reading.fault = phrase("self_test.samples_missing");
       }
-      readings.push_back(reading);
     }
     return readings;
   }

@@ -38,8 +38,8 @@ TEST_CASE("each kind of fault has a name", "[plant]") {
   CHECK(name(FaultKind::transducer_dead) == "transducer dead");
   CHECK(name(FaultKind::broken_bridge) == "broken bridge");
   CHECK(name(FaultKind::warmer) == "warmer");
-  CHECK(name(FaultKind::sounding) == "sounding");
-  for (int k = 0; k <= static_cast<int>(FaultKind::sounding); ++k)
+  CHECK(name(FaultKind::dead_bridge) == "dead bridge");
+  for (int k = 0; k <= static_cast<int>(FaultKind::dead_bridge); ++k)
     CHECK(find_fault(name(static_cast<FaultKind>(k))) == static_cast<FaultKind>(k));
   CHECK_FALSE(find_fault("dead"));
 }

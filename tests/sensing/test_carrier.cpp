@@ -220,6 +220,28 @@ TEST_CASE("a wire that is off is a fault with a name", "[sensing]") {
   CHECK(worst().fault == WireFault::overload);
 }
 
+TEST_CASE("a bridge whose samples stop to change is a fault from then on, and one that only reads 0 is none",
+          "[sensing]") {
+  const auto [band, stuck] = GENERATE(std::pair{Band::force, 0}, std::pair{Band::force, -12345}, std::pair{Band::wide, 0});
+  BridgeSignal signal;
+  signal.force_N = [](double) { return 0; };
+  signal.noise_V_rtHz = 4e-9;
+  auto options = bridge_options();
+  options.band = band;
+  auto samples = signal.frames(0, second / 4);
+  for (const auto& point : complete(demodulated(options, 0, samples))) CHECK(point.fault == WireFault::none);
+  constexpr std::int64_t dead = 24000;
+  for (std::size_t n = dead; n < second / 4; ++n) samples[4 * n + 3] = stuck;
+  for (const auto& point : complete(demodulated(options, 0, samples))) {
+    const std::int64_t frame = point.index * 192000 / points_per_second(band);
+    if (frame >= dead) {
+      CHECK(point.fault == WireFault::silent);
+      CHECK(point.bridge == 2);
+    }
+    if (frame < dead - 3400) CHECK(point.fault == WireFault::none);
+  }
+}
+
 TEST_CASE("impossible wiring of the bridges is refused", "[sensing]") {
   const auto refused = [](auto change) {
     auto options = bridge_options();

@@ -99,7 +99,8 @@ TEST_CASE("the felt boundary is measured at the planned level of friction, here 
 TEST_CASE("a trial whose forces are not known says why", "[session][forces]") {
   using plant::FaultKind;
   const auto [kind, why] = GENERATE(std::pair{FaultKind::no_reference, std::string("wire")},
-                                    std::pair{FaultKind::broken_bridge, std::string("wire")});
+                                    std::pair{FaultKind::broken_bridge, std::string("wire")},
+                                    std::pair{FaultKind::dead_bridge, std::string("wire")});
   const auto ran = run(shipped("demo"),
                        [kind = kind](int trial, plant::Plant& plant) {
                          if (trial == 3) plant.add({kind, plant.frames() + 192000, plant::kNever, {}, 0});

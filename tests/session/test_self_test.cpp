@@ -222,6 +222,12 @@ TEST_CASE("the self-test finds each fault of the simulated rig", "[session][self
     faults.laboratory = [](auto& room) { room.cells.zero_N[1] = 1.5; };
     wrong = "zero of cell b";
   }
+  SECTION("the bridge of a cell is dead") {
+    faults.room = [](auto& room) {
+      room.plant().add({plant::FaultKind::dead_bridge, 0, plant::kNever, {}, 1});
+    };
+    wrong = "zero of cell b";
+  }
   SECTION("the cells are noisy") {
     faults.laboratory = [](auto& room) { room.wires.noise_V_per_rtHz = 60e-9; };
     wrong = "noise of cell a, noise of cell b, noise of cell lateral";
