@@ -84,12 +84,14 @@ FileDescriptor opened_device(const std::string& path) {
   return file;
 }
 
-/// True if the open file still has this name.
+/// True if the open file still has this name. Throws if that cannot be found out.
 bool is_named(const FileDescriptor& file, const std::string& path) {
   struct stat ours {
   }, named{};
-  return ::fstat(file.get(), &ours) == 0 && ::lstat(path.c_str(), &named) == 0 &&
-         ours.st_ino == named.st_ino && ours.st_dev == named.st_dev;
+  if (::fstat(file.get(), &ours) != 0) fail(path, errno);
+  if (::lstat(path.c_str(), &named) == 0) return ours.st_ino == named.st_ino && ours.st_dev == named.st_dev;
+  if (errno != ENOENT) fail(path, errno);
+  return false;
 }
 
 /// Removes a draft that no process is writing. Whoever writes a draft holds a lock on it.
@@ -119,10 +121,16 @@ void FileWriter::open_draft(mode_t mode) {
     if (!file.is_open()) fail(draft, errno);
     // Between the two calls, another process may have taken the draft for an abandoned one. Where there are
     // no locks, nothing is taken for abandoned.
-    const bool taken = ::flock(file.get(), LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK;
-    if (taken || !is_named(file, draft)) continue;
-    draft_ = draft, file_ = std::move(file);
-    return;
+    try {
+      const bool taken = ::flock(file.get(), LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK;
+      if (!taken && is_named(file, draft)) {
+        draft_ = draft, file_ = std::move(file);
+        return;
+      }
+    } catch (...) {
+      ::unlink(draft.c_str());
+      throw;
+    }
   }
   fail(path_ + ".new", EEXIST);
 }
