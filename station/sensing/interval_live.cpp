@@ -25,6 +25,7 @@ void IntervalProof::State::change(const drive::Change& change, const drive::Form
   const std::int64_t first = std::max(tones_.origin_frame(), burst.start_frame + burst.ramp.frames);
   if (first < falls) add_stretch(tones_.stretch(first, falls));
   size_buffers();
+  add_offset();
 }
 
 void IntervalProof::State::end_stretch_at(std::int64_t frame) {
@@ -35,11 +36,12 @@ void IntervalProof::State::end_stretch_at(std::int64_t frame) {
   }
   end_windows_at(end);
   for (GlideProof& glide : glides_) glide.end_at(end);
-  if (!onset_planned_ || onset_end_ <= end) return;
-  onset_end_ = end;
+  offset_.planned = false;
+  if (!onset_.planned || onset_.end <= end) return;
+  onset_.end = end;
   // The lock-in must pass the whole ramp before the tones change.
   const std::int64_t needed = plan_.burst.start_frame + plan_.burst.ramp.frames + shape_.window_frames;
-  onset_planned_ = frame >= needed;
+  onset_.planned = frame >= needed;
 }
 
 // Drops the windows that extend beyond this captured frame, the first of a block. A window is shortened

@@ -80,13 +80,28 @@ void IntervalProof::State::measure_tone(std::size_t stretch, const PlannedLine& 
 }
 
 void IntervalProof::State::measure_residual() {
-  result_.residual_dB = kNothing_dB;
+  result_.residual_dB = result_.brief_dB = kNothing_dB;
   for (const Window& window : windows_) {
     const double planned = planned_power(stretches_[window.stretch].lines, main_);
     if (!window.valid || !(planned > 0)) continue;
     result_.residual_dB = std::max(result_.residual_dB, in_dB(std::sqrt(window.residual[main_] / planned)));
   }
-  if (result_.residual_dB >= plan_.limits.residual_dB.flag - 20) measure_products();
+  if (result_.residual_dB < plan_.limits.residual_dB.flag - 20) return;
+  measure_products();
+  measure_brief();
+}
+
+// A click is short: it hardly changes the rms of 0.2 s.
+void IntervalProof::State::measure_brief() {
+  const auto rest = unexplained();
+  const double planned = rest.empty() ? 0 : planned_power(stretches_[windows_[*worst_].stretch].lines, main_);
+  if (!(planned > 0)) return;
+  const auto block = static_cast<std::size_t>(shape_.block_frames);
+  for (std::size_t at = 0; at + block <= rest.size(); at += block) {
+    double energy = 0;
+    for (const double sample : rest.subspan(at, block)) energy += sample * sample;
+    result_.brief_dB = std::max(result_.brief_dB, in_dB(std::sqrt(energy / static_cast<double>(block) / planned)));
+  }
 }
 
 // Looks for the strongest distortion product of the tones (harmonic, combination, ...) in the window with the
@@ -130,27 +145,32 @@ std::span<const double> IntervalProof::State::unexplained() {
   return rest;
 }
 
-void IntervalProof::State::measure_onset() {
-  const auto first = std::find_if(windows_.begin(), windows_.end(), [](const Window& w) { return w.valid; });
-  if (!onset_planned_ || !vibrates_ || first == windows_.end() || first->stretch != 0) return;
-  const auto& lines = stretches_.front().lines;
+// Time at which the captured envelope passes half its level on the ramp, measured minus planned.
+std::optional<double> IntervalProof::State::ramp_error_us(const RampWatch& watch, bool rising) const {
+  const auto steady = std::find_if(windows_.begin(), windows_.end(), [&](const Window& w) {
+    return w.valid && w.stretch == watch.stretch;
+  });
+  if (!watch.planned || !vibrates_ || steady == windows_.end()) return std::nullopt;
+  const auto& lines = stretches_[watch.stretch].lines;
   const std::size_t count = lines.size();
   double power = 0;
   for (std::size_t l = 0; l < count; ++l)
-    power += std::norm(first->amplitude[main_ * count + l] * lines[l].gain);
+    power += std::norm(steady->amplitude[main_ * count + l] * lines[l].gain);
   std::vector<double> envelope;
-  for (std::size_t k = 0; k + count <= points_.size(); k += count) {
+  for (std::size_t k = 0; k + count <= watch.points.size(); k += count) {
     double level = 0;
     for (std::size_t l = 0; l < count; ++l) {
-      const auto steady = first->amplitude[main_ * count + l] * lines[l].gain;
-      level += (std::conj(steady) * points_[k + l]).real();
+      const auto wave = steady->amplitude[main_ * count + l] * lines[l].gain;
+      level += (std::conj(wave) * watch.points[k + l]).real();
     }
     envelope.push_back(level / power);
   }
-  if (const auto at = half_level(envelope)) {
-    const double frame = static_cast<double>(first_point_) + *at * shape_.block_frames;
-    result_.onset_error_us = (frame - onset_frame_) / plan_.rate_Hz * 1e6;
-  }
+  if (!rising) std::reverse(envelope.begin(), envelope.end());
+  const auto at = half_level(envelope);
+  if (!at) return std::nullopt;
+  const double place = rising ? *at : static_cast<double>(envelope.size() - 1) - *at;
+  const double frame = static_cast<double>(watch.first_point) + place * shape_.block_frames;
+  return (frame - watch.half_frame) / plan_.rate_Hz * 1e6;
 }
 
 void IntervalProof::State::find_lost() {
@@ -234,16 +254,21 @@ void IntervalProof::State::judge_rest() {
   const double product = result_.product ? result_.product->level_dB : kNothing_dB;
   const Proof residual = judged(std::max(result_.residual_dB, product), limits.residual_dB);
   findings_.push_back({ProofCause::residual, residual});
+  findings_.push_back({ProofCause::residual, judged(result_.brief_dB, brief_limits(limits))});
   if (result_.largest_sample >= limits.clipped) findings_.push_back({ProofCause::clipped, Proof::refused});
   // Clipping makes odd distortion products and reduces the level of the tones.
   if (product >= limits.residual_dB.flag && is_odd(result_.product->kind) && result_.ratio_dB < -0.1)
     findings_.push_back({ProofCause::clipped, residual});
   if (result_.onset_error_us)
     findings_.push_back({ProofCause::late, judged(std::fabs(*result_.onset_error_us), limits.onset_us)});
-  else if (onset_planned_ && vibrates_ && result_.lost_frames == 0 && !points_.empty())
+  else if (onset_.planned && vibrates_ && result_.lost_frames == 0 && !onset_.points.empty())
     findings_.push_back({ProofCause::late, Proof::refused});
   else
     findings_.push_back({ProofCause::none, Proof::unproven});
+  if (result_.offset_error_us)
+    findings_.push_back({ProofCause::offset, judged(std::fabs(*result_.offset_error_us), limits.onset_us)});
+  else if (offset_.planned && vibrates_ && result_.lost_frames == 0 && !offset_.points.empty())
+    findings_.push_back({ProofCause::offset, Proof::flagged});
   if (windows_.empty() || unplanned_) findings_.push_back({ProofCause::none, Proof::unproven});
 }
 
@@ -251,11 +276,11 @@ void IntervalProof::State::conclude(std::optional<bool> in_contact) {
   findings_.clear();
   result_.tones.clear();
   result_.product.reset();
-  result_.onset_error_us.reset();
   result_.found_Hz.reset();
   measure_tones();
   measure_residual();
-  measure_onset();
+  result_.onset_error_us = ramp_error_us(onset_, true);
+  result_.offset_error_us = ramp_error_us(offset_, false);
   find_lost();
   const ProofLimits& limits = plan_.limits;
   const Limits& level = in_contact.value_or(true) ? limits.level_in_contact_dB : limits.level_dB;

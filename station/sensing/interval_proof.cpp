@@ -14,6 +14,8 @@ namespace {
 constexpr double kWindow_s = 0.2;  // approximate length of the windows for the joint fits
 // the onset is looked for from this time before the rising ramp to this time after it
 constexpr double kBefore_s = 0.02, kAfter_s = 0.06;
+// the end of the burst is looked for until this time after it
+constexpr double kFallen_s = 0.003;
 
 std::vector<int> inputs_of(const IntervalPlan& plan) {
   if (plan.pick_ups.empty()) throw std::logic_error("sensing: a proof needs a pick-up");
@@ -39,6 +41,7 @@ IntervalProof::State::State(const IntervalPlan& plan)
   add_parts();
   if (!stretches_.empty()) main_ = main_pick_up(stretches_.front().lines, pick_ups());
   add_onset();
+  add_offset();
   products_.resize(pick_ups() * drive::max_tones);
   energy_.resize(pick_ups());
   phases_.resize(drive::max_tones);
@@ -136,14 +139,8 @@ void IntervalProof::State::add_windows(std::size_t stretch) {
   }
 }
 
-// Sets up the measurement of the onset. It is possible only if the first tones last so long that the window
-// of the lock-in passes the whole ramp before they change.
-void IntervalProof::State::add_onset() {
-  if (windows_.empty() || windows_.front().stretch != 0) return;
-  const auto& [plan, lines, sums] = stretches_.front();
-  const std::int64_t start = plan_.burst.start_frame, ramp = plan_.burst.ramp.frames;
-  if (plan.first_frame != start + ramp || plan.origin_frame != start) return;
-  if (plan.end_frame < start + ramp / 2 + shape_.window_frames) return;
+// The mean group delay from the drive to the main pick-up, plus the loop delay.
+double IntervalProof::State::planned_delay_frames(const std::vector<PlannedLine>& lines) const {
   double delay_s = 0, weights = 0;
   for (const PlannedLine& line : lines)
     for (const PlannedTone& tone : line.tones) {
@@ -151,16 +148,53 @@ void IntervalProof::State::add_onset() {
       delay_s += weight * group_delay_s(plan_.pick_ups[main_], tone.channel, tone.frequency_Hz);
       weights += weight;
     }
-  if (!(weights > 0)) return;
-  onset_planned_ = true;
-  onset_frame_ = static_cast<double>(start) + (static_cast<double>(ramp) - 1) / 2 + plan_.delay_frames +
-                 delay_s / weights * plan_.rate_Hz;
-  const std::int64_t block = shape_.block_frames, half = shape_.window_frames / 2;
-  onset_first_ = (begin_ - frames_of(kBefore_s) - half) / block * block;
-  onset_end_ = (begin_ + ramp + frames_of(kAfter_s) + half) / block * block;
-  onset_end_ = std::min(onset_end_, (end_ - ramp) / block * block);
-  hann_ = std::make_unique<HannWindow>(lines.size(), pick_ups(), shape_.block_frames, shape_.window_frames);
-  points_.reserve(static_cast<std::size_t>((onset_end_ - onset_first_) / block + 1) * lines.size());
+  if (!(weights > 0)) return std::numeric_limits<double>::quiet_NaN();
+  return plan_.delay_frames + delay_s / weights * plan_.rate_Hz;
+}
+
+std::int64_t IntervalProof::State::needed_until() const noexcept {
+  return offset_.planned ? std::max(end_, offset_.end) : end_;
+}
+
+void IntervalProof::State::watch_ramp(RampWatch& watch, std::int64_t first, std::int64_t end) {
+  const std::int64_t block = shape_.block_frames;
+  const std::size_t lines = stretches_[watch.stretch].lines.size();
+  watch.planned = !std::isnan(watch.half_frame);
+  watch.first = first / block * block, watch.end = end / block * block;
+  watch.hann = std::make_unique<HannWindow>(lines, pick_ups(), shape_.block_frames, shape_.window_frames);
+  watch.points.clear();
+  watch.points.reserve(static_cast<std::size_t>((watch.end - watch.first) / block + 1) * lines);
+}
+
+// Sets up the measurement of the onset. It is possible only if the first tones last so long that the window
+// of the lock-in passes the whole ramp before they change.
+void IntervalProof::State::add_onset() {
+  if (windows_.empty() || windows_.front().stretch != 0) return;
+  const auto& plan = stretches_.front().plan;
+  const std::int64_t start = plan_.burst.start_frame, ramp = plan_.burst.ramp.frames;
+  if (plan.first_frame != start + ramp || plan.origin_frame != start) return;
+  if (plan.end_frame < start + ramp / 2 + shape_.window_frames) return;
+  const std::int64_t half = shape_.window_frames / 2;
+  onset_.half_frame = static_cast<double>(start) + (static_cast<double>(ramp) - 1) / 2 +
+                      planned_delay_frames(stretches_.front().lines);
+  watch_ramp(onset_, begin_ - frames_of(kBefore_s) - half,
+             std::min(begin_ + ramp + frames_of(kAfter_s) + half, end_ - ramp));
+}
+
+// The same for the ramp at the end of the burst, which the last tones must precede for as long.
+void IntervalProof::State::add_offset() {
+  offset_.planned = false;
+  if (unplanned_ || cut_ || stretches_.empty()) return;
+  const auto& plan = stretches_.back().plan;
+  const std::int64_t end = plan_.burst.start_frame + plan_.burst.length_frames, ramp = plan_.burst.ramp.frames;
+  const std::int64_t first = std::max(plan.first_frame + frames_of(kSettle_s), plan_.burst.start_frame + ramp);
+  if (plan.tones.empty() || plan.end_frame != end - ramp || plan.end_frame < first + shape_.window_frames) return;
+  offset_.stretch = stretches_.size() - 1;
+  offset_.half_frame = static_cast<double>(end - ramp) + (static_cast<double>(ramp) - 1) / 2 +
+                       planned_delay_frames(stretches_.back().lines);
+  const std::int64_t earliest = std::max(first + static_cast<std::int64_t>(plan_.delay_frames),
+                                         end_ - ramp - frames_of(kAfter_s) - shape_.window_frames / 2);
+  watch_ramp(offset_, earliest + shape_.block_frames, end_ + frames_of(kFallen_s) + shape_.window_frames / 2);
 }
 
 // Windows that extend beyond the end of the burst do not count, even if they are already filled. A window
@@ -171,6 +205,7 @@ void IntervalProof::State::end_at(std::int64_t playback_frame) noexcept {
   if (end >= end_) return;
   cut_ = true;
   end_ = std::max(end, begin_);
+  offset_.planned = false;
   end_windows_at(end_ / shape_.block_frames * shape_.block_frames);
   for (GlideProof& glide : glides_) glide.end_at(end_);
 }
@@ -186,7 +221,10 @@ void IntervalProof::State::take(const AlignedBlock& block) {
     ++current_glide_;
   for (std::size_t g = current_glide_; g < std::min(current_glide_ + 2, glides_.size()); ++g)
     glides_[g].take(block);  // two glides may meet in a block
-  const bool onset = onset_planned_ && block.first_frame >= onset_first_ && end <= onset_end_;
+  const auto watches = [&](const RampWatch& watch) {
+    return watch.planned && block.first_frame >= watch.first && end <= watch.end;
+  };
+  const bool onset = watches(onset_), offset = watches(offset_) && !(onset && offset_.stretch != 0);
   while (current_ < windows_.size() && windows_[current_].end <= block.first_frame) {
     ++current_;
     summed_ = 0;
@@ -194,17 +232,22 @@ void IntervalProof::State::take(const AlignedBlock& block) {
   Window* window = current_ < windows_.size() && windows_[current_].first <= block.first_frame
                        ? &windows_[current_]
                        : nullptr;
-  if (!onset && window == nullptr) return;
-  const std::size_t stretch = window != nullptr ? window->stretch : 0;
+  if (!onset && !offset && window == nullptr) return;
+  const std::size_t stretch = window != nullptr ? window->stretch : offset ? offset_.stretch : 0;
   ToneSums& sums = *stretches_[stretch].sums;
-  sums.compute(block, onset && stretch == 0 ? ToneSums::Parts::windowed : ToneSums::Parts::plain);
+  const bool rises = onset && stretch == 0, falls = offset && stretch == offset_.stretch;
+  sums.compute(block, rises || falls ? ToneSums::Parts::windowed : ToneSums::Parts::plain);
   if (window != nullptr) accumulate(block, *window, sums);
-  if (!onset || stretch != 0) return;
-  if (!hann_->take(block, sums)) return;
-  if (points_.empty()) first_point_ = hann_->centre();
+  if (rises) follow(onset_, block, sums);
+  if (falls) follow(offset_, block, sums);
+}
+
+void IntervalProof::State::follow(RampWatch& watch, const AlignedBlock& block, const ToneSums& sums) noexcept {
+  if (!watch.hann->take(block, sums)) return;
+  if (watch.points.empty()) watch.first_point = watch.hann->centre();
   const std::size_t lines = sums.tones();
-  for (std::size_t l = 0; l < lines && points_.size() < points_.capacity(); ++l)
-    points_.push_back(hann_->values()[main_ * lines + l]);
+  for (std::size_t l = 0; l < lines && watch.points.size() < watch.points.capacity(); ++l)
+    watch.points.push_back(watch.hann->values()[main_ * lines + l]);
 }
 
 void IntervalProof::State::accumulate(const AlignedBlock& block, Window& window,
@@ -259,7 +302,7 @@ std::int64_t IntervalProof::first_frame() const noexcept {
 }
 
 std::int64_t IntervalProof::end_frame() const noexcept {
-  return state_->end_ + state_->shape_.block_frames + high_pass_step(state_->plan_.rate_Hz);
+  return state_->needed_until() + state_->shape_.block_frames + high_pass_step(state_->plan_.rate_Hz);
 }
 
 void IntervalProof::push(const CaptureBlock& block) {
@@ -274,7 +317,7 @@ void IntervalProof::changed(const drive::Change& change, const drive::Format& fo
   state_->change(change, format);
 }
 
-bool IntervalProof::complete() const noexcept { return state_->next_ >= state_->end_; }
+bool IntervalProof::complete() const noexcept { return state_->next_ >= state_->needed_until(); }
 
 const IntervalResult& IntervalProof::result(std::optional<bool> in_contact) {
   state_->conclude(in_contact);

@@ -40,6 +40,17 @@ struct Measured {
   std::unique_ptr<ToneSums> sums;  // null once all frames of the stretch have been received
 };
 
+/// The lock-in that looks for the moment at which a ramp of the burst passes half its level.
+struct RampWatch {
+  bool planned = false;
+  std::size_t stretch = 0;                ///< the steady tones before or after the ramp
+  std::int64_t first = 0, end = 0;        ///< captured frames in which it looks
+  double half_frame = 0;                  ///< captured frame at which the planned envelope is at half its level
+  std::unique_ptr<HannWindow> hann;
+  std::vector<std::complex<double>> points;  ///< of the main pick-up, [point][line]
+  std::int64_t first_point = 0;
+};
+
 struct IntervalProof::State {
   explicit State(const IntervalPlan& plan);
 
@@ -55,11 +66,16 @@ struct IntervalProof::State {
   std::int64_t block_at_or_after(std::int64_t playback_frame) const;
   std::int64_t block_at_or_before(std::int64_t playback_frame) const;
   void add_windows(std::size_t stretch);
+  std::int64_t needed_until() const noexcept;
   void add_onset();
+  void add_offset();
+  double planned_delay_frames(const std::vector<PlannedLine>& lines) const;
+  void watch_ramp(RampWatch& watch, std::int64_t first, std::int64_t end);
 
   void end_at(std::int64_t playback_frame) noexcept;
 
   void take(const AlignedBlock& block);
+  void follow(RampWatch& watch, const AlignedBlock& block, const ToneSums& sums) noexcept;
   void accumulate(const AlignedBlock& block, Window& window, const ToneSums& sums) noexcept;
   void finish(Window& window, const ToneSums& sums) noexcept;
   void keep_if_worst(const Window& window) noexcept;
@@ -69,8 +85,9 @@ struct IntervalProof::State {
   void measure_tone(std::size_t stretch, const PlannedLine& line, std::size_t place);
   void measure_residual();
   void measure_products();
+  void measure_brief();
   std::span<const double> unexplained();
-  void measure_onset();
+  std::optional<double> ramp_error_us(const RampWatch& watch, bool rising) const;
   void find_lost();
   void judge_tones(const Limits& level);
   void judge_glides(const Limits& level);
@@ -101,16 +118,10 @@ struct IntervalProof::State {
   std::int64_t summed_ = 0;  // number of frames that products_ and energy_ contain
   std::vector<std::uint64_t> phases_, increments_;
   std::vector<double> raw_, worst_raw_;  // samples of the main pick-up in the current and in the worst window
-  std::optional<std::size_t> worst_;
+  std::optional<std::size_t> worst_;  // window with the largest residual
   bool fit_subtracted_ = false;
 
-  bool onset_planned_ = false;
-  std::int64_t onset_first_ = 0, onset_end_ = 0;  // captured frames in which the lock-in looks for the onset
-  // captured frame at which the planned envelope reaches half its level
-  double onset_frame_ = 0;
-  std::unique_ptr<HannWindow> hann_;
-  std::vector<std::complex<double>> points_;  // lock-in points of the main pick-up, [point][line]
-  std::int64_t first_point_ = 0;
+  RampWatch onset_, offset_;
 
   IntervalResult result_;
   bool vibrates_ = false;

@@ -36,6 +36,7 @@ SilenceProof::SilenceProof(const IntervalPlan& plan)
     : rate_Hz_(plan.rate_Hz),
       tone_limits_(plan.limits.silence_dB),
       rms_limits_(plan.limits.residual_dB),
+      brief_limits_(brief_limits(plan.limits)),
       planned_(compared_with(plan).power),
       blocks_(plan.rate_Hz, plan.capture_channels, {compared_with(plan).channel},
               LockInShape::of_rate(plan.rate_Hz).block_frames, high_pass_step(plan.rate_Hz)),
@@ -55,6 +56,7 @@ void SilenceProof::take(const AlignedBlock& block) noexcept {
   }
   std::copy_n(block.row[0], block.frames, window_.begin() + blocks_taken_ * block.frames);
   energy_ += block.energy[0];
+  largest_block_ = std::max(largest_block_, block.energy[0] / static_cast<double>(block.frames));
   if (++blocks_taken_ < window_blocks_) return;
   const double power = energy_ / static_cast<double>(window_.size());
   if (!measured_ || power > largest_) {
@@ -77,10 +79,12 @@ SilenceResult SilenceProof::result() const {
   result.rms_dB = in_dB(std::sqrt(largest_ / planned_));
   const auto tone = strongest_tone(loudest_, rate_Hz_);
   result.level_dB = in_dB(std::sqrt((tone ? tone->power : 0) / planned_));
+  result.brief_dB = in_dB(std::sqrt(largest_block_ / planned_));
   const auto cause = terms::ProofCause::noisy;
   const Finding all = concluded({{cause, terms::Proof::ok},
                                  {cause, judged(result.level_dB, tone_limits_)},
-                                 {cause, judged(result.rms_dB, rms_limits_)}});
+                                 {cause, judged(result.rms_dB, rms_limits_)},
+                                 {cause, judged(result.brief_dB, brief_limits_)}});
   result.verdict = all.verdict;
   result.cause = all.cause;
   return result;

@@ -26,13 +26,13 @@ class SilenceProof {
   void take(const AlignedBlock& block) noexcept;
 
   int rate_Hz_;
-  Limits tone_limits_, rms_limits_;
+  Limits tone_limits_, rms_limits_, brief_limits_;
   double planned_ = 0;  ///< planned mean square of the burst's samples
   AlignedBlocks blocks_;
   int window_blocks_;
   int blocks_taken_ = 0;  ///< number of blocks in the current window
   bool measured_ = false;
-  double energy_ = 0, largest_ = 0;
+  double energy_ = 0, largest_ = 0, largest_block_ = 0;
   std::vector<double> window_, loudest_;  ///< samples of the current window and of the loudest one
 };
 

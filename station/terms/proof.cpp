@@ -19,6 +19,7 @@ constexpr Words kCauses[] = {
     {"frequency", "the surface moves at another frequency than planned"},
     {"half", "the surface moves half as much as planned, as if one of two transducers were missing"},
     {"late", "the surface did not begin to move when planned"},
+    {"offset", "the surface did not come to rest as planned"},
     {"phase", "the phase of the vibration differs from the calibration"},
     {"level", "the surface moves more or less than planned"},
     {"residual", "the surface also moves in a way that was not planned (noise or distortion)"},

@@ -26,6 +26,7 @@ enum class ProofCause {
   frequency,  ///< the surface moves at another frequency
   half,       ///< one of two transducers, or of two supply rails, is missing: -6 dB
   late,       ///< the surface moved too late or too early
+  offset,     ///< the surface stopped too late or too early, or its last ramp was cut short
   phase,      ///< phase differs from the calibration
   level,      ///< amplitude differs from the plan
   residual,   ///< the captured signal contains noise, or products of distortion
@@ -36,8 +37,8 @@ inline constexpr std::array proofs{Proof::unproven, Proof::ok,      Proof::flagg
                                    Proof::refused,  Proof::stopped, Proof::lost};
 inline constexpr std::array proof_causes{ProofCause::none,     ProofCause::gap,       ProofCause::clipped,
                                          ProofCause::dead,     ProofCause::frequency, ProofCause::half,
-                                         ProofCause::late,     ProofCause::phase,     ProofCause::level,
-                                         ProofCause::residual, ProofCause::noisy};
+                                         ProofCause::late,     ProofCause::offset,    ProofCause::phase,
+                                         ProofCause::level,    ProofCause::residual,  ProofCause::noisy};
 
 /// Return the words used in databases and exports: "unproven", "ok", "flagged", ...; "" for ProofCause::none.
 const char* name(Proof proof);

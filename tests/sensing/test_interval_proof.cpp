@@ -25,6 +25,8 @@ TEST_CASE("an interval that vibrates as planned is proven", "[sensing][proof]") 
   CHECK(proof.residual_dB < -60);
   REQUIRE(proof.onset_error_us);
   CHECK(std::fabs(*proof.onset_error_us) < 30);
+  REQUIRE(proof.offset_error_us);
+  CHECK(std::fabs(*proof.offset_error_us) < 30);
   CHECK(proof.lost_frames == 0);
 }
 
@@ -58,6 +60,29 @@ TEST_CASE("each fault of the drive is named", "[sensing][proof]") {
     const IntervalResult proof = check(Proof::refused, ProofCause::late);
     REQUIRE(proof.onset_error_us);
     CHECK(*proof.onset_error_us == Approx(5000).margin(30));
+  }
+  SECTION("cut short: the last ramp breaks off at half its level") {
+    const auto burst = three_tones();
+    const double half_s = (static_cast<double>(burst.length_frames) - 480) / 192000;
+    room.gain_at = [=](double t) { return t < half_s ? 1.0 : 0.0; };
+    const IntervalResult proof = check(Proof::flagged, ProofCause::offset);
+    REQUIRE(proof.offset_error_us);
+    CHECK(*proof.offset_error_us < -300);
+  }
+  SECTION("a drive that stops 3 ms late") {
+    auto longer = three_tones();
+    const auto plan = plan_of(room, longer);
+    longer.length_frames += 576;
+    const IntervalResult proof = proven(room, longer, false, &plan);
+    CHECK(proof.verdict == Proof::refused);
+    CHECK(proof.cause == ProofCause::offset);
+    CHECK(proof.offset_error_us.value() == Approx(3000).margin(30));
+  }
+  SECTION("a pulse of 0.1 ms in the middle") {
+    room.extra = [](double t) { return t > 0.1 && t < 0.1001 ? 0.05 * std::sin(2 * M_PI * 33000 * t) : 0.0; };
+    const IntervalResult proof = check(Proof::refused, ProofCause::residual);
+    CHECK(proof.residual_dB < -40);  // which alone would be no reason
+    CHECK(proof.brief_dB > -24);
   }
   SECTION("a limiter in the drive") {
     room.limiter = 0.25;

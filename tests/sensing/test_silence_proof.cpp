@@ -155,3 +155,18 @@ TEST_CASE("in a silence, the pick-up's own noise is not a vibration, and a tone 
   CHECK(in_silence(-25, -200, 1).verdict == Proof::refused);
   CHECK(in_silence(-15, -200, 1).verdict == Proof::stopped);
 }
+
+TEST_CASE("a pulse of 0.1 ms in a silence voids the trial, although the rms of 50 ms hardly shows it",
+          "[sensing][proof]") {
+  const auto with_pulse = [](double level) {
+    std::vector<double> values(40'000);
+    for (std::size_t n = 0; n < 19; ++n)
+      values[30'000 + n] = level * std::sin(2 * M_PI * 33e3 / 192e3 * static_cast<double>(n));
+    return silent_with(values, 0);
+  };
+  const auto result = with_pulse(0.5);
+  CHECK(result.rms_dB < -36);
+  CHECK(result.verdict == Proof::refused);
+  CHECK(result.cause == ProofCause::noisy);
+  CHECK(with_pulse(0.02).verdict == Proof::ok);
+}
