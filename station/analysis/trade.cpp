@@ -31,7 +31,7 @@ struct Group {
   std::optional<DiffusionEstimates> diffusion;
 };
 
-enum Measure { accuracy, median, lisas_score, efficiency, balanced, measures };
+enum Measure { accuracy, median, lisas_score, efficiency, measures };
 using Measures = std::array<std::optional<double>, measures>;
 
 std::vector<double> correct_times(const Cell& cell) {
@@ -60,31 +60,6 @@ Cell pooled(const Group& group) {
   return all;
 }
 
-/// Computes the balanced integration score (BIS) of each condition: standardises the scores over the cells of
-/// all conditions, then averages over the condition's cells.
-void add_balanced(const std::vector<Group>& groups, std::vector<Measures>& result) {
-  if (groups.size() < 2) return;
-  std::vector<double> proportion, time;
-  for (const auto& group : groups)
-    for (const auto& cell : group.cells) {
-      if (cell.empty()) continue;
-      const auto times = correct_times(cell);
-      if (times.empty()) return;  // a cell without right answers has no score
-      proportion.push_back(static_cast<double>(times.size()) / static_cast<double>(cell.size()));
-      time.push_back(mean(times));
-    }
-  const auto scores = balanced_integration(proportion, time);
-  if (!scores) return;
-  std::size_t next = 0;
-  for (std::size_t g = 0; g < groups.size(); ++g) {
-    double sum = 0;
-    int cells = 0;
-    for (const auto& cell : groups[g].cells)
-      if (!cell.empty()) sum += (*scores)[next++], ++cells;
-    if (cells > 0) result[g][balanced] = sum / cells;
-  }
-}
-
 std::vector<Measures> measure(const std::vector<Group>& groups) {
   std::vector<Measures> result(groups.size());
   Cell session;
@@ -109,7 +84,6 @@ std::vector<Measures> measure(const std::vector<Group>& groups) {
     result[g][lisas_score] = lisas(mean(right), 1 - p, sd_time, sd_error);
     result[g][efficiency] = inverse_efficiency(mean(right), p);
   }
-  add_balanced(groups, result);
   return result;
 }
 
@@ -247,7 +221,6 @@ void set_estimates(InstructionResult& result, const Measures& values,
   result.median_s = of(median);
   result.lisas_s = of(lisas_score);
   result.inverse_efficiency_s = of(efficiency);
-  result.balanced = of(balanced);
 }
 
 /// Returns the interval of `b - a` from the intervals of two independent estimates (MOVER; Donner & Zou
@@ -264,8 +237,7 @@ struct MeasureName {
 constexpr MeasureName kNames[measures] = {{"proportion correct", "proportion"},
                                           {"median response time", "s"},
                                           {"LISAS", "s"},
-                                          {"inverse efficiency", "s"},
-                                          {"BIS", "SD"}};
+                                          {"inverse efficiency", "s"}};
 
 /// The difference of one parameter of two diffusion fits, second minus first: the median and a central
 /// interval of the differences between their draws.

@@ -31,7 +31,7 @@ struct InstructionResult {
   std::vector<double> times_s;  ///< times of the included trials, in order of presentation
   std::vector<CafBin> caf;
   std::vector<DifficultyCell> cells;  ///< one cell per difficulty, ascending by DifficultyCell::difficulty
-  std::optional<Estimate> median_s, lisas_s, inverse_efficiency_s, balanced;
+  std::optional<Estimate> median_s, lisas_s, inverse_efficiency_s;
   /// of the diffusion model (fit_diffusion()), from all answers and those that came too late; no time is
   /// excluded
   std::optional<Estimate> boundary, nondecision_s, contaminants;
@@ -43,8 +43,8 @@ struct InstructionResult {
 struct Difference {
   std::string first, second;
   std::string measure;  ///< "proportion correct", "median response time", ...
-  /// the unit of the measure: "s", "proportion", "s = 0.1" for the diffusion's boundary and drift (its
-  /// scaling parameter), or "SD" for BIS (the standard deviation over cells)
+  /// the unit of the measure: "s", "proportion", or "s = 0.1" for the diffusion's boundary and drift (its
+  /// scaling parameter)
   std::string unit;
   std::optional<Estimate> estimate;
 };
@@ -74,8 +74,8 @@ struct TradeOptions {
 /// Other intervals are percentiles of a bootstrap that resamples answers within condition and difficulty, and
 /// excludes times from each replicate as from the session. If more than 5 % of the replicates have no number,
 /// both the number and its interval are empty. LISAS uses the standard deviations over all trials of the
-/// session, BIS those over the session's cells. A single condition has no BIS, because the scores of its
-/// cells always average 0.
+/// session. The balanced integration score is not among the measures: it standardises over participants and
+/// conditions, so only a study has it (report/study.hpp).
 Trade trade(const std::vector<TrialRecord>& trials, const TradeOptions& options);
 
 }  // namespace turnpoint::analysis

@@ -151,13 +151,10 @@ constexpr MeasureRow kRows[] = {
     {"Drift v, mean over difficulties (1/s, s = 0.1)", "drift", "ez", &Result::drift},
     {"Share of trials that were no decision (0 to 1)", "", "ez", &Result::contaminants},
     {"LISAS (s)", "LISAS", "lisas", &Result::lisas_s},
-    {"Inverse efficiency (s)", "inverse efficiency", "ies", &Result::inverse_efficiency_s},
-    {"BIS (standard deviations over cells)", "BIS", "bis", &Result::balanced}};
+    {"Inverse efficiency (s)", "inverse efficiency", "ies", &Result::inverse_efficiency_s}};
 
 bool has(const MeasureRow& row, const Summary& summary) {
-  if (*row.part == '\0') return true;
-  const bool several = summary.trade.instructions.size() > 1;
-  return shows(summary.data, row.part) && (several || std::string(row.part) != "bis");
+  return *row.part == '\0' || shows(summary.data, row.part);
 }
 
 std::string instruction_table(const Summary& summary) {
@@ -286,6 +283,10 @@ std::string trade_section(const Summary& summary) {
         "leaves out elsewhere are part of this fit: trimming would change the distribution that is fitted. "
         "The numbers "
         "are medians of the posterior distribution, with 95 % intervals.</p>\n";
+  if (several && shows(summary.data, "bis"))
+    html +=
+        "<p class=\"soft\">The balanced integration score (BIS) standardises accuracy and time over all "
+        "participants and conditions, so one session has none. The report of the study has it.</p>\n";
   for (const auto& entry : summary.trade.instructions) {
     for (auto statement : entry.statements) {
       if (!entry.instruction.empty())

@@ -74,7 +74,6 @@ Json instruction_json(const analysis::InstructionResult& entry) {
   json["drift"] = value(entry.drift);
   json["lisas_s"] = value(entry.lisas_s);
   json["inverse_efficiency_s"] = value(entry.inverse_efficiency_s);
-  json["bis"] = value(entry.balanced);
   json["deciles_s"] = entry.times ? Json(entry.times->deciles_s) : Json(nullptr);
   json["difficulties"] = Json::array();
   for (const auto& cell : entry.cells)

@@ -133,8 +133,11 @@ std::string means_section(const Study& study) {
          "participant\u2019s own trials. 95 % intervals of means: Student\u2019s t. Effects within "
          "participants: Student\u2019s t of the participants\u2019 differences, in standard deviations of "
          "these differences (d<sub>z</sub>). Effects between groups: Welch\u2019s t of the difference of "
-         "the means, in pooled standard deviations (d<sub>s</sub>). The intervals are not corrected for the "
-         "number of comparisons.</p>\n";
+         "the means, in pooled standard deviations (d<sub>s</sub>). The balanced integration score (BIS) is "
+         "the z "
+         "score of accuracy minus that of the mean time of right answers; both standardise over all "
+         "participants who count and all their conditions. The intervals are not corrected for the number of "
+         "comparisons.</p>\n";
 }
 
 /// The procedures' own estimates, session by session.

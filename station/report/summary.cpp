@@ -96,7 +96,6 @@ void hide(const SessionData& data, analysis::Trade& trade) {
     }
     if (!shows(data, "lisas")) entry.lisas_s.reset();
     if (!shows(data, "ies")) entry.inverse_efficiency_s.reset();
-    if (!shows(data, "bis")) entry.balanced.reset();
     if (!shows(data, "caf")) {
       entry.caf.clear();
       std::erase_if(entry.statements, [](const auto& said) { return said.code.starts_with("caf-"); });
@@ -107,7 +106,7 @@ void hide(const SessionData& data, analysis::Trade& trade) {
     return ((name == "boundary" || name == "time outside the decision" || name == "drift") &&
             !shows(data, "ez")) ||
            (name == "LISAS" && !shows(data, "lisas")) ||
-           (name == "inverse efficiency" && !shows(data, "ies")) || (name == "BIS" && !shows(data, "bis"));
+           (name == "inverse efficiency" && !shows(data, "ies"));
   });
 }
 
