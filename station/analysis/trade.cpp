@@ -223,14 +223,6 @@ void set_estimates(InstructionResult& result, const Measures& values,
   result.inverse_efficiency_s = of(efficiency);
 }
 
-/// Returns the interval of `b - a` from the intervals of two independent estimates (MOVER; Donner & Zou
-/// 2002).
-Interval difference_interval(const Estimate& a, const Estimate& b) {
-  const double gap = b.value - a.value;
-  return {gap - std::hypot(b.value - b.interval.low, a.interval.high - a.value),
-          gap + std::hypot(b.interval.high - b.value, a.value - a.interval.low), a.interval.confidence};
-}
-
 struct MeasureName {
   const char *name, *unit;
 };
@@ -310,7 +302,7 @@ void add_differences(const Sessions& sessions, const std::vector<Group>& groups,
       for (int which = 0; which < measures; ++which) {
         auto difference = sessions.difference(a, b, which, options);
         if (which == accuracy && difference && first.proportion_correct && second.proportion_correct)
-          difference->interval = difference_interval(*first.proportion_correct, *second.proportion_correct);
+          difference = difference_of(*first.proportion_correct, *second.proportion_correct);
         trade.differences.push_back(
             {first.instruction, second.instruction, kNames[which].name, kNames[which].unit, difference});
         if (which == median)

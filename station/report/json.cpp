@@ -310,6 +310,13 @@ std::string to_json(const Summary& summary) {
                                        {"intercept_s", value(curve.intercept_s)},
                                        {"lags", lags}});
   }
+  json["response_signal_differences"] = Json::array();
+  for (const auto& pair : analysis::curve_differences(summary.curves))
+    json["response_signal_differences"].push_back({{"first", pair.first},
+                                                   {"second", pair.second},
+                                                   {"asymptote", value(pair.asymptote)},
+                                                   {"rate_ratio", value(pair.rate_ratio)},
+                                                   {"intercept_s", value(pair.intercept_s)}});
   json["discrimination"] = Json::array();
   for (const auto& entry : summary.discriminations)
     json["discrimination"].push_back(discrimination_json(entry));
