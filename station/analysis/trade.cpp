@@ -16,6 +16,8 @@ namespace turnpoint::analysis {
 
 namespace {
 
+constexpr double kMisfit = 0.05;  // a smaller share of as bad sessions is said to be a misfit
+
 struct Scored {
   double time_s;
   bool correct;
@@ -188,6 +190,8 @@ void fill_cells(Group& group, InstructionResult& result, int stream, const Trade
     for (const auto& draw : group.diffusion->draws) drifts.push_back(mean(draw.drift));
     const double middle = quantile(drifts, 0.5);
     result.drift = Estimate{middle, percentile_interval(std::move(drifts), options.confidence)};
+    result.difficulties = group.difficulty;
+    result.check = check_diffusion(group.decisions, *group.diffusion, options.seed, stream);
   }
   for (std::size_t i = 0; i < group.cells.size(); ++i) {
     if (group.cells[i].empty()) continue;
@@ -322,6 +326,12 @@ Trade trade(const std::vector<TrialRecord>& trials, const TradeOptions& options)
     groups.push_back(collect(trials, options, entry));
     fill_cells(groups.back(), entry, static_cast<int>(groups.size()), options);
   }
+  std::vector<const DiffusionCheck*> checks;
+  for (const auto& entry : result.instructions)
+    if (entry.check) checks.push_back(&*entry.check);
+  result.model_p = share_as_bad(checks);
+  if (result.model_p && *result.model_p < kMisfit)
+    result.statements.push_back({"diffusion-misfit", texts::phrase("statement.diffusion_misfit")});
   Sessions sessions{measure(groups), {}};
   for (int i = 0; i < options.replicates; ++i)
     sessions.replicates.push_back(

@@ -35,7 +35,9 @@ struct InstructionResult {
   /// of the diffusion model (fit_diffusion()), from all answers and those that came too late; no time is
   /// excluded
   std::optional<Estimate> boundary, nondecision_s, contaminants;
-  std::optional<Estimate> drift;  ///< mean of the drifts over the condition's difficulties
+  std::optional<Estimate> drift;        ///< mean of the drifts over the condition's difficulties
+  std::optional<DiffusionCheck> check;  ///< what the fit predicts, for each of `difficulties`
+  std::vector<double> difficulties;     ///< ascending
   std::vector<Statement> statements;
 };
 
@@ -54,6 +56,9 @@ struct Trade {
   std::vector<InstructionResult> instructions;
   /// one for each pair of conditions; the earlier condition is `first`
   std::vector<Difference> differences;
+  /// share of simulated sessions that the fitted diffusions describe as badly as this one (share_as_bad());
+  /// below 0.05, a statement says that the model does not fit
+  std::optional<double> model_p;
   std::vector<Statement> statements;
 };
 

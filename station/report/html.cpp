@@ -267,6 +267,41 @@ std::string trade_sentences(const Summary& summary) {
   return html;
 }
 
+/// Whether the diffusion model describes the answers: a sentence, the observed and the predicted quantiles,
+/// and a table of what it predicts.
+std::string model_section(const Summary& summary) {
+  const auto& trade = summary.trade;
+  if (!trade.model_p) return "";
+  std::string html = "<h3>Does the diffusion model describe these answers?</h3>\n<p>";
+  html += *trade.model_p < 0.05
+              ? "No: only " + number(100 * *trade.model_p, 2) +
+                    " % of sessions that follow the fitted model are as far from it as this one. Boundary, "
+                    "drift and time outside the decision may mislead here."
+              : "Yes, as far as these answers can tell: " + number(100 * *trade.model_p, 2) +
+                    " % of sessions that follow the fitted model are as far from it as this one, or farther.";
+  html += "</p>\n" + picture(quantile_probability_figure(summary)) +
+          "<table><tr><th>Condition</th><th>Difficulty</th><th>Right, observed (proportion of answers)</th>"
+          "<th>Right, predicted</th><th>Mean time of right answers, observed (s)</th><th>predicted (s)</th>"
+          "<th>Mean time of wrong answers, observed (s)</th><th>predicted (s)</th></tr>";
+  const auto time = [](const std::optional<double>& mean_s) {
+    return "<td class=\"n\">" + (mean_s ? number(*mean_s) : std::string("none")) + "</td>";
+  };
+  for (const auto& entry : trade.instructions) {
+    if (!entry.check) continue;
+    for (std::size_t i = 0; i < entry.check->difficulties.size(); ++i) {
+      const auto& [right, wrong] = entry.check->difficulties[i];
+      const double answered = right.observed + wrong.observed, whole = right.probability + wrong.probability;
+      html += "<tr><td>" + escaped(name_of(entry.instruction)) + "</td><td class=\"n\">" +
+              (i < entry.difficulties.size() ? number(entry.difficulties[i], 4) : std::to_string(i + 1)) +
+              "</td>" + time(answered > 0 ? std::optional(right.observed / answered) : std::nullopt) +
+              time(whole > 0 ? std::optional(right.probability / whole) : std::nullopt) +
+              time(right.observed_mean_s) + time(right.mean_s) + time(wrong.observed_mean_s) +
+              time(wrong.mean_s) + "</tr>";
+    }
+  }
+  return html + "</table>\n";
+}
+
 std::string trade_section(const Summary& summary) {
   if (summary.trade.instructions.empty() || !summary.data.scored) return "";
   const bool several = summary.trade.instructions.size() > 1;
@@ -283,6 +318,7 @@ std::string trade_section(const Summary& summary) {
         "leaves out elsewhere are part of this fit: trimming would change the distribution that is fitted. "
         "The numbers "
         "are medians of the posterior distribution, with 95 % intervals.</p>\n";
+  html += model_section(summary);
   if (several && shows(summary.data, "bis"))
     html +=
         "<p class=\"soft\">The balanced integration score (BIS) standardises accuracy and time over all "

@@ -62,6 +62,17 @@ Json fit_json(const NamedFit& named, const SessionData& data) {
   return json;
 }
 
+Json prediction_json(const analysis::PredictedAnswers& answers) {
+  Json observed = Json::array();
+  for (const auto& quantile : answers.observed_quantiles) observed.push_back(value(std::optional(quantile)));
+  return {{"observed", answers.observed},
+          {"predicted_proportion", value(answers.probability)},
+          {"observed_mean_s", value(answers.observed_mean_s)},
+          {"predicted_mean_s", value(answers.mean_s)},
+          {"observed_quantiles_s", observed},
+          {"predicted_quantiles_s", answers.quantile_s}};
+}
+
 Json instruction_json(const analysis::InstructionResult& entry) {
   Json json{{"instruction", entry.instruction},     {"presented", entry.presented},
             {"answered", entry.answered},           {"timeouts", entry.timeouts},
@@ -83,6 +94,11 @@ Json instruction_json(const analysis::InstructionResult& entry) {
                                     {"interval", value(cell.accuracy)},
                                     {"mean_correct_s", value(cell.mean_correct_s)},
                                     {"drift", value(cell.drift)}});
+  json["predicted"] = Json::array();
+  if (entry.check)
+    for (const auto& difficulty : entry.check->difficulties)
+      json["predicted"].push_back(
+          {{"right", prediction_json(difficulty.right)}, {"wrong", prediction_json(difficulty.wrong)}});
   json["caf"] = Json::array();
   for (const auto& bin : entry.caf)
     json["caf"].push_back(
@@ -274,6 +290,7 @@ std::string to_json(const Summary& summary) {
   json["instructions"] = Json::array();
   for (const auto& entry : summary.trade.instructions)
     json["instructions"].push_back(instruction_json(entry));
+  json["model_p"] = value(summary.trade.model_p);
   json["differences"] = Json::array();
   for (const auto& difference : summary.trade.differences)
     json["differences"].push_back({{"first", difference.first},

@@ -91,6 +91,7 @@ void hide(const SessionData& data, analysis::Trade& trade) {
   for (auto& entry : trade.instructions) {
     if (!shows(data, "ez")) {
       entry.boundary.reset(), entry.nondecision_s.reset(), entry.contaminants.reset(), entry.drift.reset();
+      entry.check.reset();
       for (auto& cell : entry.cells) cell.drift.reset();
       std::erase_if(entry.statements, [](const auto& said) { return said.code.starts_with("diffusion-"); });
     }
@@ -100,6 +101,10 @@ void hide(const SessionData& data, analysis::Trade& trade) {
       entry.caf.clear();
       std::erase_if(entry.statements, [](const auto& said) { return said.code.starts_with("caf-"); });
     }
+  }
+  if (!shows(data, "ez")) {
+    trade.model_p.reset();
+    std::erase_if(trade.statements, [](const auto& said) { return said.code.starts_with("diffusion-"); });
   }
   std::erase_if(trade.differences, [&data](const auto& difference) {
     const auto& name = difference.measure;

@@ -259,3 +259,127 @@ TEST_CASE(
     if (kind == 3) CHECK_FALSE(fit.estimates);
   }
 }
+
+namespace {
+
+/// Processes that make answers, for a check that must find those that are not a diffusion.
+enum class Process { diffusion, deadline, contaminants, collapsing, race, guesses };
+constexpr const char* kProcesses[] = {"diffusion",
+                                      "diffusion, deadlines of 0.6 and 1 s",
+                                      "diffusion, 2 % lapses and 3 % slow answers",
+                                      "boundaries that collapse",
+                                      "a race of two accumulators",
+                                      "20 % guesses"};
+
+/// A decision between boundaries that come to a fifth of their distance with time: steps of 1 ms.
+turnpoint::tests::Decision collapsing_decision(double drift, double boundary, rnd::Draws& draws) {
+  double x = 0, time_s = 0;
+  constexpr double step_s = 1e-3;
+  while (true) {
+    x += drift * step_s + kDiffusionScale * std::sqrt(step_s) * draws.normal();
+    time_s += step_s;
+    const double half = 0.75 * boundary * (1 - 0.8 * time_s / (time_s + 0.35));
+    if (std::fabs(x) >= half) return {x > 0, time_s + kTer};
+  }
+}
+
+/// A race of two accumulators with ballistic growth (Brown & Heathcote 2008).
+turnpoint::tests::Decision race_decision(double advantage, double threshold, rnd::Draws& draws) {
+  double times_s[2];
+  for (int which = 0; which < 2; ++which) {
+    double rate = 0;
+    while (rate <= 0.05) rate = 1.0 + (which == 1 ? advantage : -advantage) + 0.35 * draws.normal();
+    times_s[which] = (threshold - draws.uniform(0, 0.3)) / rate;
+  }
+  return {times_s[1] < times_s[0], std::min(times_s[0], times_s[1]) + 0.2};
+}
+
+std::vector<DiffusionTrial> answers_of(Process process, bool fast, int per_difficulty, rnd::Draws& draws) {
+  const double boundary = fast ? kSpeed : kAccuracy;
+  const double deadline_s = process == Process::deadline ? (fast ? 0.6 : 1.0) : 0;
+  const Cell cell{"",
+                  {},
+                  {},
+                  0,
+                  0,
+                  process == Process::contaminants ? 0.02 : 0.0,
+                  process == Process::contaminants ? 0.03 : 0.0};
+  auto trials =
+      simulated(boundary, deadline_s, cell, {per_difficulty, per_difficulty, per_difficulty}, draws);
+  for (auto& trial : trials) {
+    turnpoint::tests::Decision decision{trial.correct, trial.time_s};
+    if (process == Process::collapsing)
+      decision = collapsing_decision(kDrifts[trial.difficulty], boundary, draws);
+    if (process == Process::race)
+      decision = race_decision(0.8 * kDrifts[trial.difficulty], fast ? 0.35 : 0.6, draws);
+    if (process == Process::guesses && draws.uniform() < 0.2)
+      decision = {draws.uniform() < 0.5, draws.uniform(0.2, 0.8)};
+    trial.correct = decision.correct, trial.time_s = decision.time_s;
+  }
+  return trials;
+}
+
+/// The share of sessions of two conditions with three difficulties that the check flags.
+double flagged(Process process, int per_difficulty, int sets, int first) {
+  int bad = 0;
+  for (int set = first; set < first + sets; ++set) {
+    rnd::Draws draws({92, rnd::Stream::observer, static_cast<int>(process), per_difficulty, set});
+    std::vector<DiffusionCheck> checks;
+    for (const bool fast : {true, false}) {
+      const auto trials = answers_of(process, fast, per_difficulty, draws);
+      if (const auto fit = fit_diffusion(trials, 3, static_cast<std::uint64_t>(set), fast ? 1 : 2).estimates)
+        checks.push_back(check_diffusion(trials, *fit, static_cast<std::uint64_t>(set), fast ? 1 : 2));
+    }
+    std::vector<const DiffusionCheck*> both;
+    for (const auto& check : checks) both.push_back(&check);
+    const auto p = share_as_bad(both);
+    bad += p && *p < 0.05;
+  }
+  return static_cast<double>(bad) / sets;
+}
+
+}  // namespace
+
+// TURNPOINT_CHECK_SETS=400 prints the shares for every process and number of trials;
+// TURNPOINT_CHECK_PROCESS=3 takes one process.
+TEST_CASE("The check of the diffusion model seldom flags a diffusion, and flags other processes",
+          "[analysis][diffusion]") {
+  const int sets = number_from("TURNPOINT_CHECK_SETS", 0), only = number_from("TURNPOINT_CHECK_PROCESS", -1);
+  if (sets == 0) {
+    CHECK(flagged(Process::deadline, 56, 12, 0) <= 0.3);  // 4 or more of 12 at 5 %: 1 in 450 runs
+    CHECK(flagged(Process::collapsing, 400, 3, 0) >= 0.6);
+    return;
+  }
+  for (std::size_t process = 0; process < std::size(kProcesses); ++process) {
+    if (only >= 0 && process != static_cast<std::size_t>(only)) continue;
+    for (const int per_difficulty : {56, 200}) {
+      const double share = flagged(static_cast<Process>(process), per_difficulty, sets, 0);
+      std::cout << kProcesses[process] << ", " << per_difficulty << " a difficulty: flagged " << 100 * share
+                << " %" << std::endl;
+      if (process < 3) CHECK(share <= 0.06 + 3 * std::sqrt(0.06 * 0.94 / sets));
+    }
+  }
+}
+
+TEST_CASE("What the check predicts is what the model's own samples show", "[analysis][diffusion]") {
+  rnd::Draws draws({8, rnd::Stream::observer, 0, 0, 0});
+  const auto trials = simulated(kAccuracy, 0.9, kCells[0], {4000, 4000, 4000}, draws);
+  DiffusionEstimates truth;
+  truth.boundary.value = kAccuracy, truth.nondecision_s.value = kTer;
+  for (const double drift : kDrifts) truth.drift.push_back({drift, {}});
+  const auto check = check_diffusion(trials, truth, 1, 1);
+  REQUIRE(check.difficulties.size() == 3);
+  for (const auto& [right, wrong] : check.difficulties)
+    for (const auto* answers : {&right, &wrong}) {
+      CHECK(answers->observed / 4000.0 == Approx(answers->probability).margin(0.03));
+      if (answers->observed < 300) continue;  // quantiles of few answers are uncertain
+      CHECK(*answers->observed_mean_s == Approx(answers->mean_s).margin(0.02));
+      for (std::size_t q = 0; q < kPredictedQuantiles.size(); ++q)
+        CHECK(answers->observed_quantiles[q].value == Approx(answers->quantile_s[q]).margin(0.03));
+    }
+  CHECK(*share_as_bad({&check}) > 0.001);
+  truth.boundary.value = 1.3 * kAccuracy;  // a prediction of something else
+  const auto other = check_diffusion(trials, truth, 1, 1);
+  CHECK(std::fabs(other.difficulties[0].right.observed / 4000.0 - other.difficulties[0].right.probability) >
+        0.03);
+}
