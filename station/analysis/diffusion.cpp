@@ -36,8 +36,8 @@ double log_add(double a, double b) {
   return std::isinf(b) ? a : a + std::log1p(std::exp(b - a));
 }
 
-/// The proportion of contaminants that answer right (or wrong), if decisions do so with this probability: half
-/// of them guess, half decide but answer at another time.
+/// The proportion of contaminants that answer right (or wrong), if decisions do so with this probability:
+/// half of them guess, half decide but answer at another time.
 double contaminant_share(double decisions) { return 0.25 + 0.5 * decisions; }
 
 /// The negative logarithm of the posterior density of the parameters.
@@ -81,8 +81,9 @@ class Posterior {
     for (const auto& answer : answers_) {
       const Diffusion d{theta[static_cast<Eigen::Index>(kFirstDrift + answer.difficulty)], a, 0.5};
       const double p = right[answer.difficulty];
-      sum += log_add(log_rest + log_density(d, answer.correct, answer.time_s - ter),
-                     log_share + answer.log_contaminant + std::log(contaminant_share(answer.correct ? p : 1 - p)));
+      sum += log_add(
+          log_rest + log_density(d, answer.correct, answer.time_s - ter),
+          log_share + answer.log_contaminant + std::log(contaminant_share(answer.correct ? p : 1 - p)));
     }
     for (const auto& trial : censored_) {
       const Diffusion d{theta[static_cast<Eigen::Index>(kFirstDrift + trial.difficulty)], a, 0.5};
