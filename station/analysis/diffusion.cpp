@@ -36,6 +36,10 @@ double log_add(double a, double b) {
   return std::isinf(b) ? a : a + std::log1p(std::exp(b - a));
 }
 
+/// The proportion of contaminants that answer right (or wrong), if decisions do so with this probability:
+/// half of them guess, half decide but answer at another time.
+double contaminant_share(double decisions) { return 0.25 + 0.5 * decisions; }
+
 /// The negative logarithm of the posterior density of the parameters.
 class Posterior {
  public:
@@ -48,7 +52,7 @@ class Posterior {
     for (const auto& trial : trials) {
       const double window = trial.deadline_s ? 2 * std::max(*trial.deadline_s, trial.time_s) : longest;
       if (trial.outcome == DiffusionTrial::Outcome::answered)
-        answers_.push_back({trial.difficulty, trial.correct, trial.time_s, -std::log(2 * window)});
+        answers_.push_back({trial.difficulty, trial.correct, trial.time_s, -std::log(window)});
       else
         ++rest[{static_cast<double>(trial.difficulty),
                 trial.outcome == DiffusionTrial::Outcome::late ? 1.0 : 0.0, trial.time_s, window}];
@@ -71,10 +75,15 @@ class Posterior {
       const double v = theta[static_cast<Eigen::Index>(kFirstDrift + i)];
       sum -= v * v / (2 * kDriftPriorSd * kDriftPriorSd);
     }
+    std::vector<double> right;
+    for (std::size_t i = 0; i < difficulties_; ++i)
+      right.push_back(upper_probability({theta[static_cast<Eigen::Index>(kFirstDrift + i)], a, 0.5}));
     for (const auto& answer : answers_) {
       const Diffusion d{theta[static_cast<Eigen::Index>(kFirstDrift + answer.difficulty)], a, 0.5};
-      sum += log_add(log_rest + log_density(d, answer.correct, answer.time_s - ter),
-                     log_share + answer.log_contaminant);
+      const double p = right[answer.difficulty];
+      sum += log_add(
+          log_rest + log_density(d, answer.correct, answer.time_s - ter),
+          log_share + answer.log_contaminant + std::log(contaminant_share(answer.correct ? p : 1 - p)));
     }
     for (const auto& trial : censored_) {
       const Diffusion d{theta[static_cast<Eigen::Index>(kFirstDrift + trial.difficulty)], a, 0.5};
@@ -380,6 +389,285 @@ DiffusionFit fit_diffusion(const std::vector<DiffusionTrial>& trials, std::size_
   }
   result.estimates = std::move(found);
   return result;
+}
+
+namespace {
+
+/// Trials of one difficulty with the same deadline.
+struct Stratum {
+  std::size_t difficulty = 0;
+  std::optional<double> deadline_s;
+  double early_s = 0;            // answers before it were not accepted; 0 if all are
+  double window_s = 0;           // times of trials that are no decision are uniform up to here
+  std::vector<double> times[2];  // of wrong and of right answers
+  int late = 0, early = 0;
+
+  double presented() const { return static_cast<double>(times[0].size() + times[1].size()) + late + early; }
+};
+
+std::vector<Stratum> strata_of(const std::vector<DiffusionTrial>& trials) {
+  using Outcome = DiffusionTrial::Outcome;
+  double longest = 0;
+  for (const auto& trial : trials)
+    if (trial.outcome == Outcome::answered) longest = std::max(longest, trial.time_s);
+  std::map<std::pair<std::size_t, double>, Stratum> all;
+  for (const auto& trial : trials) {
+    auto& stratum = all[{trial.difficulty, trial.deadline_s.value_or(0)}];
+    stratum.difficulty = trial.difficulty;
+    stratum.deadline_s = trial.deadline_s;
+    stratum.window_s = trial.deadline_s ? 2 * *trial.deadline_s : longest;
+    if (trial.outcome == Outcome::answered)
+      stratum.times[trial.correct ? 1 : 0].push_back(trial.time_s);
+    else if (trial.outcome == Outcome::late)
+      ++stratum.late;
+    else
+      ++stratum.early, stratum.early_s = std::max(stratum.early_s, trial.time_s);
+  }
+  std::vector<Stratum> list;
+  for (auto& [key, stratum] : all) list.push_back(std::move(stratum));
+  return list;
+}
+
+/// The probability of an answer of this kind by `time_s` under the parameters of one draw.
+double answered_by(const DiffusionDraw& at, const Stratum& stratum, bool correct, double time_s) {
+  const Diffusion d{at.drift[stratum.difficulty] / kDiffusionScale, at.boundary / kDiffusionScale, 0.5};
+  const double ever = correct ? upper_probability(d) : 1 - upper_probability(d);
+  const double decided =
+      std::isinf(time_s) ? ever : std::exp(log_distribution(d, correct, time_s - at.nondecision_s));
+  return (1 - at.contaminants) * decided +
+         at.contaminants * contaminant_share(ever) * std::clamp(time_s / stratum.window_s, 0.0, 1.0);
+}
+
+/// One kind of answer with times above `low_s`, up to `high_s`.
+struct Bin {
+  double low_s = 0, high_s = 0;
+  bool correct = false;
+};
+
+/// The bins of a stratum. Each kind of answer has up to six bins that are equally probable under the fitted
+/// parameters and expect five trials or more.
+std::vector<Bin> bins_of(const DiffusionDraw& at, const Stratum& stratum) {
+  const double end = stratum.deadline_s.value_or(INFINITY);
+  std::vector<Bin> bins;
+  for (const bool correct : {true, false}) {
+    const auto by = [&](double time_s) { return answered_by(at, stratum, correct, time_s); };
+    const double first = by(stratum.early_s), whole = by(end) - first;
+    const int count = std::clamp(static_cast<int>(stratum.presented() * whole / 5), 1, 6);
+    double low = stratum.early_s;
+    for (int i = 1; i <= count; ++i) {
+      double high = end;
+      if (i < count) {
+        double below = low, above = std::max(2 * stratum.window_s, low + 1);
+        for (int step = 0; step < 50; ++step) {
+          const double middle = 0.5 * (below + above);
+          (by(middle) - first < whole * i / count ? below : above) = middle;
+        }
+        high = 0.5 * (below + above);
+      }
+      bins.push_back({low, high, correct});
+      low = high;
+    }
+  }
+  return bins;
+}
+
+/// The probabilities of the bins, then of answers that are too late and too early.
+std::vector<double> probabilities(const DiffusionDraw& at, const Stratum& stratum,
+                                  const std::vector<Bin>& bins) {
+  std::vector<double> all;
+  const auto both = [&](double time_s) {
+    return answered_by(at, stratum, true, time_s) + answered_by(at, stratum, false, time_s);
+  };
+  for (const auto& bin : bins)
+    all.push_back(answered_by(at, stratum, bin.correct, bin.high_s) -
+                  answered_by(at, stratum, bin.correct, bin.low_s));
+  all.push_back(stratum.deadline_s ? 1 - both(*stratum.deadline_s) : 0);
+  all.push_back(stratum.early_s > 0 ? both(stratum.early_s) : 0);
+  return all;
+}
+
+/// Joins the entries whose expected number is below this, because chi squared would be ruled by them.
+constexpr double kFewestExpected = 2;
+
+/// The counts of a stratum and what is expected, after rare entries were joined.
+struct Expected {
+  std::vector<std::size_t> place;  ///< of each entry of probabilities() in what follows
+  std::size_t size = 0;
+  std::vector<double> probability, count;
+
+  std::vector<double> joined(const std::vector<double>& entries) const {
+    std::vector<double> sums(size);
+    for (std::size_t i = 0; i < entries.size(); ++i) sums[place[i]] += entries[i];
+    return sums;
+  }
+};
+
+Expected expected_of(const Stratum& stratum, const std::vector<Bin>& bins, const DiffusionDraw& at) {
+  const auto all = probabilities(at, stratum, bins);
+  Expected result;
+  std::optional<std::size_t> rare;
+  for (const double p : all) {
+    if (stratum.presented() * p >= kFewestExpected) {
+      result.place.push_back(result.size++);
+      continue;
+    }
+    if (!rare) rare = result.size++;
+    result.place.push_back(*rare);
+  }
+  std::vector<double> counts(all.size());
+  for (std::size_t i = 0; i < bins.size(); ++i)
+    for (const double time_s : stratum.times[bins[i].correct ? 1 : 0])
+      counts[i] += (time_s > bins[i].low_s || i == 0 || bins[i - 1].correct != bins[i].correct) &&
+                   time_s <= bins[i].high_s;
+  counts[bins.size()] = stratum.late, counts[bins.size() + 1] = stratum.early;
+  result.probability = result.joined(all);
+  for (auto& p : result.probability) p = std::max(p, 1e-9);
+  result.count = result.joined(counts);
+  return result;
+}
+
+/// The parameters of a draw, moved by a small step along one of them.
+DiffusionDraw moved(DiffusionDraw at, std::size_t which, double step) {
+  if (which == 0) at.boundary *= 1 + step;
+  if (which == 1) at.nondecision_s *= 1 + step;
+  if (which == 2) at.contaminants = std::max(at.contaminants + step, 0.0);
+  if (which > 2) at.drift[which - 3] += kDiffusionScale * step;
+  return at;
+}
+
+/// What a kind of answer to one difficulty was, and what the model predicts. The deadline is that of most
+/// trials.
+PredictedAnswers predicted(const DiffusionDraw& at, const Stratum& stratum, bool correct) {
+  PredictedAnswers result;
+  auto times = stratum.times[correct ? 1 : 0];
+  std::sort(times.begin(), times.end());
+  result.observed = static_cast<int>(times.size());
+  if (!times.empty()) result.observed_mean_s = mean(times);
+  const auto n = static_cast<double>(times.size());
+  if (times.size() >= 5)
+    for (const double p : kPredictedQuantiles) {
+      // from one order statistic to another, by the normal approximation of the binomial distribution
+      const double reach = kZ95 * std::sqrt(n * p * (1 - p));
+      const auto at_rank = [&](double rank) {
+        return times[static_cast<std::size_t>(std::clamp(rank, 0.0, n - 1))];
+      };
+      result.observed_quantiles.push_back(
+          {sorted_quantile(times, p),
+           {at_rank(std::floor(n * p - reach)), at_rank(std::ceil(n * p + reach)), 0.95}});
+    }
+  const double end = stratum.deadline_s.value_or(INFINITY);
+  const auto by = [&](double time_s) { return answered_by(at, stratum, correct, time_s); };
+  const double first = by(stratum.early_s), whole = by(end) - first;
+  result.probability = whole;
+  const double last = std::min(end, at.nondecision_s + 4 * stratum.window_s);
+  constexpr int steps = 400;
+  double before = first, mean_s = 0;
+  std::size_t next = 0;
+  for (int i = 1; i <= steps; ++i) {
+    const double low = stratum.early_s + (last - stratum.early_s) * (i - 1) / steps,
+                 high = stratum.early_s + (last - stratum.early_s) * i / steps;
+    const double now = by(high);
+    mean_s += (now - before) * 0.5 * (low + high);
+    while (next < kPredictedQuantiles.size() && now - first >= kPredictedQuantiles[next] * whole) {
+      const double wanted = first + kPredictedQuantiles[next] * whole;
+      result.quantile_s[next++] =
+          low + (high - low) * (now > before ? (wanted - before) / (now - before) : 0.5);
+    }
+    before = now;
+  }
+  for (; next < kPredictedQuantiles.size(); ++next) result.quantile_s[next] = last;
+  result.mean_s = before > first ? mean_s / (before - first) : last;
+  return result;
+}
+
+}  // namespace
+
+DiffusionCheck check_diffusion(const std::vector<DiffusionTrial>& trials, const DiffusionEstimates& fitted,
+                               std::uint64_t seed, int stream) {
+  DiffusionDraw at{fitted.boundary.value, fitted.nondecision_s.value, fitted.contaminants.value, {}};
+  for (const auto& drift : fitted.drift) at.drift.push_back(drift.value);
+  const auto strata = strata_of(trials);
+  std::vector<std::vector<Bin>> bins;
+  std::vector<Expected> expected;
+  std::size_t rows = 0;
+  for (const auto& stratum : strata) {
+    bins.push_back(bins_of(at, stratum));
+    expected.push_back(expected_of(stratum, bins.back(), at));
+    rows += expected.back().size;
+  }
+  const std::size_t parameters = 3 + at.drift.size();
+  Matrix jacobian = Matrix::Zero(static_cast<Eigen::Index>(rows), static_cast<Eigen::Index>(parameters));
+  Eigen::Index row = 0;
+  for (std::size_t s = 0; s < strata.size(); ++s) {
+    const auto& cells = expected[s];
+    for (std::size_t k = 0; k < parameters; ++k) {
+      constexpr double step = 1e-4;
+      const auto up = cells.joined(probabilities(moved(at, k, step), strata[s], bins[s])),
+                 down = cells.joined(probabilities(moved(at, k, -step), strata[s], bins[s]));
+      for (std::size_t i = 0; i < cells.size; ++i)
+        jacobian(row + static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(k)) =
+            std::sqrt(strata[s].presented() / cells.probability[i]) * (up[i] - down[i]) / (2 * step);
+    }
+    row += static_cast<Eigen::Index>(cells.size);
+  }
+  for (Eigen::Index k = 0; k < jacobian.cols(); ++k)
+    if (const double length = jacobian.col(k).norm(); length > 0) jacobian.col(k) /= length;
+  const auto columns = jacobian.cols();
+  const Eigen::LLT<Matrix> squares(jacobian.transpose() * jacobian +
+                                   1e-9 * Matrix::Identity(columns, columns));
+  const auto statistic = [&](const Vector& residuals) {
+    return residuals.squaredNorm() -
+           residuals.dot(jacobian * squares.solve(jacobian.transpose() * residuals));
+  };
+  const auto residuals_of = [&](const auto& counts_of) {
+    Vector residuals(static_cast<Eigen::Index>(rows));
+    Eigen::Index next = 0;
+    for (std::size_t s = 0; s < strata.size(); ++s) {
+      const auto counts = counts_of(s);
+      for (std::size_t i = 0; i < expected[s].size; ++i) {
+        const double mean = strata[s].presented() * expected[s].probability[i];
+        residuals[next++] = (counts[i] - mean) / std::sqrt(mean);
+      }
+    }
+    return residuals;
+  };
+  DiffusionCheck check;
+  check.statistic = statistic(residuals_of([&](std::size_t s) { return expected[s].count; }));
+  random::Draws draws({seed, random::Stream::bootstrap, 3000, stream, 0});
+  for (int i = 0; i < kCheckReplicates; ++i)
+    check.replicates.push_back(statistic(residuals_of([&](std::size_t s) {
+      const auto& p = expected[s].probability;
+      std::vector<double> counts(p.size());
+      const auto presented = static_cast<int>(strata[s].presented());
+      for (int trial = 0; trial < presented; ++trial) {
+        double left = draws.uniform();
+        std::size_t which = 0;
+        while (which + 1 < p.size() && left >= p[which]) left -= p[which++];
+        ++counts[which];
+      }
+      return counts;
+    })));
+  check.difficulties.resize(fitted.drift.size());
+  for (const auto& stratum : strata) {
+    auto& most = check.difficulties[stratum.difficulty];
+    const int answered = static_cast<int>(stratum.times[0].size() + stratum.times[1].size());
+    if (answered <= most.right.observed + most.wrong.observed) continue;
+    most = {predicted(at, stratum, true), predicted(at, stratum, false)};
+  }
+  return check;
+}
+
+std::optional<double> share_as_bad(const std::vector<const DiffusionCheck*>& checks) {
+  if (checks.empty()) return std::nullopt;
+  double found = 0;
+  std::vector<double> replicates(kCheckReplicates);
+  for (const auto* check : checks) {
+    found += check->statistic;
+    for (std::size_t i = 0; i < replicates.size(); ++i) replicates[i] += check->replicates[i];
+  }
+  const auto worse =
+      std::count_if(replicates.begin(), replicates.end(), [found](double one) { return one >= found; });
+  return (1.0 + static_cast<double>(worse)) / (1.0 + static_cast<double>(replicates.size()));
 }
 
 }  // namespace turnpoint::analysis

@@ -61,8 +61,9 @@ struct DiffusionFit {
 /// difficulties; each difficulty has a drift of its own. Times are never trimmed: the mixture takes the place
 /// of an exclusion rule, which would change the shape of the distribution that is fitted.
 ///
-/// Contaminants answer at random, with a time that is uniform from 0 to twice the deadline; without a
-/// deadline, up to the longest time of the condition. Priors: uniform in the logarithm of the boundary and in
+/// Half of the contaminants answer at random, half as the decision would have been (someone who pauses, or
+/// looks away). Their times are uniform from 0 to twice the deadline; without a deadline, up to the longest
+/// time of the condition. Priors: uniform in the logarithm of the boundary and in
 /// the non-decision time above 0; normal with SD 1 per s (s = 0.1) for drifts; Beta(1, 19), mean 5 %, for the
 /// proportion of contaminants.
 ///
@@ -70,5 +71,43 @@ struct DiffusionFit {
 /// around its mode. `seed` makes the result reproducible.
 DiffusionFit fit_diffusion(const std::vector<DiffusionTrial>& trials, std::size_t difficulties,
                            std::uint64_t seed, int stream, double confidence = 0.95);
+
+/// The quantiles of response times that a check compares.
+constexpr std::array<double, 5> kPredictedQuantiles{0.1, 0.3, 0.5, 0.7, 0.9};
+constexpr int kCheckReplicates = 1000;
+
+/// The right or the wrong answers to one difficulty, as observed and as the fitted model predicts them.
+struct PredictedAnswers {
+  int observed = 0;        ///< number of these answers
+  double probability = 0;  ///< predicted proportion of the presented trials
+  std::optional<double> observed_mean_s;
+  double mean_s = 0;  ///< predicted mean time
+  /// at kPredictedQuantiles, with 95 % intervals between order statistics; empty with fewer than 5 answers
+  std::vector<Estimate> observed_quantiles;
+  std::array<double, 5> quantile_s{};  ///< predicted, at kPredictedQuantiles
+};
+
+struct PredictedDifficulty {
+  PredictedAnswers right, wrong;  ///< with the deadline that most trials of the difficulty have
+};
+
+/// Whether a fitted diffusion describes the answers of a condition.
+struct DiffusionCheck {
+  std::vector<PredictedDifficulty> difficulties;  ///< in the order of DiffusionEstimates::drift
+  double statistic = 0;                           ///< how far the answers are from the prediction
+  std::vector<double> replicates;                 ///< the same for kCheckReplicates simulated sets of answers
+};
+
+/// Compares the answers with what the fit predicts: chi squared over bins of time (right, wrong, too late,
+/// too early; by difficulty), without its part along the directions in which the parameters can move the
+/// prediction. So it does not matter that the parameters were estimated from the same answers (Dzhaparidze &
+/// Nikulin 1974). The replicates are drawn from the predicted probabilities, because chi squared has its
+/// limiting distribution only with many trials.
+DiffusionCheck check_diffusion(const std::vector<DiffusionTrial>& trials, const DiffusionEstimates& fitted,
+                               std::uint64_t seed, int stream);
+
+/// The share of simulated sessions that are as far from the prediction as the observed one, or farther, over
+/// all conditions together; empty without checks.
+std::optional<double> share_as_bad(const std::vector<const DiffusionCheck*>& checks);
 
 }  // namespace turnpoint::analysis

@@ -1,4 +1,6 @@
 #pragma once
+#include <cmath>
+
 #include "station/analysis/trial_record.hpp"
 
 namespace turnpoint::analysis {
@@ -11,5 +13,13 @@ struct Estimate {
   double value = 0;
   Interval interval;
 };
+
+/// The interval of `b - a` from the intervals of two independent estimates (MOVER; Donner & Zou 2002).
+inline Estimate difference_of(const Estimate& a, const Estimate& b) {
+  const double gap = b.value - a.value;
+  return {gap,
+          {gap - std::hypot(b.value - b.interval.low, a.interval.high - a.value),
+           gap + std::hypot(b.interval.high - b.value, a.value - a.interval.low), a.interval.confidence}};
+}
 
 }  // namespace turnpoint::analysis

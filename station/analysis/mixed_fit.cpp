@@ -10,6 +10,7 @@
 
 #include "station/analysis/fit_bounds.hpp"
 #include "station/analysis/laplace.hpp"
+#include "station/random/draws.hpp"
 #include "station/text/number.hpp"
 
 namespace turnpoint::analysis {
@@ -141,28 +142,90 @@ Estimate slope_of(double rate, double error, double t, Function function) {
   return {slope_from_rate(function, rate), {low, high, 0.95}};
 }
 
+/// One likely value of the parameters, and its weight among several (their sum is 1).
+struct LikelyTheta {
+  MixedTheta theta;
+  double weight = 0;
+};
+
+/// Draws factors of the random effects' covariance from their likelihood, with the fixed effects at their
+/// estimates and a flat prior: importance sampling from a t distribution around the maximum. A hessian that
+/// says little, as at a variance of 0, is replaced by a scale from the size of the estimate.
+std::vector<LikelyTheta> likely_factors(Laplace& laplace, const MixedMinimum& found) {
+  constexpr int draws_wanted = 150, freedom = 4;
+  random::Draws draws({1, random::Stream::bootstrap, 4000, 0, 0});
+  const double size =
+      std::max({std::fabs(found.theta[2]), std::fabs(found.theta[3]), std::fabs(found.theta[4]), 0.1});
+  Eigen::Vector3d scale;
+  for (int i = 0; i < 3; ++i) {
+    const double curvature = found.hessian(i + 2, i + 2);
+    scale[i] = 1.2 * std::min(size, curvature > 0 ? 1 / std::sqrt(curvature) : size);
+  }
+  std::vector<LikelyTheta> all;
+  std::vector<double> log_weight;
+  for (int d = 0; d < draws_wanted; ++d) {
+    double chi2 = 0;
+    for (int k = 0; k < freedom; ++k) {
+      const double g = draws.normal();
+      chi2 += g * g;
+    }
+    Eigen::Vector3d z;
+    for (int i = 0; i < 3; ++i) z[i] = draws.normal();
+    MixedTheta theta = found.theta;
+    theta.tail<3>() += std::sqrt(freedom / chi2) * scale.cwiseProduct(z);
+    const double log_proposal = -0.5 * (freedom + 3) * std::log1p(z.squaredNorm() / chi2);
+    const double value = laplace.negative_log(theta);
+    all.push_back({theta, 0});
+    log_weight.push_back(std::isfinite(value) ? -value - log_proposal : -INFINITY);
+  }
+  const double most = *std::max_element(log_weight.begin(), log_weight.end());
+  double sum = 0;
+  for (std::size_t i = 0; i < all.size(); ++i) sum += all[i].weight = std::exp(log_weight[i] - most);
+  for (auto& one : all) one.weight /= sum;
+  return all;
+}
+
 void add_people(const Scaled& data, const MixedMinimum& found, const Eigen::Matrix2d& fixed_covariance,
                 MixedFit& fit) {
   Laplace laplace(fit.options.function, fit.lapse, data.people);
-  laplace.negative_log(found.theta);
-  const Eigen::Matrix2d factor = random_factor(found.theta), map = unscaling(data);
-  for (std::size_t i = 0; i < data.people.size(); ++i) {
-    const auto person = laplace.person(i, found.theta);
+  const Eigen::Matrix2d map = unscaling(data);
+  struct Prediction {
+    Eigen::Vector2d b;
+    Eigen::Matrix2d covariance, remains;
+  };
+  const auto predicted = [&](std::size_t i, const MixedTheta& theta) {
+    const Eigen::Matrix2d factor = random_factor(theta);
+    const auto person = laplace.person(i, theta);
     const Eigen::Matrix2d inner =
         factor.transpose() * person.information * factor + Eigen::Matrix2d::Identity();
     const Eigen::Matrix2d conditional = factor * inner.inverse() * factor.transpose();
     // the part of an error in the group's parameters that still affects this participant's estimate
     const Eigen::Matrix2d remains = Eigen::Matrix2d::Identity() - conditional * person.information;
-    const Eigen::Vector2d b = map * (found.theta.head<2>() + factor * person.mode);
-    const Eigen::Matrix2d covariance =
-        map * (conditional + remains * fixed_covariance * remains.transpose()) * map.transpose();
+    return Prediction{theta.head<2>() + factor * person.mode,
+                      conditional + remains * fixed_covariance * remains.transpose(), remains};
+  };
+  const auto likely = likely_factors(laplace, found);
+  laplace.negative_log(found.theta);
+  std::vector<Prediction> best;
+  for (std::size_t i = 0; i < data.people.size(); ++i) best.push_back(predicted(i, found.theta));
+  std::vector<Eigen::Matrix2d> covariances(best.size(), Eigen::Matrix2d::Zero());
+  for (const auto& [theta, weight] : likely) {
+    if (!(weight > 1e-6)) continue;
+    for (std::size_t i = 0; i < best.size(); ++i) {
+      const auto one = predicted(i, theta);
+      const Eigen::Vector2d apart = one.b - best[i].b;
+      covariances[i] += weight * (one.covariance + apart * apart.transpose());
+    }
+  }
+  for (std::size_t i = 0; i < data.people.size(); ++i) {
+    const Eigen::Vector2d b = map * best[i].b;
     PooledPerson pooled;
     pooled.person = data.names[i], pooled.trials = data.trials[i];
-    pooled.threshold = threshold_of(b, covariance, kNormal975, fit.options);
+    pooled.threshold = threshold_of(b, map * covariances[i] * map.transpose(), kNormal975, fit.options);
     if (pooled.threshold)
       pooled.parameters = {pooled.threshold->value, slope_from_rate(fit.options.function, b[1]),
                            data.people[i].guess, fit.lapse};
-    pooled.shrinkage = remains.trace() / 2;
+    pooled.shrinkage = best[i].remains.trace() / 2;
     fit.persons.push_back(std::move(pooled));
   }
 }

@@ -5,18 +5,20 @@
 #include <map>
 #include <numbers>
 
-#include "station/analysis/marginal.hpp"
 #include "station/analysis/proportion.hpp"
 
 namespace turnpoint::analysis {
 
 namespace {
 
-constexpr Cells kAsymptotes{0, 6, 90};
-constexpr int kRates = 60, kIntercepts = 60;
-constexpr double kLowest_rate = 0.3, kHighest_rate = 40;
-/// A parameter is not reported if its interval covers more than this share of its prior.
-constexpr double kWidest = 0.8;
+constexpr int kAsymptotes = 120, kRates = 60, kIntercepts = 72;
+constexpr double kHighestAsymptote = 8, kLowestRate = 0.3, kHighestRate = 40;
+// The priors keep the estimates of few trials from running away: with 56 trials at each of six lags, a flat
+// prior gave a median asymptote of 3.1 for 2.5, and maximum likelihood 2.7.
+constexpr double kAsymptoteSd = 1.8, kRateMiddle = 3, kRateSd = 1.5;
+/// An interval holds the values whose best curve is less than this below the best of all, in nats. Half of
+/// the 95 % quantile of chi squared is 1.92; with few trials that holds the truth a little too rarely.
+constexpr double kDrop = 2.1;
 
 double log_cdf(double z) { return std::log(std::max(normal_cdf(z), 1e-300)); }
 
@@ -50,17 +52,57 @@ class LagLikelihood {
   }
 
  private:
-  static constexpr int kSteps = 240;
+  static constexpr int kSteps = 320;
   static constexpr double kStep = 0.025;
   std::vector<double> values_;
 };
 
-std::optional<Estimate> estimate_of(const Marginal& marginal, bool logarithm) {
-  const auto of = [&](double p) { return marginal.quantile(p); };
-  const double low = of(0.025), high = of(0.975);
-  if (high - low > kWidest * (marginal.cells().high - marginal.cells().low)) return std::nullopt;
-  const auto back = [&](double value) { return logarithm ? std::exp(value) : value; };
-  return Estimate{back(of(0.5)), {back(low), back(high), 0.95}};
+/// Values of one parameter in equal steps, and for each of them the height of the best curve that has it.
+struct Profile {
+  double low = 0, high = 0;
+  std::vector<double> height;
+
+  Profile(double from, double to, int count)
+      : low(from), high(to), height(static_cast<std::size_t>(count), -INFINITY) {}
+  double at(double index) const {
+    return low + (high - low) * (index + 0.5) / static_cast<double>(height.size());
+  }
+  void raise(std::size_t index, double value) { height[index] = std::max(height[index], value); }
+};
+
+enum class LowEnd { open, zero };
+
+/// The highest point of a profile and its interval. A low end beyond the range is 0 if the parameter cannot
+/// be lower, and else not determined.
+std::optional<Estimate> estimate_of(const Profile& profile, LowEnd low_end) {
+  const auto& y = profile.height;
+  const auto best = static_cast<std::size_t>(std::max_element(y.begin(), y.end()) - y.begin());
+  double place = static_cast<double>(best), top = y[best];
+  if (best > 0 && best + 1 < y.size()) {  // the vertex of the parabola through three points
+    const double slope = 0.5 * (y[best + 1] - y[best - 1]), bend = y[best + 1] - 2 * y[best] + y[best - 1];
+    if (bend < 0) place -= slope / bend, top -= slope * slope / (2 * bend);
+  }
+  const double limit = top - kDrop;
+  const auto crossing = [&](std::size_t outside, std::size_t inside) {
+    const double part = (limit - y[outside]) / (y[inside] - y[outside]);
+    return profile.at(static_cast<double>(outside) +
+                      part * (static_cast<double>(inside) - static_cast<double>(outside)));
+  };
+  std::size_t first = 0, last = y.size() - 1;
+  while (y[first] < limit) ++first;
+  while (y[last] < limit) --last;
+  const double low = first > 0 ? crossing(first - 1, first) : low_end == LowEnd::zero ? 0 : -INFINITY;
+  const double high = last + 1 < y.size() ? crossing(last + 1, last) : INFINITY;
+  if (first == 0 && std::isinf(high)) return std::nullopt;
+  return Estimate{profile.at(place), {low, high, 0.95}};
+}
+
+std::optional<Estimate> exponential(std::optional<Estimate> logarithm) {
+  if (!logarithm) return logarithm;
+  const auto& interval = logarithm->interval;
+  return Estimate{std::exp(logarithm->value),
+                  {std::isinf(interval.low) ? -INFINITY : std::exp(interval.low), std::exp(interval.high),
+                   interval.confidence}};
 }
 
 void fit(SpeedAccuracyCurve& curve, double scale) {
@@ -70,31 +112,27 @@ void fit(SpeedAccuracyCurve& curve, double scale) {
     likelihoods.emplace_back(point.counts, scale);
     longest_s = std::max(longest_s, point.time_s);
   }
-  const Cells rates{std::log(kLowest_rate), std::log(kHighest_rate), kRates},
-      intercepts{0, longest_s, kIntercepts};
-  std::vector<double> cells;
-  cells.reserve(static_cast<std::size_t>(kAsymptotes.count * kRates * kIntercepts));
-  for (int a = 0; a < kAsymptotes.count; ++a)
-    for (int r = 0; r < kRates; ++r)
-      for (int i = 0; i < kIntercepts; ++i) {
-        double sum = 0;
-        for (std::size_t k = 0; k < likelihoods.size(); ++k)
-          sum += likelihoods[k].at(d_prime_at(kAsymptotes.centre(a), std::exp(rates.centre(r)),
-                                              intercepts.centre(i), curve.points[k].time_s));
-        cells.push_back(sum);
+  Profile asymptotes(0, kHighestAsymptote, kAsymptotes),
+      rates(std::log(kLowestRate), std::log(kHighestRate), kRates), intercepts(0, longest_s, kIntercepts);
+  std::vector<double> reached(likelihoods.size());
+  for (std::size_t r = 0; r < rates.height.size(); ++r) {
+    const double log_rate = rates.at(static_cast<double>(r)), rate = std::exp(log_rate);
+    const double of_rate = (log_rate - std::log(kRateMiddle)) / kRateSd;
+    for (std::size_t i = 0; i < intercepts.height.size(); ++i) {
+      for (std::size_t k = 0; k < reached.size(); ++k)
+        reached[k] = d_prime_at(1, rate, intercepts.at(static_cast<double>(i)), curve.points[k].time_s);
+      for (std::size_t a = 0; a < asymptotes.height.size(); ++a) {
+        const double asymptote = asymptotes.at(static_cast<double>(a)),
+                     of_asymptote = asymptote / kAsymptoteSd;
+        double sum = -0.5 * (of_rate * of_rate + of_asymptote * of_asymptote);
+        for (std::size_t k = 0; k < reached.size(); ++k) sum += likelihoods[k].at(asymptote * reached[k]);
+        asymptotes.raise(a, sum), rates.raise(r, sum), intercepts.raise(i, sum);
       }
-  const double most = *std::max_element(cells.begin(), cells.end());
-  std::vector<double> of_asymptote(static_cast<std::size_t>(kAsymptotes.count)), of_rate(kRates),
-      of_intercept(kIntercepts);
-  for (std::size_t cell = 0; cell < cells.size(); ++cell) {
-    const double mass = std::exp(cells[cell] - most);
-    of_asymptote[cell / (kRates * kIntercepts)] += mass;
-    of_rate[cell / kIntercepts % kRates] += mass;
-    of_intercept[cell % kIntercepts] += mass;
+    }
   }
-  curve.asymptote = estimate_of(Marginal(kAsymptotes, of_asymptote), false);
-  curve.rate_per_s = estimate_of(Marginal(rates, of_rate), true);
-  curve.intercept_s = estimate_of(Marginal(intercepts, of_intercept), false);
+  curve.asymptote = estimate_of(asymptotes, LowEnd::zero);
+  curve.rate_per_s = exponential(estimate_of(rates, LowEnd::open));
+  curve.intercept_s = estimate_of(intercepts, LowEnd::zero);
 }
 
 SpeedAccuracyCurve curve_of(const std::string& condition,
@@ -155,6 +193,27 @@ std::vector<SpeedAccuracyCurve> response_signal(const std::vector<TrialRecord>& 
     if (conditions.count(condition))
       curves.push_back(curve_of(condition, conditions[condition], detecting, positive));
   return curves;
+}
+
+std::vector<CurveDifference> curve_differences(const std::vector<SpeedAccuracyCurve>& curves) {
+  const auto of = [](const std::optional<Estimate>& a, const std::optional<Estimate>& b) {
+    return a && b ? std::optional(difference_of(*a, *b)) : std::nullopt;
+  };
+  const auto logarithm = [](std::optional<Estimate> rate) {
+    if (rate)
+      rate = Estimate{std::log(rate->value),
+                      {rate->interval.low > 0 ? std::log(rate->interval.low) : -INFINITY,
+                       std::log(rate->interval.high), rate->interval.confidence}};
+    return rate;
+  };
+  std::vector<CurveDifference> all;
+  for (std::size_t i = 0; i < curves.size(); ++i)
+    for (std::size_t j = i + 1; j < curves.size(); ++j) {
+      const auto &a = curves[i], &b = curves[j];
+      all.push_back({a.condition, b.condition, of(a.asymptote, b.asymptote), of(a.intercept_s, b.intercept_s),
+                     exponential(of(logarithm(a.rate_per_s), logarithm(b.rate_per_s)))});
+    }
+  return all;
 }
 
 }  // namespace turnpoint::analysis

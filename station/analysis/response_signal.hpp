@@ -22,11 +22,20 @@ struct LagPoint {
 struct SpeedAccuracyCurve {
   std::string condition;
   std::vector<LagPoint> points;  ///< ascending by lag
-  /// Medians and 95 % credible intervals. Flat priors: asymptote 0 to 6, logarithm of the rate from 0.3 to 40
-  /// per second, intercept from 0 to the longest time_s. Empty where the data hardly narrow the prior; a
-  /// statement says so.
+  /// The most probable values and their 95 % profile intervals. Priors: the asymptote is half-normal with SD
+  /// 1.8 (0 to 8), the logarithm of the rate normal around 3 per second with SD 1.5 (0.3 to 40 per second),
+  /// the intercept uniform from 0 to the longest time_s. An end of an interval that the data do not determine
+  /// is infinite. A parameter is empty if neither end is determined; a statement says so.
   std::optional<Estimate> asymptote, rate_per_s, intercept_s;
   std::vector<Statement> statements;
+};
+
+/// How the curve differs between two conditions. The intervals come from those of the two curves (MOVER;
+/// Donner & Zou 2002); an end is infinite if an end of these is. Empty if a curve lacks the parameter.
+struct CurveDifference {
+  std::string first, second;
+  std::optional<Estimate> asymptote, intercept_s;  ///< second minus first
+  std::optional<Estimate> rate_ratio;              ///< second divided by first
 };
 
 /// Returns the sensitivity d'(t) at a time on the curve with these three parameters.
@@ -38,5 +47,8 @@ double d_prime_at(double asymptote, double rate_per_s, double intercept_s, doubl
 std::vector<SpeedAccuracyCurve> response_signal(const std::vector<TrialRecord>& trials,
                                                 const std::vector<std::string>& order, Detecting detecting,
                                                 int positive);
+
+/// One entry for each pair of curves; the earlier one is `first`.
+std::vector<CurveDifference> curve_differences(const std::vector<SpeedAccuracyCurve>& curves);
 
 }  // namespace turnpoint::analysis

@@ -36,8 +36,9 @@ std::optional<std::vector<double>> balanced_integration(const std::vector<double
   if (proportion_correct.size() != mean_correct_s.size())
     throw std::invalid_argument("balanced integration: there must be as many times as proportions");
   if (proportion_correct.size() < 3) return std::nullopt;
-  const double sd_accuracy = std::sqrt(variance(proportion_correct));
-  const double sd_time = std::sqrt(variance(mean_correct_s));
+  const double n = static_cast<double>(proportion_correct.size()), divisor_n = (n - 1) / n;
+  const double sd_accuracy = std::sqrt(divisor_n * variance(proportion_correct));
+  const double sd_time = std::sqrt(divisor_n * variance(mean_correct_s));
   if (!(sd_accuracy > 1e-12) || !(sd_time > 1e-12)) return std::nullopt;
   const double accuracy = mean(proportion_correct), time = mean(mean_correct_s);
   std::vector<double> scores;

@@ -15,10 +15,11 @@ double lisas(double mean_correct_s, double proportion_error, double sd_time_s, d
 /// correct. Empty for a proportion of 0.
 std::optional<double> inverse_efficiency(double mean_correct_s, double proportion_correct);
 
-/// Balanced integration score of each cell (Liesefeld & Janczyk 2019): z(Pc) - z(RTc). z(Pc) is the z score
-/// of the cell's proportion correct, and z(RTc) that of its mean correct time, from the mean and standard
-/// deviation (divisor n - 1) over the given cells. Empty with fewer than three cells, or if all cells have
-/// equal accuracy or equal times.
+/// Balanced integration score of each cell (Liesefeld & Janczyk 2019, Behav. Res. Methods 51:40-60):
+/// z(Pc) - z(RTc). A cell is one participant in one condition. z(Pc) is the z score of the cell's proportion
+/// correct, and z(RTc) that of its mean correct time, from the mean and standard deviation (divisor n, as in
+/// the authors' own code) over the cells of all participants and conditions. Empty with fewer than three
+/// cells, or if all cells have equal accuracy or equal times.
 std::optional<std::vector<double>> balanced_integration(const std::vector<double>& proportion_correct,
                                                         const std::vector<double>& mean_correct_s);
 

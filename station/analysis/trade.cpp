@@ -16,6 +16,8 @@ namespace turnpoint::analysis {
 
 namespace {
 
+constexpr double kMisfit = 0.05;  // a smaller share of as bad sessions is said to be a misfit
+
 struct Scored {
   double time_s;
   bool correct;
@@ -31,7 +33,7 @@ struct Group {
   std::optional<DiffusionEstimates> diffusion;
 };
 
-enum Measure { accuracy, median, lisas_score, efficiency, balanced, measures };
+enum Measure { accuracy, median, lisas_score, efficiency, measures };
 using Measures = std::array<std::optional<double>, measures>;
 
 std::vector<double> correct_times(const Cell& cell) {
@@ -60,31 +62,6 @@ Cell pooled(const Group& group) {
   return all;
 }
 
-/// Computes the balanced integration score (BIS) of each condition: standardises the scores over the cells of
-/// all conditions, then averages over the condition's cells.
-void add_balanced(const std::vector<Group>& groups, std::vector<Measures>& result) {
-  if (groups.size() < 2) return;
-  std::vector<double> proportion, time;
-  for (const auto& group : groups)
-    for (const auto& cell : group.cells) {
-      if (cell.empty()) continue;
-      const auto times = correct_times(cell);
-      if (times.empty()) return;  // a cell without right answers has no score
-      proportion.push_back(static_cast<double>(times.size()) / static_cast<double>(cell.size()));
-      time.push_back(mean(times));
-    }
-  const auto scores = balanced_integration(proportion, time);
-  if (!scores) return;
-  std::size_t next = 0;
-  for (std::size_t g = 0; g < groups.size(); ++g) {
-    double sum = 0;
-    int cells = 0;
-    for (const auto& cell : groups[g].cells)
-      if (!cell.empty()) sum += (*scores)[next++], ++cells;
-    if (cells > 0) result[g][balanced] = sum / cells;
-  }
-}
-
 std::vector<Measures> measure(const std::vector<Group>& groups) {
   std::vector<Measures> result(groups.size());
   Cell session;
@@ -109,7 +86,6 @@ std::vector<Measures> measure(const std::vector<Group>& groups) {
     result[g][lisas_score] = lisas(mean(right), 1 - p, sd_time, sd_error);
     result[g][efficiency] = inverse_efficiency(mean(right), p);
   }
-  add_balanced(groups, result);
   return result;
 }
 
@@ -214,6 +190,8 @@ void fill_cells(Group& group, InstructionResult& result, int stream, const Trade
     for (const auto& draw : group.diffusion->draws) drifts.push_back(mean(draw.drift));
     const double middle = quantile(drifts, 0.5);
     result.drift = Estimate{middle, percentile_interval(std::move(drifts), options.confidence)};
+    result.difficulties = group.difficulty;
+    result.check = check_diffusion(group.decisions, *group.diffusion, options.seed, stream);
   }
   for (std::size_t i = 0; i < group.cells.size(); ++i) {
     if (group.cells[i].empty()) continue;
@@ -247,15 +225,6 @@ void set_estimates(InstructionResult& result, const Measures& values,
   result.median_s = of(median);
   result.lisas_s = of(lisas_score);
   result.inverse_efficiency_s = of(efficiency);
-  result.balanced = of(balanced);
-}
-
-/// Returns the interval of `b - a` from the intervals of two independent estimates (MOVER; Donner & Zou
-/// 2002).
-Interval difference_interval(const Estimate& a, const Estimate& b) {
-  const double gap = b.value - a.value;
-  return {gap - std::hypot(b.value - b.interval.low, a.interval.high - a.value),
-          gap + std::hypot(b.interval.high - b.value, a.value - a.interval.low), a.interval.confidence};
 }
 
 struct MeasureName {
@@ -264,8 +233,7 @@ struct MeasureName {
 constexpr MeasureName kNames[measures] = {{"proportion correct", "proportion"},
                                           {"median response time", "s"},
                                           {"LISAS", "s"},
-                                          {"inverse efficiency", "s"},
-                                          {"BIS", "SD"}};
+                                          {"inverse efficiency", "s"}};
 
 /// The difference of one parameter of two diffusion fits, second minus first: the median and a central
 /// interval of the differences between their draws.
@@ -338,7 +306,7 @@ void add_differences(const Sessions& sessions, const std::vector<Group>& groups,
       for (int which = 0; which < measures; ++which) {
         auto difference = sessions.difference(a, b, which, options);
         if (which == accuracy && difference && first.proportion_correct && second.proportion_correct)
-          difference->interval = difference_interval(*first.proportion_correct, *second.proportion_correct);
+          difference = difference_of(*first.proportion_correct, *second.proportion_correct);
         trade.differences.push_back(
             {first.instruction, second.instruction, kNames[which].name, kNames[which].unit, difference});
         if (which == median)
@@ -358,6 +326,12 @@ Trade trade(const std::vector<TrialRecord>& trials, const TradeOptions& options)
     groups.push_back(collect(trials, options, entry));
     fill_cells(groups.back(), entry, static_cast<int>(groups.size()), options);
   }
+  std::vector<const DiffusionCheck*> checks;
+  for (const auto& entry : result.instructions)
+    if (entry.check) checks.push_back(&*entry.check);
+  result.model_p = share_as_bad(checks);
+  if (result.model_p && *result.model_p < kMisfit)
+    result.statements.push_back({"diffusion-misfit", texts::phrase("statement.diffusion_misfit")});
   Sessions sessions{measure(groups), {}};
   for (int i = 0; i < options.replicates; ++i)
     sessions.replicates.push_back(

@@ -31,11 +31,13 @@ struct InstructionResult {
   std::vector<double> times_s;  ///< times of the included trials, in order of presentation
   std::vector<CafBin> caf;
   std::vector<DifficultyCell> cells;  ///< one cell per difficulty, ascending by DifficultyCell::difficulty
-  std::optional<Estimate> median_s, lisas_s, inverse_efficiency_s, balanced;
+  std::optional<Estimate> median_s, lisas_s, inverse_efficiency_s;
   /// of the diffusion model (fit_diffusion()), from all answers and those that came too late; no time is
   /// excluded
   std::optional<Estimate> boundary, nondecision_s, contaminants;
-  std::optional<Estimate> drift;  ///< mean of the drifts over the condition's difficulties
+  std::optional<Estimate> drift;        ///< mean of the drifts over the condition's difficulties
+  std::optional<DiffusionCheck> check;  ///< what the fit predicts, for each of `difficulties`
+  std::vector<double> difficulties;     ///< ascending
   std::vector<Statement> statements;
 };
 
@@ -43,8 +45,8 @@ struct InstructionResult {
 struct Difference {
   std::string first, second;
   std::string measure;  ///< "proportion correct", "median response time", ...
-  /// the unit of the measure: "s", "proportion", "s = 0.1" for the diffusion's boundary and drift (its
-  /// scaling parameter), or "SD" for BIS (the standard deviation over cells)
+  /// the unit of the measure: "s", "proportion", or "s = 0.1" for the diffusion's boundary and drift (its
+  /// scaling parameter)
   std::string unit;
   std::optional<Estimate> estimate;
 };
@@ -54,6 +56,9 @@ struct Trade {
   std::vector<InstructionResult> instructions;
   /// one for each pair of conditions; the earlier condition is `first`
   std::vector<Difference> differences;
+  /// share of simulated sessions that the fitted diffusions describe as badly as this one (share_as_bad());
+  /// below 0.05, a statement says that the model does not fit
+  std::optional<double> model_p;
   std::vector<Statement> statements;
 };
 
@@ -74,8 +79,8 @@ struct TradeOptions {
 /// Other intervals are percentiles of a bootstrap that resamples answers within condition and difficulty, and
 /// excludes times from each replicate as from the session. If more than 5 % of the replicates have no number,
 /// both the number and its interval are empty. LISAS uses the standard deviations over all trials of the
-/// session, BIS those over the session's cells. A single condition has no BIS, because the scores of its
-/// cells always average 0.
+/// session. The balanced integration score is not among the measures: it standardises over participants and
+/// conditions, so only a study has it (report/study.hpp).
 Trade trade(const std::vector<TrialRecord>& trials, const TradeOptions& options);
 
 }  // namespace turnpoint::analysis

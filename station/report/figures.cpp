@@ -356,6 +356,51 @@ std::optional<plot::Figure> response_time_figure(const Summary& summary) {
   return figure;
 }
 
+std::optional<plot::Figure> quantile_probability_figure(const Summary& summary) {
+  plot::Figure figure;
+  figure.title = "Quantiles of response times, observed and predicted";
+  figure.chart_width_px = 420;
+  figure.columns = 2;
+  figure.caption =
+      "Quantiles 0.1 to 0.9 of the response times over the probability of the answer: right answers on the "
+      "right, wrong ones on the left. Markers: observed, with 95 % intervals. Lines: the fitted diffusion "
+      "model.";
+  std::vector<double> times{0};
+  for (const auto& entry : summary.trade.instructions) {
+    if (!entry.check) continue;
+    plot::Chart chart{or_default(entry.instruction, "all trials"), {}, {}, {}};
+    for (std::size_t q = 0; q < analysis::kPredictedQuantiles.size(); ++q) {
+      plot::Points points;
+      std::vector<std::pair<double, double>> predicted;
+      for (const auto& difficulty : entry.check->difficulties)
+        for (const auto* answers : {&difficulty.right, &difficulty.wrong}) {
+          predicted.emplace_back(answers->probability, answers->quantile_s[q]);
+          const int answered = difficulty.right.observed + difficulty.wrong.observed;
+          if (answers->observed_quantiles.empty() || answered == 0) continue;
+          const auto& observed = answers->observed_quantiles[q];
+          points.x.push_back(static_cast<double>(answers->observed) / answered);
+          points.y.push_back(observed.value);
+          points.low.push_back(observed.interval.low), points.high.push_back(observed.interval.high);
+          times.push_back(observed.interval.high);
+        }
+      std::sort(predicted.begin(), predicted.end());
+      plot::Line line;
+      for (const auto& [probability, time_s] : predicted)
+        line.x.push_back(probability), line.y.push_back(time_s);
+      points.series = line.series = static_cast<int>(q);
+      chart.layers.push_back(line);
+      if (!points.x.empty()) chart.layers.push_back(points);
+    }
+    figure.charts.push_back(std::move(chart));
+  }
+  if (figure.charts.empty()) return std::nullopt;
+  for (auto& chart : figure.charts) {
+    chart.x = {"Probability of the answer (0 to 1)", 0, 1};
+    chart.y = plot::fitted("Response time (s)", times, 0.06);
+  }
+  return figure;
+}
+
 std::optional<plot::Figure> trade_figure(const Summary& summary) {
   const Words words(summary.data.language);
   plot::Chart caf{words("figure.conditional"), {}, {}, {}},

@@ -36,6 +36,9 @@ std::optional<plot::Figure> confusion_figure(const Summary& summary);
 /// Plots accuracy against response time in two panels: the conditional accuracy functions, and one point for
 /// the trials of each difficulty.
 std::optional<plot::Figure> trade_figure(const Summary& summary);
+/// Quantiles of response times over the probability of the answer: right answers on the right, wrong ones on
+/// the left, one chart for each condition (Ratcliff & McKoon 2008). Markers are observed, lines predicted.
+std::optional<plot::Figure> quantile_probability_figure(const Summary& summary);
 
 /// Plots the normal force and the speed of the finger over the session, with one series for each condition.
 /// With more than 40 trials, a marker is the mean of several, with a bar from the smallest to the largest.

@@ -151,13 +151,10 @@ constexpr MeasureRow kRows[] = {
     {"Drift v, mean over difficulties (1/s, s = 0.1)", "drift", "ez", &Result::drift},
     {"Share of trials that were no decision (0 to 1)", "", "ez", &Result::contaminants},
     {"LISAS (s)", "LISAS", "lisas", &Result::lisas_s},
-    {"Inverse efficiency (s)", "inverse efficiency", "ies", &Result::inverse_efficiency_s},
-    {"BIS (standard deviations over cells)", "BIS", "bis", &Result::balanced}};
+    {"Inverse efficiency (s)", "inverse efficiency", "ies", &Result::inverse_efficiency_s}};
 
 bool has(const MeasureRow& row, const Summary& summary) {
-  if (*row.part == '\0') return true;
-  const bool several = summary.trade.instructions.size() > 1;
-  return shows(summary.data, row.part) && (several || std::string(row.part) != "bis");
+  return *row.part == '\0' || shows(summary.data, row.part);
 }
 
 std::string instruction_table(const Summary& summary) {
@@ -270,6 +267,41 @@ std::string trade_sentences(const Summary& summary) {
   return html;
 }
 
+/// Whether the diffusion model describes the answers: a sentence, the observed and the predicted quantiles,
+/// and a table of what it predicts.
+std::string model_section(const Summary& summary) {
+  const auto& trade = summary.trade;
+  if (!trade.model_p) return "";
+  std::string html = "<h3>Does the diffusion model describe these answers?</h3>\n<p>";
+  html += *trade.model_p < 0.05
+              ? "No: only " + number(100 * *trade.model_p, 2) +
+                    " % of sessions that follow the fitted model are as far from it as this one. Boundary, "
+                    "drift and time outside the decision may mislead here."
+              : "Yes, as far as these answers can tell: " + number(100 * *trade.model_p, 2) +
+                    " % of sessions that follow the fitted model are as far from it as this one, or farther.";
+  html += "</p>\n" + picture(quantile_probability_figure(summary)) +
+          "<table><tr><th>Condition</th><th>Difficulty</th><th>Right, observed (proportion of answers)</th>"
+          "<th>Right, predicted</th><th>Mean time of right answers, observed (s)</th><th>predicted (s)</th>"
+          "<th>Mean time of wrong answers, observed (s)</th><th>predicted (s)</th></tr>";
+  const auto time = [](const std::optional<double>& mean_s) {
+    return "<td class=\"n\">" + (mean_s ? number(*mean_s) : std::string("none")) + "</td>";
+  };
+  for (const auto& entry : trade.instructions) {
+    if (!entry.check) continue;
+    for (std::size_t i = 0; i < entry.check->difficulties.size(); ++i) {
+      const auto& [right, wrong] = entry.check->difficulties[i];
+      const double answered = right.observed + wrong.observed, whole = right.probability + wrong.probability;
+      html += "<tr><td>" + escaped(name_of(entry.instruction)) + "</td><td class=\"n\">" +
+              (i < entry.difficulties.size() ? number(entry.difficulties[i], 4) : std::to_string(i + 1)) +
+              "</td>" + time(answered > 0 ? std::optional(right.observed / answered) : std::nullopt) +
+              time(whole > 0 ? std::optional(right.probability / whole) : std::nullopt) +
+              time(right.observed_mean_s) + time(right.mean_s) + time(wrong.observed_mean_s) +
+              time(wrong.mean_s) + "</tr>";
+    }
+  }
+  return html + "</table>\n";
+}
+
 std::string trade_section(const Summary& summary) {
   if (summary.trade.instructions.empty() || !summary.data.scored) return "";
   const bool several = summary.trade.instructions.size() > 1;
@@ -286,6 +318,11 @@ std::string trade_section(const Summary& summary) {
         "leaves out elsewhere are part of this fit: trimming would change the distribution that is fitted. "
         "The numbers "
         "are medians of the posterior distribution, with 95 % intervals.</p>\n";
+  html += model_section(summary);
+  if (several && shows(summary.data, "bis"))
+    html +=
+        "<p class=\"soft\">The balanced integration score (BIS) standardises accuracy and time over all "
+        "participants and conditions, so one session has none. The report of the study has it.</p>\n";
   for (const auto& entry : summary.trade.instructions) {
     for (auto statement : entry.statements) {
       if (!entry.instruction.empty())

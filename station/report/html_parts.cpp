@@ -1,5 +1,7 @@
 #include "station/report/html_parts.hpp"
 
+#include <cmath>
+
 #include "station/plot/svg.hpp"
 #include "station/text/number.hpp"
 
@@ -48,7 +50,9 @@ std::string number(double value, int digits) { return minus(text::number(value, 
 
 std::string estimated(double value, const Interval& interval) {
   const double error = text::uncertainty(value, interval.low, interval.high);
-  const auto shown = [error](double number) { return minus(text::estimated(number, error)); };
+  const auto shown = [error](double number) {
+    return std::isfinite(number) ? minus(text::estimated(number, error)) : "not determined";
+  };
   return shown(value) + " <span class=\"soft\">[" + shown(interval.low) + ", " + shown(interval.high) +
          "]</span>";
 }

@@ -21,6 +21,19 @@ std::string curve_table(const Summary& summary) {
   return html + "</table>\n";
 }
 
+/// A table with one row for each pair of conditions; "" if there is only one curve.
+std::string curve_difference_table(const Summary& summary) {
+  const auto differences = analysis::curve_differences(summary.curves);
+  if (differences.empty()) return "";
+  std::string html =
+      "<table><tr><th>Difference</th><th>Asymptote (d\u2032)</th><th>Ratio of rates (no unit)</th>"
+      "<th>Intercept (s)</th></tr>";
+  for (const auto& pair : differences)
+    html += "<tr><td>" + escaped(name_of(pair.second)) + " \u2212 " + escaped(name_of(pair.first)) + "</td>" +
+            cell(pair.asymptote) + cell(pair.rate_ratio) + cell(pair.intercept_s) + "</tr>";
+  return html + "</table>\n";
+}
+
 std::string lag_table(const Summary& summary) {
   std::string html =
       "<table><tr><th>Condition</th><th>Signal after (s)</th><th>Mean response time (s)</th><th>Trials</th>"
@@ -78,12 +91,21 @@ std::string signal_section(const Summary& summary) {
   if (summary.curves.empty()) return "";
   auto html =
       "<h2>Accuracy at the response signal</h2>\n" + picture(signal_figure(summary)) + curve_table(summary);
+  html += curve_difference_table(summary);
   for (const auto& curve : summary.curves) html += notes(curve.statements);
   return html + lag_table(summary) +
          "<p class=\"soft\">Only answers within the window after the signal are used. The curve is "
          "d\u2032(t) = asymptote (1 \u2212 exp(\u2212rate (t \u2212 intercept))); t is the mean response "
-         "time at a lag, so it includes the time that people need to answer the signal. The values are "
-         "medians with 95 % credible intervals and flat priors; each lag has its own criterion. d\u2032 at "
+         "time at a lag, so it includes the time that people need to answer the signal. Each lag has its own "
+         "criterion. The values are the most probable ones, with 95 % profile intervals. Priors: the "
+         "asymptote "
+         "is half-normal with a standard deviation of 1.8; the rate is log-normal around 3 per second, with "
+         "a "
+         "standard deviation of 1.5 in its natural logarithm; the intercept is uniform up to the longest "
+         "mean "
+         "response time. With few trials a rate is drawn towards 3 per second. An end that the answers do "
+         "not "
+         "determine is named as such. d\u2032 at "
          "each lag has the log-linear correction and the interval of Gourevitch and Galanter.</p>\n";
 }
 

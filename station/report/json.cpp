@@ -62,6 +62,17 @@ Json fit_json(const NamedFit& named, const SessionData& data) {
   return json;
 }
 
+Json prediction_json(const analysis::PredictedAnswers& answers) {
+  Json observed = Json::array();
+  for (const auto& quantile : answers.observed_quantiles) observed.push_back(value(std::optional(quantile)));
+  return {{"observed", answers.observed},
+          {"predicted_proportion", value(answers.probability)},
+          {"observed_mean_s", value(answers.observed_mean_s)},
+          {"predicted_mean_s", value(answers.mean_s)},
+          {"observed_quantiles_s", observed},
+          {"predicted_quantiles_s", answers.quantile_s}};
+}
+
 Json instruction_json(const analysis::InstructionResult& entry) {
   Json json{{"instruction", entry.instruction},     {"presented", entry.presented},
             {"answered", entry.answered},           {"timeouts", entry.timeouts},
@@ -74,7 +85,6 @@ Json instruction_json(const analysis::InstructionResult& entry) {
   json["drift"] = value(entry.drift);
   json["lisas_s"] = value(entry.lisas_s);
   json["inverse_efficiency_s"] = value(entry.inverse_efficiency_s);
-  json["bis"] = value(entry.balanced);
   json["deciles_s"] = entry.times ? Json(entry.times->deciles_s) : Json(nullptr);
   json["difficulties"] = Json::array();
   for (const auto& cell : entry.cells)
@@ -84,6 +94,11 @@ Json instruction_json(const analysis::InstructionResult& entry) {
                                     {"interval", value(cell.accuracy)},
                                     {"mean_correct_s", value(cell.mean_correct_s)},
                                     {"drift", value(cell.drift)}});
+  json["predicted"] = Json::array();
+  if (entry.check)
+    for (const auto& difficulty : entry.check->difficulties)
+      json["predicted"].push_back(
+          {{"right", prediction_json(difficulty.right)}, {"wrong", prediction_json(difficulty.wrong)}});
   json["caf"] = Json::array();
   for (const auto& bin : entry.caf)
     json["caf"].push_back(
@@ -275,6 +290,7 @@ std::string to_json(const Summary& summary) {
   json["instructions"] = Json::array();
   for (const auto& entry : summary.trade.instructions)
     json["instructions"].push_back(instruction_json(entry));
+  json["model_p"] = value(summary.trade.model_p);
   json["differences"] = Json::array();
   for (const auto& difference : summary.trade.differences)
     json["differences"].push_back({{"first", difference.first},
@@ -311,6 +327,13 @@ std::string to_json(const Summary& summary) {
                                        {"intercept_s", value(curve.intercept_s)},
                                        {"lags", lags}});
   }
+  json["response_signal_differences"] = Json::array();
+  for (const auto& pair : analysis::curve_differences(summary.curves))
+    json["response_signal_differences"].push_back({{"first", pair.first},
+                                                   {"second", pair.second},
+                                                   {"asymptote", value(pair.asymptote)},
+                                                   {"rate_ratio", value(pair.rate_ratio)},
+                                                   {"intercept_s", value(pair.intercept_s)}});
   json["discrimination"] = Json::array();
   for (const auto& entry : summary.discriminations)
     json["discrimination"].push_back(discrimination_json(entry));

@@ -14,6 +14,8 @@ using analysis::Outcome;
 using analysis::PersonMeasure;
 using analysis::TrialType;
 
+constexpr const char *kCorrect = "proportion correct", *kMeanCorrect = "mean time of right answers";
+
 void count_trials(const SessionData& data, StudyPerson& person) {
   int right = 0, scored = 0, timeouts = 0, anticipations = 0;
   std::vector<double> times;
@@ -124,14 +126,15 @@ void add_measures(const Summary& summary, StudyPerson& person) {
                    std::optional<double>(named.fit.parameters->slope));
   }
   for (const auto& entry : summary.trade.instructions) {
-    if (data.scored) measures.add(entry.instruction, "proportion correct", "", entry.proportion_correct);
+    if (data.scored) measures.add(entry.instruction, kCorrect, "", entry.proportion_correct);
     measures.add(entry.instruction, "median response time", "s", entry.median_s);
+    if (data.scored && entry.correct_times)
+      measures.add(entry.instruction, kMeanCorrect, "s", std::optional<double>(entry.correct_times->mean_s));
     measures.add(entry.instruction, "boundary", "s = 0.1", entry.boundary);
     measures.add(entry.instruction, "time outside the decision", "s", entry.nondecision_s);
     measures.add(entry.instruction, "drift", "s = 0.1", entry.drift);
     measures.add(entry.instruction, "LISAS", "s", entry.lisas_s);
     measures.add(entry.instruction, "inverse efficiency", "s", entry.inverse_efficiency_s);
-    measures.add(entry.instruction, "BIS", "SD", entry.balanced);
   }
   for (const auto& detection : summary.detections)
     if (!detection.level) {
@@ -256,9 +259,40 @@ std::vector<std::string> group_of(const std::string& condition, const std::vecto
   return found;
 }
 
+/// Adds the balanced integration scores to the measures of the participants who are not excluded. They
+/// standardise over these participants and their conditions, so no participant has them alone.
+void add_balanced(Study& study) {
+  if (!study.settings.scored || !shows(study.settings, "bis") || study.settings.conditions.size() < 2) return;
+  std::vector<double> proportions, times_s;
+  struct Cell {
+    StudyPerson* person;
+    std::string condition;
+  };
+  std::vector<Cell> cells;
+  for (auto& person : study.persons) {
+    if (!person.excluded.empty()) continue;
+    for (const auto& proportion : person.measures)
+      for (const auto& time : person.measures)
+        if (proportion.measure == kCorrect && time.measure == kMeanCorrect &&
+            proportion.condition == time.condition) {
+          proportions.push_back(proportion.value), times_s.push_back(time.value);
+          cells.push_back({&person, time.condition});
+        }
+  }
+  const auto scores = analysis::balanced_integration(proportions, times_s);
+  if (!scores) {
+    study.statements.push_back({"no-bis", texts::phrase("statement.no_bis")});
+    return;
+  }
+  for (std::size_t i = 0; i < cells.size(); ++i)
+    cells[i].person->measures.push_back(
+        {cells[i].person->person, cells[i].condition, "BIS", "SD", (*scores)[i]});
+}
+
 }  // namespace
 
 void finish_study(Study& study) {
+  add_balanced(study);
   std::vector<PersonMeasure> measures;
   std::vector<std::string> conditions;
   for (const auto& name : study.settings.conditions) conditions.push_back(name);

@@ -80,7 +80,8 @@ StudyPerson study_person(const SessionData& data, const protocol::Exclusion& rul
 /// Returns the rules as sentences, in the order in which the manual lists them.
 std::vector<std::string> rules_in_words(const protocol::Exclusion& rules);
 
-/// Computes group fits, means and effects from the participants who are not excluded.
+/// Computes balanced integration scores, group fits, means and effects from the participants who are not
+/// excluded.
 void finish_study(Study& study);
 
 /// Returns the report as one self-contained page, or as one JSON document without NaN.

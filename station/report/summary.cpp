@@ -91,23 +91,27 @@ void hide(const SessionData& data, analysis::Trade& trade) {
   for (auto& entry : trade.instructions) {
     if (!shows(data, "ez")) {
       entry.boundary.reset(), entry.nondecision_s.reset(), entry.contaminants.reset(), entry.drift.reset();
+      entry.check.reset();
       for (auto& cell : entry.cells) cell.drift.reset();
       std::erase_if(entry.statements, [](const auto& said) { return said.code.starts_with("diffusion-"); });
     }
     if (!shows(data, "lisas")) entry.lisas_s.reset();
     if (!shows(data, "ies")) entry.inverse_efficiency_s.reset();
-    if (!shows(data, "bis")) entry.balanced.reset();
     if (!shows(data, "caf")) {
       entry.caf.clear();
       std::erase_if(entry.statements, [](const auto& said) { return said.code.starts_with("caf-"); });
     }
+  }
+  if (!shows(data, "ez")) {
+    trade.model_p.reset();
+    std::erase_if(trade.statements, [](const auto& said) { return said.code.starts_with("diffusion-"); });
   }
   std::erase_if(trade.differences, [&data](const auto& difference) {
     const auto& name = difference.measure;
     return ((name == "boundary" || name == "time outside the decision" || name == "drift") &&
             !shows(data, "ez")) ||
            (name == "LISAS" && !shows(data, "lisas")) ||
-           (name == "inverse efficiency" && !shows(data, "ies")) || (name == "BIS" && !shows(data, "bis"));
+           (name == "inverse efficiency" && !shows(data, "ies"));
   });
 }
 

@@ -9,6 +9,7 @@
 
 #include "station/analysis/diffusion.hpp"
 #include "station/analysis/first_passage.hpp"
+#include "station/analysis/group.hpp"
 #include "station/analysis/quantile.hpp"
 #include "tests/analysis/first_passage_table.hpp"
 #include "tests/support/catch.hpp"
@@ -44,25 +45,29 @@ constexpr Cell kCells[] = {
 };
 constexpr double kDrifts[] = {0.10, 0.20, 0.32}, kSpeed = 0.09, kAccuracy = 0.16, kTer = 0.35;
 
+/// One trial of a person with these parameters and the lapses and slow answers of a cell.
+DiffusionTrial one_trial(const DiffusionParameters& truth, std::size_t difficulty, double deadline_s,
+                         const Cell& cell, rnd::Draws& draws) {
+  const auto decision = sample_decision(truth, draws);
+  DiffusionTrial trial{difficulty, Decided::answered, decision.correct, decision.time_s, {}};
+  const double what = draws.uniform();
+  if (what < cell.lapses) {
+    trial.correct = draws.uniform() < 0.5;
+    trial.time_s = draws.uniform(0.1, deadline_s > 0 ? deadline_s : 2.0);
+  } else if (what < cell.lapses + cell.slow) {
+    trial.time_s += draws.uniform(0.5, 2.0);
+  }
+  if (deadline_s > 0) trial.deadline_s = deadline_s;
+  if (deadline_s > 0 && trial.time_s > deadline_s) trial.outcome = Decided::late, trial.time_s = deadline_s;
+  return trial;
+}
+
 std::vector<DiffusionTrial> simulated(double boundary, double deadline_s, const Cell& cell,
                                       const std::array<int, 3>& trials, rnd::Draws& draws) {
   std::vector<DiffusionTrial> all;
   for (std::size_t k = 0; k < trials.size(); ++k)
-    for (int i = 0; i < trials[k]; ++i) {
-      const auto decision = sample_decision({kDrifts[k], boundary, kTer}, draws);
-      DiffusionTrial trial{k, Decided::answered, decision.correct, decision.time_s, {}};
-      const double what = draws.uniform();
-      if (what < cell.lapses) {
-        trial.correct = draws.uniform() < 0.5;
-        trial.time_s = draws.uniform(0.1, deadline_s > 0 ? deadline_s : 2.0);
-      } else if (what < cell.lapses + cell.slow) {
-        trial.time_s += draws.uniform(0.5, 2.0);
-      }
-      if (deadline_s > 0) trial.deadline_s = deadline_s;
-      if (deadline_s > 0 && trial.time_s > deadline_s)
-        trial.outcome = Decided::late, trial.time_s = deadline_s;
-      all.push_back(trial);
-    }
+    for (int i = 0; i < trials[k]; ++i)
+      all.push_back(one_trial({kDrifts[k], boundary, kTer}, k, deadline_s, cell, draws));
   return all;
 }
 
@@ -257,5 +262,208 @@ TEST_CASE(
         CHECK(std::isfinite(one.interval.high));
       }
     if (kind == 3) CHECK_FALSE(fit.estimates);
+  }
+}
+
+namespace {
+
+/// Processes that make answers, for a check that must find those that are not a diffusion.
+enum class Process { diffusion, deadline, contaminants, collapsing, race, guesses };
+constexpr const char* kProcesses[] = {"diffusion",
+                                      "diffusion, deadlines of 0.6 and 1 s",
+                                      "diffusion, 2 % lapses and 3 % slow answers",
+                                      "boundaries that collapse",
+                                      "a race of two accumulators",
+                                      "20 % guesses"};
+
+/// A decision between boundaries that come to a fifth of their distance with time: steps of 1 ms.
+turnpoint::tests::Decision collapsing_decision(double drift, double boundary, rnd::Draws& draws) {
+  double x = 0, time_s = 0;
+  constexpr double step_s = 1e-3;
+  while (true) {
+    x += drift * step_s + kDiffusionScale * std::sqrt(step_s) * draws.normal();
+    time_s += step_s;
+    const double half = 0.75 * boundary * (1 - 0.8 * time_s / (time_s + 0.35));
+    if (std::fabs(x) >= half) return {x > 0, time_s + kTer};
+  }
+}
+
+/// A race of two accumulators with ballistic growth (Brown & Heathcote 2008).
+turnpoint::tests::Decision race_decision(double advantage, double threshold, rnd::Draws& draws) {
+  double times_s[2];
+  for (int which = 0; which < 2; ++which) {
+    double rate = 0;
+    while (rate <= 0.05) rate = 1.0 + (which == 1 ? advantage : -advantage) + 0.35 * draws.normal();
+    times_s[which] = (threshold - draws.uniform(0, 0.3)) / rate;
+  }
+  return {times_s[1] < times_s[0], std::min(times_s[0], times_s[1]) + 0.2};
+}
+
+std::vector<DiffusionTrial> answers_of(Process process, bool fast, int per_difficulty, rnd::Draws& draws) {
+  const double boundary = fast ? kSpeed : kAccuracy;
+  const double deadline_s = process == Process::deadline ? (fast ? 0.6 : 1.0) : 0;
+  const Cell cell{"",
+                  {},
+                  {},
+                  0,
+                  0,
+                  process == Process::contaminants ? 0.02 : 0.0,
+                  process == Process::contaminants ? 0.03 : 0.0};
+  auto trials =
+      simulated(boundary, deadline_s, cell, {per_difficulty, per_difficulty, per_difficulty}, draws);
+  for (auto& trial : trials) {
+    turnpoint::tests::Decision decision{trial.correct, trial.time_s};
+    if (process == Process::collapsing)
+      decision = collapsing_decision(kDrifts[trial.difficulty], boundary, draws);
+    if (process == Process::race)
+      decision = race_decision(0.8 * kDrifts[trial.difficulty], fast ? 0.35 : 0.6, draws);
+    if (process == Process::guesses && draws.uniform() < 0.2)
+      decision = {draws.uniform() < 0.5, draws.uniform(0.2, 0.8)};
+    trial.correct = decision.correct, trial.time_s = decision.time_s;
+  }
+  return trials;
+}
+
+/// The share of sessions of two conditions with three difficulties that the check flags.
+double flagged(Process process, int per_difficulty, int sets, int first) {
+  int bad = 0;
+  for (int set = first; set < first + sets; ++set) {
+    rnd::Draws draws({92, rnd::Stream::observer, static_cast<int>(process), per_difficulty, set});
+    std::vector<DiffusionCheck> checks;
+    for (const bool fast : {true, false}) {
+      const auto trials = answers_of(process, fast, per_difficulty, draws);
+      if (const auto fit = fit_diffusion(trials, 3, static_cast<std::uint64_t>(set), fast ? 1 : 2).estimates)
+        checks.push_back(check_diffusion(trials, *fit, static_cast<std::uint64_t>(set), fast ? 1 : 2));
+    }
+    std::vector<const DiffusionCheck*> both;
+    for (const auto& check : checks) both.push_back(&check);
+    const auto p = share_as_bad(both);
+    bad += p && *p < 0.05;
+  }
+  return static_cast<double>(bad) / sets;
+}
+
+}  // namespace
+
+// TURNPOINT_CHECK_SETS=400 prints the shares for every process and number of trials;
+// TURNPOINT_CHECK_PROCESS=3 takes one process.
+TEST_CASE("The check of the diffusion model seldom flags a diffusion, and flags other processes",
+          "[analysis][diffusion]") {
+  const int sets = number_from("TURNPOINT_CHECK_SETS", 0), only = number_from("TURNPOINT_CHECK_PROCESS", -1);
+  if (sets == 0) {
+    CHECK(flagged(Process::deadline, 56, 12, 0) <= 0.3);  // 4 or more of 12 at 5 %: 1 in 450 runs
+    CHECK(flagged(Process::collapsing, 400, 3, 0) >= 0.6);
+    return;
+  }
+  for (std::size_t process = 0; process < std::size(kProcesses); ++process) {
+    if (only >= 0 && process != static_cast<std::size_t>(only)) continue;
+    for (const int per_difficulty : {56, 200}) {
+      const double share = flagged(static_cast<Process>(process), per_difficulty, sets, 0);
+      std::cout << kProcesses[process] << ", " << per_difficulty << " a difficulty: flagged " << 100 * share
+                << " %" << std::endl;
+      if (process < 3) CHECK(share <= 0.06 + 3 * std::sqrt(0.06 * 0.94 / sets));
+    }
+  }
+}
+
+TEST_CASE("What the check predicts is what the model's own samples show", "[analysis][diffusion]") {
+  rnd::Draws draws({8, rnd::Stream::observer, 0, 0, 0});
+  const auto trials = simulated(kAccuracy, 0.9, kCells[0], {4000, 4000, 4000}, draws);
+  DiffusionEstimates truth;
+  truth.boundary.value = kAccuracy, truth.nondecision_s.value = kTer;
+  for (const double drift : kDrifts) truth.drift.push_back({drift, {}});
+  const auto check = check_diffusion(trials, truth, 1, 1);
+  REQUIRE(check.difficulties.size() == 3);
+  for (const auto& [right, wrong] : check.difficulties)
+    for (const auto* answers : {&right, &wrong}) {
+      CHECK(answers->observed / 4000.0 == Approx(answers->probability).margin(0.03));
+      if (answers->observed < 300) continue;  // quantiles of few answers are uncertain
+      CHECK(*answers->observed_mean_s == Approx(answers->mean_s).margin(0.02));
+      for (std::size_t q = 0; q < kPredictedQuantiles.size(); ++q)
+        CHECK(answers->observed_quantiles[q].value == Approx(answers->quantile_s[q]).margin(0.03));
+    }
+  CHECK(*share_as_bad({&check}) > 0.001);
+  truth.boundary.value = 1.3 * kAccuracy;  // a prediction of something else
+  const auto other = check_diffusion(trials, truth, 1, 1);
+  CHECK(std::fabs(other.difficulties[0].right.observed / 4000.0 - other.difficulties[0].right.probability) >
+        0.03);
+}
+
+namespace {
+
+/// How often the group's effects of a condition hold the truth, and how often one is claimed that is not
+/// there.
+struct GroupShares {
+  std::array<int, 3> held{}, claimed{};  // boundary, time outside the decision, drift
+  int studies = 0;
+};
+
+/// People differ in everything, and in how the condition acts on them. Its mean effect is 0.06 on the
+/// boundary and 0 on the rest. 40 trials of each of three difficulties and condition, a deadline of 0.8 s in
+/// the speed blocks, 2 % lapses, 2 % slow answers.
+GroupShares group_shares(int people, int studies, int first) {
+  constexpr const char* kMeasures[] = {"boundary", "time outside the decision", "drift"};
+  constexpr double kEffects[] = {0.06, 0, 0};
+  const Cell cell{"", {}, {}, 0, 0, 0.02, 0.02};
+  GroupShares shares;
+  for (int study = first; study < first + studies; ++study) {
+    rnd::Draws draws({93, rnd::Stream::observer, people, 0, study});
+    std::vector<PersonMeasure> measures;
+    for (int person = 0; person < people; ++person) {
+      const double boundary = 0.09 + 0.012 * draws.normal(), more = 0.06 + 0.015 * draws.normal();
+      const double ter_s = 0.35 + 0.04 * draws.normal(), later_s = 0.015 * draws.normal();
+      const double talent = std::exp(0.2 * draws.normal()), better = 0.02 * draws.normal();
+      for (const bool fast : {true, false}) {
+        std::vector<DiffusionTrial> trials;
+        const double deadline_s = fast ? 0.8 : 0;
+        for (std::size_t k = 0; k < 3; ++k) {
+          const DiffusionParameters truth{talent * kDrifts[k] + (fast ? 0 : better),
+                                          fast ? boundary : boundary + more, fast ? ter_s : ter_s + later_s};
+          for (int i = 0; i < 40; ++i) trials.push_back(one_trial(truth, k, deadline_s, cell, draws));
+        }
+        const auto fit =
+            fit_diffusion(trials, 3, static_cast<std::uint64_t>(study), 2 * person + (fast ? 1 : 2));
+        if (!fit.estimates) continue;
+        const std::string who = std::to_string(person), condition = fast ? "speed" : "accuracy";
+        std::vector<double> drift;
+        for (const auto& draw : fit.estimates->draws) drift.push_back(mean(draw.drift));
+        const double values[] = {fit.estimates->boundary.value, fit.estimates->nondecision_s.value,
+                                 quantile(drift, 0.5)};
+        for (std::size_t m = 0; m < 3; ++m) measures.push_back({who, condition, kMeasures[m], "", values[m]});
+      }
+    }
+    ++shares.studies;
+    const auto found = effects(measures, [](const auto&, const auto&) { return false; });
+    for (std::size_t m = 0; m < 3; ++m) {
+      const auto& interval = found.at(m).difference->interval;
+      shares.held[m] += holds(interval, kEffects[m]);
+      shares.claimed[m] += !holds(interval, 0);
+    }
+  }
+  return shares;
+}
+
+}  // namespace
+
+// TURNPOINT_GROUP_STUDIES=1000 prints the shares for 8 and for 20 people.
+TEST_CASE(
+    "A group's effects on the diffusion's parameters hold the truth, and none is claimed that is not there",
+    "[analysis][diffusion]") {
+  const int studies = number_from("TURNPOINT_GROUP_STUDIES", 0);
+  if (studies == 0) {
+    const auto shares = group_shares(5, 5, 0);
+    CHECK(shares.claimed[0] >= 4);
+    CHECK(shares.claimed[1] + shares.claimed[2] <= 2);
+    return;
+  }
+  for (const int people : {8, 20}) {
+    const auto shares = group_shares(people, studies, 0);
+    const auto percent = [&](int count) { return 100.0 * count / shares.studies; };
+    std::cout << people << " people: covered, boundary " << percent(shares.held[0]) << " %, time outside "
+              << percent(shares.held[1]) << " %, drift " << percent(shares.held[2])
+              << " %; claimed, time outside " << percent(shares.claimed[1]) << " %, drift "
+              << percent(shares.claimed[2]) << " %" << std::endl;
+    for (std::size_t m = 0; m < 3; ++m) CHECK(percent(shares.held[m]) > 92);
+    for (std::size_t m = 1; m < 3; ++m) CHECK(percent(shares.claimed[m]) < 7);
   }
 }

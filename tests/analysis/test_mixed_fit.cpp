@@ -156,7 +156,11 @@ TEST_CASE("Partial pooling predicts participants better than their own fits, and
   const int studies = std::getenv("TURNPOINT_STUDIES") ? std::atoi(std::getenv("TURNPOINT_STUDIES")) : 60;
   int group_holds = 0, person_holds = 0, people = 0;
   double pooled_error = 0, own_error = 0;
-  const Group group;
+  // TURNPOINT_PEOPLE and TURNPOINT_LEVEL_TRIALS make other studies than ten people with ten trials a level
+  const auto from = [](const char* name, int otherwise) {
+    return std::getenv(name) ? std::atoi(std::getenv(name)) : otherwise;
+  };
+  const Group group{from("TURNPOINT_PEOPLE", 10), from("TURNPOINT_LEVEL_TRIALS", 10)};
   for (int study = 0; study < studies; ++study) {
     random::Draws draws({7, random::Stream::observer, 0, 0, study});
     std::vector<double> thresholds;

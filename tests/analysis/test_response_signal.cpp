@@ -1,8 +1,11 @@
 #include "station/analysis/response_signal.hpp"
 
+#include <array>
 #include <cmath>
+#include <cstdlib>
+#include <iostream>
 
-#include "station/analysis/proportion.hpp"
+#include "station/analysis/quantile.hpp"
 #include "station/random/draws.hpp"
 #include "tests/support/catch.hpp"
 
@@ -68,26 +71,103 @@ TEST_CASE("the curve of sensitivity over time is found again, and the answers at
   CHECK(curve.statements.empty());
 }
 
-TEST_CASE("the curve's intervals hold the truth as often as they say", "[analysis]") {
-  // The true values are drawn from a part of the prior, so that about 95 % is expected, not exactly 95 %.
-  constexpr int n = 200;
-  int asymptote = 0, rate = 0, intercept = 0, fitted = 0;
-  for (int i = 0; i < n; ++i) {
-    Draws draws({static_cast<std::uint64_t>(i), turnpoint::random::Stream::observer, 0, 0, 0});
-    const Truth truth{draws.uniform(1.2, 3.5), std::exp(draws.uniform(std::log(1.5), std::log(12.0))),
-                      draws.uniform(0.2, 0.45)};
-    const auto curve = response_signal(session(truth, 56, draws), {}, Detecting::sides, 1).front();
-    asymptote += holds(curve.asymptote, truth.asymptote);
-    fitted += curve.rate_per_s && curve.intercept_s;
-    rate += !curve.rate_per_s || holds(curve.rate_per_s, truth.rate_per_s);
-    intercept += !curve.intercept_s || holds(curve.intercept_s, truth.intercept_s);
+namespace {
+
+// These curves, the limits below, and 56 trials at each of the six lags were written down before the command
+// ran for the first time; the priors were chosen with other data of the same curves.
+constexpr Truth kTruths[] = {{1.2, 4, 0.3}, {2.5, 4, 0.3},  {3.5, 4, 0.3},
+                             {2.5, 2, 0.3}, {2.5, 8, 0.33}, {2, 6, 0.28}};
+
+/// What many simulated sessions say about one parameter of a curve, or its difference between two curves.
+struct Shares {
+  std::vector<double> values;
+  int held = 0, open = 0, absent = 0;
+
+  void add(const std::optional<Estimate>& estimate, double truth) {
+    if (!estimate) {
+      ++absent;
+      return;
+    }
+    values.push_back(estimate->value);
+    held += holds(estimate, truth);
+    open += std::isinf(estimate->interval.low) || std::isinf(estimate->interval.high);
   }
-  UNSCOPED_INFO(asymptote << " " << rate << " " << intercept << " of " << n << ", fitted " << fitted);
-  CHECK(asymptote >= 0.91 * n);
-  CHECK(rate >= 0.91 * n);
-  CHECK(intercept >= 0.91 * n);
-  CHECK(asymptote <= 0.99 * n);
-  CHECK(fitted >= 0.7 * n);
+  double coverage() const { return static_cast<double>(held) / static_cast<double>(values.size()); }
+  double bias_in_se(double truth) const {
+    return (quantile(values, 0.5) - truth) / std::sqrt(variance(values));
+  }
+};
+
+std::optional<Estimate> logarithm(const std::optional<Estimate>& rate) {
+  if (!rate) return rate;
+  return Estimate{std::log(rate->value),
+                  {rate->interval.low > 0 ? std::log(rate->interval.low) : -INFINITY,
+                   std::log(rate->interval.high), 0.95}};
+}
+
+/// Asymptote, logarithm of the rate, and intercept; then their differences between two sessions.
+std::array<Shares, 6> simulate(const Truth& truth, int first, int sets, int per_lag) {
+  std::array<Shares, 6> all;
+  for (int i = first; i < first + sets; ++i) {
+    Draws draws({static_cast<std::uint64_t>(i), turnpoint::random::Stream::observer, 0, 0, 0});
+    std::vector<SpeedAccuracyCurve> curves;
+    for (int condition = 0; condition < 2; ++condition)
+      curves.push_back(response_signal(session(truth, per_lag, draws), {}, Detecting::sides, 1).front());
+    all[0].add(curves[0].asymptote, truth.asymptote);
+    all[1].add(logarithm(curves[0].rate_per_s), std::log(truth.rate_per_s));
+    all[2].add(curves[0].intercept_s, truth.intercept_s);
+    const auto difference = curve_differences(curves).front();
+    all[3].add(difference.asymptote, 0);
+    all[4].add(logarithm(difference.rate_ratio), 0);
+    all[5].add(difference.intercept_s, 0);
+  }
+  return all;
+}
+
+int number_from(const char* variable, int otherwise) {
+  const char* text = std::getenv(variable);
+  return text == nullptr ? otherwise : std::atoi(text);
+}
+
+}  // namespace
+
+// TURNPOINT_CURVE_SETS=1000 prints median bias and coverage for every curve; TURNPOINT_CURVE_FIRST=1000
+// begins at that set, so that a run can be made in parts, and TURNPOINT_CURVE=2 takes one curve.
+TEST_CASE("the curve's estimates are hardly biased, and its intervals hold the truth as often as they say",
+          "[analysis]") {
+  const int sets = number_from("TURNPOINT_CURVE_SETS", 0), first = number_from("TURNPOINT_CURVE_FIRST", 0),
+            only = number_from("TURNPOINT_CURVE", -1);
+  if (sets == 0) {  // with a flat prior the median asymptote was 2.9, half a standard error too high
+    const auto found = simulate(kTruths[1], 0, 40, 56);
+    CHECK(std::fabs(found[0].bias_in_se(2.5)) < 0.4);
+    for (std::size_t i = 0; i < found.size(); ++i) {
+      INFO("number " << i);
+      CHECK(found[i].coverage() > 0.84);  // of 40 sets that are covered in 95 %, fewer in 1 of 300 runs
+    }
+    return;
+  }
+  constexpr const char* kNames[] = {"asymptote",
+                                    "log rate",
+                                    "intercept",
+                                    "difference of asymptotes",
+                                    "difference of log rates",
+                                    "difference of intercepts"};
+  for (std::size_t t = 0; t < std::size(kTruths); ++t) {
+    if (only >= 0 && t != static_cast<std::size_t>(only)) continue;
+    const auto& truth = kTruths[t];
+    const double values[] = {truth.asymptote, std::log(truth.rate_per_s), truth.intercept_s, 0, 0, 0};
+    const auto found = simulate(truth, first, sets, 56);
+    std::cout << "asymptote " << truth.asymptote << ", rate " << truth.rate_per_s << " per s, intercept "
+              << truth.intercept_s << " s\n";
+    for (std::size_t i = 0; i < found.size(); ++i) {
+      std::cout << "  " << kNames[i] << ": median " << quantile(found[i].values, 0.5) << ", bias "
+                << found[i].bias_in_se(values[i]) << " SE, covered " << 100 * found[i].coverage()
+                << " %, an end not determined in " << 100.0 * found[i].open / sets << " %, not given in "
+                << 100.0 * found[i].absent / sets << " %\n";
+      CHECK(std::fabs(found[i].bias_in_se(values[i])) < 0.25);
+      CHECK(found[i].coverage() > 0.92);
+    }
+  }
 }
 
 TEST_CASE("a curve that the answers do not support is not reported", "[analysis]") {
@@ -107,7 +187,7 @@ TEST_CASE("a curve that the answers do not support is not reported", "[analysis]
   CHECK(response_signal(without, {}, Detecting::sides, 1).empty());
 }
 
-TEST_CASE("medians and intervals of the curve agree with an independent computation", "[analysis]") {
+TEST_CASE("estimates and intervals of the curve agree with an independent computation", "[analysis]") {
   const double times_s[] = {0.42, 0.52, 0.67, 0.92, 1.32, 1.92};
   const int hits[] = {19, 23, 21, 17, 21, 22}, false_alarms[] = {7, 7, 9, 5, 5, 4};
   std::vector<TrialRecord> trials;
@@ -128,7 +208,9 @@ TEST_CASE("medians and intervals of the curve agree with an independent computat
     CHECK(estimate.value == Approx(median).margin(0.02 * scale));
     CHECK(estimate.interval.high == Approx(high).margin(0.02 * scale));
   };
-  agrees(*curve.asymptote, 1.175, 1.537, 2.737, 1.5);
-  agrees(*curve.rate_per_s, 0.871, 8.275, 36.883, 15);
-  agrees(*curve.intercept_s, 0.0064, 0.1477, 0.3712, 0.5);
+  agrees(*curve.asymptote, 1.15, 1.58, 2.53, 1.5);
+  CHECK(curve.rate_per_s->interval.low == Approx(0.92).margin(0.03));
+  CHECK(curve.rate_per_s->value == Approx(3.07).margin(0.25));
+  CHECK(curve.rate_per_s->interval.high == INFINITY);
+  agrees(*curve.intercept_s, 0, 0, 0.40, 0.8);
 }

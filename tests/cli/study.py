@@ -110,6 +110,26 @@ class Study(unittest.TestCase):
             self.assertAlmostEqual(float(value), effect["difference"]["value"], delta=1e-5 * max(1, abs(float(value))))
             self.assertEqual(int(persons), effect["participants"])
 
+    def test_the_balanced_integration_score_is_that_of_its_authors(self):
+        # from the tables alone: standardised over the participants who count and all their conditions, with divisor n
+        right, time, told = {}, {}, {}
+        for row in self.rows("measures.csv"):
+            which = {"proportion correct": right, "mean time of right answers": time, "BIS": told}.get(row["measure"])
+            if which is not None and row["excluded"] == "no":
+                which[row["participant"], row["condition"]] = float(row["value"])
+        self.assertEqual(len(told), 2 * 7)
+        mean_right, sd_right = statistics.mean(right.values()), statistics.pstdev(right.values())
+        mean_time, sd_time = statistics.mean(time.values()), statistics.pstdev(time.values())
+        scores = {key: (right[key] - mean_right) / sd_right - (time[key] - mean_time) / sd_time for key in right}
+        for key, score in scores.items():
+            self.assertAlmostEqual(told[key], score, 9)
+        effect = next(e for e in self.study["effects"] if e["measure"] == "BIS")
+        gaps = [scores[p, effect["second"]] - scores[p, effect["first"]] for p, c in scores if c == effect["first"]]
+        self.assertAlmostEqual(effect["difference"]["value"], statistics.mean(gaps), 9)
+        self.assertLess(effect["difference"]["interval"]["low"], effect["difference"]["value"])
+        report = json.loads(self.call(["report", "--db", "lab0.sqlite", "--participant", "P01", "--json"]))
+        self.assertNotIn("BIS", json.dumps(report))  # one session cannot standardise over participants
+
     def test_lme4_finds_the_same_groups(self):
         out = subprocess.run(["Rscript", os.path.join(SCRIPTS, "study.R"), "tables"], cwd=self.folder, capture_output=True, text=True,
                              check=True).stdout

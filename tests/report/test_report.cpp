@@ -96,7 +96,7 @@ TEST_CASE("A speed-accuracy session gives fits, the trade with intervals, and al
   REQUIRE(summary.fits.size() == 2);
   CHECK(summary.fits[0].fit.parameters.has_value());
   CHECK(summary.fits[0].positive == "\u201cRougher\u201d");
-  REQUIRE(summary.trade.differences.size() == 8);
+  REQUIRE(summary.trade.differences.size() == 7);
   CHECK(summary.trade.differences[2].estimate->interval.low > 0);
   keep("psychometric.svg", shown(psychometric_figure(summary)));
   keep("trace.svg", shown(trace_figure(summary)));
