@@ -94,10 +94,6 @@ void check(const Surface& surface, const MapOptions& options) {
     throw std::invalid_argument("a friction edge needs a friction map and a displacement");
   }
   if (options.tolerance_m) require_size("tolerance_m", *options.tolerance_m);
-  if (options.model == Model::uniform && Dispersion(surface).clamped_bending()) {
-    throw std::domain_error(
-        "model uniform is not available for clamped plates; allowed: edge, airy, seed, mode, modes");
-  }
   require_fall(surface);
 }
 

@@ -5,19 +5,17 @@
 #include <numbers>
 #include <stdexcept>
 
-#include "physics/airy_profile.hpp"
 #include "physics/dispersion.hpp"
 #include "physics/field.hpp"
 #include "physics/gate.hpp"
 #include "physics/modal_field.hpp"
-#include "physics/uniform_profile.hpp"
 
 namespace turnpoint::physics {
 namespace {
 
 using std::numbers::pi;
 
-// The centre line of the models `seed` and `mode`: integrates the model's equation step by step along the
+// The centre line of the model `mode`: integrates the model's equation step by step along the
 // strip.
 class MarchedLine final : public CentreLine {
  public:
@@ -68,7 +66,7 @@ Surface moving_part(const Surface& surface, double frequency_Hz) {
   return part;
 }
 
-MarchEquation march_equation(const Surface& surface, double frequency_Hz, Model model, Losses losses) {
+MarchEquation march_equation(const Surface& surface, double frequency_Hz, Losses losses) {
   const Dispersion dispersion(surface);
   const double k = dispersion.wavenumber_per_m(frequency_Hz);
   const std::complex<double> lossy =
@@ -80,15 +78,13 @@ MarchEquation march_equation(const Surface& surface, double frequency_Hz, Model 
     const double root = k * cut_off_half_width_m(surface, frequency_Hz);
     equation.b = root * root;
   }
-  if (model == Model::mode) {
-    equation.c = pi * pi / 6 - 0.25;
-    equation.w_power = 0.5;
-  }
+  equation.c = pi * pi / 6 - 0.25;
+  equation.w_power = 0.5;
   return equation;
 }
 
 MarchEquation best_equation(const Surface& surface, double frequency_Hz, Losses losses) {
-  MarchEquation equation = march_equation(surface, frequency_Hz, Model::mode, losses);
+  MarchEquation equation = march_equation(surface, frequency_Hz, losses);
   const auto* taper = std::get_if<LinearTaper>(&surface.taper);
   if (taper == nullptr || !(taper->slope > 0) || Dispersion(surface).clamped_bending()) return equation;
   // With s the distance from the apex and d the slope, v = J_nu(k s) solves the equation of `mode` if B/d^2 +
@@ -113,18 +109,13 @@ std::unique_ptr<CentreLine> make_centre_line(const Surface& surface, double freq
   switch (model) {
     case Model::edge:
       throw std::invalid_argument("model edge gives positions only; it has no profile");
-    case Model::airy:
-      return make_airy_line(surface, frequency_Hz);
-    case Model::seed:
     case Model::mode:
-      if (model == Model::mode && Dispersion(surface).clamped_bending()) {
+      if (Dispersion(surface).clamped_bending()) {
         ModalResolution resolution;
         resolution.across = ModalResolution::Across::cut_off_shape;
         return make_modal_line(surface, frequency_Hz, losses, resolution);
       }
-      return make_marched_line(surface, march_equation(surface, frequency_Hz, model, losses));
-    case Model::uniform:
-      return make_uniform_line(surface, frequency_Hz);
+      return make_marched_line(surface, march_equation(surface, frequency_Hz, losses));
     case Model::modes:
       if (surface.drive == DriveShape::piston && surface.theory != PlateTheory::kirchhoff)
         throw std::domain_error(

@@ -36,8 +36,7 @@ class CentreLine {
 enum class Losses { kept, left_out };
 
 // Makes the centre line for a model. Throws std::invalid_argument for Model::edge, which has no profile, and
-// std::domain_error if the model does not apply: `airy` and `uniform` need a turning point on the (continued)
-// taper.
+// std::domain_error if the model does not apply.
 std::unique_ptr<CentreLine> make_centre_line(const Surface& surface, double frequency_Hz, Model model,
                                              Losses losses = Losses::kept);
 
@@ -50,8 +49,8 @@ std::optional<double> turning_point_m(const Surface& surface, double frequency_H
 // solving it would take millions of steps.
 Surface moving_part(const Surface& surface, double frequency_Hz);
 
-// The equation that the models `seed` and `mode` solve step by step.
-MarchEquation march_equation(const Surface& surface, double frequency_Hz, Model model, Losses losses);
+// The equation that the model `mode` solves step by step.
+MarchEquation march_equation(const Surface& surface, double frequency_Hz, Losses losses);
 
 // The most exact single equation for the first transverse mode. On a linear taper of slope d its solution is
 // the two-dimensional mode of the wedge, J_nu(k s) with nu = pi / (2 atan d). On other tapers it is the

@@ -101,18 +101,10 @@ void sum_tones(Field& field, std::size_t points) {
   }
 }
 
-std::string validity_of(const Surface& surface, Model model) {
-  const std::string loss = std::isfinite(surface.quality_factor) ? "loss, " : "";
+std::string validity_of(Model model) {
   switch (model) {
     case Model::edge:
       return "positions only";
-    case Model::airy:
-      return "leaves out " + loss +
-             "the flux correction and the change of the width away from the turning point";
-    case Model::seed:
-      return "leaves out the flux correction sqrt(W0/W) and higher transverse modes";
-    case Model::uniform:
-      return "leaves out " + loss + "a clamped end near the turning point, higher transverse modes";
     case Model::mode:
       return "leaves out higher transverse modes of the drive edge";
     case Model::modes:
@@ -209,7 +201,7 @@ FieldNotes describe(const Surface& surface, std::span<const Tone> tones, const F
     notes.error_bound =
         std::max(notes.error_bound, resonant_error(surface, field.tones[i], field.normalise, weight));
   }
-  notes.validity = validity_of(surface, field.model);
+  notes.validity = validity_of(field.model);
   notes.warnings = surface_warnings(surface);
   for (Warning& warning : tone_warnings(surface, tones)) notes.warnings.push_back(std::move(warning));
   double conditioning = 1;

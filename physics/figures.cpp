@@ -4,6 +4,7 @@
 #include <charconv>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "physics/centre_line.hpp"
 #include "physics/dispersion.hpp"
@@ -12,6 +13,7 @@
 namespace turnpoint::physics {
 namespace {
 
+using std::numbers::pi;
 constexpr int points = 1201;
 
 // The paper's rubber membrane, which is 50 mm wide on each side of the centre line at the drive edge. In
@@ -44,31 +46,86 @@ std::string rounded(double value, int digits) {
 
 std::string hertz(double f) { return f < 1000 ? rounded(f, 6) + " Hz" : rounded(f / 1000, 6) + " kHz"; }
 
-constexpr std::array kModels{Model::mode, Model::seed, Model::airy};
 constexpr std::array kLabels{"corrected mode", "paper's eq. 11, exact", "paper's Airy profile, eqs. 20-22"};
+
+// Airy's function Ai (DLMF 9.6). The negative order -1/3 is made of orders 1/3 of both kinds.
+double airy(double t) {
+  const double z = std::abs(t), zeta = 2.0 / 3 * z * std::sqrt(z), order = 1.0 / 3;
+  if (z < 1e-9) return 0.35502805388781724;
+  if (t > 0) return std::sqrt(z / 3) / pi * std::cyl_bessel_k(order, zeta);
+  return 0.5 * std::sqrt(z / 3) *
+         (std::sqrt(3) * std::cyl_bessel_j(order, zeta) - std::cyl_neumann(order, zeta));
+}
+
+// One of the paper's two profiles on a linear taper that ends at its apex, divided by its last maximum.
+class PaperProfile {
+ public:
+  enum class Kind { equation_11, airy };
+  PaperProfile(const Surface& surface, double f, Kind kind) : kind_(kind) {
+    const auto& taper = std::get<LinearTaper>(surface.taper);
+    apex_m_ = taper.half_width_m / taper.slope;
+    k_ = wavenumber_per_m(surface, f);
+    const double m = pi / (2 * taper.slope);
+    order_ = std::sqrt(m * m + 0.25);
+    turning_m_ = turning_point_m(surface, f).value();
+    airy_per_m_ = std::cbrt(4 * taper.slope * k_ * k_ * k_ / pi);
+    last_maximum_ = find_last_maximum();
+  }
+  double operator()(double x) const { return value(x) / last_maximum_; }
+
+ private:
+  // Equation 11 is solved by sqrt(s) J_mu(k s), s the distance from the apex and mu^2 = (pi/2d)^2 + 1/4.
+  double value(double x) const {
+    if (kind_ == Kind::airy) return airy(airy_per_m_ * (x - turning_m_));
+    const double s = std::max(0.0, apex_m_ - x);
+    return std::sqrt(s) * std::cyl_bessel_j(order_, k_ * s);
+  }
+  // Walks from the apex to the first maximum, then takes the vertex of the parabola through three points.
+  double find_last_maximum() const {
+    const double step = 1e-4 / airy_per_m_;
+    double x = turning_m_ + 2 / airy_per_m_;
+    x = std::min(x, apex_m_ - 2 * step);
+    while (value(x - step) > value(x)) x -= step;
+    const double a = value(x - step), b = value(x), c = value(x + step);
+    return b - (a - c) * (a - c) / (8 * (a - 2 * b + c));
+  }
+
+  Kind kind_;
+  double apex_m_ = 0, k_ = 0, order_ = 0, turning_m_ = 0, airy_per_m_ = 0, last_maximum_ = 1;
+};
+
+// The displacement of one tone by the corrected mode, equation 11 and the Airy profile, in this order.
+std::array<std::vector<double>, 3> tone_curves(const Surface& surface, double f,
+                                               const std::vector<double>& x) {
+  const Tone tone{f, 1, 0};
+  std::array<std::vector<double>, 3> curves;
+  for (const auto& v : evaluate(surface, {&tone, 1}, x, Model::mode, Normalise::peak).tones[0].v)
+    curves[0].push_back(v.real());
+  const PaperProfile exact(surface, f, PaperProfile::Kind::equation_11),
+      near(surface, f, PaperProfile::Kind::airy);
+  for (const double one : x) curves[1].push_back(exact(one)), curves[2].push_back(near(one));
+  return curves;
+}
 
 FigurePanel tone_panel(const Surface& surface, double f) {
   const auto x = linspace_points(surface, points);
-  const Tone tone{f, 1, 0};
   FigurePanel panel{hertz(f), "displacement (last maximum = 1)", {}, {}};
-  for (std::size_t i = 0; i < kModels.size(); ++i) {
-    const Field field = evaluate(surface, {&tone, 1}, x, kModels[i], Normalise::peak);
-    Curve curve{kLabels[i], in_mm(x), {}};
-    for (const auto& v : field.tones[0].v) curve.value.push_back(v.real());
-    panel.curves.push_back(std::move(curve));
-  }
+  auto curves = tone_curves(surface, f, x);
+  for (std::size_t i = 0; i < curves.size(); ++i)
+    panel.curves.push_back({kLabels[i], in_mm(x), std::move(curves[i])});
   if (const auto x0 = turning_point_m(surface, f)) panel.marks.push_back({"turning point", *x0 * 1e3});
   return panel;
 }
 
 FigurePanel sum_panel(const Surface& surface, double f1, double f2) {
   const auto x = linspace_points(surface, points);
-  const Tone tones[] = {{f1, 1, 0}, {f2, 1, 0}};
   FigurePanel panel{
       hertz(f1) + " and " + hertz(f2) + " together", "amplitude (root of summed squares)", {}, {}};
-  for (std::size_t i = 0; i < kModels.size(); ++i) {
-    const Field field = evaluate(surface, tones, x, kModels[i], Normalise::peak);
-    panel.curves.push_back({kLabels[i], in_mm(x), field.amplitude});
+  auto curves = tone_curves(surface, f1, x);
+  const auto others = tone_curves(surface, f2, x);
+  for (std::size_t i = 0; i < curves.size(); ++i) {
+    for (std::size_t j = 0; j < x.size(); ++j) curves[i][j] = std::hypot(curves[i][j], others[i][j]);
+    panel.curves.push_back({kLabels[i], in_mm(x), std::move(curves[i])});
   }
   for (const double f : {f1, f2})
     if (const auto x0 = turning_point_m(surface, f)) panel.marks.push_back({hertz(f), *x0 * 1e3});

@@ -26,7 +26,7 @@ struct LoadSharing {
   // the length u_s: the contacts' part of the load falls by a factor e for each u_s of gap
   double decay_length_m = 2e-6;
   double contact_pressure_Pa = 36945.28049465325;  // P*, which would close the gap
-  double ambient_Pa = 101325;          // the ambient pressure p0
+  double ambient_Pa = 101325;                      // the ambient pressure p0
 };
 
 // One measured point. A table begins at (0, 1), and its relative_friction falls strictly with displacement.

@@ -6,7 +6,7 @@
 namespace turnpoint::physics {
 
 std::string_view name(Model model) {
-  constexpr std::array<std::string_view, 6> names{"edge", "airy", "seed", "uniform", "mode", "modes"};
+  constexpr std::array<std::string_view, 3> names{"edge", "mode", "modes"};
   return names[static_cast<std::size_t>(model)];
 }
 

@@ -105,12 +105,6 @@ double cost_s(const Surface& surface, double f, Model model, int points) {
   switch (model) {
     case Model::edge:
       return 5e-8;
-    case Model::airy:
-      return 1e-6 + 6e-8 * points;
-    case Model::seed:
-      return 3e-6 + 0.2e-6 * kl + 2.5e-8 * points;
-    case Model::uniform:
-      return 2e-6 + 2e-7 * points;
     case Model::mode:
       return plate ? 2e-4 + 5e-8 * points : 3.1e-6 + 0.2e-6 * kl + 2.5e-8 * points;
     case Model::modes:
@@ -134,7 +128,7 @@ void merge(RungEstimate& all, const RungEstimate& one) {
   if (all.reason.empty()) all.reason = one.reason;
 }
 
-// The solution with which all models are compared. It is computed once for each tone.
+// The solution of `mode`, on which all bounds are based. It is computed once for each tone.
 struct Reference {
   double f;
   Edge edge;
@@ -234,7 +228,7 @@ RungEstimate profile_estimate(const Surface& surface, const PlanRequest& request
                               Model model) {
   RungEstimate e;
   e.cost_s = cost_s(surface, reference.f, model, request.points);
-  e.reason = "error measured by comparison with the model mode at probe points";
+  e.reason = "first transverse mode with loss";
   const bool drive = request.normalise != Normalise::peak;
   if (model == Model::modes && surface.theory == PlateTheory::elastic)
     throw std::domain_error("model modes is not available for plate theory elastic");
@@ -254,15 +248,6 @@ RungEstimate profile_estimate(const Surface& surface, const PlanRequest& request
     e.amplitude_bound += unknown;
     e.level_bound_dB += unknown_dB;
   }
-  if (model == Model::mode) {
-    e.reason = "first transverse mode with loss";
-    return e;
-  }
-  const Difference d = compare(surface, request, reference.edge,
-                               probe(surface, reference.edge, reference.f, model), reference.mode);
-  e.amplitude_bound += d.amplitude;
-  e.level_bound_dB += d.level_dB;
-  e.boundary_bound_m += d.position_m;
   return e;
 }
 

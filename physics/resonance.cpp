@@ -21,7 +21,7 @@ class Phase {
   explicit Phase(const Surface& surface) : surface_(surface), taper_(surface) {}
 
   double operator()(double frequency_Hz) const {
-    const TaylorMarch march(taper_, march_equation(surface_, frequency_Hz, Model::mode, Losses::left_out));
+    const TaylorMarch march(taper_, march_equation(surface_, frequency_Hz, Losses::left_out));
     const double v = march.value(0).mantissa.real();
     const double rising = -march.slope(0).mantissa.real() / wavenumber_per_m(surface_, frequency_Hz);
     // The solution is positive at the tip. Each zero between tip and drive edge adds pi and changes the sign.

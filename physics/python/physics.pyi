@@ -8,7 +8,7 @@ Edges = Literal["supported", "clamped"]
 Bending = Literal["auto", "on", "off"]
 DriveShape = Literal["cosine", "piston"]
 PlateTheory = Literal["kirchhoff", "mindlin", "elastic"]
-Model = Literal["edge", "airy", "seed", "uniform", "mode", "modes"]
+Model = Literal["edge", "mode", "modes"]
 Normalise = Literal["drive", "peak", "none"]
 
 class Unreachable(ValueError):

@@ -148,10 +148,10 @@ void add_field(CommandLine& app, Context& context) {
   command
       ->add_option("--points", options->points,
                    "Number of evenly spaced points along the surface, ends included")
-      ->check(range(2, 10'000'000));
+      ->check(range(2, 1'000'000));
   command->add_option("--at", options->at, "Positions in mm, separated by commas");
   command
-      ->add_option("--model", options->model, "Physical model: auto | airy | seed | uniform | mode | modes")
+      ->add_option("--model", options->model, "Physical model: auto | mode | modes")
       ->capture_default_str();
   command->add_option("--tolerance", options->tolerance, "Allowed relative error of the amplitude")
       ->check(positive());

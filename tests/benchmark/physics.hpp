@@ -16,8 +16,6 @@ enum class Task {
   /// Reference: three-dimensional finite elements of a whole plate (tests/physics/oracles/elastic_taper.csv).
   /// The error (m) is that of p50, the boundary at 50 % of the amplitude.
   theory,
-  /// Reference: the closed-form Airy profile of the 1998 paper.
-  airy,
   /// Converts a boundary to a frequency and back with a BoundaryMap; the error is that of the result (m).
   look_up
 };

@@ -15,11 +15,7 @@ struct Series {
   bool joined = true;  ///< whether to draw a line through the settings of a solver
 };
 
-const std::vector<Series> kRungs{{"airy", {"airy"}},
-                                 {"seed", {"seed"}},
-                                 {"uniform", {"uniform"}},
-                                 {"mode", {"mode"}},
-                                 {"modes, three resolutions", {"modes"}}};
+const std::vector<Series> kRungs{{"mode", {"mode"}}, {"modes, three resolutions", {"modes"}}};
 const std::vector<Series> kTheories{{"kirchhoff: mode, modes", {"kirchhoff"}},
                                     {"mindlin: mode, modes", {"mindlin"}},
                                     {"elastic: mode", {"elastic"}}};

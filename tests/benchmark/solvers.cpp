@@ -7,7 +7,6 @@
 #include <fmt/format.h>
 
 #ifdef TURNPOINT_BOOST_PEERS
-#include <boost/math/special_functions/airy.hpp>
 #include <boost/math/special_functions/bessel.hpp>
 #include <boost/numeric/odeint.hpp>
 #endif
@@ -204,17 +203,6 @@ Solution reference_solution(const OneModeProblem& problem) {
   (void)problem;
   return {};
 #endif
-}
-
-std::vector<double> boost_airy(const std::vector<double>& arguments) {
-  std::vector<double> values;
-#ifdef TURNPOINT_BOOST_PEERS
-  values.reserve(arguments.size());
-  for (const double t : arguments) values.push_back(boost::math::airy_ai(t));
-#else
-  (void)arguments;
-#endif
-  return values;
 }
 
 }  // namespace turnpoint::benchmark

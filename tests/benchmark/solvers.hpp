@@ -38,7 +38,4 @@ std::vector<Solver> general_solvers(const OneModeProblem& problem);
 /// with the library. Empty if this build has no Boost.
 Solution reference_solution(const OneModeProblem& problem);
 
-/// The Airy function Ai at each argument, computed by Boost.Math; empty without Boost.
-std::vector<double> boost_airy(const std::vector<double>& arguments);
-
 }  // namespace turnpoint::benchmark

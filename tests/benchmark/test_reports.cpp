@@ -27,8 +27,6 @@ double error_of(Task task, const std::string& scene, const std::string& solver,
 
 TEST_CASE("a better model or a finer resolution has a smaller error against the field", "[benchmark]") {
   const std::string scene = "seed brass 19.6 kHz, Q = 60";
-  CHECK(error_of(Task::field, scene, "airy") > error_of(Task::field, scene, "seed"));
-  CHECK(error_of(Task::field, scene, "seed") > error_of(Task::field, scene, "mode"));
   CHECK(error_of(Task::field, scene, "mode") > error_of(Task::field, scene, "modes", "default"));
   CHECK(error_of(Task::field, scene, "modes", "degree 5, 0 spare") >
         error_of(Task::field, scene, "modes", "default"));

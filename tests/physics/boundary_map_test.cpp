@@ -30,27 +30,22 @@ std::vector<Surface> surfaces() {
 }  // namespace
 
 TEST_CASE(
-    "the map reproduces the 1998 paper's example: turning points and last maxima by Airy, equation 11 and "
-    "the exact mode",
+    "the map reproduces the turning points of the 1998 paper's example and the last maxima of the exact mode",
     "[physics]") {
   struct Row {
-    double f, x0, airy, seed, exact;
+    double f, x0, exact;
   };
-  const Row rows[] = {{8000, 51.701, 19.69, 17.17, 18.42},
-                      {19600, 198.654, 185.59, 184.56, 185.07},
-                      {20000, 200.680, 187.88, 186.87, 187.37},
-                      {40000, 250.340, 243.94, 243.43, 243.68},
-                      {45000, 255.858, 250.17, 249.72, 249.94}};
+  const Row rows[] = {{8000, 51.701, 18.42},
+                      {19600, 198.654, 185.07},
+                      {20000, 200.680, 187.37},
+                      {40000, 250.340, 243.68},
+                      {45000, 255.858, 249.94}};
   const Surface s = seed_brass();
   for (const Row& row : rows) {
     CAPTURE(row.f);
     CHECK(BoundaryMap(s, edge("turning")).boundary_m(row.f).value() * 1e3 == Approx(row.x0).margin(6e-4));
     MapOptions options = edge("peak");
     CHECK(BoundaryMap(s, options).boundary_m(row.f).value() * 1e3 == Approx(row.exact).margin(6e-3));
-    options.model = Model::airy;
-    CHECK(BoundaryMap(s, options).boundary_m(row.f).value() * 1e3 == Approx(row.airy).margin(6e-3));
-    options.model = Model::seed;
-    CHECK(BoundaryMap(s, options).boundary_m(row.f).value() * 1e3 == Approx(row.seed).margin(6e-3));
   }
 }
 

@@ -74,25 +74,19 @@ TEST_CASE("no value is infinite or undefined, from a strip to a steep wedge and 
   for (const double d : {0.0, 1e-6, 0.001, 0.03, 0.5, 1.0}) {
     for (const double f : {4.9e3, 19.6e3, 90e3}) {
       for (const double q : {1.0, 5.0, 60.0, 1e6, infinite}) {
-        for (const Model model : {Model::airy, Model::seed, Model::uniform, Model::mode}) {
-          Surface s = seed_brass();
-          s.quality_factor = q;
-          s.taper = LinearTaper{0.03, d};
-          s.length_m = d > 0 ? std::min(3.0, 0.03 / d) : 3.0;
-          CAPTURE(d, f, q, name(model));
-          std::vector<double> x = linspace_points(s, 37);
-          // also test exactly at the turning point
-          if (const auto x0 = turning_point_m(s, f)) x.push_back(*x0);
-          const Tone tone{f, 1, 0};
-          try {
-            for (const Normalise normalise : {Normalise::drive, Normalise::peak}) {
-              const Field field = evaluate(s, {&tone, 1}, x, model, normalise);
-              CHECK(finite(field));
-              CHECK(std::isfinite(describe(s, {&tone, 1}, field).error_bound));
-            }
-          } catch (const std::domain_error& error) {  // a model that cannot be used here must say so
-            CHECK((model == Model::airy || model == Model::uniform));
-          }
+        Surface s = seed_brass();
+        s.quality_factor = q;
+        s.taper = LinearTaper{0.03, d};
+        s.length_m = d > 0 ? std::min(3.0, 0.03 / d) : 3.0;
+        CAPTURE(d, f, q);
+        std::vector<double> x = linspace_points(s, 37);
+        // also test exactly at the turning point
+        if (const auto x0 = turning_point_m(s, f)) x.push_back(*x0);
+        const Tone tone{f, 1, 0};
+        for (const Normalise normalise : {Normalise::drive, Normalise::peak}) {
+          const Field field = evaluate(s, {&tone, 1}, x, Model::mode, normalise);
+          CHECK(finite(field));
+          CHECK(std::isfinite(describe(s, {&tone, 1}, field).error_bound));
         }
       }
     }
@@ -141,27 +135,6 @@ TEST_CASE("drive_amplitude_m gives every boundary the same displacement at its l
       const Field mode = evaluate(s, {&tone, 1}, {&x, 1}, Model::mode, Normalise::none);
       CHECK(std::abs(20 * std::log10(mode.amplitude[0] / 1e-6)) < 1e-9);
     }
-  }
-}
-
-TEST_CASE("the model uniform agrees with the corrected mode within the published errors", "[physics]") {
-  for (const auto& [d, allowed] : {std::pair{0.1, 6e-4}, std::pair{0.5, 4e-3}}) {
-    Surface s = seed_brass();
-    s.taper = LinearTaper{0.03, d};
-    s.length_m = 0.03 / d;
-    const Tone tone{45e3, 1, 0};
-    const auto x = linspace_points(s, 400);
-    const Field a = evaluate(s, {&tone, 1}, x, Model::uniform, Normalise::peak);
-    const Field b = evaluate(s, {&tone, 1}, x, Model::mode, Normalise::peak);
-    const Field rough = evaluate(s, {&tone, 1}, x, Model::airy, Normalise::peak);
-    double worst = 0, most = 0, coarse = 0;
-    for (std::size_t i = 0; i < x.size(); ++i) {
-      worst = std::max(worst, std::abs(a.amplitude[i] - b.amplitude[i]));
-      coarse = std::max(coarse, std::abs(rough.amplitude[i] - b.amplitude[i]));
-      most = std::max(most, b.amplitude[i]);
-    }
-    CHECK(worst < allowed * most);
-    CHECK(coarse > 0.3 * most);
   }
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "tests/physics/csv_table.hpp"
 #include "tests/support/catch.hpp"
 
 using namespace turnpoint::physics;
@@ -45,4 +46,36 @@ TEST_CASE("relative to the last maximum, equation 11 is larger at the drive edge
   // factor sqrt(W0/W) = 1.7 (W0: half-width at the drive edge, W: at the last maximum).
   CHECK(seed_first / mode_first > 1.4);
   CHECK(seed_first / mode_first < 1.9);
+}
+
+TEST_CASE("the paper's curves have the last maxima that mpmath's Airy and Bessel functions have",
+          "[physics]") {
+  const auto all = figures();
+  const auto peak_mm = [](const Curve& curve) {
+    std::size_t i = curve.value.size() - 2;
+    while (!(curve.value[i] > curve.value[i + 1] && curve.value[i] >= curve.value[i - 1])) --i;
+    const double a = curve.value[i - 1], b = curve.value[i], c = curve.value[i + 1];
+    return curve.x_mm[i] + 0.5 * (a - c) / (a - 2 * b + c) * (curve.x_mm[1] - curve.x_mm[0]);
+  };
+  const auto check = [&](const FigurePanel& panel, double airy_mm, double equation_mm) {
+    CAPTURE(panel.title);
+    CHECK(peak_mm(panel.curves[2]) == Approx(airy_mm).margin(6e-3));
+    CHECK(peak_mm(panel.curves[1]) == Approx(equation_mm).margin(6e-3));
+    for (const std::size_t i : {1u, 2u})
+      CHECK(*std::max_element(panel.curves[i].value.end() - 600, panel.curves[i].value.end()) <= 1 + 1e-9);
+  };
+  check(all[0].panels[0], 185.59, 184.56);
+  check(all[1].panels[0], 187.88, 186.87);
+  check(all[1].panels[1], 243.94, 243.43);
+  check(all[3].panels[0], 19.69, 17.17);
+  check(all[3].panels[1], 250.17, 249.72);
+  const auto rows = turnpoint::physics_test::oracle("paper.csv");
+  REQUIRE(rows.size() == 30);
+  for (const auto& row : rows) {
+    const std::size_t figure = std::stoul(row[0]), panel = std::stoul(row[1]), at = std::stoul(row[2]);
+    const auto& curves = all[figure].panels[panel].curves;
+    CAPTURE(row[0], row[1], row[2]);
+    CHECK(curves[1].value[at] == Approx(std::stod(row[3])).margin(1e-7));
+    CHECK(curves[2].value[at] == Approx(std::stod(row[4])).margin(1e-7));
+  }
 }
