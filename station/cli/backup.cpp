@@ -60,7 +60,7 @@ void drill(const Options& options, Context& context) {
   }
   fmt::print(
       context.out,
-      "the backup {} ({} old) was restored into a temporary file, which was checked and removed again\n",
+      "the backup {} ({}) was restored into a temporary file, which was checked and removed again\n",
       drill.from, desk::age_in_words(drill.age_s));
   fmt::print(
       context.out,

@@ -3,6 +3,7 @@
 #include <cerrno>
 #include <cstring>
 #include <iostream>
+#include <regex>
 #include <system_error>
 
 #include "station/cli/command.hpp"
@@ -50,8 +51,16 @@ bool help_for_tools(const CommandLine& app, const std::vector<std::string>& word
 /// Exit status for an error in the program itself (EX_SOFTWARE of sysexits.h).
 constexpr int kSoftwareFault = 70;
 
+/// Hides the password in each address of a server that a message repeats, as in postgresql://user:password@host and
+/// "host=lab password=...".
+std::string without_passwords(const std::string& message) {
+  static const std::regex address(R"((postgres(?:ql)?://[^\s/@:]*:)[^\s/@]*@)");
+  static const std::regex word(R"((\bpassword\s*=\s*)('(?:[^'\\]|\\.)*'|[^\s;]+))");
+  return std::regex_replace(std::regex_replace(message, address, "$1...@"), word, "$1...");
+}
+
 int report(std::ostream& err, const std::exception& error, int code) {
-  err << "turnpoint: " << error.what() << "\n";
+  err << "turnpoint: " << without_passwords(error.what()) << "\n";
   return code;
 }
 
@@ -90,7 +99,7 @@ int exit_status(std::ostream& err, const std::function<int()>& work) {
   try {
     return work();
   } catch (const text::BadInput& error) {
-    err << error.what() << "\n";
+    err << without_passwords(error.what()) << "\n";
     return 2;
   } catch (const UsageError& error) {
     return report(err, error, 2);

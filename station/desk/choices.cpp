@@ -169,12 +169,12 @@ CheckWords words_of(const simulation::Check& check) {
 }
 
 std::string age_in_words(double age_s) {
-  if (age_s < 0) return "in the future (the clock was set back)";
+  if (age_s < 0) return "dated in the future: a clock was wrong";
   const auto whole = [](double value, const char* unit) { return number(std::floor(value), 4) + " " + unit; };
-  if (age_s < 120) return whole(age_s, "s");
-  if (age_s < 7200) return whole(age_s / 60, "min");
-  if (age_s < 172800) return whole(age_s / 3600, "h");
-  return whole(age_s / 86400, "days");
+  if (age_s < 120) return whole(age_s, "s old");
+  if (age_s < 7200) return whole(age_s / 60, "min old");
+  if (age_s < 172800) return whole(age_s / 3600, "h old");
+  return whole(age_s / 86400, "days old");
 }
 
 }  // namespace turnpoint::desk

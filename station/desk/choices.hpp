@@ -77,7 +77,7 @@ struct CheckWords {
 };
 CheckWords words_of(const simulation::Check& check);
 
-/// Formats an age as people say it: "3 min", "2 h", "4 days".
+/// Formats an age as people say it: "3 min old", "2 h old", "4 days old".
 std::string age_in_words(double age_s);
 
 }  // namespace turnpoint::desk

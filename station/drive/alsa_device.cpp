@@ -219,7 +219,9 @@ AlsaDevice open_alsa_device(const OutputConfig& config, const std::string& name,
   const auto stream = direction == Direction::capture ? SND_PCM_STREAM_CAPTURE : SND_PCM_STREAM_PLAYBACK;
   const int opened = snd_pcm_open(&pcm, name.c_str(), stream, no_conversion | SND_PCM_NONBLOCK);
   check(opened, name,
-        opened == -EBUSY ? "the device is in use by another program" : "the device cannot be opened");
+        opened == -EBUSY                        ? "the device is in use by another program"
+        : opened == -EACCES || opened == -EPERM ? "this user may not use sound devices; add the user to the group audio"
+                                                : "the device cannot be opened");
   device.pcm.reset(pcm);
   check_type(pcm, config, name);
   set_hardware(device, config, name);

@@ -14,6 +14,7 @@
 #include <regex>
 #include <string_view>
 #include <utility>
+#include <system_error>
 
 #include "station/drive/alsa_capture.hpp"
 #include "station/drive/alsa_mixer.hpp"
@@ -79,6 +80,13 @@ bool has_card_number(const std::string& uri) {
   return std::regex_match(uri, numbered);
 }
 
+/// What to do if a sound device does not open.
+Phrase sound_mend(const std::exception& error, const char* otherwise) {
+  const auto* refused = dynamic_cast<const std::system_error*>(&error);
+  const bool rights = refused != nullptr && refused->code() == std::errc::permission_denied;
+  return phrase(rights ? "doctor.sound_rights_mend" : otherwise);
+}
+
 void converter(const rig::Rig& rig, std::vector<lines::Finding>& checks) {
   const auto uri = plain(rig.output.uri), name = phrase("doctor.converter");
   if (!rig.output.uri.starts_with("alsa:")) {
@@ -100,7 +108,7 @@ void converter(const rig::Rig& rig, std::vector<lines::Finding>& checks) {
                       phrase("doctor.underruns", {number(underruns)}),
                       underruns == 0 ? Phrase() : phrase("doctor.underruns_mend")});
   } catch (const std::exception& error) {
-    checks.push_back({name, Status::failed, lines::reported(error), phrase("doctor.converter_mend")});
+    checks.push_back({name, Status::failed, lines::reported(error), sound_mend(error, "doctor.converter_mend")});
   }
 }
 
@@ -122,7 +130,7 @@ lines::Finding capture(const session::CardCapture& plan) {
                                        number(plan.device.rate_Hz), number(counters.frames), number(lost)}),
             good ? Phrase() : mend};
   } catch (const std::exception& error) {
-    return {name, Status::failed, lines::reported(error), mend};
+    return {name, Status::failed, lines::reported(error), sound_mend(error, "doctor.capture_mend")};
   }
 }
 

@@ -22,12 +22,12 @@ namespace {
 /// Backups are named STEM-NUMBER-TIME.sqlite.
 const std::regex kName(R"((.*?)-(\d{6,12})-(\d{8}T\d{6})\.\d{3}Z\.sqlite)");
 
-/// Converts a UTC time such as "20240229T120000" to ns since 1970.
-std::int64_t nanoseconds_of(const std::string& stamp) {
+/// Converts a UTC time such as "20240229T120000" to seconds since 1970. The year may be any of four digits.
+std::int64_t seconds_of(const std::string& stamp) {
   std::tm utc{};
   return ::strptime(stamp.c_str(), "%Y%m%dT%H%M%S", &utc) == nullptr
              ? 0
-             : static_cast<std::int64_t>(::timegm(&utc)) * 1'000'000'000;
+             : static_cast<std::int64_t>(::timegm(&utc));
 }
 
 std::string meta(Database& database, const std::string& key) {
@@ -41,7 +41,7 @@ StoredBackup read_backup(const std::string& path, const std::smatch& name) {
   backup.path = path;
   backup.stem = name[1];
   backup.number = std::stoll(name[2]);
-  backup.made_realtime_ns = nanoseconds_of(name[3]);
+  backup.made_realtime_s = seconds_of(name[3]);
   try {
     Database database(path, Database::Access::immutable);
     require_schema(database);

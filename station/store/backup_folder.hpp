@@ -18,7 +18,7 @@ struct StoredBackup {
   /// file name of the database at the time of the backup, without folder and ending
   std::string stem;
   std::int64_t number = 0;            ///< increases with each backup in the folder
-  std::int64_t made_realtime_ns = 0;  ///< time of the backup, read from its file name
+  std::int64_t made_realtime_s = 0;  ///< time of the backup since 1970, read from its file name
   /// error that prevented reading the backup; "" if it could be read or is known to be damaged
   std::string trouble;
   bool readable() const { return !database_id.empty(); }

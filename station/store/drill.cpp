@@ -89,7 +89,7 @@ Drill drill_restore(const std::string& name, const std::string& folder) {
       newest_backup(directory, path, live.text("SELECT value FROM meta WHERE key = 'database_id'"));
   Drill drill{backup.path,
               backup.number,
-              1e-9 * static_cast<double>(system::realtime_ns() - backup.made_realtime_ns),
+              1e-9 * static_cast<double>(system::realtime_ns()) - static_cast<double>(backup.made_realtime_s),
               0,
               0,
               sessions_in(live),

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <sqlite3.h>
 
+#include <cerrno>
 #include <cmath>
 #include <cstring>
 #include <utility>
@@ -57,6 +58,10 @@ const char* advice(ErrorKind kind) {
       return "check the disk; rows committed before are intact";
   }
 }
+
+constexpr auto kTooLarge =
+    "rows committed before are intact; use a disk with ext4 (FAT32 has files of at most 4 GB), or raise the limit on "
+    "the size of files (ulimit -f)";
 
 int flags_of(Database::Access access) {
   const int common = SQLITE_OPEN_NOMUTEX | SQLITE_OPEN_URI | SQLITE_OPEN_EXRESCODE;
@@ -221,6 +226,8 @@ int Database::changes() const { return sqlite3_changes(handle_); }
 
 void Database::fail(int code, const std::string& what) const {
   const auto kind = kind_of(code);
+  if (kind == ErrorKind::io && sqlite3_system_errno(handle_) == EFBIG)
+    throw StoreError(kind, fmt::format("database {}: {}: the file may not become larger; {}", path_, what, kTooLarge));
   throw StoreError(
       kind, fmt::format("database {}: {}: {}; {}", path_, what, sqlite3_errmsg(handle_), advice(kind)));
 }

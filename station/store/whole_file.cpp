@@ -67,8 +67,10 @@ std::string orphan_of(const std::string& path) {
 
 std::string time_stamp() {
   const auto ns = system::realtime_ns();
-  const std::time_t seconds = ns / 1'000'000'000;
-  return fmt::format("{:%Y%m%dT%H%M%S}.{:03}Z", fmt::gmtime(seconds), ns / 1'000'000 % 1000);
+  const auto milliseconds = ns / 1'000'000 - (ns % 1'000'000 < 0 ? 1 : 0);
+  const auto fraction = (milliseconds % 1000 + 1000) % 1000;  // also before 1970
+  const std::time_t seconds = (milliseconds - fraction) / 1000;
+  return fmt::format("{:%Y%m%dT%H%M%S}.{:03}Z", fmt::gmtime(seconds), fraction);
 }
 
 void check_pages(Database& database) {

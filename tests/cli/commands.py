@@ -299,6 +299,10 @@ class Outputs(HelpExamples):
                 self.assertIn(status, (1, 2), out + err)
                 self.assertNotEqual(err, "")
                 self.assertEqual(self.bytes_of("kept"), {"kept": b"kept"})
+        # FAT32 sets such a limit, too
+        status, out, err = run(f"ulimit -f 100; exec {PROGRAM} backup --db lab.sqlite --dir backups", self.folder)
+        self.assertEqual(status, 1, out + err)
+        self.assertIn("the file may not become larger", err)
 
     def test_a_failed_standard_output_is_a_failure(self):
         for name in self.names:

@@ -50,6 +50,15 @@ TEST_CASE("the exit status says whose mistake it was", "[cli]") {
   }
 }
 
+TEST_CASE("no message repeats a password", "[cli]") {
+  const auto said = [](const std::string& what) { return ending_with(std::runtime_error(what)).said; };
+  for (const auto* address : {"postgresql://lab:geheim@host/x", "postgres://lab:geheim@host", "host=lab password=geheim",
+                              "service=lab password = 'geheim \\' geheim' user=x"})
+    CHECK(said(std::string("there is no file ") + address).find("geheim") == std::string::npos);
+  CHECK(said("there is no file a:b@c.sqlite") == "turnpoint: there is no file a:b@c.sqlite\n");
+  CHECK(said("postgresql://lab:geheim@host/x: gone") == "turnpoint: postgresql://lab:...@host/x: gone\n");
+}
+
 TEST_CASE("numbers that the physics library refuses count as the user's mistake", "[cli]") {
   CHECK(status_of({"map", "--rig", kRig, "--frequency", "30000", "--edge", "nowhere"}) == 2);
   CHECK(status_of({"map", "--rig", kRig, "--frequency", "30000", "--model", "fem"}) == 2);

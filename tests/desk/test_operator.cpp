@@ -357,8 +357,9 @@ TEST_CASE("preparing a session that is no longer wanted is abandoned before it p
 }
 
 TEST_CASE("ages are formatted as people say them", "[operator]") {
-  CHECK(desk::age_in_words(30) == "30 s");
-  CHECK(desk::age_in_words(600) == "10 min");
-  CHECK(desk::age_in_words(3 * 3600) == "3 h");
-  CHECK(desk::age_in_words(80 * 3600) == "3 days");
+  CHECK(desk::age_in_words(30) == "30 s old");
+  CHECK(desk::age_in_words(600) == "10 min old");
+  CHECK(desk::age_in_words(3 * 3600) == "3 h old");
+  CHECK(desk::age_in_words(80 * 3600) == "3 days old");
+  CHECK(desk::age_in_words(-5) == "dated in the future: a clock was wrong");
 }

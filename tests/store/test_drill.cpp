@@ -56,6 +56,20 @@ TEST_CASE(
   CHECK(names_in(folder.path) == beside);
 }
 
+TEST_CASE("a drill finds backups of every year, and says how old they are", "[store][drill]") {
+  TemporaryFolder folder;
+  const auto db = folder / "a.sqlite", dir = folder / "backups";
+  sample::session(db, 1);
+  const auto path = backup(db, {dir, 9}).path;
+  const auto [year, years] = GENERATE(std::pair{"1965", 61.0}, std::pair{"2400", -374.0});
+  auto renamed = path;
+  renamed.replace(renamed.rfind("Z.sqlite") - 19, 4, year);
+  std::filesystem::rename(path, renamed);
+  const auto drill = drill_restore(db, dir);
+  CHECK(drill.from == renamed);
+  CHECK(drill.age_s / (365.25 * 86400) == Approx(years).margin(2));
+}
+
 TEST_CASE(
     "a restore drill detects a backup that is damaged, was changed, or does not contain the database's "
     "sessions",
