@@ -8,6 +8,7 @@
 
 #include "station/analysis/proportion.hpp"
 #include "station/analysis/signal_detection.hpp"
+#include "station/analysis/student.hpp"
 #include "station/text/number.hpp"
 
 namespace turnpoint::analysis {
@@ -61,7 +62,8 @@ std::optional<Proportion> catch_accuracy(const std::vector<TrialRecord>& trials)
   Proportion result;
   for (const auto& trial : trials) {
     const bool missed = trial.outcome == Outcome::timeout || trial.outcome == Outcome::anticipation;
-    if (trial.type != TrialType::catch_trial || !(missed ? trial.right_choice.has_value() : trial.correct.has_value()))
+    if (trial.type != TrialType::catch_trial ||
+        !(missed ? trial.right_choice.has_value() : trial.correct.has_value()))
       continue;
     ++result.trials;
     result.right += !missed && *trial.correct;
@@ -130,6 +132,21 @@ Fatigue fatigue(const std::vector<TrialRecord>& trials) {
   if (result.response_time_s && result.response_time_s->interval.low > 0)
     result.statements.push_back({"slowing", texts::phrase("statement.slowing")});
   return result;
+}
+
+std::optional<Estimate> post_error_slowing(const std::vector<TrialRecord>& trials,
+                                           const std::string& condition) {
+  const auto is = [&](const TrialRecord& trial, bool right) {
+    return trial.type == TrialType::experimental && trial.outcome == Outcome::answered &&
+           trial.instruction == condition && trial.correct == right && trial.response_time_s;
+  };
+  std::vector<double> gaps_s;
+  for (std::size_t i = 2; i + 1 < trials.size(); ++i) {
+    if (trials[i - 2].block_index != trials[i + 1].block_index) continue;
+    if (is(trials[i - 2], true) && is(trials[i - 1], true) && is(trials[i], false) && is(trials[i + 1], true))
+      gaps_s.push_back(*trials[i + 1].response_time_s - *trials[i - 1].response_time_s);
+  }
+  return student_mean(gaps_s);
 }
 
 OutcomeCounts count_outcomes(const std::vector<TrialRecord>& trials) {

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "station/analysis/estimate.hpp"
 #include "station/analysis/trial_record.hpp"
 
 namespace turnpoint::analysis {
@@ -65,6 +66,14 @@ struct Fatigue {
 /// controlled for: from each value, the mean of the trials with the same level and instruction is subtracted.
 /// Empty with fewer than 20 answered trials.
 Fatigue fatigue(const std::vector<TrialRecord>& trials);
+
+/// Post-error slowing in s, robust against drifts over a session (Dutilh et al. 2012, J. Math. Psychol.
+/// 56:208-216): the mean of the response time after an error minus that before the same error, with a 95 %
+/// interval by Student's t. Takes runs of four experimental trials of one block and condition that follow each
+/// other without a gap: right, right, wrong, right. Empty with fewer than 3 such runs. `trials` are in the
+/// order of presentation.
+std::optional<Estimate> post_error_slowing(const std::vector<TrialRecord>& trials,
+                                           const std::string& condition);
 
 struct OutcomeCounts {
   int presented = 0, answered = 0, timeouts = 0, anticipations = 0, aborted = 0, faults = 0;

@@ -6,6 +6,7 @@
 #include <iterator>
 #include <map>
 
+#include "station/analysis/course.hpp"
 #include "station/analysis/diffusion.hpp"
 #include "station/analysis/proportion.hpp"
 #include "station/analysis/quantile.hpp"
@@ -324,6 +325,7 @@ Trade trade(const std::vector<TrialRecord>& trials, const TradeOptions& options)
     auto& entry = result.instructions.emplace_back();
     entry.instruction = name;
     groups.push_back(collect(trials, options, entry));
+    entry.post_error_s = post_error_slowing(trials, name);
     fill_cells(groups.back(), entry, static_cast<int>(groups.size()), options);
   }
   std::vector<const DiffusionCheck*> checks;

@@ -151,7 +151,8 @@ constexpr MeasureRow kRows[] = {
     {"Drift v, mean over difficulties (1/s, s = 0.1)", "drift", "ez", &Result::drift},
     {"Share of trials that were no decision (0 to 1)", "", "ez", &Result::contaminants},
     {"LISAS (s)", "LISAS", "lisas", &Result::lisas_s},
-    {"Inverse efficiency (s)", "inverse efficiency", "ies", &Result::inverse_efficiency_s}};
+    {"Inverse efficiency (s)", "inverse efficiency", "ies", &Result::inverse_efficiency_s},
+    {"Slower after an error than before it (s)", "", "", &Result::post_error_s}};
 
 bool has(const MeasureRow& row, const Summary& summary) {
   return *row.part == '\0' || shows(summary.data, row.part);
@@ -319,6 +320,15 @@ std::string trade_section(const Summary& summary) {
         "The numbers "
         "are medians of the posterior distribution, with 95 % intervals.</p>\n";
   html += model_section(summary);
+  if (shows(summary.data, "lisas") || shows(summary.data, "ies"))
+    html +=
+        "<p class=\"soft\">LISAS and inverse efficiency combine speed and accuracy, but neither is free of "
+        "the "
+        "trade-off itself: both can change when only the boundary does (Vandierendonck 2017; Liesefeld &amp; "
+        "Janczyk "
+        "2019). Inverse efficiency suits few errors only (Bruyer &amp; Brysbaert 2011: up to 10 %). Do not "
+        "read a "
+        "difference of these scores as a difference of ability; the drift tells that.</p>\n";
   if (several && shows(summary.data, "bis"))
     html +=
         "<p class=\"soft\">The balanced integration score (BIS) standardises accuracy and time over all "

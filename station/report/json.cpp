@@ -1,5 +1,6 @@
 #include <cmath>
 
+#include "station/analysis/proportion.hpp"
 #include "station/analysis/psychometric_posterior.hpp"
 #include "station/report/html.hpp"
 #include "station/report/json_parts.hpp"
@@ -85,6 +86,7 @@ Json instruction_json(const analysis::InstructionResult& entry) {
   json["drift"] = value(entry.drift);
   json["lisas_s"] = value(entry.lisas_s);
   json["inverse_efficiency_s"] = value(entry.inverse_efficiency_s);
+  json["post_error_slowing_s"] = value(entry.post_error_s);
   json["deciles_s"] = entry.times ? Json(entry.times->deciles_s) : Json(nullptr);
   json["difficulties"] = Json::array();
   for (const auto& cell : entry.cells)
@@ -101,8 +103,10 @@ Json instruction_json(const analysis::InstructionResult& entry) {
           {{"right", prediction_json(difficulty.right)}, {"wrong", prediction_json(difficulty.wrong)}});
   json["caf"] = Json::array();
   for (const auto& bin : entry.caf)
-    json["caf"].push_back(
-        {{"mean_time_s", value(bin.mean_time_s)}, {"trials", bin.trials}, {"correct", bin.correct}});
+    json["caf"].push_back({{"mean_time_s", value(bin.mean_time_s)},
+                           {"trials", bin.trials},
+                           {"correct", bin.correct},
+                           {"interval", value(analysis::wilson(bin.correct, bin.trials))}});
   json["statements"] = value(entry.statements);
   return json;
 }

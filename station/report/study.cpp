@@ -135,6 +135,7 @@ void add_measures(const Summary& summary, StudyPerson& person) {
     measures.add(entry.instruction, "drift", "s = 0.1", entry.drift);
     measures.add(entry.instruction, "LISAS", "s", entry.lisas_s);
     measures.add(entry.instruction, "inverse efficiency", "s", entry.inverse_efficiency_s);
+    if (data.scored) measures.add(entry.instruction, "post-error slowing", "s", entry.post_error_s);
   }
   for (const auto& detection : summary.detections)
     if (!detection.level) {

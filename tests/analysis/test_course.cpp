@@ -1,4 +1,6 @@
 #include "station/analysis/course.hpp"
+
+#include "station/random/draws.hpp"
 #include "tests/support/catch.hpp"
 
 using namespace turnpoint::analysis;
@@ -92,4 +94,36 @@ TEST_CASE("Traces show each procedure's trials in the order of presentation, wit
   const auto counts = count_outcomes(trials);
   CHECK(counts.presented == 5);
   CHECK(counts.answered == 5);
+}
+
+TEST_CASE("Post-error slowing is found, and a session that becomes slower and worse does not look like it",
+          "[analysis]") {
+  for (const double slowing_s : {0.0, 0.08}) {
+    turnpoint::random::Draws draws({14, turnpoint::random::Stream::observer, 0, 0, 0});
+    std::vector<TrialRecord> trials;
+    bool after_error = false;
+    double after = 0, other = 0;
+    int errors = 0, others = 0;
+    for (int i = 0; i < 2000; ++i) {
+      TrialRecord trial;
+      trial.trial_index = i;
+      const double late = i / 2000.0;  // people tire: answers come later and are more often wrong
+      trial.correct = draws.uniform() > 0.02 + 0.3 * late;
+      trial.response_time_s = 0.5 + 0.4 * late + 0.05 * draws.normal() + (after_error ? slowing_s : 0);
+      (after_error ? after : other) += *trial.response_time_s;
+      ++(after_error ? errors : others);
+      after_error = !*trial.correct;
+      trials.push_back(trial);
+    }
+    const auto found = post_error_slowing(trials, "");
+    REQUIRE(found);
+    CHECK(found->interval.low < slowing_s);
+    CHECK(slowing_s < found->interval.high);
+    CHECK(found->interval.high - found->interval.low < 0.05);
+    // the plain difference of the means finds a slowing of 0.08 s that does not exist
+    if (slowing_s == 0) CHECK(after / errors - other / others > 0.05);
+    CHECK_FALSE(post_error_slowing(trials, "another"));
+    for (auto& trial : trials) trial.block_index = trial.trial_index / 3;  // no run of four in a block
+    CHECK_FALSE(post_error_slowing(trials, ""));
+  }
 }
