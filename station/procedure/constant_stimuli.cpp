@@ -54,7 +54,8 @@ ConstantStimuli::ConstantStimuli(const Spec& spec, const Context& context, const
 std::vector<ConstantStimuli::Item> ConstantStimuli::items(random::Draws& draws) const {
   const auto repeats = static_cast<std::size_t>(spec_.repeats);
   std::vector<Item> all(repeats * spec_.values.size());
-  for (std::size_t i = 0; i < all.size(); ++i) all[i].value = i % spec_.values.size();
+  for (std::size_t i = 0; i < all.size(); ++i)
+    all[i].value = i % spec_.values.size(), all[i].repeat = i / spec_.values.size();
   Levels shuffled;
   for (const auto& factor : spec_.balance) shuffled.emplace_back(context_.factor_levels.at(factor));
   const auto cells = crossed(shuffled);
@@ -79,59 +80,37 @@ void ConstantStimuli::order(std::vector<Item>& items, random::Draws& draws) cons
     draws.shuffle(part);
     std::copy(part.begin(), part.end(), items.begin() + static_cast<std::ptrdiff_t>(first));
   }
-  if (spec_.max_run && context_.right_answer) break_runs(items, draws);
 }
 
-bool ConstantStimuli::runs_too_long(const std::vector<Item>& items, std::size_t at) const {
-  const auto right = [&](std::size_t i) { return context_.right_answer(spec_.values[items[i].value]); };
-  const auto limit = static_cast<std::size_t>(*spec_.max_run);
-  if (at < limit || right(at) < 0) return false;
-  for (std::size_t back = 1; back <= limit; ++back)
-    if (right(at - back) != right(at)) return false;
-  return true;
+std::size_t ConstantStimuli::choices() const {
+  if (position_ >= queue_.size() || spec_.shuffle == Shuffle::none) return 1;
+  if (spec_.shuffle == Shuffle::within_block) return queue_.size() - position_;
+  auto end = position_;
+  while (end < queue_.size() && queue_[end].repeat == queue_[position_].repeat) ++end;
+  return end - position_;
 }
 
-void ConstantStimuli::break_runs(std::vector<Item>& items, random::Draws& draws) const {
-  const auto n = spec_.shuffle == Shuffle::within_repeat ? spec_.values.size() : items.size();
-  for (std::size_t at = 0; at < items.size(); ++at) {
-    if (!runs_too_long(items, at)) continue;
-    // Swap with a later item (of the same repeat, if each repeat is shuffled separately) that makes no run
-    // too long here.
-    const auto end = std::min(items.size(), (at / n + 1) * n);
-    std::vector<std::size_t> others;
-    for (std::size_t i = at + 1; i < end; ++i) {
-      std::swap(items[at], items[i]);
-      if (!runs_too_long(items, at)) others.push_back(i);
-      std::swap(items[at], items[i]);
-    }
-    if (!others.empty()) {
-      std::swap(items[at], items[others[draws.below(others.size())]]);
-      continue;
-    }
-    // If there is no such item, move the item to an earlier place where it makes no run too long.
-    for (std::size_t i = at; i-- > at / n * n;) {
-      std::swap(items[at], items[i]);
-      bool good = true;
-      for (std::size_t j = i; j <= at && good; ++j) good = !runs_too_long(items, j);
-      if (good) break;
-      std::swap(items[at], items[i]);
-    }
-  }
-}
-
-std::optional<Proposal> ConstantStimuli::next() const {
-  if (position_ >= queue_.size()) return std::nullopt;
-  if (enough_right(spec_.stop, answers_.size(), [this](std::size_t i) { return answers_[i]; }))
-    return std::nullopt;
-  const auto& item = queue_[position_];
+Proposal ConstantStimuli::choice(std::size_t place) const {
+  const auto& item = queue_.at(position_ + place);
   Proposal proposal{spec_.values[item.value], {}};
   for (std::size_t i = 0; i < spec_.balance.size(); ++i)
     proposal.balanced.emplace_back(spec_.balance[i], item.balance[i]);
   return proposal;
 }
 
+void ConstantStimuli::choose(std::size_t place) {
+  std::swap(queue_.at(position_), queue_.at(position_ + place));
+}
+
+std::optional<Proposal> ConstantStimuli::next() const {
+  if (position_ >= queue_.size()) return std::nullopt;
+  if (enough_right(spec_.stop, answers_.size(), [this](std::size_t i) { return answers_[i]; }))
+    return std::nullopt;
+  return choice(0);
+}
+
 void ConstantStimuli::record(Answer answer) {
-  const auto item = queue_[position_++];
+  auto item = queue_[position_++];
   if (spec_.stop.right && answer != Answer::none) answers_.push_back(answer == Answer::one);
   if (answer != Answer::none || context_.unanswered_are_data) {
     ++recorded_;
@@ -142,6 +121,7 @@ void ConstantStimuli::record(Answer answer) {
   random::Draws draws({key_.seed, random::Stream::level_order, key_.block, key_.attempt, 1 + requeued_++});
   const auto left = queue_.size() - position_;
   const auto offset = left == 0 ? 0 : 1 + draws.below(left);
+  if (left > 0) item.repeat = queue_[position_ + offset - 1].repeat;
   queue_.insert(queue_.begin() + static_cast<std::ptrdiff_t>(position_ + offset), item);
 }
 
@@ -174,8 +154,6 @@ extern const Description constant_stimuli{
         problems.push_back({"values", phrase("problem.missing"), phrase("problem.list_levels")});
       if (spec.repeats < 1)
         problems.push_back({"repeats", phrase("problem.below_one"), phrase("problem.one_or_more_whole")});
-      if (spec.max_run && *spec.max_run < 1)
-        problems.push_back({"order.max_run", phrase("problem.below_one"), phrase("problem.one_or_more")});
     },
     [](const Spec& spec, const Context& context, const random::Key& key) -> std::unique_ptr<Procedure> {
       return std::make_unique<ConstantStimuli>(spec, context, key);

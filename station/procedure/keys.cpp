@@ -12,6 +12,18 @@ using text::TableReader;
 
 namespace {
 
+void read_max_run(TableReader& order, Spec& spec) {
+  const auto* table = order.take("max_run");
+  if (!table || table->kind != text::Value::Kind::table) {
+    if (const auto limit = order.maybe_integer("max_run", 1, 1000)) spec.max_run[kRightAnswer] = *limit;
+    return;
+  }
+  TableReader inner(*table, order.path("max_run"), order.findings());
+  for (const auto& entry : table->entries)
+    if (const auto limit = inner.maybe_integer(entry.key, 1, 1000)) spec.max_run[entry.key] = *limit;
+  inner.finish();
+}
+
 void read_order(TableReader& reader, Spec& spec) {
   const auto* table = reader.maybe_table("order");
   if (!table) {
@@ -23,11 +35,19 @@ void read_order(TableReader& reader, Spec& spec) {
   spec.shuffle = shuffle == "none"           ? Shuffle::none
                  : shuffle == "within-block" ? Shuffle::within_block
                                              : Shuffle::within_repeat;
-  spec.max_run = inner.maybe_integer("max_run", 1, 1000);
+  read_max_run(inner, spec);
   inner.finish();
 }
 
 }  // namespace
+
+void read_runs(TableReader& reader, Spec& spec) {
+  const auto* table = reader.maybe_table("order");
+  if (!table) return;
+  TableReader inner(*table, reader.path("order"), reader.findings());
+  read_max_run(inner, spec);
+  inner.finish();
+}
 
 void read_tracks(TableReader& reader, Spec& spec) {
   spec.tracks = reader.maybe_string("tracks").value_or("");
@@ -48,11 +68,11 @@ void read_stop(TableReader& reader, Spec& spec) {
   spec.stop.threshold_sd = inner.maybe_number("threshold_sd", {0, 1e6, Range::Ends::open_low});
   spec.stop.entropy_nats = inner.maybe_number("entropy_nats", {-100, 100});
   spec.stop.max_trials = inner.maybe_integer("max_trials", 1, 100000);
-  if (spec.stop.max_trials && *spec.stop.max_trials < std::max(spec.stop.trials.value_or(0),
-                                                               spec.stop.min_trials.value_or(0)))
+  if (spec.stop.max_trials &&
+      *spec.stop.max_trials < std::max(spec.stop.trials.value_or(0), spec.stop.min_trials.value_or(0)))
     inner.problem("max_trials", phrase("problem.max_trials"),
-                  phrase("problem.at_least", {plain(std::max(spec.stop.trials.value_or(0),
-                                                             spec.stop.min_trials.value_or(0)))}));
+                  phrase("problem.at_least",
+                         {plain(std::max(spec.stop.trials.value_or(0), spec.stop.min_trials.value_or(0)))}));
   if (spec.start) spec.stop.limit_steps = inner.maybe_integer("limit_steps", 1, 1000);
   read_right_of_last(inner, spec);
   const int rules = inner.has("right") + inner.has("trials") + inner.has("reversals") +

@@ -65,12 +65,9 @@ struct ThresholdAt {
 
 class Programs;
 
-/// What constant stimuli need to know about the protocol: the number of levels of each balanced factor, and
-/// the right answer at a level (-1 if no answer is right). The right answer is needed to limit runs of equal
-/// right answers.
+/// What constant stimuli need to know about the protocol: the number of levels of each balanced factor.
 struct Context {
   std::map<std::string, std::size_t> factor_levels;
-  std::function<int(double level)> right_answer;
   /// true if the deadline is part of the design: unanswered trials then count as presented and are not
   /// repeated
   bool unanswered_are_data = false;
@@ -89,6 +86,12 @@ class Procedure {
   virtual bool ready() const { return true; }
   /// returns the next level to present; empty when the procedure is done
   virtual std::optional<Proposal> next() const = 0;
+  /// Number of proposals of which choose() may make any the next one: the rest of a shuffled list, or of the
+  /// present repeat. 1 if there is no choice.
+  virtual std::size_t choices() const { return 1; }
+  /// the proposal at this place, from 0, which is that of next()
+  virtual Proposal choice(std::size_t) const { return *next(); }
+  virtual void choose(std::size_t) {}
   /// why next() returns nothing
   virtual Ended ended() const { return next() ? Ended::no : Ended::rule; }
   /// says the same if it was not by its rules; otherwise empty

@@ -128,10 +128,11 @@ void check_followed(AdviceList& advice, const Source& source) {
 // Checks that some order of the trials satisfies `max_run`. Only a trial with another right answer can end a
 // run of trials with the same right answer.
 void check_runs(AdviceList& advice, const Spec& spec) {
-  if (!spec.max_run || spec.values.empty()) return;
+  const auto limit = spec.max_run.find(procedure::kRightAnswer);
+  if (limit == spec.max_run.end() || spec.values.empty()) return;
   const auto right = right_at(advice.protocol, spec.level, spec.values);
   for (const auto& [id, times] : right.times)
-    if (times > *spec.max_run * (right.all - times))
+    if (times > limit->second * (right.all - times))
       return advice.add(key_of(spec, "order.max_run"),
                         phrase("problem.long_runs", {plain(id), plain(times), plain(right.all)}),
                         phrase("problem.set_max_run"));

@@ -37,6 +37,19 @@ struct Director::State {
   std::map<std::size_t, std::vector<Stroke>> strokes;
   std::optional<TrialSpec> current;
   int current_procedure = no_procedure;
+  int last_procedure = no_procedure;  ///< that of the last trial of a procedure in this block
+  std::vector<int> pass;  ///< procedures whose turn is yet to come in this pass, if they come in passes
+
+  /// How many of the last trials of the block had the same value. Values are compared as text.
+  struct Run {
+    int limit = 0, length = 0;
+    std::string value;
+  };
+  std::map<std::string, Run> runs;  ///< the block's limits of runs, by the keys of procedure::Spec::max_run
+  std::map<std::string, Director::LongRun> long_runs;
+  /// Trials of this block that present the intervals in the order of another trial, which has theirs.
+  std::map<int, int> swapped_orders;
+  int redraws = 0;  ///< number of draws of the trial's factors that have been given up
 
   State(const protocol::Protocol& p, const protocol::Visit& visit, std::uint64_t s,
         procedure::Programs* starts, procedure::EarlierTrials before)
@@ -58,7 +71,7 @@ struct Director::State {
   // These functions handle blocks and procedures (director.cpp).
   void enter_block();
   const procedure::Spec* find_spec(const std::string& name) const;
-  procedure::Context context_for(const procedure::Spec& spec) const;
+  procedure::Context context_for() const;
   void learn(const TrialEnd& end);
   int block_expected(const protocol::Block& b) const;
 
@@ -67,7 +80,7 @@ struct Director::State {
   void set_times(TrialSpec& spec) const;
   protocol::Factors drawn_factors() const;
   protocol::FactorValue drawn_value(const protocol::Factor& factor, int number) const;
-  std::optional<int> pick_procedure() const;
+  std::optional<int> pick_procedure();
   bool catch_due() const;
   TrialSpec blank(terms::TrialType type) const;
   void complete(TrialSpec& spec) const;
@@ -78,6 +91,15 @@ struct Director::State {
   std::optional<TrialSpec> strokes_trial() const;
   TrialSpec procedure_trial(int index) const;
   std::optional<TrialSpec> make();
+  std::optional<TrialSpec> make_any();
+
+  // These functions limit runs (director_runs.cpp).
+  void set_limits_of_runs();
+  std::string value_of(const std::string& key, const TrialSpec& spec) const;
+  bool fits(const TrialSpec& spec) const;
+  bool leaves_order(const TrialSpec& spec, int index) const;
+  TrialSpec with_short_runs(TrialSpec spec);
+  void count_runs(const TrialSpec& spec);
 };
 
 }  // namespace turnpoint::trial

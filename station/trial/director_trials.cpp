@@ -53,7 +53,9 @@ void Director::State::set_times(TrialSpec& spec) const {
 /// Draws levels for the factors that nothing else sets. A factor that is fixed for the block keeps its value.
 protocol::Factors Director::State::drawn_factors() const {
   auto factors = now()->fixed;
+  // Draws that were given up, because they would make a run too long, are skipped.
   auto draw = draws(Stream::factor_level, trial);
+  for (int skipped = 0; skipped < redraws; ++skipped) draw.uniform();
   for (std::size_t i = 0; i < protocol.factors.size(); ++i) {
     const auto& factor = protocol.factors[i];
     if (factors.count(factor.name)) continue;
@@ -84,16 +86,27 @@ protocol::FactorValue Director::State::drawn_value(const protocol::Factor& facto
   }
 }
 
-std::optional<int> Director::State::pick_procedure() const {
+std::optional<int> Director::State::pick_procedure() {
   std::vector<int> open;
   for (std::size_t i = 0; i < procedures.size(); ++i)
     if (procedures[i]->next()) open.push_back(static_cast<int>(i));
   if (open.empty()) return std::nullopt;
+  const auto is_open = [&open](int index) { return std::ranges::find(open, index) != open.end(); };
   switch (now()->interleave) {
     case protocol::Interleave::none:
       return open.front();
-    case protocol::Interleave::alternate:
-      return open[static_cast<std::size_t>(trial) % open.size()];
+    case protocol::Interleave::alternate: {
+      // Catch trials do not take a turn.
+      const auto next = std::ranges::find_if(open, [this](int index) { return index > last_procedure; });
+      return next == open.end() ? open.front() : *next;
+    }
+    case protocol::Interleave::passes:
+      std::erase_if(pass, [&](int index) { return !is_open(index); });
+      if (pass.empty()) {
+        pass = open;
+        draws(Stream::interleave, shown).shuffle(pass);
+      }
+      return pass.front();
     case protocol::Interleave::random:
       break;
   }
@@ -118,8 +131,11 @@ TrialSpec Director::State::blank(terms::TrialType type) const {
 /// Fills in what follows from the level and the factors: order of intervals, right answer, roving, times.
 void Director::State::complete(TrialSpec& spec) const {
   const int key = spec.type == terms::TrialType::warmup ? -1 - warmups_given : trial;
-  const auto order = order_for(protocol.task, seed, static_cast<int>(block), attempt,
-                               spec.type == terms::TrialType::warmup ? warmups_given : trial);
+  const auto swapped = swapped_orders.find(trial);
+  const int order_key = spec.type == terms::TrialType::warmup ? warmups_given
+                        : swapped == swapped_orders.end()     ? trial
+                                                              : swapped->second;
+  const auto order = order_for(protocol.task, seed, static_cast<int>(block), attempt, order_key);
   spec.intervals = order.intervals;
   spec.correct = order.correct ? order.correct : correct_choice(protocol.task, spec.factors);
   spec.slider = slider(key);
@@ -183,6 +199,7 @@ TrialSpec Director::State::catch_trial() const {
   const auto& wanted = *now()->catch_trials;
   auto draw = draws(Stream::catch_trial, trial);
   draw.uniform();  // skip the random number that has decided that this is a catch trial
+  for (int skipped = 0; skipped < redraws; ++skipped) draw.uniform();
   spec.level = wanted.levels[draw.below(wanted.levels.size())];
   spec.factors[wanted.factor] = *spec.level;
   complete(spec);
@@ -233,6 +250,12 @@ TrialSpec Director::State::procedure_trial(int index) const {
 }
 
 std::optional<TrialSpec> Director::State::make() {
+  auto spec = make_any();
+  if (!spec || spec->strokes || runs.empty()) return spec;
+  return with_short_runs(std::move(*spec));
+}
+
+std::optional<TrialSpec> Director::State::make_any() {
   if (now() == nullptr) return std::nullopt;
   current_procedure = no_procedure;
   if (now()->kind != protocol::BlockKind::trials) return strokes_trial();
