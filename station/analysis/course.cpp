@@ -61,7 +61,8 @@ std::optional<Proportion> catch_accuracy(const std::vector<TrialRecord>& trials)
   Proportion result;
   for (const auto& trial : trials) {
     const bool missed = trial.outcome == Outcome::timeout || trial.outcome == Outcome::anticipation;
-    if (trial.type != TrialType::catch_trial || !(missed ? trial.right_choice.has_value() : trial.correct.has_value()))
+    if (trial.type != TrialType::catch_trial ||
+        !(missed ? trial.right_choice.has_value() : trial.correct.has_value()))
       continue;
     ++result.trials;
     result.right += !missed && *trial.correct;
