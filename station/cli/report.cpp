@@ -73,6 +73,8 @@ void report_session(Options options, Context& context) {
                estimate.interval ? fmt::format(", 95 % {} to {}", text::number(estimate.interval->low, 3),
                                                text::number(estimate.interval->high, 3))
                                  : "");
+  for (const auto& end : data.early_ends)
+    fmt::print(context.out, "  ended early in {}: {}\n", end.block, texts::say(end.why, "en"));
 }
 
 /// The file trials.csv, which --tables asks for. It is written participant by participant.

@@ -10,7 +10,6 @@
 #include "station/programs/programs.hpp"
 #include "station/protocol/protocol.hpp"
 #include "station/text/number.hpp"
-#include "station/trial/orders.hpp"
 
 namespace turnpoint::cli {
 
@@ -31,18 +30,10 @@ const procedure::Spec& find(const protocol::Protocol& protocol, const std::strin
       fmt::format("--procedure {}: the protocol has no such procedure; its procedures are {}", name, known));
 }
 
-/// Returns the factors and levels with which the procedure runs. Every factor has its first level.
-procedure::Context context_of(const protocol::Protocol& protocol, const procedure::Spec& spec) {
+/// Returns the numbers of levels of the factors with which the procedure runs.
+procedure::Context context_of(const protocol::Protocol& protocol) {
   procedure::Context context;
-  protocol::Factors factors;
-  for (const auto& factor : protocol.factors) {
-    context.factor_levels[factor.name] = factor.levels.size();
-    if (!factor.levels.empty()) factors[factor.name] = factor.levels.front();
-  }
-  context.right_answer = [&protocol, factors, level = spec.level](double value) mutable {
-    factors[level] = value;
-    return trial::correct_choice(protocol.task, factors).value_or(-1);
-  };
+  for (const auto& factor : protocol.factors) context.factor_levels[factor.name] = factor.levels.size();
   return context;
 }
 
@@ -50,7 +41,7 @@ void trace(const Options& options, Context& context) {
   const auto protocol = protocol::load(options.protocol);
   const auto& spec = find(protocol, options.procedure);
   programs::Programs programs(protocol.path);
-  auto around = context_of(protocol, spec);
+  auto around = context_of(protocol);
   around.programs = &programs;
   const auto result = procedure::trace(
       spec, around, options.answers, {options.seed ? options.seed : protocol.seed.value_or(0), {}, 0, 0, 0});

@@ -98,8 +98,11 @@ void add_fits(const report::Summary& summary, const Words& words, ReportPages& p
   }
 }
 
-/// Adds the estimates of procedures with a second dimension or a criterion, which no fit has.
+/// Adds the estimates of procedures with a second dimension or a criterion, which no fit has, and which procedures
+/// ended early.
 void add_estimates(const report::Summary& summary, ReportPages& pages) {
+  for (const auto& end : summary.data.early_ends)
+    pages.statements.push_back({"", "", {texts::phrase("report.ended_early"), texts::plain(": "), end.why}});
   for (const auto& estimate : summary.data.estimates) {
     const auto& name = estimate.parameter;
     const bool in_fit = !summary.fits.empty() && name != "criterion" && name != "gradient" && name != "floor";

@@ -128,19 +128,22 @@ protocol::Protocol by_group(protocol::Protocol protocol) {
   return protocol;
 }
 
-/// Adds what the procedures of a session estimated themselves.
-void add_own(const std::string& database, const store::StoredSession& stored,
-             const protocol::Protocol& protocol, std::vector<report::SessionEstimate>& all) {
-  report::SessionData own;
-  add_own_estimates(database, stored, protocol, own);
-  for (auto& estimate : own.estimates) all.push_back({stored.session.session_id, std::move(estimate)});
-}
-
 /// The trials of all sessions of one participant, and the procedures' own estimates of each session.
 struct PersonData {
   report::SessionData all;
   std::vector<report::SessionEstimate> estimates;
+  std::vector<report::SessionEarlyEnd> early_ends;
 };
+
+/// Adds what the procedures of a session estimated themselves.
+void add_own(const std::string& database, const store::StoredSession& stored,
+             const protocol::Protocol& protocol, PersonData& all) {
+  report::SessionData own;
+  add_own_estimates(database, stored, protocol, own);
+  const auto& id = stored.session.session_id;
+  for (auto& estimate : own.estimates) all.estimates.push_back({id, std::move(estimate)});
+  for (auto& end : own.early_ends) all.early_ends.push_back({id, std::move(end)});
+}
 
 PersonData data_of(const std::string& person, const std::vector<Found>& sessions,
                    const protocol::Protocol& protocol) {
@@ -150,7 +153,7 @@ PersonData data_of(const std::string& person, const std::vector<Found>& sessions
   int trials = 0, first_block = 0;
   for (const auto& found : sessions) {
     auto stored = store::read_session(found.database, found.session.session_id);
-    add_own(found.database, stored, protocol, data.estimates);
+    add_own(found.database, stored, protocol, data);
     int last_block = first_block;
     for (auto& block : stored.blocks) {
       block.start.block_index += first_block;
@@ -248,12 +251,13 @@ report::Study study_data(const StudyChoice& choice, const StudySink& sink, const
     }
     ++done;
     const auto used = counted(sessions, study.sessions);
-    auto [data, estimates] = data_of(person, used.sessions, protocol);
+    auto [data, estimates, early_ends] = data_of(person, used.sessions, protocol);
     data.run_mode = store::name(sessions.front().session.start.run_mode);
     auto result = report::study_person(data, rules, used.incomplete);
     if (used.sessions.empty()) result.excluded.push_back("no session that counts");
     for (const auto& found : used.sessions) result.sessions.push_back(found.session.session_id);
     result.estimates = std::move(estimates);
+    result.early_ends = std::move(early_ends);
     result.group = sessions.front().session.start.group;
     sink(result, data);
     study.persons.push_back(std::move(result));

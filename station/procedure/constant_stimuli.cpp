@@ -1,6 +1,7 @@
 #include "station/procedure/constant_stimuli.hpp"
 
 #include <algorithm>
+#include <map>
 #include <numeric>
 
 #include "station/procedure/description.hpp"
@@ -54,7 +55,8 @@ ConstantStimuli::ConstantStimuli(const Spec& spec, const Context& context, const
 std::vector<ConstantStimuli::Item> ConstantStimuli::items(random::Draws& draws) const {
   const auto repeats = static_cast<std::size_t>(spec_.repeats);
   std::vector<Item> all(repeats * spec_.values.size());
-  for (std::size_t i = 0; i < all.size(); ++i) all[i].value = i % spec_.values.size();
+  for (std::size_t i = 0; i < all.size(); ++i)
+    all[i].value = i % spec_.values.size(), all[i].repeat = i / spec_.values.size();
   Levels shuffled;
   for (const auto& factor : spec_.balance) shuffled.emplace_back(context_.factor_levels.at(factor));
   const auto cells = crossed(shuffled);
@@ -79,59 +81,58 @@ void ConstantStimuli::order(std::vector<Item>& items, random::Draws& draws) cons
     draws.shuffle(part);
     std::copy(part.begin(), part.end(), items.begin() + static_cast<std::ptrdiff_t>(first));
   }
-  if (spec_.max_run && context_.right_answer) break_runs(items, draws);
 }
 
-bool ConstantStimuli::runs_too_long(const std::vector<Item>& items, std::size_t at) const {
-  const auto right = [&](std::size_t i) { return context_.right_answer(spec_.values[items[i].value]); };
-  const auto limit = static_cast<std::size_t>(*spec_.max_run);
-  if (at < limit || right(at) < 0) return false;
-  for (std::size_t back = 1; back <= limit; ++back)
-    if (right(at - back) != right(at)) return false;
-  return true;
+bool ConstantStimuli::in_repeat(std::size_t at) const {
+  return spec_.shuffle == Shuffle::within_block || queue_[at].repeat == queue_[position_].repeat;
 }
 
-void ConstantStimuli::break_runs(std::vector<Item>& items, random::Draws& draws) const {
-  const auto n = spec_.shuffle == Shuffle::within_repeat ? spec_.values.size() : items.size();
-  for (std::size_t at = 0; at < items.size(); ++at) {
-    if (!runs_too_long(items, at)) continue;
-    // Swap with a later item (of the same repeat, if each repeat is shuffled separately) that makes no run
-    // too long here.
-    const auto end = std::min(items.size(), (at / n + 1) * n);
-    std::vector<std::size_t> others;
-    for (std::size_t i = at + 1; i < end; ++i) {
-      std::swap(items[at], items[i]);
-      if (!runs_too_long(items, at)) others.push_back(i);
-      std::swap(items[at], items[i]);
-    }
-    if (!others.empty()) {
-      std::swap(items[at], items[others[draws.below(others.size())]]);
-      continue;
-    }
-    // If there is no such item, move the item to an earlier place where it makes no run too long.
-    for (std::size_t i = at; i-- > at / n * n;) {
-      std::swap(items[at], items[i]);
-      bool good = true;
-      for (std::size_t j = i; j <= at && good; ++j) good = !runs_too_long(items, j);
-      if (good) break;
-      std::swap(items[at], items[i]);
-    }
+std::vector<Candidate> ConstantStimuli::candidates() const {
+  if (!next()) return {};
+  if (spec_.shuffle == Shuffle::none) return {{choice(0)}};
+  std::vector<Candidate> all;
+  std::vector<bool> soon(spec_.values.size());  // the values that the present repeat still has
+  std::map<std::pair<std::size_t, std::vector<std::size_t>>, std::size_t> known;
+  for (auto at = position_; at < queue_.size(); ++at) {
+    const auto& item = queue_[at];
+    if (in_repeat(at)) soon[item.value] = true;
+    if (!soon[item.value]) continue;
+    const auto [found, is_new] = known.try_emplace({item.value, item.balance}, all.size());
+    if (is_new) all.push_back({choice(at - position_), at - position_, 0, 0});
+    ++all[found->second].in_all;
+    all[found->second].in_repeat += in_repeat(at) ? 1 : 0;
   }
+  return all;
 }
 
-std::optional<Proposal> ConstantStimuli::next() const {
-  if (position_ >= queue_.size()) return std::nullopt;
-  if (enough_right(spec_.stop, answers_.size(), [this](std::size_t i) { return answers_[i]; }))
-    return std::nullopt;
-  const auto& item = queue_[position_];
+Proposal ConstantStimuli::choice(std::size_t place) const {
+  const auto& item = queue_.at(position_ + place);
   Proposal proposal{spec_.values[item.value], {}};
   for (std::size_t i = 0; i < spec_.balance.size(); ++i)
     proposal.balanced.emplace_back(spec_.balance[i], item.balance[i]);
   return proposal;
 }
 
+void ConstantStimuli::choose(std::size_t place) {
+  auto at = position_ + place;
+  if (!in_repeat(at)) {
+    const auto later = at;
+    at = position_;
+    while (queue_.at(at).value != queue_[later].value) ++at;
+    std::swap(queue_[at].balance, queue_[later].balance);
+  }
+  std::swap(queue_.at(position_), queue_.at(at));
+}
+
+std::optional<Proposal> ConstantStimuli::next() const {
+  if (position_ >= queue_.size()) return std::nullopt;
+  if (enough_right(spec_.stop, answers_.size(), [this](std::size_t i) { return answers_[i]; }))
+    return std::nullopt;
+  return choice(0);
+}
+
 void ConstantStimuli::record(Answer answer) {
-  const auto item = queue_[position_++];
+  auto item = queue_[position_++];
   if (spec_.stop.right && answer != Answer::none) answers_.push_back(answer == Answer::one);
   if (answer != Answer::none || context_.unanswered_are_data) {
     ++recorded_;
@@ -142,6 +143,7 @@ void ConstantStimuli::record(Answer answer) {
   random::Draws draws({key_.seed, random::Stream::level_order, key_.block, key_.attempt, 1 + requeued_++});
   const auto left = queue_.size() - position_;
   const auto offset = left == 0 ? 0 : 1 + draws.below(left);
+  if (left > 0) item.repeat = queue_[position_ + offset - 1].repeat;
   queue_.insert(queue_.begin() + static_cast<std::ptrdiff_t>(position_ + offset), item);
 }
 
@@ -175,8 +177,6 @@ extern const Description constant_stimuli{
         problems.push_back({"values", plain("missing"), phrase("list one or more levels")});
       if (spec.repeats < 1)
         problems.push_back({"repeats", phrase("below 1"), phrase("write a whole number of 1 or more")});
-      if (spec.max_run && *spec.max_run < 1)
-        problems.push_back({"order.max_run", phrase("below 1"), phrase("1 or more")});
     },
     [](const Spec& spec, const Context& context, const random::Key& key) -> std::unique_ptr<Procedure> {
       return std::make_unique<ConstantStimuli>(spec, context, key);

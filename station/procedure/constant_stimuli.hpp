@@ -7,7 +7,7 @@
 namespace turnpoint::procedure {
 
 /// Presents every value `repeats` times. Combinations of the balanced factors occur equally often, as far as
-/// possible. The order is shuffled so that at most max_run trials in a row have the same right answer.
+/// possible. The order is shuffled.
 /// Unanswered trials are repeated later. Ends early if enough of the last answers were right (Stop::right,
 /// Stop::of_last).
 class ConstantStimuli : public Procedure {
@@ -15,6 +15,9 @@ class ConstantStimuli : public Procedure {
   ConstantStimuli(const Spec& spec, const Context& context, const random::Key& key);
 
   std::optional<Proposal> next() const override;
+  std::vector<Candidate> candidates() const override;
+  Proposal choice(std::size_t place) const override;
+  void choose(std::size_t place) override;
   void record(Answer answer) override;
   int recorded() const override { return recorded_; }
   int expected() const override { return total_; }
@@ -22,13 +25,12 @@ class ConstantStimuli : public Procedure {
 
  private:
   struct Item {
-    std::size_t value = 0;
+    std::size_t value = 0, repeat = 0;
     std::vector<std::size_t> balance;
   };
   std::vector<Item> items(random::Draws& draws) const;
+  bool in_repeat(std::size_t at) const;
   void order(std::vector<Item>& items, random::Draws& draws) const;
-  bool runs_too_long(const std::vector<Item>& items, std::size_t from) const;
-  void break_runs(std::vector<Item>& items, random::Draws& draws) const;
 
   Spec spec_;
   Context context_;

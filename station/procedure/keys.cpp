@@ -12,6 +12,18 @@ using text::TableReader;
 
 namespace {
 
+void read_max_run(TableReader& order, Spec& spec) {
+  const auto* table = order.take("max_run");
+  if (!table || table->kind != text::Value::Kind::table) {
+    if (const auto limit = order.maybe_integer("max_run", 1, 1000)) spec.max_run[kRightAnswer] = *limit;
+    return;
+  }
+  TableReader inner(*table, order.path("max_run"), order.findings());
+  for (const auto& entry : table->entries)
+    if (const auto limit = inner.maybe_integer(entry.key, 1, 1000)) spec.max_run[entry.key] = *limit;
+  inner.finish();
+}
+
 void read_order(TableReader& reader, Spec& spec) {
   const auto* table = reader.maybe_table("order");
   if (!table) {
@@ -23,11 +35,19 @@ void read_order(TableReader& reader, Spec& spec) {
   spec.shuffle = shuffle == "none"           ? Shuffle::none
                  : shuffle == "within-block" ? Shuffle::within_block
                                              : Shuffle::within_repeat;
-  spec.max_run = inner.maybe_integer("max_run", 1, 1000);
+  read_max_run(inner, spec);
   inner.finish();
 }
 
 }  // namespace
+
+void read_runs(TableReader& reader, Spec& spec) {
+  const auto* table = reader.maybe_table("order");
+  if (!table) return;
+  TableReader inner(*table, reader.path("order"), reader.findings());
+  read_max_run(inner, spec);
+  inner.finish();
+}
 
 void read_tracks(TableReader& reader, Spec& spec) {
   spec.tracks = reader.maybe_string("tracks").value_or("");

@@ -15,6 +15,8 @@ void read_right_of_last(text::TableReader& stop, Spec& spec);
 void read_tracks(text::TableReader& reader, Spec& spec);
 /// Reads "repeats", "balance" and "order" of a list of levels.
 void read_list(text::TableReader& reader, Spec& spec);
+/// Reads "max_run" of "order", for procedures that have no list.
+void read_runs(text::TableReader& reader, Spec& spec);
 /// Reads "start", "min" and "max".
 void read_span(text::TableReader& reader, Spec& spec);
 

@@ -75,6 +75,11 @@ std::optional<texts::Phrase> end_in_words(Ended ended, const std::string& proced
   }
 }
 
+std::vector<Candidate> Procedure::candidates() const {
+  const auto proposal = next();
+  return proposal ? std::vector<Candidate>{{*proposal}} : std::vector<Candidate>();
+}
+
 void Procedure::record_setting(double) {
   throw std::logic_error("procedure: only an adjustment can record a setting");
 }

@@ -21,6 +21,14 @@ struct Proposal {
   std::vector<std::pair<std::string, std::size_t>> balanced = {};
 };
 
+/// A proposal that may come next: its first place in the rest of the list, counted from that of next(), and how
+/// often it comes in the present repeat of the list and in all of its rest.
+struct Candidate {
+  Proposal proposal;
+  std::size_t place = 0;
+  int in_repeat = 1, in_all = 1;
+};
+
 /// How the participant answered at the level that the procedure proposed.
 enum class Answer {
   one,   ///< the answer was right; or, if the procedure measures how often one answer is given, it was that
@@ -65,12 +73,9 @@ struct ThresholdAt {
 
 class Programs;
 
-/// What constant stimuli need to know about the protocol: the number of levels of each balanced factor, and
-/// the right answer at a level (-1 if no answer is right). The right answer is needed to limit runs of equal
-/// right answers.
+/// What constant stimuli need to know about the protocol: the number of levels of each balanced factor.
 struct Context {
   std::map<std::string, std::size_t> factor_levels;
-  std::function<int(double level)> right_answer;
   /// true if the deadline is part of the design: unanswered trials then count as presented and are not
   /// repeated
   bool unanswered_are_data = false;
@@ -89,6 +94,13 @@ class Procedure {
   virtual bool ready() const { return true; }
   /// returns the next level to present; empty when the procedure is done
   virtual std::optional<Proposal> next() const = 0;
+  /// The different proposals that choose() may make the next one, in their order: those of the rest of a shuffled
+  /// list, or of its present repeat, whose values may change their balanced factors with those of later repeats.
+  /// Only that of next() if there is no choice. Empty when the procedure is done.
+  virtual std::vector<Candidate> candidates() const;
+  /// the proposal at this place
+  virtual Proposal choice(std::size_t) const { return next().value(); }
+  virtual void choose(std::size_t) {}
   /// why next() returns nothing
   virtual Ended ended() const { return next() ? Ended::no : Ended::rule; }
   /// says the same if it was not by its rules; otherwise empty

@@ -118,7 +118,9 @@ struct Spec {
   int repeats = 1;
   std::vector<std::string> balance;
   Shuffle shuffle = Shuffle::within_repeat;
-  std::optional<int> max_run;
+  /// The largest number of trials in a row that may have the same value of a factor or, for kRightAnswer, the
+  /// same right answer. It holds over all trials of a block in which the procedure runs.
+  std::map<std::string, int> max_run;
 
   // The following members are for procedures that move one level up and down. `start` is the first level; the
   // level stays between `min` and `max`.
@@ -157,6 +159,9 @@ struct Spec {
 
   Stop stop;
 };
+
+/// The key of Spec::max_run that stands for the right answer.
+inline constexpr const char* kRightAnswer = "right";
 
 /// A parameter of a procedure with a posterior: its name, and its grid and prior in a specification.
 struct ParameterKeys {

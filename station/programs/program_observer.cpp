@@ -140,7 +140,8 @@ observer::Reply ProgramObserver::answer(const observer::Question& question) {
       answer.choice = integer_within(reply, "choice", 0, question.answers - 1, *with_);
     if (question.confidence > 0) {
       answer.confidence = integer_within(reply, "confidence", 1, question.confidence, *with_);
-      answer.confidence_time_s = within(reply, "confidence_time_s", terms::kConfidenceGuard_s, kLongestTime_s, *with_);
+      answer.confidence_time_s =
+          within(reply, "confidence_time_s", terms::kConfidenceGuard_s, kLongestTime_s, *with_);
     }
     return answer;
   } catch (const terms::ProgramFailed&) {

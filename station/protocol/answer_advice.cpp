@@ -132,13 +132,14 @@ void check_followed(AdviceList& advice, const Source& source) {
                       "side of zero only"));
 }
 
-// Checks that some order of the trials satisfies `max_run`. Only a trial with another right answer can end a
-// run of trials with the same right answer.
+// Checks that some order of the trials of the procedure satisfies `max_run`. Only a trial with another right
+// answer can end a run of trials with the same right answer. What else can make runs longer is simulated.
 void check_runs(AdviceList& advice, const Spec& spec) {
-  if (!spec.max_run || spec.values.empty()) return;
+  const auto limit = spec.max_run.find(procedure::kRightAnswer);
+  if (limit == spec.max_run.end() || spec.values.empty()) return;
   const auto right = right_at(advice.protocol, spec.level, spec.values);
   for (const auto& [id, times] : right.times)
-    if (times > *spec.max_run * (right.all - times))
+    if (times * spec.repeats > limit->second * ((right.all - times) * spec.repeats + 1))
       return advice.add(
           key_of(spec, "order.max_run"),
           phrase("\"%1\" is right in %2 of %3 trials: longer runs cannot be avoided",

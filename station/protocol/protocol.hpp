@@ -136,7 +136,12 @@ struct Timing {
 };
 
 enum class Feedback { none, trial, block };
-enum class Interleave { none, random, alternate };
+enum class Interleave {
+  none,       ///< one after the other
+  random,     ///< any procedure that has not ended
+  alternate,  ///< each in turn
+  passes      ///< each once per pass, in random order
+};
 
 struct Catch {
   double rate = 0;

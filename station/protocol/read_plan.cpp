@@ -116,9 +116,10 @@ void read_block_keys(TableReader& reader, Block& block, const Reading& reading) 
                    : feedback == "block" ? Feedback::block
                                          : Feedback::none;
   read_practice(reader, block, reading);
-  const auto order = reader.maybe_word("interleave", {"none", "random", "alternate"});
+  const auto order = reader.maybe_word("interleave", {"none", "random", "alternate", "passes"});
   block.interleave = order == "random"      ? Interleave::random
                      : order == "alternate" ? Interleave::alternate
+                     : order == "passes"    ? Interleave::passes
                                             : Interleave::none;
   if (std::set(block.procedures.begin(), block.procedures.end()).size() > 1)
     reader.require("interleave",

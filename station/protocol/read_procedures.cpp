@@ -4,6 +4,7 @@
 #include <set>
 
 #include "station/procedure/description.hpp"
+#include "station/procedure/keys.hpp"
 #include "station/protocol/expression.hpp"
 #include "station/protocol/reading.hpp"
 #include "station/text/number.hpp"
@@ -55,6 +56,14 @@ void check_balance(TableReader& reader, const Spec& spec, const Reading& reading
       reader.problem("balance", phrase("\"%1\" is set twice", {plain(name)}),
                      phrase("list each factor only once, and not the factor that the procedure sets"));
   }
+}
+
+void check_max_run(TableReader& reader, const Spec& spec, const Reading& reading) {
+  const auto& factors = reading.protocol.factors;
+  for (const auto& [name, limit] : spec.max_run)
+    if (name != procedure::kRightAnswer && !find_factor(factors, name))
+      reader.problem("order", phrase("unknown factor \"%1\" in \"max_run\"", {plain(name)}),
+                     text::suggestion(name, names(factors)));
 }
 
 void check_tracks(TableReader& reader, const Spec& spec, const Reading& reading) {
@@ -227,6 +236,8 @@ Spec read_procedure(const Value& table, const Reading& reading, text::Findings& 
   const auto* factor = read_numeric_factor(reader, "level", reading);
   if (factor) spec.level = factor->name;
   procedure::description(spec.kind).read(reader, spec);
+  if (procedure::follows_answers(spec)) procedure::read_runs(reader, spec);
+  check_max_run(reader, spec, reading);
   check_second(table, spec, reading, findings);
   check_tracks(reader, spec, reading);
   check_balance(reader, spec, reading);

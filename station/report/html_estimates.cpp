@@ -80,10 +80,16 @@ std::string estimate_cells(const ProcedureEstimate& estimate) {
          "</td><td>" + escaped(estimate.basis) + "</td>";
 }
 
+std::string early_end(const EarlyEnd& end) {
+  return "<p>Ended early in " + escaped(end.block) + ": " + escaped(texts::say(end.why, "en")) + ".</p>\n";
+}
+
 std::string estimate_section(const SessionData& data) {
-  if (data.estimates.empty()) return "";
-  std::string html =
-      std::string("<h2>The procedure's own estimate</h2>\n<table><tr>") + kEstimateTitles + "</tr>";
+  if (data.estimates.empty() && data.early_ends.empty()) return "";
+  std::string html = "<h2>The procedure's own estimate</h2>\n";
+  for (const auto& end : data.early_ends) html += early_end(end);
+  if (data.estimates.empty()) return html;
+  html += std::string("<table><tr>") + kEstimateTitles + "</tr>";
   for (const auto& estimate : data.estimates) html += "<tr>" + estimate_cells(estimate) + "</tr>";
   return html + "</table>\n<p class=\"soft\">" +
          why_estimates_differ(data.estimates, data.thresholds_differ) + "</p>\n";

@@ -33,7 +33,9 @@ extern const char* const kEstimateTitles;
 std::string estimate_cells(const ProcedureEstimate& estimate);
 /// Says why procedures' own estimates differ from the fit. `thresholds_differ`: see SessionData.
 std::string why_estimates_differ(const std::vector<ProcedureEstimate>& estimates, bool thresholds_differ);
-/// The section on the procedures' own estimates; "" if there are none.
+/// A sentence on a procedure that ended early.
+std::string early_end(const EarlyEnd& end);
+/// The section on the procedures' own estimates and early ends; "" if there are none.
 std::string estimate_section(const SessionData& data);
 /// The section on the threshold along the second dimension of the stimuli; "" if there is none.
 std::string threshold_curve_section(const Summary& summary);

@@ -343,6 +343,8 @@ std::string to_json(const Summary& summary) {
     json["discrimination"].push_back(discrimination_json(entry));
   json["estimates"] = Json::array();
   for (const auto& estimate : data.estimates) json["estimates"].push_back(value(estimate));
+  json["early_ends"] = Json::array();
+  for (const auto& end : data.early_ends) json["early_ends"].push_back(value(end));
   json["threshold_curves"] = threshold_curves_json(data.threshold_curves);
   json["bias"] = nullptr;
   if (summary.bias)

@@ -42,6 +42,10 @@ inline Json value(const ProcedureEstimate& estimate) {
           {"basis", estimate.basis}};
 }
 
+inline Json value(const EarlyEnd& end) {
+  return {{"block", end.block}, {"procedure", end.procedure}, {"reason", texts::say(end.why, "en")}};
+}
+
 inline Json value(const std::vector<analysis::Statement>& statements) {
   Json list = Json::array();
   for (const auto& statement : statements)

@@ -37,6 +37,12 @@ struct ProcedureEstimate {
   std::optional<double> settles_at;
 };
 
+/// A procedure that ended although its stopping rules were not met.
+struct EarlyEnd {
+  std::string block, procedure;
+  texts::Phrase why;  ///< see procedure::end_in_words()
+};
+
 /// The threshold along the second dimension of a procedure in one block, and the answers that it was learned
 /// from.
 struct ThresholdCurve {
@@ -118,6 +124,7 @@ struct SessionData : LevelAnalysis {
   /// parts of the report that the protocol chooses; if empty, the report has all parts that suit the design
   std::optional<std::vector<std::string>> show;
   std::vector<ProcedureEstimate> estimates;
+  std::vector<EarlyEnd> early_ends;
   std::vector<ThresholdCurve> threshold_curves;  ///< empty if no procedure has a second dimension
   std::vector<analysis::TrialRecord> trials;
   /// answered trials, without practice, in which force cells recorded data; empty if the rig has no force

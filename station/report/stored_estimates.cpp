@@ -103,7 +103,9 @@ void add_estimates(const std::vector<records::BlockRecord>& blocks, const protoc
       if (const auto before = earlier.find(spec.name); spec.continues && before != earlier.end())
         procedure::continue_from(before->second, spec, *replayed);
       const auto learned = replay(block->trials, spec, *replayed);
-      if (replayed->recorded() == 0 || !learned) continue;
+      if (!learned) continue;
+      if (const auto end = replayed->end()) data.early_ends.push_back({block->start.name, spec.name, *end});
+      if (replayed->recorded() == 0) continue;
       for (const auto& [parameter, estimate] : replayed->estimates())
         data.estimates.push_back({block->start.name, spec.name, parameter, estimate.mean, estimate.sd,
                                   posterior ? "mean of its posterior" : estimate.basis,

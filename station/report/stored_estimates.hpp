@@ -11,7 +11,7 @@
 
 namespace turnpoint::report {
 
-/// Recomputes the final estimates of adaptive procedures from the stored answers of a session, from the last
+/// Recomputes the final estimates of adaptive procedures, and which of them ended early, from the stored answers of a session, from the last
 /// attempt at each block, and adds them to `data`. `seed` is that of the session, and `earlier` are the
 /// trials of the participant's earlier sessions, for procedures that continue.
 void add_estimates(const std::vector<records::BlockRecord>& blocks, const protocol::Protocol& protocol,

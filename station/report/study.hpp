@@ -18,6 +18,12 @@ struct SessionEstimate {
   ProcedureEstimate estimate;
 };
 
+/// A procedure that ended early in one session.
+struct SessionEarlyEnd {
+  std::string session_id;
+  EarlyEnd end;
+};
+
 /// What a study needs to know about one participant. It contains no trials, so that memory does not grow with
 /// their number.
 struct StudyPerson {
@@ -33,6 +39,7 @@ struct StudyPerson {
   std::vector<NamedFit> fits;  ///< one fit for each condition, without confidence bands
   std::vector<analysis::PersonMeasure> measures;
   std::vector<SessionEstimate> estimates;  ///< the procedures' own estimates, in the order of the sessions
+  std::vector<SessionEarlyEnd> early_ends;
 };
 
 /// The hierarchical fit of one condition.

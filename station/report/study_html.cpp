@@ -149,9 +149,14 @@ std::string own_section(const Study& study) {
               estimate_cells(estimate) + "</tr>";
       all.push_back(estimate);
     }
-  if (all.empty()) return "";
-  return std::string(
-             "<h2>The procedures\u2019 own estimates</h2>\n<table><tr><th>Participant</th><th>Session</th>") +
+  std::string ends;
+  for (const auto& person : study.persons)
+    for (const auto& [session, end] : person.early_ends)
+      ends += "<p>" + escaped(person.person) + ", " + escaped(session) + ": " + early_end(end).substr(3);
+  if (all.empty() && ends.empty()) return "";
+  const std::string title = "<h2>The procedures\u2019 own estimates</h2>\n" + ends;
+  if (all.empty()) return title;
+  return title + "<table><tr><th>Participant</th><th>Session</th>" +
          kEstimateTitles + "</tr>" + rows + "</table>\n<p class=\"soft\">" +
          why_estimates_differ(all, study.settings.thresholds_differ) + "</p>\n";
 }

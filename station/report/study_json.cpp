@@ -38,6 +38,12 @@ Json person_json(const StudyPerson& person) {
     own.update(value(estimate));
     json["estimates"].push_back(std::move(own));
   }
+  json["early_ends"] = Json::array();
+  for (const auto& [session, end] : person.early_ends) {
+    Json own{{"session", session}};
+    own.update(value(end));
+    json["early_ends"].push_back(std::move(own));
+  }
   json["measures"] = Json::array();
   for (const auto& measure : person.measures)
     json["measures"].push_back({{"condition", measure.condition},

@@ -89,17 +89,20 @@ std::string participants_table(const Study& study) {
   std::string csv =
       "participant,group,sessions,presented,answered,accuracy,catch_accuracy,timeouts,anticipations,median_"
       "time_s,"
-      "incomplete,excluded,reasons\n";
+      "incomplete,excluded,reasons,early_ends\n";
   for (const auto& person : study.persons) {
     std::string reasons;
     for (const auto& reason : person.excluded) reasons += (reasons.empty() ? "" : "; ") + reason;
+    std::string ends;
+    for (const auto& [session, end] : person.early_ends)
+      ends += (ends.empty() ? "" : "; ") + session + ", " + end.block + ", " + texts::say(end.why, "en");
     csv += csv_field(person.person) + "," + csv_field(person.group) + "," +
            std::to_string(person.sessions.size()) + "," + std::to_string(person.presented) + "," +
            std::to_string(person.answered) + "," + csv_number(person.accuracy) + "," +
            csv_number(person.catch_accuracy) + "," + csv_number(person.timeouts) + "," +
            csv_number(person.anticipations) + "," + csv_number(person.median_time_s) + "," +
            yes_or_no(person.incomplete) + "," + yes_or_no(!person.excluded.empty()) + "," +
-           csv_field(reasons) + "\n";
+           csv_field(reasons) + "," + csv_field(ends) + "\n";
   }
   return csv;
 }

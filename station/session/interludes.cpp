@@ -56,7 +56,8 @@ void Interludes::score(int block_index, int attempt, const std::string& block,
                        const records::TrialRow& trial) {
   const bool missed =
       trial.outcome == terms::Outcome::timeout || trial.outcome == terms::Outcome::anticipation;
-  if (trial.type == terms::TrialType::warmup || !(missed ? trial.correct_response.has_value() : trial.correct.has_value()))
+  if (trial.type == terms::TrialType::warmup ||
+      !(missed ? trial.correct_response.has_value() : trial.correct.has_value()))
     return;
   auto& score = scores_[block_index];
   if (score.attempt != attempt) score = {};

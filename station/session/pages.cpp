@@ -258,8 +258,7 @@ Page Pages::end(const Summary& summary, const trial::Director& director) const {
   if (summary.accuracy) add("report.right", text::number(100 * *summary.accuracy, 3) + " %");
   for (const auto& e : summary.estimates)
     page.summary.push_back({{"", e.procedure + ", ", {parameter_name(e.parameter)}}, in_words(e)});
-  for (const auto& end : summary.early_ends)
-    add("report.ended_early", texts::say(end, setup_.language));
+  for (const auto& end : summary.early_ends) add("report.ended_early", texts::say(end, setup_.language));
   return page;
 }
 

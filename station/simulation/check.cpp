@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numeric>
 #include <optional>
 
@@ -11,6 +12,7 @@
 #include "station/protocol/glyphs.hpp"
 #include "station/protocol/triggers.hpp"
 #include "station/protocol/visits.hpp"
+#include "station/random/draws.hpp"
 #include "station/simulation/parallel.hpp"
 #include "station/simulation/rehearsal.hpp"
 #include "station/texts/refusal.hpp"
@@ -126,6 +128,42 @@ void add_visit(const std::vector<Estimate>& estimates, Check& check) {
   if (duration_s.median <= check.duration_s.median) return;
   check.duration_s = duration_s;
   check.trials = spread_of(trials);
+}
+
+/// Simulates sessions in which one trial of twenty is not answered, and says by how much runs of trials were longer
+/// than the protocol allows, and how often. Trials that come again can make a run longer.
+void check_runs(const Protocol& protocol, int sessions, const std::stop_token& stop, Check& check) {
+  const auto limited = [](const auto& spec) { return !spec.max_run.empty(); };
+  if (std::ranges::none_of(protocol.procedures, limited)) return;
+  auto careless = person(protocol);
+  std::uint64_t seed = 0;
+  careless.answer = [answer = careless.answer, &seed](const trial::TrialSpec& spec, const observer::Question& asked) {
+    auto reply = answer(spec, asked);
+    random::Draws draws({seed, random::Stream::observer, spec.block_index, spec.attempt, -1 - spec.trial_in_block});
+    if (draws.below(20) == 0) reply.response_time_s = 1e6;
+    return reply;
+  };
+  std::map<std::string, std::pair<int, trial::Director::LongRun>> all;
+  const auto visits = protocol::different_visits(protocol);
+  for (; seed < static_cast<std::uint64_t>(sessions); ++seed) {
+    if (stop.stop_requested()) throw protocol::Abandoned();
+    const auto& visit = visits[seed % visits.size()];
+    for (const auto& [key, run] : rehearse(protocol, visit, seed, careless).long_runs) {
+      auto& [times, longest] = all[key];
+      ++times;
+      if (run.longest > longest.longest) longest = run;
+    }
+  }
+  for (const auto& [key, found] : all)
+    check.warnings.push_back(
+        {{protocol.path, 0, 0},
+         phrase("in %1 of %2 simulated sessions, \"max_run\" could not be kept: up to %3 trials in a row had "
+                "%4, and %5 are allowed",
+                {plain(found.first), plain(sessions), plain(found.second.longest),
+                 key == procedure::kRightAnswer ? phrase("the same right answer")
+                                                : phrase("the same \"%1\"", {plain(key)}),
+                 plain(found.second.limit)}),
+         phrase("allow longer runs, or use levels, catch trials and draws of factors that leave more choice")});
 }
 
 /// Simulates this number of sessions, divided equally among the protocol's different visits.
@@ -266,6 +304,7 @@ Check check(const std::string& protocol_path, const std::string& rig_path, const
     const auto& finish = options.steps.finish;
     estimate(*protocol, options.sessions.value_or(usual_sessions(*protocol)), stop, options.steps, check);
     if (stop.stop_requested()) throw protocol::Abandoned();
+    check_runs(*protocol, std::min(200, options.sessions.value_or(200)), stop, check);
     if (check.problems.empty()) {
       if (options.finger) check.finger = shares(check.survey, *rig);
       if (options.sound) check.sound = loudest(check.survey, *rig, stop, options.steps);

@@ -163,6 +163,7 @@ Rehearsal rehearse(const protocol::Protocol& protocol, const protocol::Visit& vi
     for (auto& estimate : director.estimates()) rehearsal.estimates.push_back(std::move(estimate));
     director.finish_block();
   }
+  rehearsal.long_runs = director.long_runs();
   rehearsal.duration_s = static_cast<double>(now_ns) * 1e-9;
   return rehearsal;
 }

@@ -1,6 +1,8 @@
 #pragma once
 #include <cstdint>
 #include <functional>
+#include <map>
+#include <string>
 #include <vector>
 
 #include "station/observer/observer.hpp"
@@ -26,6 +28,8 @@ struct Rehearser {
 struct Rehearsal {
   std::vector<records::BlockRecord> blocks;         ///< every attempt at every block, in order
   std::vector<trial::ProcedureEstimate> estimates;  ///< estimates of the procedures at the end of each block
+  /// by how much runs of trials were longer than the protocol allows
+  std::map<std::string, trial::Director::LongRun> long_runs;
   int trials = 0;
   double duration_s = 0;
 };

@@ -40,7 +40,7 @@ bool begins_unlike_it_goes_on(const Protocol& protocol, const Block& block) {
   for (const auto& name : block.procedures) {
     const auto* spec = protocol::find_procedure(protocol, name);
     if (!spec || follows_answers(*spec)) return false;
-    unlike = unlike || spec->shuffle == procedure::Shuffle::none || spec->max_run;
+    unlike = unlike || spec->shuffle == procedure::Shuffle::none || !spec->max_run.empty();
   }
   return unlike;
 }

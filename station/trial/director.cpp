@@ -23,15 +23,22 @@ void Director::State::enter_block() {
   procedures.clear();
   practice_levels.clear();
   current.reset();
+  last_procedure = no_procedure;
+  pass.clear();
+  swapped_orders.clear();
+  deviation = {};
+  catches_owed = 0;
+  runs.clear();
   const auto* b = now();
   if (b == nullptr) return;
   for (const auto& name : b->procedures) {
     specs.push_back(find_spec(name));
     const auto key = procedure::key_of(seed, static_cast<int>(block), procedures.size(), attempt);
-    procedures.push_back(procedure::make_procedure(*specs.back(), context_for(*specs.back()), key));
+    procedures.push_back(procedure::make_procedure(*specs.back(), context_for(), key));
     if (const auto before = earlier.find(name); specs.back()->continues && before != earlier.end())
       procedure::continue_from(before->second, *specs.back(), *procedures.back());
   }
+  set_limits_of_runs();
   strokes.erase(block);
   if (b->kind == protocol::BlockKind::friction_table)
     practice_levels = friction_table_order(b->strokes.levels_um, b->strokes.repeats,
@@ -51,19 +58,9 @@ const procedure::Spec* Director::State::find_spec(const std::string& name) const
   throw std::out_of_range("the protocol has no procedure named \"" + name + "\"");
 }
 
-procedure::Context Director::State::context_for(const procedure::Spec& spec) const {
+procedure::Context Director::State::context_for() const {
   procedure::Context context;
   for (const auto& factor : protocol.factors) context.factor_levels[factor.name] = factor.levels.size();
-  auto fixed = now()->fixed;
-  for (const auto& [name, value] : spec.with) fixed[name] = value;
-  context.right_answer = [this, fixed, level = spec.level](double value) {
-    auto factors = fixed;
-    factors[level] = value;
-    for (const auto& factor : protocol.factors)
-      if (const auto values = protocol::drawn_values(factor); !factors.count(factor.name) && !values.empty())
-        factors[factor.name] = values.front();
-    return correct_choice(protocol.task, factors).value_or(-1);
-  };
   context.unanswered_are_data = timeouts_are_data();
   context.programs = programs;
   return context;
@@ -72,6 +69,8 @@ procedure::Context Director::State::context_for(const procedure::Spec& spec) con
 void Director::State::learn(const TrialEnd& end) {
   if (current_procedure == no_procedure) return;
   const auto index = static_cast<std::size_t>(current_procedure);
+  last_procedure = current_procedure;
+  std::erase(pass, current_procedure);
   if (specs[index]->kind == procedure::Kind::adjustment && end.setting &&
       end.outcome == terms::Outcome::answered)
     return procedures[index]->record_setting(*end.setting);
@@ -127,6 +126,7 @@ void Director::record(const TrialEnd& end) {
   if (!s.current)
     throw std::logic_error("director: record() was called although no trial had been given out");
   if (end.outcome == terms::Outcome::fault || end.outcome == terms::Outcome::aborted) return;
+  s.count_runs(*s.current);
   const auto type = s.current->type;
   const auto level = s.current->level;
   s.current.reset();
@@ -134,6 +134,7 @@ void Director::record(const TrialEnd& end) {
     --s.warmups, ++s.warmups_given;
     return;
   }
+  s.apply_deviation();
   s.learn(end);
   if (s.now()->kind == protocol::BlockKind::friction_table)
     s.strokes[s.block].push_back({*level, end.friction});
@@ -202,6 +203,8 @@ std::vector<ProcedureEstimate> Director::estimates() const {
       all.push_back({state_->specs[i]->name, parameter, e.mean, e.sd, e.basis, e.interval});
   return all;
 }
+
+const std::map<std::string, Director::LongRun>& Director::long_runs() const { return state_->long_runs; }
 
 std::vector<texts::Phrase> Director::early_ends() const {
   std::vector<texts::Phrase> all;

@@ -1,5 +1,6 @@
 #pragma once
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -108,6 +109,13 @@ class Director {
   std::vector<ProcedureEstimate> estimates() const;
   /// Says which of the block's procedures have ended, and how, if that was not by their rules.
   std::vector<texts::Phrase> early_ends() const;
+  /// A run of trials that was longer than the protocol allows.
+  struct LongRun {
+    int limit = 0, longest = 0;
+  };
+  /// The runs of the session so far that no order of the trials could keep within their limits, by the key of
+  /// procedure::Spec::max_run.
+  const std::map<std::string, LongRun>& long_runs() const;
   /// Threshold (or PSE) and its SD, as estimated by the procedure of the last trial; empty if that procedure
   /// has no estimate.
   std::optional<std::pair<double, std::optional<double>>> threshold() const;

@@ -9,6 +9,7 @@
 
 #include "station/procedure/procedure.hpp"
 #include "station/trial/director.hpp"
+#include "station/trial/orders.hpp"
 
 namespace turnpoint::trial {
 
@@ -37,6 +38,28 @@ struct Director::State {
   std::map<std::size_t, std::vector<Stroke>> strokes;
   std::optional<TrialSpec> current;
   int current_procedure = no_procedure;
+  int last_procedure = no_procedure;  ///< that of the last trial of a procedure in this block
+  std::vector<int> pass;  ///< procedures whose turn is yet to come in this pass, if they come in passes
+
+  /// How many of the last trials of the block had the same value. Values are compared as text.
+  struct Run {
+    int limit = 0, length = 0;
+    std::string value;
+  };
+  std::map<std::string, Run> runs;  ///< the block's limits of runs, by the keys of procedure::Spec::max_run
+  std::map<std::string, Director::LongRun> long_runs;
+  /// Trials of this block that present the intervals in the order of another trial, which has theirs.
+  std::map<int, int> swapped_orders;
+  /// How the current trial differs from the one that would come without limits of runs. record() applies it, so
+  /// that a trial that is made twice is the same.
+  struct Deviation {
+    std::size_t place = 0;        ///< that of the procedure's list
+    std::optional<int> order_of;  ///< the trial with which it changes orders of intervals
+    int redraws = 0;              ///< number of draws of its factors that have been given up
+    int catches = 0;              ///< 1: it comes instead of a catch trial, -1: it is such a catch trial
+  };
+  Deviation deviation;
+  int catches_owed = 0;  ///< number of catch trials that have been put off
 
   State(const protocol::Protocol& p, const protocol::Visit& visit, std::uint64_t s,
         procedure::Programs* starts, procedure::EarlierTrials before)
@@ -58,7 +81,7 @@ struct Director::State {
   // These functions handle blocks and procedures (director.cpp).
   void enter_block();
   const procedure::Spec* find_spec(const std::string& name) const;
-  procedure::Context context_for(const procedure::Spec& spec) const;
+  procedure::Context context_for() const;
   void learn(const TrialEnd& end);
   int block_expected(const protocol::Block& b) const;
 
@@ -67,17 +90,34 @@ struct Director::State {
   void set_times(TrialSpec& spec) const;
   protocol::Factors drawn_factors() const;
   protocol::FactorValue drawn_value(const protocol::Factor& factor, int number) const;
-  std::optional<int> pick_procedure() const;
+  std::optional<int> pick_procedure();
   bool catch_due() const;
   TrialSpec blank(terms::TrialType type) const;
+  IntervalOrder presented_order(int key) const;
   void complete(TrialSpec& spec) const;
   std::optional<SliderSpan> slider(int key) const;
   TrialSpec warmup_trial() const;
   TrialSpec catch_trial() const;
   std::optional<TrialSpec> practice_trial() const;
   std::optional<TrialSpec> strokes_trial() const;
+  void set_proposal(const procedure::Proposal& proposal, const procedure::Spec& from,
+                    protocol::Factors& factors) const;
   TrialSpec procedure_trial(int index) const;
   std::optional<TrialSpec> make();
+
+  // These functions limit runs (director_runs.cpp).
+  void set_limits_of_runs();
+  std::string value_of(const std::string& key, const TrialSpec& spec) const;
+  int order_key(int of_trial) const;
+  int too_long(const TrialSpec& spec) const;
+  bool can_follow(const std::map<std::string, int>& left, const std::string& key, const TrialSpec& spec,
+                  int spare) const;
+  bool leaves_order(const TrialSpec& spec, int spare) const;
+  bool leaves_lists(const TrialSpec& spec, const std::string& key, int spare) const;
+  bool draws_factors(const TrialSpec& spec) const;
+  std::optional<TrialSpec> with_short_runs(const TrialSpec& first);
+  void apply_deviation();
+  void count_runs(const TrialSpec& spec);
 };
 
 }  // namespace turnpoint::trial

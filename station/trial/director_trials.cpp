@@ -53,7 +53,9 @@ void Director::State::set_times(TrialSpec& spec) const {
 /// Draws levels for the factors that nothing else sets. A factor that is fixed for the block keeps its value.
 protocol::Factors Director::State::drawn_factors() const {
   auto factors = now()->fixed;
+  // Draws that were given up, because they would make a run too long, are skipped.
   auto draw = draws(Stream::factor_level, trial);
+  for (int skipped = 0; skipped < deviation.redraws; ++skipped) draw.uniform();
   for (std::size_t i = 0; i < protocol.factors.size(); ++i) {
     const auto& factor = protocol.factors[i];
     if (factors.count(factor.name)) continue;
@@ -77,6 +79,7 @@ protocol::FactorValue Director::State::drawn_value(const protocol::Factor& facto
   }
   const auto [low, high] = *factor.range;
   auto draw = draws(Stream::factor_value, key(trial));
+  for (int skipped = 0; skipped < deviation.redraws; ++skipped) draw.uniform();
   if (factor.draw == protocol::FactorDraw::uniform) return draw.uniform(low, high);
   for (;;) {
     const double value = factor.mean + factor.sd * draw.normal();
@@ -84,16 +87,27 @@ protocol::FactorValue Director::State::drawn_value(const protocol::Factor& facto
   }
 }
 
-std::optional<int> Director::State::pick_procedure() const {
+std::optional<int> Director::State::pick_procedure() {
   std::vector<int> open;
   for (std::size_t i = 0; i < procedures.size(); ++i)
     if (procedures[i]->next()) open.push_back(static_cast<int>(i));
   if (open.empty()) return std::nullopt;
+  const auto is_open = [&open](int index) { return std::ranges::find(open, index) != open.end(); };
   switch (now()->interleave) {
     case protocol::Interleave::none:
       return open.front();
-    case protocol::Interleave::alternate:
-      return open[static_cast<std::size_t>(trial) % open.size()];
+    case protocol::Interleave::alternate: {
+      // Catch trials do not take a turn.
+      const auto next = std::ranges::find_if(open, [this](int index) { return index > last_procedure; });
+      return next == open.end() ? open.front() : *next;
+    }
+    case protocol::Interleave::passes:
+      std::erase_if(pass, [&](int index) { return !is_open(index); });
+      if (pass.empty()) {
+        pass = open;
+        draws(Stream::interleave, shown).shuffle(pass);
+      }
+      return pass.front();
     case protocol::Interleave::random:
       break;
   }
@@ -115,11 +129,16 @@ TrialSpec Director::State::blank(terms::TrialType type) const {
   return spec;
 }
 
+IntervalOrder Director::State::presented_order(int key) const {
+  return order_for(protocol.task, seed, static_cast<int>(block), attempt, key);
+}
+
 /// Fills in what follows from the level and the factors: order of intervals, right answer, roving, times.
 void Director::State::complete(TrialSpec& spec) const {
   const int key = spec.type == terms::TrialType::warmup ? -1 - warmups_given : trial;
-  const auto order = order_for(protocol.task, seed, static_cast<int>(block), attempt,
-                               spec.type == terms::TrialType::warmup ? warmups_given : trial);
+  const auto order = presented_order(spec.type == terms::TrialType::warmup
+                                         ? warmups_given
+                                         : order_key(deviation.order_of.value_or(trial)));
   spec.intervals = order.intervals;
   spec.correct = order.correct ? order.correct : correct_choice(protocol.task, spec.factors, order.intervals);
   spec.slider = slider(key);
@@ -183,6 +202,7 @@ TrialSpec Director::State::catch_trial() const {
   const auto& wanted = *now()->catch_trials;
   auto draw = draws(Stream::catch_trial, trial);
   draw.uniform();  // skip the random number that has decided that this is a catch trial
+  for (int skipped = 0; skipped < deviation.redraws; ++skipped) draw.uniform();
   spec.level = wanted.levels[draw.below(wanted.levels.size())];
   spec.factors[wanted.factor] = *spec.level;
   complete(spec);
@@ -216,23 +236,29 @@ std::optional<TrialSpec> Director::State::strokes_trial() const {
   return spec;
 }
 
+void Director::State::set_proposal(const procedure::Proposal& proposal, const procedure::Spec& from,
+                                   protocol::Factors& factors) const {
+  factors[from.level] = proposal.level;
+  if (proposal.second) factors[from.second->level] = *proposal.second;
+  for (const auto& [name, value] : from.with) factors[name] = value;
+  for (const auto& [name, level] : proposal.balanced)
+    for (const auto& factor : protocol.factors)
+      if (factor.name == name) factors[name] = factor.levels.at(level);
+}
+
 TrialSpec Director::State::procedure_trial(int index) const {
   const auto& from = *specs[static_cast<std::size_t>(index)];
-  const auto proposal = procedures[static_cast<std::size_t>(index)]->next();
+  const auto proposal = procedures[static_cast<std::size_t>(index)]->choice(deviation.place);
   auto spec = blank(terms::TrialType::experimental);
   spec.procedure = from.name;
-  spec.level = proposal->level;
-  spec.factors[from.level] = proposal->level;
-  if (proposal->second) spec.factors[from.second->level] = *proposal->second;
-  for (const auto& [name, value] : from.with) spec.factors[name] = value;
-  for (const auto& [name, level] : proposal->balanced)
-    for (const auto& factor : protocol.factors)
-      if (factor.name == name) spec.factors[name] = factor.levels.at(level);
+  spec.level = proposal.level;
+  set_proposal(proposal, from, spec.factors);
   complete(spec);
   return spec;
 }
 
 std::optional<TrialSpec> Director::State::make() {
+  deviation = {};
   if (now() == nullptr) return std::nullopt;
   current_procedure = no_procedure;
   if (now()->kind != protocol::BlockKind::trials) return strokes_trial();
@@ -241,9 +267,19 @@ std::optional<TrialSpec> Director::State::make() {
   if (now()->trials && shown >= *now()->trials) return std::nullopt;
   const auto index = pick_procedure();
   if (!index) return std::nullopt;
-  if (catch_due()) return catch_trial();
+  const bool due = catch_due();
+  if (due && runs.empty()) return catch_trial();
+  if (due || catches_owed > 0) {
+    // A catch trial that would make a run too long is put off.
+    auto spec = with_short_runs(catch_trial());
+    if (spec) deviation.catches = due ? 0 : -1;
+    if (spec) return spec;
+  }
   current_procedure = *index;
-  return procedure_trial(*index);
+  auto spec = procedure_trial(*index);
+  if (!runs.empty()) spec = with_short_runs(spec).value();
+  deviation.catches = due ? 1 : 0;
+  return spec;
 }
 
 }  // namespace turnpoint::trial

@@ -26,6 +26,9 @@ std::vector<IntervalOrder> orders_of(const protocol::Task& task);
 /// order of trial k can be computed without computing the other runs.
 IntervalOrder order_for(const protocol::Task& task, std::uint64_t seed, int block, int attempt, int trial);
 
+/// Returns the number of trials in a run of order_for().
+int run_of_orders();
+
 /// The levels of a friction table in the order to present them: each level `repeats` times, in random order,
 /// with the surface at rest (0) before, between and after them.
 std::vector<double> friction_table_order(std::span<const double> levels, int repeats, const random::Key& key);

@@ -16,33 +16,25 @@ Spec offsets() {
   spec.values = {-30, -18, -9, -3, 3, 9, 18, 30};
   spec.repeats = 10;
   spec.balance = {"mark_mm"};
-  spec.max_run = 4;
   return spec;
 }
 
 Context marks() {
   Context context;
   context.factor_levels = {{"mark_mm", 3}};
-  context.right_answer = [](double level) { return level < 0 ? 0 : 1; };
   return context;
 }
 
 }  // namespace
 
-TEST_CASE("constant stimuli present each value equally often, balanced and without long runs",
-          "[procedure]") {
+TEST_CASE("constant stimuli present each value equally often, balanced", "[procedure]") {
   for (std::uint64_t seed = 0; seed < 200; ++seed) {
     const auto procedure = make_procedure(offsets(), marks(), {seed, {}, 1, 0, 0});
     std::map<double, int> counts;
     std::map<std::pair<double, std::size_t>, int> crossed;
-    int run = 0, last = -1;
     while (const auto proposal = procedure->next()) {
       ++counts[proposal->level];
       ++crossed[{proposal->level, proposal->balanced.at(0).second}];
-      const int right = proposal->level < 0 ? 0 : 1;
-      run = right == last ? run + 1 : 1;
-      last = right;
-      if (run > 4) FAIL("five equal right answers in a row at seed " << seed);
       procedure->record(Answer::one);
     }
     CHECK(procedure->recorded() == 80);

@@ -1,12 +1,13 @@
 #!/usr/bin/env python3
 """Reports of extreme observers: each protocol with people who are always right, always wrong, press one key or never
-answer, in studies of one, two and more people. No command may end with status 70, and no table may be empty without
-a reason.
+answer, in studies of one, two and more people. No command may end with status 70 or fail without a reason, no table may
+be empty without a reason, and the Python package reads the same trials from database and export, if it can be imported.
 
     tests/report/sweep.py TURNPOINT [--all] [PROTOCOL...]
 
 Without --all, a few protocols and studies of one person; with it, every shipped protocol and every protocol of
-tests/report/extreme, with studies of one, two and three people.
+tests/report/extreme, with studies of one, two and three people. PYTHONPATH says where the package is
+(build/release/python).
 """
 import html.parser
 import json
@@ -15,9 +16,15 @@ import subprocess
 import sys
 import tempfile
 
+try:
+    import pandas
+    import turnpoint as reader
+except ImportError:
+    reader = None
+
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 HERE = pathlib.Path(__file__).resolve().parent
-RIG = ROOT / "deploy/rigs/simulated.toml"
+RIGS = ROOT / "deploy/rigs"
 KINDS = ["right", "wrong", "key", "silent"]
 FEW = ["friction-2ifc", "staircase-to-zero", "two-factors"]
 
@@ -61,8 +68,10 @@ class Sweep:
             out, error = program.communicate(timeout=30)
             if stop_after_s is None:
                 self.failures.append(f"{' '.join(map(str, arguments))}: takes more than 300 s")
-        if program.returncode not in (0, 1, 2) and not (stop_after_s and program.returncode in (130, 143)):
+        if program.returncode not in (0, 1, 2) and not (stop_after_s and program.returncode in (130, 143, -15)):
             self.failures.append(f"{' '.join(map(str, arguments))}: status {program.returncode}: {error.strip()[-300:]}")
+        self.expect(program.returncode == 0 or stop_after_s or error.strip() or out.strip(),
+                    f"{' '.join(map(str, arguments))}: status {program.returncode} without a reason")
         return subprocess.CompletedProcess(arguments, program.returncode, out, error)
 
     def expect(self, holds, what):
@@ -82,10 +91,14 @@ class Sweep:
     def people(self, folder, protocol, kinds):
         what = f"{protocol.stem}, {'+'.join(kinds)}"
         database = folder / "lab.sqlite"
+        rig = RIGS / ("simulated-forces.toml" if "\n[sensing]" in protocol.read_text() else "simulated.toml")
         for number, kind in enumerate(kinds):
             observer = "sim" if kind == "sim" else f"program:{HERE}/one_way.py,kind={kind}"
-            run = self.call("run", protocol, "--rig", RIG, "--participant", f"P{number + 1:02}", "--db", database,
-                            "--headless", "--observer", observer, stop_after_s=3 if kind == "silent" else None)
+            for wait_s in (3, 30):  # a session that was asked to end before it began is begun again
+                run = self.call("run", protocol, "--rig", rig, "--participant", f"P{number + 1:02}", "--db", database,
+                                "--headless", "--observer", observer, stop_after_s=wait_s if kind == "silent" else None)
+                if run.returncode != -15:
+                    break
             if "Traceback" in run.stderr or (run.returncode == 2):
                 self.failures.append(f"{what}: run: {run.stderr.strip()[-300:]}")
                 return
@@ -93,7 +106,10 @@ class Sweep:
         report = self.call("report", "--db", database, "--out", page)
         if report.returncode == 0:
             self.page(page, what)
-            self.fits(json.loads(self.call("report", "--db", database, "--json").stdout), what)
+            document = json.loads(self.call("report", "--db", database, "--json").stdout)
+            self.fits(document, what)
+            if protocol.stem == "staircase-to-zero" and kinds == ["right"]:
+                self.expect(document["early_ends"], f"{what}: the report does not say that the staircase ended early")
         else:
             self.expect("no session with trials" in report.stderr, f"{what}: report: {report.stderr.strip()[-300:]}")
         done = self.call("report", "--study", "--db", database, "--out", study, "--tables", folder / "tables")
@@ -102,11 +118,23 @@ class Sweep:
             document = json.loads(self.call("report", "--study", "--db", database, "--json").stdout)
             for group in document["groups"]:
                 self.expect(group["fit"] or group["statements"], f"{what}: a group with neither a fit nor a reason")
+            if protocol.stem == "staircase-to-zero" and kinds == ["right"]:
+                self.expect(document["participants"][0]["early_ends"] and
+                            "steps in a row" in (folder / "tables/participants.csv").read_text(),
+                            f"{what}: the study does not say that the staircase ended early")
             counts = document["sessions"]
             self.expect(sum(len(p["sessions"]) for p in document["participants"]) == counts["counted"],
                         f"{what}: the number of counted sessions is wrong")
-        self.call("export", "--db", database, "--out", folder / "csv")
+        exported = self.call("export", "--db", database, "--out", folder / "csv")
         self.call("export", "--db", database, "--out", folder / "bids", "--format", "bids")
+        if reader and exported.returncode == 0:
+            trials = [reader.read(str(place)).trials for place in (database, folder / "csv")]
+            try:
+                pandas.testing.assert_frame_equal(*trials, check_dtype=False)
+            except AssertionError as difference:
+                self.failures.append(f"{what}: the Python package reads other trials from the export: {difference}")
+            self.expect(set(trials[0].participant_id) <= {f"P{n + 1:02}" for n in range(len(kinds))},
+                        f"{what}: the Python package reads other participants")
 
 
 def studies(everything):
@@ -133,7 +161,8 @@ def main():
                 sweep.people(pathlib.Path(folder), protocol, kinds)
     for failure in sweep.failures:
         print(failure)
-    print(f"{sweep.commands} commands, {len(sweep.failures)} failures")
+    print(f"{sweep.commands} commands, {len(sweep.failures)} failures, " +
+          ("read with the Python package" if reader else "not read with the Python package"))
     sys.exit(1 if sweep.failures or sweep.commands == 0 else 0)
 
 

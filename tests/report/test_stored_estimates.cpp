@@ -50,6 +50,20 @@ TEST_CASE("a report has the ids of answers, and the reversals that a staircase a
   CHECK(demo.choices == std::vector<std::string>{"left", "right"});
 }
 
+TEST_CASE("a report says that a staircase ended early, and why", "[report]") {
+  const auto always_right = data_of(shipped("friction-staircase"), "sim:threshold=-200,lapse=0");
+  REQUIRE_FALSE(always_right.early_ends.empty());
+  CHECK(always_right.early_ends.front().block == "main");
+  const auto summary = report::summarise(always_right);
+  CHECK(report::to_html(summary).find("Ended early in main: ") != std::string::npos);
+  CHECK(report::to_html(summary).find("10 steps in a row at the end of its range") != std::string::npos);
+  CHECK(report::to_json(summary).find("10 steps in a row at the end of its range") != std::string::npos);
+  // one that meets its rules says nothing
+  const auto ordinary = data_of(shipped("friction-staircase"), "sim:threshold=-16");
+  CHECK(ordinary.early_ends.empty());
+  CHECK(report::to_html(report::summarise(ordinary)).find("Ended early") == std::string::npos);
+}
+
 TEST_CASE("the report recomputes the estimates of the method of limits from the stored trials", "[report]") {
   auto source = replaced(shipped("limits-boundary"), "procedures = [\"series\"]",
                          "procedures = [\"series\", \"drawn\"]\ninterleave = \"random\"");
