@@ -401,6 +401,82 @@ std::optional<plot::Figure> quantile_probability_figure(const Summary& summary) 
   return figure;
 }
 
+namespace {
+
+/// Where the person could move by changing nothing but the boundary: accuracy over the mean time of right
+/// answers, with the fitted drifts and the fitted time outside the decision, averaged over the conditions.
+plot::Line boundary_curve(const Summary& summary, const std::string& name) {
+  constexpr double s2 = analysis::kDiffusionScale * analysis::kDiffusionScale;
+  struct Cell {
+    double drift, weight;
+  };
+  std::vector<Cell> cells;
+  std::vector<double> outside_s;
+  double widest = 0;
+  for (const auto& entry : summary.trade.instructions) {
+    if (!entry.boundary || !entry.nondecision_s) continue;
+    outside_s.push_back(entry.nondecision_s->value);
+    widest = std::max(widest, entry.boundary->value);
+    for (const auto& cell : entry.cells)
+      if (cell.drift) cells.push_back({cell.drift->value, static_cast<double>(cell.answered)});
+  }
+  plot::Line line;
+  line.series = plot::kNeutral;
+  line.name = name;
+  for (int i = 1; i <= 80 && !cells.empty(); ++i) {
+    const double boundary = 1.4 * widest * i / 80;
+    double all = 0, right = 0, right_s = 0;
+    for (const auto& [drift, weight] : cells) {
+      const double x = drift * boundary / s2, p = 1 / (1 + std::exp(-x));
+      // mean decision time of a start half-way, the same for right and wrong answers
+      const double decision_s =
+          std::fabs(x) < 1e-6 ? boundary * boundary / (4 * s2) : boundary / (2 * drift) * std::tanh(x / 2);
+      all += weight, right += weight * p, right_s += weight * p * decision_s;
+    }
+    line.x.push_back(analysis::mean(outside_s) + right_s / right);
+    line.y.push_back(right / all);
+  }
+  return line;
+}
+
+/// Accuracy over time with a region of uncertainty for each condition, and the curve along which only the
+/// boundary changes. Empty with one condition.
+std::optional<plot::Chart> conditions_chart(const Summary& summary, const Words& words) {
+  plot::Chart chart{words("figure.trade"), {}, {}, {}};
+  std::vector<double> times_s, accuracies;
+  std::vector<plot::Layer> points;
+  int series = 0;
+  for (const auto& entry : summary.trade.instructions) {
+    const int own = series++;
+    if (!entry.proportion_correct || !entry.correct_times || entry.correct_times->count < 3) continue;
+    const auto& right = *entry.correct_times;
+    const auto& accuracy = *entry.proportion_correct;
+    const double half_s = analysis::kZ95 * right.sd_s / std::sqrt(static_cast<double>(right.count));
+    plot::Band region;
+    region.x = {right.mean_s - half_s, right.mean_s + half_s};
+    region.low = {accuracy.interval.low, accuracy.interval.low};
+    region.high = {accuracy.interval.high, accuracy.interval.high};
+    plot::Points point;
+    point.x = {right.mean_s}, point.y = {accuracy.value};
+    region.series = point.series = own;
+    point.name = or_default(entry.instruction, words("figure.all_trials"));
+    times_s.insert(times_s.end(), region.x.begin(), region.x.end());
+    accuracies.insert(accuracies.end(), {accuracy.interval.low, accuracy.interval.high});
+    chart.layers.push_back(region);
+    points.push_back(point);
+  }
+  if (points.size() < 2) return std::nullopt;
+  if (auto curve = boundary_curve(summary, words("figure.boundary_curve")); !curve.x.empty())
+    chart.layers.push_back(std::move(curve));
+  chart.layers.insert(chart.layers.end(), points.begin(), points.end());
+  chart.x = plot::fitted(words("figure.correct_time"), times_s, 0.3);
+  chart.y = {words("figure.proportion", words("figure.correct")),
+             std::min(0.45, *std::min_element(accuracies.begin(), accuracies.end()) - 0.03), 1.03};
+  return chart;
+}
+
+}  // namespace
+
 std::optional<plot::Figure> trade_figure(const Summary& summary) {
   const Words words(summary.data.language);
   plot::Chart caf{words("figure.conditional"), {}, {}, {}},
@@ -450,6 +526,7 @@ std::optional<plot::Figure> trade_figure(const Summary& summary) {
   figure.columns = 2;
   figure.chart_width_px = 400;
   figure.chart_height_px = 330;
+  if (auto conditions = conditions_chart(summary, words)) figure.charts.push_back(std::move(*conditions));
   if (!caf_times.empty()) figure.charts.push_back(std::move(caf));
   if (!cell_times.empty()) figure.charts.push_back(std::move(cells));
   return figure;

@@ -320,15 +320,16 @@ std::string trade_section(const Summary& summary) {
         "The numbers "
         "are medians of the posterior distribution, with 95 % intervals.</p>\n";
   html += model_section(summary);
-  if (shows(summary.data, "lisas") || shows(summary.data, "ies"))
-    html +=
-        "<p class=\"soft\">LISAS and inverse efficiency combine speed and accuracy, but neither is free of "
-        "the "
-        "trade-off itself: both can change when only the boundary does (Vandierendonck 2017; Liesefeld &amp; "
-        "Janczyk "
-        "2019). Inverse efficiency suits few errors only (Bruyer &amp; Brysbaert 2011: up to 10 %). Do not "
-        "read a "
-        "difference of these scores as a difference of ability; the drift tells that.</p>\n";
+  for (const auto& [part, name] : {std::pair("lisas", "LISAS"), {"ies", "The inverse efficiency score"}})
+    if (shows(summary.data, part))
+      html += std::string("<p class=\"soft\">") + name +
+              " combines speed and accuracy, but is not free of the trade-off itself: it can change when "
+              "only the "
+              "boundary does (Liesefeld &amp; Janczyk 2019)" +
+              (std::string(part) == "ies"
+                   ? ", and suits few errors only, up to 10 % (Bruyer &amp; Brysbaert 2011)"
+                   : "") +
+              ". Do not read its differences as differences of ability.</p>\n";
   if (several && shows(summary.data, "bis"))
     html +=
         "<p class=\"soft\">The balanced integration score (BIS) standardises accuracy and time over all "
